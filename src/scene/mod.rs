@@ -1,0 +1,170 @@
+//! What a scene file means: plain data with everything resolved.
+//!
+//! In: a syntax tree and the overrides. Out: a [`Scene`], or problems. Defaults are filled in, alternatives decided and
+//! expressions evaluated; every condition of the language's table holds. What the tracer makes of it is not known here.
+
+use glam::DVec3;
+
+use crate::{color::Color, math::Angle, source::Span};
+
+/// A whole scene: what is rendered, through which camera, with which samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The picture's size and background.
+    pub image: Image,
+    /// Where it is seen from.
+    pub camera: Camera,
+    /// Where its samples lie.
+    pub sampler: Sampler,
+    /// What is seen, in the order of the file: on a tie the first one wins.
+    pub objects: Vec<Object>,
+}
+
+/// The picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Image {
+    /// Columns of pixels, 1 to 2^20.
+    pub width: u32,
+    /// Rows of pixels, 1 to 2^20.
+    pub height: u32,
+    /// What is seen where nothing is hit.
+    pub background: Color,
+}
+
+/// The pinhole camera, as the file gives it. Lengths in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// The eye, through which all rays pass.
+    pub eye: DVec3,
+    /// Where it looks; not undefined.
+    pub view: View,
+    /// The up vector, not zero; it may be parallel to the view direction.
+    pub up: DVec3,
+    /// The roll about the view direction; positive dips the right side.
+    pub roll: Angle,
+    /// How much it sees.
+    pub lens: Lens,
+    /// The height of the window in the view plane, > 0.
+    pub view_height: f64,
+    /// Nothing at this depth or nearer is seen, ≥ 0.
+    pub near: f64,
+    /// Nothing at this depth or farther is seen, > near.
+    pub far: Option<f64>,
+}
+
+/// The direction that a camera looks in, in either of the language's two ways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum View {
+    /// Towards a point other than the eye.
+    Lookat(DVec3),
+    /// Along a vector other than zero, of any length.
+    Direction(DVec3),
+}
+
+/// How much a camera sees, in either of the language's two ways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// The distance from the eye to the view plane, > 0.
+    Distance(f64),
+    /// The angle that the window's height takes up, between 0 and 180 degrees.
+    Fov(Angle),
+}
+
+/// Where samples lie, how many, and the seed of the random ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampler {
+    /// The technique.
+    pub method: Method,
+    /// How many samples.
+    pub count: Count,
+    /// The seed, below 2^53.
+    pub seed: u64,
+}
+
+/// A sampling technique.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// An even grid, centred.
+    Regular,
+    /// Independent and uniform.
+    Random,
+    /// One at random in each cell of a grid.
+    Jittered,
+    /// One in each row and each column (Latin hypercube).
+    NRooks,
+    /// Both at once (Kensler's correlated multi-jittering).
+    MultiJittered,
+    /// The Hammersley points, shifted per pixel.
+    Hammersley,
+    /// The Halton points in bases 2 and 3, shifted per pixel.
+    Halton,
+    /// Sobol' points with Owen scrambling, per pixel.
+    Sobol,
+    /// Points uniform over the whole picture.
+    Scatter,
+}
+
+/// A number of samples; `per_pixel` times the number of pixels, or `total`, is at most 2^53.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Count {
+    /// So many in each pixel, ≥ 1.
+    PerPixel(u64),
+    /// So many in the whole picture, ≥ 1.
+    Total(u64),
+}
+
+/// One object of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Its name, unique if it has one.
+    pub name: Option<String>,
+    /// What it is.
+    pub shape: Shape,
+    /// Its whole block in the text.
+    pub span: Span,
+}
+
+/// A shape with its colour. Lengths in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A sphere.
+    Sphere {
+        /// Its centre.
+        center: DVec3,
+        /// Its radius, > 0.
+        radius: f64,
+        /// Its colour.
+        color: Color,
+    },
+    /// A triangle by centroid and normal.
+    Triangle {
+        /// The mean of its vertices.
+        centroid: DVec3,
+        /// Its normal, not zero, of any length.
+        normal: DVec3,
+        /// The lengths (a, b, c) of its sides, c the base; they form a triangle.
+        sides: DVec3,
+        /// Its turn in its own plane, counter-clockwise seen from the tip of the normal.
+        spin: Angle,
+        /// Its colour.
+        color: Color,
+    },
+    /// A closed, axis-aligned box.
+    Box {
+        /// The corner of least coordinates.
+        min: DVec3,
+        /// The corner of greatest coordinates, > min on every axis.
+        max: DVec3,
+        /// Its colour.
+        color: Color,
+    },
+    /// The infinite checkerboard in a horizontal plane.
+    Checkerboard {
+        /// The height of its plane.
+        y: f64,
+        /// The side of a square, > 0.
+        square: f64,
+        /// The colours of the even and of the odd squares.
+        colors: [Color; 2],
+    },
+}
