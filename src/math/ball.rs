@@ -35,11 +35,10 @@ impl<T: Real> Ball<T> {
 
     /// A computed number whose operands contribute `inherited` to its radius.
     fn rounded(mid: T, inherited: f64) -> Self {
-        let size = mid.to_f64().abs();
-        let rounding = if size == 0.0 {
+        let rounding = if mid.is_zero() {
             0.0
         } else {
-            4.0 * T::UNIT * size + T::TINY
+            4.0 * T::UNIT * mid.to_f64().abs() + T::TINY
         };
         Self {
             mid,
@@ -76,7 +75,7 @@ impl<T: Real> Ball<T> {
             Ok(Ordering::Greater)
         } else if mid < -rad {
             Ok(Ordering::Less)
-        } else if T::LAST || (mid == 0.0 && rad == 0.0) {
+        } else if T::LAST || (self.rad == 0.0 && self.mid.is_zero()) {
             Ok(Ordering::Equal)
         } else {
             Err(Doubt)
@@ -103,7 +102,7 @@ impl<T: Real> Ball<T> {
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
         // Exact, but for an underflow.
-        let lost = if self.size() == 0.0 { 0.0 } else { T::TINY };
+        let lost = if self.mid.is_zero() { 0.0 } else { T::TINY };
         Self {
             mid,
             rad: libm::ldexp(self.rad, exponent) + lost,
@@ -130,17 +129,20 @@ impl<T: Real> Ball<T> {
     /// integer is that integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
-        let fraction = self.mid.minus(&floor).to_f64();
+        let ceiling = floor.plus(&T::from_f64(1.0));
+        let below = self.mid.minus(&floor).to_f64();
+        let above = ceiling.minus(&self.mid).to_f64();
+        // A radius beyond any size that the differences could be rounded by.
         let rad = self.rad * UP + 4.0 * T::UNIT;
         let exact = |mid| Self { mid, rad: 0.0 };
-        if self.rad == 0.0 || (fraction >= rad && fraction + rad < 1.0) {
+        if self.rad == 0.0 || (below >= rad && above > rad) {
             Ok((exact(floor), odd))
         } else if !T::LAST {
             Err(Doubt)
-        } else if fraction < 0.5 {
+        } else if below < above {
             Ok((exact(floor), odd))
         } else {
-            Ok((exact(floor.plus(&T::from_f64(1.0))), !odd))
+            Ok((exact(ceiling), !odd))
         }
     }
 
@@ -159,7 +161,11 @@ impl<T: Real> Ball<T> {
         let mid = self.mid.times(&other.mid);
         let (a, b) = (self.size(), other.size());
         let inherited = a * other.rad + self.rad * b + self.rad * other.rad;
-        let lost = if a == 0.0 || b == 0.0 { 0.0 } else { T::TINY };
+        let lost = if self.mid.is_zero() || other.mid.is_zero() {
+            0.0
+        } else {
+            T::TINY
+        };
         Self::rounded(mid, inherited + lost)
     }
 
@@ -174,7 +180,7 @@ impl<T: Real> Ball<T> {
         let mid = self.mid.over(&other.mid);
         // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|) / |b'|, and |b'| is at least what the radius leaves of b.
         let least = other.size() - other.rad * UP;
-        let lost = if self.size() == 0.0 { 0.0 } else { T::TINY };
+        let lost = if self.mid.is_zero() { 0.0 } else { T::TINY };
         let inherited = (self.rad + mid.to_f64().abs() * other.rad) / least * UP + lost;
         Self::rounded(mid, inherited)
     }

@@ -40,11 +40,6 @@ impl Big {
     pub fn atan_degrees(&self) -> Self {
         Self(self.0.atan_unit(360))
     }
-
-    /// Whether it is exactly zero.
-    pub fn is_zero(&self) -> bool {
-        is_zero(&self.0)
-    }
 }
 
 fn is_zero(x: &Float) -> bool {
@@ -83,7 +78,8 @@ fn exact(x: f64) -> Float {
 
 impl Real for Big {
     const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
-    const TINY: f64 = f64::MIN_POSITIVE;
+    /// A big number does not underflow, but its radius does.
+    const TINY: f64 = f64::from_bits(1);
     const LAST: bool = true;
 
     fn from_f64(x: f64) -> Self {
@@ -97,6 +93,9 @@ impl Real for Big {
     }
     fn to_f64(&self) -> f64 {
         self.0.to_f64().value()
+    }
+    fn is_zero(&self) -> bool {
+        is_zero(&self.0)
     }
     fn plus(&self, other: &Self) -> Self {
         Self(&self.0 + &other.0)

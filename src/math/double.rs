@@ -71,6 +71,9 @@ impl Real for Double {
     fn to_f64(&self) -> f64 {
         self.hi
     }
+    fn is_zero(&self) -> bool {
+        self.hi == 0.0
+    }
     fn plus(&self, other: &Self) -> Self {
         let s = two_sum(self.hi, other.hi);
         let t = two_sum(self.lo, other.lo);

@@ -10,7 +10,7 @@ use std::fmt::Debug;
 pub trait Real: Clone + Debug + Sized {
     /// Bound on the relative error of one operation.
     const UNIT: f64;
-    /// Bound on the absolute error of one operation that underflows.
+    /// Bound on the absolute error of one operation that underflows, its radius included.
     const TINY: f64;
     /// Whether there is no more precise kind to ask: a value that is not told from zero counts as zero.
     const LAST: bool;
@@ -23,6 +23,8 @@ pub trait Real: Clone + Debug + Sized {
     fn from_big(x: &super::Big) -> Self;
     /// The nearest `f64`, or one of the two nearest.
     fn to_f64(&self) -> f64;
+    /// Whether it is zero, and not merely too small for an `f64`.
+    fn is_zero(&self) -> bool;
 
     /// self + other.
     fn plus(&self, other: &Self) -> Self;
@@ -59,6 +61,10 @@ impl Real for f64 {
     #[inline]
     fn to_f64(&self) -> f64 {
         *self
+    }
+    #[inline]
+    fn is_zero(&self) -> bool {
+        *self == 0.0
     }
     #[inline]
     fn plus(&self, other: &Self) -> Self {

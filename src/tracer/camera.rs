@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     math::{Ball, Ball3, Big, Exact, Real},
-    scene::{self, Image, Lens, View},
+    scene::{self, Image, Lens, Scene, Shape, View},
 };
 
 /// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only at the end.
@@ -132,6 +132,9 @@ pub struct Window {
 pub struct Camera<T> {
     /// Its eye, in the world.
     pub eye: DVec3,
+    /// Lengths of the world are multiplied by two to this power, so that very large and very small worlds stay within the
+    /// range of `f64`; 0 for any other.
+    pub exponent: i32,
     /// Right, down and ahead, in the world.
     pub axes: [Ball3<T>; 3],
     /// The side of a pixel, in units of X and Y.
@@ -168,8 +171,9 @@ pub struct Point {
 }
 
 impl<T: Real> Camera<T> {
-    /// The camera for sample points at most `reach` pixels from the picture's centre in x and y.
-    pub fn new(basis: &Basis, eye: DVec3, image: &Image, reach: DVec2) -> Self {
+    /// The camera of a scene for sample points at most `reach` pixels from the picture's centre in x and y.
+    pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
+        let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
         // The power of two that brings the widest X or Y below 1; a narrow view needs none.
         let exponent = if widest.to_f64() <= 1.0 {
@@ -183,6 +187,7 @@ impl<T: Real> Camera<T> {
         let axis = |v: &[Big; 3]| v.each_ref().map(Ball::from_big);
         Self {
             eye,
+            exponent: exponent_of_lengths(scene),
             axes: [
                 axis(&basis.u),
                 axis(&basis.v.each_ref().map(Real::negated)),
@@ -236,10 +241,42 @@ impl<T: Real> Camera<T> {
         self.axes.each_ref().map(|axis| crate::math::dot(axis, v))
     }
 
-    /// A point of the world as seen from the eye: point − eye, formed without loss, in the world's axes.
+    /// A point of the world as seen from the eye: point − eye, formed without loss, in the world's axes and scaled.
     pub fn relative(&self, point: DVec3) -> Ball3<T> {
-        let (p, e) = (point.to_array(), self.eye.to_array());
-        [0, 1, 2].map(|i| Ball::difference(p[i], e[i]))
+        [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
+    }
+
+    /// One coordinate of such a point.
+    pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
+        Ball::difference(at, self.eye[axis]).scaled(self.exponent)
+    }
+
+    /// A length of the world, scaled.
+    pub fn length(&self, length: f64) -> Ball<T> {
+        Ball::exact(length).scaled(self.exponent)
+    }
+}
+
+/// The power of two that brings the farthest lengths of a scene well within the range of `f64`, 0 if they are. Lengths that
+/// are 2^−1400 of them, and more, still are.
+fn exponent_of_lengths(scene: &Scene) -> i32 {
+    let eye = scene.camera.eye;
+    let farthest = scene
+        .objects
+        .iter()
+        .map(|object| match object.shape {
+            Shape::Sphere { center, radius, .. } => (center - eye).abs().max_element().max(radius),
+            Shape::Triangle {
+                centroid, sides, ..
+            } => (centroid - eye).abs().max(sides).max_element(),
+            Shape::Box { min, max, .. } => (min - eye).abs().max((max - eye).abs()).max_element(),
+            Shape::Checkerboard { y, .. } => (y - eye.y).abs(),
+        })
+        .fold(0.0, f64::max);
+    match libm::frexp(farthest.min(f64::MAX)).1 {
+        exponent if exponent > 400 => 400 - exponent,
+        exponent if exponent < -300 => -exponent,
+        _ => 0,
     }
 }
 

@@ -49,7 +49,7 @@ impl<T: Real> Cuboid<T> {
             let face = |upper: bool| Face {
                 inverse_depth: {
                     let at = if upper { max[axis] } else { min[axis] };
-                    inverse_depth(camera, &normal, &Ball::difference(at, eye))
+                    inverse_depth(camera, &normal, &camera.relative_coordinate(axis, at))
                 },
                 index: 2 * axis as u8 + u8::from(upper),
             };

@@ -40,14 +40,25 @@ impl<T: Real> Sphere<T> {
     /// Prepares a sphere.
     pub fn new(camera: &Camera<T>, center: DVec3, radius: f64) -> Self {
         let from_eye = camera.relative(center);
-        let greatest = from_eye.iter().map(Ball::size).fold(radius, f64::max);
+        let radius_ball = camera.length(radius);
+        let greatest = from_eye
+            .iter()
+            .map(Ball::size)
+            .fold(radius_ball.size(), f64::max);
         // Within what powers of two an f64 holds; a factor of 2^74 more or less does no harm.
         let exponent = (-libm::frexp(greatest.min(f64::MAX)).1).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
-        let radius_ball = Ball::exact(radius).scaled(exponent);
+        let radius_ball = radius_ball.scaled(exponent);
         let square = &radius_ball * &radius_ball;
 
-        let (power, side) = power(camera.eye, center, radius, exponent, &from_eye, &square);
+        let (power, side) = power(
+            camera.eye,
+            center,
+            radius,
+            exponent + camera.exponent,
+            &from_eye,
+            &square,
+        );
         let c = camera.turned(&from_eye);
         let (rad_q, rad_b) = radii::<T>(
             &c.each_ref().map(Ball::size),

@@ -26,7 +26,7 @@ impl<T: Real> Triangle<T> {
     pub fn new(camera: &Camera<T>, shape: &TriangleShape) -> Option<Self> {
         let normal = unit_scaled(shape.normal);
         let from_eye = camera.relative(shape.centroid);
-        let h = height(camera.eye, shape.centroid, normal, &from_eye);
+        let h = height(camera, shape.centroid, normal, &from_eye);
         let side = h.1;
         if side.is_eq() {
             return None;
@@ -35,7 +35,8 @@ impl<T: Real> Triangle<T> {
 
         // The edges' forms matter by their signs alone, so lengths may be scaled.
         let offsets = offsets::<T>(shape);
-        let vertices = offsets.map(|offset| [0, 1, 2].map(|i| &from_eye[i] + &offset[i]));
+        let vertices = offsets
+            .map(|offset| [0, 1, 2].map(|i| &from_eye[i] + &offset[i].scaled(camera.exponent)));
         let greatest = vertices
             .iter()
             .flatten()
@@ -117,7 +118,7 @@ impl TriangleShape {
 /// The distance of the triangle's plane from the eye, times the normal's length, with a small relative error, and its exact
 /// sign.
 fn height<T: Real>(
-    eye: DVec3,
+    camera: &Camera<T>,
     centroid: DVec3,
     normal: DVec3,
     from_eye: &Ball3<T>,
@@ -128,9 +129,11 @@ fn height<T: Real>(
     {
         return (h, side);
     }
-    let terms = [0, 1, 2].map(|i| &Exact::difference(centroid[i], eye[i]) * &Exact::new(normal[i]));
+    let terms =
+        [0, 1, 2].map(|i| &Exact::difference(centroid[i], camera.eye[i]) * &Exact::new(normal[i]));
     let h = &(&terms[0] + &terms[1]) + &terms[2];
-    (Ball::from_big(&h.to_big()), h.sign())
+    let side = h.sign();
+    (Ball::from_big(&h.to_big().scaled(camera.exponent)), side)
 }
 
 /// A vector divided by a power of two such that its greatest component is about 1; along an axis, the unit vector, so that

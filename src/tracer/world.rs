@@ -168,6 +168,7 @@ impl World {
             .into();
         let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
             let lambda = Big::from_f64(1.0).over(&crossing.inverse_depth.mid);
+            let lambda = lambda.scaled(-camera.exponent);
             let coordinate = |i: usize| {
                 let from_eye = lambda.times(&world[i].mid);
                 Big::from_f64(camera.eye[i]).plus(&from_eye).to_f64()
@@ -353,12 +354,12 @@ impl World {
 
 impl<T: Real> Frame<T> {
     fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
-        let scene::Camera { eye, near, far, .. } = scene.camera;
-        let camera = Camera::new(basis, eye, &scene.image, reach);
+        let scene::Camera { near, far, .. } = scene.camera;
+        let camera = Camera::new(basis, scene, reach);
         // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
         let clip = |depth: f64| {
             let zero = Ball::exact(0.0);
-            let inverse = Ball::exact(1.0) / Ball::exact(depth);
+            let inverse = Ball::exact(1.0) / camera.length(depth);
             Form::new(&[zero.clone(), zero, inverse], &camera.window)
         };
         Self {
