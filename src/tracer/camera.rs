@@ -68,18 +68,15 @@ impl Basis {
     /// The basis of a camera: w = −f/|f|, u = (up × w)/|up × w|, v = w × u, then the roll.
     ///
     /// Numerators are exact, so u is right to the last bits however nearly parallel up and the view direction are. Where
-    /// they are parallel, u = (h × up)/|h × up| with the level direction h = (0, 0, −1), or (0, 1, 0) where up is parallel
-    /// to that: the picture that one gets on tilting the camera from looking along h, in both cases.
+    /// they are parallel, u = (h × up)/|h × up| with the [level direction](scene::level_direction) h: that of the camera
+    /// which looks along h and has the same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
         let up = exact3(camera.up);
         let backward = forward.each_ref().map(|x| &Exact::new(0.0) - x);
         let mut right = cross(&up, &backward);
         if is_zero(&right) {
-            right = cross(&exact3(DVec3::NEG_Z), &up);
-        }
-        if is_zero(&right) {
-            right = cross(&exact3(DVec3::Y), &up);
+            right = cross(&exact3(scene::level_direction(camera.up)), &up);
         }
         let top = cross(&backward, &right);
 
