@@ -8,6 +8,8 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 use glam::DVec3;
 
+use super::two_sum;
+
 /// Whether the cross product of `up` with `to − from` is zero, the difference being taken exactly.
 pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     let up = up.to_array().map(whole);
@@ -41,9 +43,7 @@ fn exceeds(one: f64, other: f64, bound: f64) -> bool {
         // Rounding keeps order: the exact sum lies on the same side.
         return sum > bound;
     }
-    // The rounding error of a sum is an f64 (Knuth's two-sum).
-    let part = sum - one;
-    let error = (one - (sum - part)) + (other - part);
+    let (_, error) = two_sum(one, other);
     error > 0.0
 }
 

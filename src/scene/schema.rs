@@ -5,6 +5,8 @@
 
 use std::fmt;
 
+use super::Method;
+
 /// A kind of block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
@@ -596,24 +598,33 @@ const fn color(preset: &'static str) -> Field {
 }
 
 /// Every sampling technique, with a line of help.
-pub const METHODS: &[(&str, super::Method, &str)] = {
-    use super::Method;
-    &[
-        ("regular", Method::Regular, "an even grid, centred"),
-        ("random", Method::Random, "independent and uniform"),
-        ("jittered", Method::Jittered, "one at random in each cell of a grid"),
-        ("n_rooks", Method::NRooks, "one in each row and each column"),
-        (
-            "multi_jittered",
-            Method::MultiJittered,
-            "jittered and n_rooks at once",
-        ),
-        ("hammersley", Method::Hammersley, "the Hammersley points, shifted per pixel"),
-        ("halton", Method::Halton, "the Halton points, shifted per pixel"),
-        ("sobol", Method::Sobol, "Sobol' points with Owen scrambling, per pixel"),
-        ("scatter", Method::Scatter, "points uniform over the whole picture"),
-    ]
-};
+pub const METHODS: &[(Method, &str)] = &[
+    (Method::Regular, "an even grid, centred"),
+    (Method::Random, "independent and uniform"),
+    (Method::Jittered, "one at random in each cell of a grid"),
+    (Method::NRooks, "one in each row and each column"),
+    (Method::MultiJittered, "jittered and n_rooks at once"),
+    (Method::Hammersley, "the Hammersley points, shifted per pixel"),
+    (Method::Halton, "the Halton points, shifted per pixel"),
+    (Method::Sobol, "Sobol' points with Owen scrambling, per pixel"),
+    (Method::Scatter, "points uniform over the whole picture"),
+];
+
+/// A method, found by its name.
+pub fn method(name: &str) -> Option<Method> {
+    let mut methods = METHODS.iter().map(|&(method, _)| method);
+    methods.find(|method| method.name() == name)
+}
+
+/// The names of the methods.
+pub fn method_names() -> impl Iterator<Item = &'static str> {
+    METHODS.iter().map(|(method, _)| method.name())
+}
+
+/// A function's row, found by its name.
+pub fn function(name: &str) -> Option<&'static Function> {
+    FUNCTIONS.iter().find(|function| function.name == name)
+}
 
 /// Every function, with what it takes and gives.
 pub const FUNCTIONS: &[Function] = {

@@ -1,0 +1,5 @@
+//! One test binary, a module per subject.
+
+mod camera;
+mod oracle;
+mod tracer;
