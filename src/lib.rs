@@ -3,6 +3,7 @@
 pub mod color;
 pub mod diagnostic;
 pub mod math;
+pub mod numbers;
 pub mod source;
 pub mod suggest;
 

@@ -201,8 +201,7 @@ impl Source {
         let before = if offset <= start {
             0
         } else {
-            table.characters_before(&self.text, offset)
-                - table.characters_before(&self.text, start)
+            table.characters_before(&self.text, offset) - table.characters_before(&self.text, start)
         };
         Place {
             line,

@@ -26,7 +26,8 @@ pub fn nearest<'c>(
         // Half of a name of two letters is no longer the same name.
         let allowed = allowed.min(letters.len().min(other.len()) / 2);
         let allowed = best.map_or(allowed, |(least, _)| allowed.min(least.saturating_sub(1)));
-        if best.is_some_and(|(least, _)| least == 0) || letters.len().abs_diff(other.len()) > allowed
+        if best.is_some_and(|(least, _)| least == 0)
+            || letters.len().abs_diff(other.len()) > allowed
         {
             continue;
         }

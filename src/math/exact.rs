@@ -43,7 +43,7 @@ fn exceeds(one: f64, other: f64, bound: f64) -> bool {
         // Rounding keeps order: the exact sum lies on the same side.
         return sum > bound;
     }
-    let (_, error) = two_sum(one, other);
+    let error = two_sum(one, other).lo;
     error > 0.0
 }
 
@@ -122,7 +122,10 @@ mod tests {
         // The sum rounds to the third side, and is a little more.
         let little = f64::EPSILON / 4.0;
         assert!(forms_triangle([1.0, little, 1.0]));
-        assert!(!forms_triangle([0.1, 0.2, 0.1 + 0.2]), "the sum was rounded up");
+        assert!(
+            !forms_triangle([0.1, 0.2, 0.1 + 0.2]),
+            "the sum was rounded up"
+        );
         assert!(forms_triangle([f64::MAX; 3]));
     }
 

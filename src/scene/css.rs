@@ -176,7 +176,10 @@ mod tests {
         assert!(COLORS.is_sorted());
         for (name, code) in COLORS {
             let [_, r, g, b] = code.to_be_bytes();
-            assert_eq!(color(&name.to_uppercase()), Some(Color::from_bytes([r, g, b])));
+            assert_eq!(
+                color(&name.to_uppercase()),
+                Some(Color::from_bytes([r, g, b]))
+            );
         }
         assert_eq!(color("Olive"), Some(Color::from_bytes([128, 128, 0])));
         assert_eq!(color("transparent"), None);

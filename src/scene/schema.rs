@@ -311,7 +311,6 @@ pub const BLOCKS: &[Block] = &[
                 excludes: &["lookat"],
                 help: "the direction that it looks in, of any length",
                 also_tried: &["dir", "forward", "view"],
-                ..FIELD
             },
             Field {
                 name: "up",
@@ -354,7 +353,6 @@ pub const BLOCKS: &[Block] = &[
                 excludes: &["d"],
                 help: "the angle that the window's height takes up, instead of d",
                 also_tried: &["field_of_view", "angle", "vfov"],
-                ..FIELD
             },
             Field {
                 name: "near",
@@ -519,7 +517,6 @@ pub const BLOCKS: &[Block] = &[
                 excludes: &["min", "max"],
                 help: "its extents along x, y and z",
                 also_tried: &["sides", "dimensions", "extent"],
-                ..FIELD
             },
             Field {
                 name: "min",
@@ -604,9 +601,15 @@ pub const METHODS: &[(Method, &str)] = &[
     (Method::Jittered, "one at random in each cell of a grid"),
     (Method::NRooks, "one in each row and each column"),
     (Method::MultiJittered, "jittered and n_rooks at once"),
-    (Method::Hammersley, "the Hammersley points, shifted per pixel"),
+    (
+        Method::Hammersley,
+        "the Hammersley points, shifted per pixel",
+    ),
     (Method::Halton, "the Halton points, shifted per pixel"),
-    (Method::Sobol, "Sobol' points with Owen scrambling, per pixel"),
+    (
+        Method::Sobol,
+        "Sobol' points with Owen scrambling, per pixel",
+    ),
     (Method::Scatter, "points uniform over the whole picture"),
 ];
 
@@ -629,8 +632,19 @@ pub fn function(name: &str) -> Option<&'static Function> {
 /// Every function, with what it takes and gives.
 pub const FUNCTIONS: &[Function] = {
     use Type::{Angle, Color, Number, Vector};
-    const fn of(name: &'static str, takes: &'static [Type], gives: Type, help: &'static str) -> Function {
-        Function { name, takes, more: false, gives, help }
+    const fn of(
+        name: &'static str,
+        takes: &'static [Type],
+        gives: Type,
+        help: &'static str,
+    ) -> Function {
+        Function {
+            name,
+            takes,
+            more: false,
+            gives,
+            help,
+        }
     }
     &[
         of("sin", &[Angle], Number, "the sine of an angle"),
@@ -639,16 +653,47 @@ pub const FUNCTIONS: &[Function] = {
         of("asin", &[Number], Angle, "the angle of this sine"),
         of("acos", &[Number], Angle, "the angle of this cosine"),
         of("atan", &[Number], Angle, "the angle of this tangent"),
-        of("atan2", &[Number, Number], Angle, "the angle of the point (x, y), called atan2(y, x)"),
+        of(
+            "atan2",
+            &[Number, Number],
+            Angle,
+            "the angle of the point (x, y), called atan2(y, x)",
+        ),
         of("sqrt", &[Number], Number, "the square root"),
         of("abs", &[Number], Number, "the number without its sign"),
-        Function { more: true, ..of("min", &[Number, Number], Number, "the least of two or more numbers") },
-        Function { more: true, ..of("max", &[Number, Number], Number, "the greatest of two or more numbers") },
+        Function {
+            more: true,
+            ..of(
+                "min",
+                &[Number, Number],
+                Number,
+                "the least of two or more numbers",
+            )
+        },
+        Function {
+            more: true,
+            ..of(
+                "max",
+                &[Number, Number],
+                Number,
+                "the greatest of two or more numbers",
+            )
+        },
         of("length", &[Vector], Number, "the length of a vector"),
         of("dot", &[Vector, Vector], Number, "the dot product"),
         of("cross", &[Vector, Vector], Vector, "the cross product"),
-        of("normalize", &[Vector], Vector, "the vector of length 1 in the same direction"),
-        of("rgb", &[Number, Number, Number], Color, "a colour of red, green and blue, 0 to 255 each"),
+        of(
+            "normalize",
+            &[Vector],
+            Vector,
+            "the vector of length 1 in the same direction",
+        ),
+        of(
+            "rgb",
+            &[Number, Number, Number],
+            Color,
+            "a colour of red, green and blue, 0 to 255 each",
+        ),
     ]
 };
 

@@ -200,7 +200,9 @@ fn end_of_word(bytes: &[u8], start: usize) -> usize {
     let mut end = start + 1;
     end += rest.iter().skip(1).take_while(|byte| word(byte)).count();
     // The sign of an exponent belongs to its number.
-    let numeric = rest.first().is_some_and(|b| b.is_ascii_digit() || *b == b'.');
+    let numeric = rest
+        .first()
+        .is_some_and(|b| b.is_ascii_digit() || *b == b'.');
     let exponent = matches!(bytes.get(end.saturating_sub(1)), Some(b'e' | b'E'));
     if numeric && exponent && matches!(bytes.get(end), Some(b'+' | b'-')) {
         let rest = bytes.get(end + 1..).unwrap_or_default();

@@ -7,7 +7,10 @@ use super::comments::NESTING_LIMIT;
 use crate::source::Span;
 
 /// A problem of syntax. The first label is the place to jump to.
-#[allow(missing_docs, reason = "the messages say what the variants and their fields mean")]
+#[allow(
+    missing_docs,
+    reason = "the messages say what the variants and their fields mean"
+)]
 #[derive(Clone, Debug, Error, Diagnostic, PartialEq)]
 pub enum Problem {
     #[error("this file is not valid UTF-8{}", and_more(*more))]
@@ -65,7 +68,10 @@ pub enum Problem {
     },
 
     #[error("`let {name}` has no value")]
-    #[diagnostic(code(pinhole::missing_value), help("write `let {name} = ` and a value"))]
+    #[diagnostic(
+        code(pinhole::missing_value),
+        help("write `let {name} = ` and a value")
+    )]
     MissingValue {
         name: String,
         #[label("a value should follow")]
@@ -128,7 +134,9 @@ pub enum Problem {
     #[error("`{written}` cannot be a name")]
     #[diagnostic(
         code(pinhole::bad_name),
-        help("a name is made of the letters a to z, digits and `_`, and does not start with a digit")
+        help(
+            "a name is made of the letters a to z, digits and `_`, and does not start with a digit"
+        )
     )]
     BadName {
         written: String,
@@ -137,7 +145,10 @@ pub enum Problem {
     },
 
     #[error("an operator is missing between `{left}` and `{right}`")]
-    #[diagnostic(code(pinhole::missing_operator), help("write `{left} * {right}` to multiply them"))]
+    #[diagnostic(
+        code(pinhole::missing_operator),
+        help("write `{left} * {right}` to multiply them")
+    )]
     MissingOperator {
         left: String,
         right: String,
@@ -146,10 +157,7 @@ pub enum Problem {
     },
 
     #[error("a comma is missing between `{left}` and `{right}`")]
-    #[diagnostic(
-        code(pinhole::missing_comma),
-        help("write `{whole}`")
-    )]
+    #[diagnostic(code(pinhole::missing_comma), help("write `{whole}`"))]
     MissingComma {
         left: String,
         right: String,
@@ -257,7 +265,10 @@ pub enum Problem {
     },
 
     #[error("{block} lacks its `{{`")]
-    #[diagnostic(code(pinhole::unopened_block), help("write `{head} {{` before its fields"))]
+    #[diagnostic(
+        code(pinhole::unopened_block),
+        help("write `{head} {{` before its fields")
+    )]
     UnopenedBlock {
         block: String,
         head: String,
@@ -305,7 +316,9 @@ pub enum Problem {
     #[error("`{name}` stands outside of every block")]
     #[diagnostic(
         code(pinhole::outside_block),
-        help("a file holds `let NAME = VALUE` and blocks such as `sphere {{ … }}`; fields stand between a block's braces")
+        help(
+            "a file holds `let NAME = VALUE` and blocks such as `sphere {{ … }}`; fields stand between a block's braces"
+        )
     )]
     OutsideBlock {
         name: String,

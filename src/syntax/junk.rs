@@ -227,7 +227,11 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
             });
         }
         if token.is_operator() && !after_value && !token.is("-") && !token.is("+") {
-            return Some(missing_operand(before.filter(|b| b.is_operator()), token, span));
+            return Some(missing_operand(
+                before.filter(|b| b.is_operator()),
+                token,
+                span,
+            ));
         }
         if (token.is(")") || token.is(",")) && before.is_some_and(Token::is_operator) {
             return before.map(|operator| missing_operand(Some(operator), operator, span));
@@ -305,12 +309,7 @@ pub fn head<'s>(
 }
 
 /// Lines outside of blocks that are no items.
-pub fn lines(
-    text: &str,
-    odd: Span,
-    close: Option<Span>,
-    previous: Option<Span>,
-) -> Problem {
+pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>) -> Problem {
     let tokens = tokens(text, odd);
     let Some((first, rest)) = tokens.split_first() else {
         return unexpected(text, close.unwrap_or(odd));
@@ -345,7 +344,11 @@ pub fn lines(
     if let Some(equals) = second
         && equals.is("=")
     {
-        let value = Span::new(odd.source, equals.span(odd).end, line_end(text, equals.span(odd).end));
+        let value = Span::new(
+            odd.source,
+            equals.span(odd).end,
+            line_end(text, equals.span(odd).end),
+        );
         return Problem::MissingLet {
             name,
             value: shorten(text.get(value.range()).unwrap_or_default()),
@@ -421,7 +424,10 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             "more than one point".to_owned(),
         ),
         "" => (
-            format!("write `{}`, or `_` between two digits only", number.replace('_', "")),
+            format!(
+                "write `{}`, or `_` between two digits only",
+                number.replace('_', "")
+            ),
             "`_` stands between two digits".to_owned(),
         ),
         "m" | "cm" | "mm" | "km" | "px" | "in" | "ft" | "s" => (
@@ -453,7 +459,11 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             "not a number".to_owned(),
         ),
     };
-    let start = if word.is_empty() { span.start } else { span.start + at };
+    let start = if word.is_empty() {
+        span.start
+    } else {
+        span.start + at
+    };
     Problem::BadNumber {
         written: shorten(written),
         help,

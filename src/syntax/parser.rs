@@ -51,7 +51,10 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK);
-        match builder.spawn_scoped(scope, &work).map(|handle| handle.join()) {
+        match builder
+            .spawn_scoped(scope, &work)
+            .map(|handle| handle.join())
+        {
             Ok(Ok(result)) => result,
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
             // No thread to be had: the caller's stack holds the limit in an optimized build.
@@ -107,7 +110,8 @@ impl<'s> Parser<'s> {
         let cut = cut.map(|comment| comment.start);
         if let Some(start) = cut {
             // What the comment took is no second mistake.
-            self.problems.retain(|problem| starts_before(problem, start));
+            self.problems
+                .retain(|problem| starts_before(problem, start));
             let span = Span::new(self.id, start, start + 2);
             self.problems.push(Problem::UnclosedComment { span });
         }
@@ -415,13 +419,16 @@ impl<'s> Parser<'s> {
         }
         let empty = || bad(Span::new(self.id, self.base, self.base));
         let operand = operand.unwrap_or_else(empty);
-        signs.into_iter().rev().fold(operand, |operand, sign| Value {
-            span: sign.to(operand.span),
-            kind: ValueKind::Negation {
-                sign,
-                operand: Box::new(operand),
-            },
-        })
+        signs
+            .into_iter()
+            .rev()
+            .fold(operand, |operand, sign| Value {
+                span: sign.to(operand.span),
+                kind: ValueKind::Negation {
+                    sign,
+                    operand: Box::new(operand),
+                },
+            })
     }
 
     fn operand(&mut self, pair: Pairs<'_>) -> Value<'s> {
@@ -669,9 +676,10 @@ impl<'s> Parser<'s> {
                 block.bad.push(span);
             }
             (None, problem) => {
-                let again = block.bad.last().is_some_and(|last| {
-                    self.trimmed(last.end, span.start).range().is_empty()
-                });
+                let again = block
+                    .bad
+                    .last()
+                    .is_some_and(|last| self.trimmed(last.end, span.start).range().is_empty());
                 // What follows junk without a field between is the same mistake.
                 if !again {
                     self.problems.extend(problem);
