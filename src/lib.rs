@@ -1,8 +1,13 @@
 //! Pinhole reads a small declarative scene language and renders what it describes through a virtual pinhole camera.
 
 pub mod color;
+pub mod diagnostic;
 pub mod math;
+pub mod numbers;
 pub mod source;
+pub mod suggest;
+
+pub mod syntax;
 
 pub mod scene;
 pub mod tracer;
