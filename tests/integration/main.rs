@@ -1,0 +1,3 @@
+//! The tests of the whole from outside, in one binary.
+
+mod sampling;
