@@ -1,5 +1,16 @@
-//! Arithmetic that is the same on every machine: angles, and sin and kin by way of libm.
+//! Arithmetic that is the same on every machine, in three precisions.
+//!
+//! [`Real`] is the arithmetic of one precision: `f64`, [`Double`] (double-double) or [`Big`]. A [`Ball`] is a number with a
+//! bound on its error, so that a decision either is certain or says that it is in [`Doubt`]; the next precision then decides.
 
 mod angle;
+mod ball;
+mod big;
+mod double;
+mod real;
 
 pub use angle::Angle;
+pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
+pub use big::{Big, Exact};
+pub use double::{Double, two_product, two_sum};
+pub use real::Real;

@@ -61,6 +61,19 @@ pub enum View {
     Direction(DVec3),
 }
 
+/// The level direction of cameras whose up vector is parallel to their view direction: they show the picture that one gets
+/// on tilting the camera from looking along it. It is −z, or +y where up is parallel to that.
+///
+/// So, looking against up, the top of the picture is the part of this direction that is perpendicular to up; looking along
+/// up, the opposite.
+pub fn level_direction(up: DVec3) -> DVec3 {
+    if up.x == 0.0 && up.y == 0.0 {
+        DVec3::Y
+    } else {
+        DVec3::NEG_Z
+    }
+}
+
 /// How much a camera sees, in either of the language's two ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
@@ -102,6 +115,23 @@ pub enum Method {
     Sobol,
     /// Points uniform over the whole picture.
     Scatter,
+}
+
+impl Method {
+    /// Its word in the language.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::Random => "random",
+            Self::Jittered => "jittered",
+            Self::NRooks => "n_rooks",
+            Self::MultiJittered => "multi_jittered",
+            Self::Hammersley => "hammersley",
+            Self::Halton => "halton",
+            Self::Sobol => "sobol",
+            Self::Scatter => "scatter",
+        }
+    }
 }
 
 /// A number of samples; `per_pixel` times the number of pixels, or `total`, is at most 2^53.
@@ -167,4 +197,16 @@ pub enum Shape {
         /// The colours of the even and of the odd squares.
         colors: [Color; 2],
     },
+}
+
+impl Shape {
+    /// The word of its block in the language.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Sphere { .. } => "sphere",
+            Self::Triangle { .. } => "triangle",
+            Self::Box { .. } => "box",
+            Self::Checkerboard { .. } => "checkerboard",
+        }
+    }
 }

@@ -1,21 +1,115 @@
-//! The scene prepared for one picture.
+//! The scene prepared for one picture, and the nearest surface at a point of it.
 
-use glam::DVec2;
+use std::{cmp::Ordering, sync::OnceLock};
 
-use crate::{color::Color, scene::Scene};
+use glam::{DVec2, DVec3};
+
+use super::{
+    camera::{Basis, Camera, Direction, Point},
+    crossing::{Crossing, Part},
+    form::Form,
+    object::Object,
+};
+use crate::{
+    color::Color,
+    math::{Ball, Ball3, Big, Double, Doubt, Real},
+    scene::{self, Scene, Shape},
+};
 
 /// The scene prepared for one picture: made once, then asked at any sample point from any thread.
 #[derive(Debug)]
 pub struct World {
+    basis: Basis,
+    shapes: Vec<Shape>,
+    fast: Frame<f64>,
+    double: Frame<Double>,
+    big: Frame<Big>,
+    /// The distinct colours of the objects, and the background.
     palette: Vec<Color>,
+    /// For each object the slots of its colour, and of a checkerboard's second one.
+    slots: Vec<[usize; 2]>,
+}
+
+/// The camera and the objects in one precision.
+#[derive(Debug)]
+struct Frame<T> {
+    camera: Camera<T>,
+    /// Filled in when first asked for; `f64` at once.
+    objects: Vec<OnceLock<Box<Object<T>>>>,
+    near: Option<Form<T>>,
+    far: Option<Form<T>>,
+}
+
+/// The precisions, as what may be asked for by number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// `f64` alone: may be in doubt.
+    Single,
+    /// Double-double alone: may be in doubt.
+    Double,
+    /// Big numbers: decides everything.
+    Big,
+}
+
+/// What is seen at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Seen {
+    object: usize,
+    /// Whether it is the object's second crossing, the first being nearer than the near plane.
+    second: bool,
+    /// Whether it is a checkerboard's second colour.
+    odd: bool,
+}
+
+/// A crossing of a ray with a surface, for people: numbers are right to the last bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The object's index in the file.
+    pub object: usize,
+    /// The distance from the eye, in metres.
+    pub t: f64,
+    /// The distance along the view direction, in metres.
+    pub depth: f64,
+    /// The point, in the world.
+    pub point: DVec3,
+    /// The colour there.
+    pub color: Color,
+    /// Whether it is the one that is seen.
+    pub visible: bool,
 }
 
 impl World {
-    /// Prepares a scene.
+    /// Prepares a scene for the sample points of its picture.
     pub fn new(scene: &Scene) -> Self {
-        Self {
-            palette: vec![scene.image.background],
+        let size = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height));
+        Self::reaching(scene, size / 2.0)
+    }
+
+    /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
+    pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
+        let basis = Basis::new(&scene.camera, &scene.image);
+        let shapes: Vec<_> = scene.objects.iter().map(|object| object.shape).collect();
+        let (palette, slots) = palette(&shapes, scene.image.background);
+        let double = Frame::new(&basis, scene, reach);
+        let fast = Frame::new(&basis, scene, reach);
+        for (shape, slot) in shapes.iter().zip(&fast.objects) {
+            let object = Object::new(&double.camera, shape).narrowed(&fast.camera.window);
+            slot.get_or_init(|| Box::new(object));
         }
+        Self {
+            big: Frame::new(&basis, scene, reach),
+            basis,
+            shapes,
+            fast,
+            double,
+            palette,
+            slots,
+        }
+    }
+
+    /// The camera's axes.
+    pub fn basis(&self) -> &Basis {
+        &self.basis
     }
 
     /// The distinct colours that can be seen: the objects' in the order of the file, the background last.
@@ -25,7 +119,320 @@ impl World {
 
     /// Which colour of the palette is seen at a sample point: the pixel in column `x` and row `y` from the top left, and
     /// the offset from that pixel's centre, x to the right and y down, each in [−1/2, 1/2).
-    pub fn slot_at(&self, _x: u32, _y: u32, _offset: DVec2) -> usize {
-        self.palette.len() - 1
+    #[inline]
+    pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        match self.seen::<f64>(&point) {
+            Ok(seen) => self.slot(seen),
+            Err(Doubt) => self.slot(self.seen_after_doubt(&point)),
+        }
     }
+
+    /// What [`slot_at`](World::slot_at) answers in one precision alone, or `None` if that is in doubt.
+    pub fn slot_in(&self, precision: Precision, x: u32, y: u32, offset: DVec2) -> Option<usize> {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        let seen = match precision {
+            Precision::Single => self.seen::<f64>(&point),
+            Precision::Double => self.seen::<Double>(&point),
+            Precision::Big => self.seen::<Big>(&point),
+        };
+        seen.ok().map(|seen| self.slot(seen))
+    }
+
+    /// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
+    /// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
+    /// the reach that the world was made for.
+    pub fn ray(&self, pixels: DVec2) -> (DVec3, Vec<Hit>) {
+        let camera = &self.big.camera;
+        let r = camera.direction(&camera.picture_point(pixels));
+        let mut crossings = Vec::new();
+        for index in 0..self.shapes.len() {
+            let object = Big::object(self, index);
+            let first = object.first(&r).unwrap_or_default();
+            let second = first.as_ref().and_then(|_| object.second(&r));
+            crossings.extend(first.map(|crossing| (index, false, crossing)));
+            crossings.extend(second.map(|crossing| (index, true, crossing)));
+        }
+        self.sort(&mut crossings);
+
+        let seen = self.seen_in_direction(&r).unwrap_or_default();
+        let along = [&r.x, &r.y, &r.z];
+        let world: Ball3<Big> = [0, 1, 2].map(|i| {
+            let part = |j: usize| &camera.axes[j][i] * &plain(along[j]);
+            part(0) + part(1) + part(2)
+        });
+        let length = r.square.sqrt();
+        let direction = world
+            .each_ref()
+            .map(|x| x.mid.over(&length).to_f64())
+            .into();
+        let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
+            let lambda = Big::from_f64(1.0).over(&crossing.inverse_depth.mid);
+            let lambda = lambda.scaled(-camera.exponent);
+            let coordinate = |i: usize| {
+                let from_eye = lambda.times(&world[i].mid);
+                Big::from_f64(camera.eye[i]).plus(&from_eye).to_f64()
+            };
+            let odd = Big::object(self, index).is_odd(&r).unwrap_or_default();
+            Hit {
+                object: index,
+                t: lambda.times(&length).to_f64(),
+                depth: lambda.times(&r.z).to_f64(),
+                point: [0, 1, 2].map(coordinate).into(),
+                color: self.palette[self.slots[index][usize::from(odd)]],
+                visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
+            }
+        };
+        (direction, crossings.into_iter().map(hit).collect())
+    }
+
+    /// Sorts by depth; what cannot be told apart stands in file order.
+    fn sort(&self, crossings: &mut [(usize, bool, Crossing<Big>)]) {
+        // First by the computed depths, which is an order; then by pairs, as the tracer compares them.
+        crossings.sort_by(|(.., a), (.., b)| {
+            let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
+            difference.to_f64().total_cmp(&0.0)
+        });
+        for end in 1..crossings.len() {
+            let mut at = end;
+            while at > 0 {
+                let ((i, _, a), (j, _, b)) = (&crossings[at - 1], &crossings[at]);
+                if i <= j || self.order((*i, a), (*j, b)) != Ok(Ordering::Equal) {
+                    break;
+                }
+                crossings.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+    }
+
+    /// What is seen where `f64` was in doubt.
+    #[cold]
+    fn seen_after_doubt(&self, point: &Point) -> Option<Seen> {
+        match self.seen::<Double>(point) {
+            Ok(seen) => seen,
+            // The last precision is never in doubt.
+            Err(Doubt) => self.seen::<Big>(point).unwrap_or_default(),
+        }
+    }
+
+    #[inline]
+    fn seen<T: Level>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
+        self.seen_in_direction(&T::frame(self).camera.direction(point))
+    }
+
+    /// The nearest crossing between the near and the far plane; of equal ones the object's that comes first in the file.
+    #[inline]
+    fn seen_in_direction<T: Level>(&self, r: &Direction<T>) -> Result<Option<Seen>, Doubt> {
+        let mut nearest: Option<(usize, bool, Crossing<T>)> = None;
+        for index in 0..self.shapes.len() {
+            let object = T::object(self, index);
+            let Some(first) = object.first(r)? else {
+                continue;
+            };
+            let Some((second, crossing)) = self.clip(index, first, object, r)? else {
+                continue;
+            };
+            if let Some((best, _, best_crossing)) = &nearest
+                && self.order((index, &crossing), (*best, best_crossing))? != Ordering::Greater
+            {
+                continue;
+            }
+            nearest = Some((index, second, crossing));
+        }
+        let Some((index, second, _)) = nearest else {
+            return Ok(None);
+        };
+        let odd = T::object(self, index).is_odd(r)?;
+        Ok(Some(Seen {
+            object: index,
+            second,
+            odd,
+        }))
+    }
+
+    /// The first of an object's crossings that lies between the near and the far plane, and whether it is the second one.
+    #[inline]
+    fn clip<T: Level>(
+        &self,
+        index: usize,
+        first: Crossing<T>,
+        object: &Object<T>,
+        r: &Direction<T>,
+    ) -> Result<Option<(bool, Crossing<T>)>, Doubt> {
+        let frame = T::frame(self);
+        let mut chosen = (false, first);
+        if let Some(near) = &frame.near
+            && self.order_to_clip(index, &chosen.1, near, r)? != Ordering::Less
+        {
+            let Some(second) = object.second(r) else {
+                return Ok(None);
+            };
+            if self.order_to_clip(index, &second, near, r)? != Ordering::Less {
+                return Ok(None);
+            }
+            chosen = (true, second);
+        }
+        if let Some(far) = &frame.far
+            && self.order_to_clip(index, &chosen.1, far, r)? != Ordering::Greater
+        {
+            return Ok(None);
+        }
+        Ok(Some(chosen))
+    }
+
+    /// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their computed values.
+    #[inline]
+    fn order<T: Real>(
+        &self,
+        (i, a): (usize, &Crossing<T>),
+        (j, b): (usize, &Crossing<T>),
+    ) -> Result<Ordering, Doubt> {
+        let order = a.inverse_depth.compare(&b.inverse_depth);
+        match order {
+            Err(Doubt) if self.is_same_surface((i, a.part), (j, b.part)) => Ok(Ordering::Equal),
+            _ => order,
+        }
+    }
+
+    /// Compares the inverse depth of a crossing with that of the near or the far plane.
+    #[inline]
+    fn order_to_clip<T: Real>(
+        &self,
+        index: usize,
+        crossing: &Crossing<T>,
+        clip: &Form<T>,
+        r: &Direction<T>,
+    ) -> Result<Ordering, Doubt> {
+        let order = crossing.inverse_depth.compare(&clip.at(r));
+        if order.is_ok() {
+            return order;
+        }
+        let clips = [&self.double.near, &self.double.far];
+        let plane = Double::object(self, index).plane(crossing.part);
+        let same = |clip: &&Option<Form<Double>>| match (plane, clip) {
+            (Some(plane), Some(clip)) => plane.equals(clip),
+            _ => false,
+        };
+        // A surface that lies in one of the two planes and is in doubt about the other would need them to be equal.
+        if clips.iter().any(same) {
+            return Ok(Ordering::Equal);
+        }
+        order
+    }
+
+    /// Whether two parts of objects are one surface: planes with the same form, or the same side of equal spheres.
+    #[cold]
+    fn is_same_surface(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
+        match (&self.shapes[i], &self.shapes[j]) {
+            (
+                Shape::Sphere { center, radius, .. },
+                Shape::Sphere {
+                    center: other_center,
+                    radius: other_radius,
+                    ..
+                },
+            ) => a == b && center == other_center && radius == other_radius,
+            _ => {
+                let plane = |index, part| Double::object(self, index).plane(part);
+                match (plane(i, a), plane(j, b)) {
+                    (Some(a), Some(b)) => a.equals(b),
+                    _ => false,
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn slot(&self, seen: Option<Seen>) -> usize {
+        match seen {
+            None => self.palette.len() - 1,
+            Some(seen) => self.slots[seen.object][usize::from(seen.odd)],
+        }
+    }
+}
+
+impl<T: Real> Frame<T> {
+    fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
+        let scene::Camera { near, far, .. } = scene.camera;
+        let camera = Camera::new(basis, scene, reach);
+        // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
+        let clip = |depth: f64| {
+            let zero = Ball::exact(0.0);
+            let inverse = Ball::exact(1.0) / camera.length(depth);
+            Form::new(&[zero.clone(), zero, inverse], &camera.window)
+        };
+        Self {
+            near: (near > 0.0).then(|| clip(near)),
+            far: far.map(clip),
+            objects: scene.objects.iter().map(|_| OnceLock::new()).collect(),
+            camera,
+        }
+    }
+}
+
+/// A precision that the world is held in.
+trait Level: Real {
+    fn frame(world: &World) -> &Frame<Self>;
+
+    /// An object in this precision, prepared when it is first asked for.
+    #[inline]
+    fn object(world: &World, index: usize) -> &Object<Self> {
+        let frame = Self::frame(world);
+        frame.objects[index]
+            .get_or_init(|| Box::new(Object::new(&frame.camera, &world.shapes[index])))
+    }
+}
+
+impl Level for f64 {
+    #[inline]
+    fn frame(world: &World) -> &Frame<Self> {
+        &world.fast
+    }
+}
+
+impl Level for Double {
+    fn frame(world: &World) -> &Frame<Self> {
+        &world.double
+    }
+}
+
+impl Level for Big {
+    fn frame(world: &World) -> &Frame<Self> {
+        &world.big
+    }
+}
+
+/// A computed number taken as it is.
+fn plain(x: &Big) -> Ball<Big> {
+    Ball {
+        mid: x.clone(),
+        rad: 0.0,
+    }
+}
+
+/// The distinct colours of all objects in file order with the background behind them, and for each object the places of its
+/// colours among them.
+fn palette(shapes: &[Shape], background: Color) -> (Vec<Color>, Vec<[usize; 2]>) {
+    let mut palette = Vec::new();
+    let mut places = std::collections::HashMap::new();
+    let mut place = |color: Color| {
+        *places
+            .entry(color.srgb.map(f64::to_bits))
+            .or_insert_with(|| {
+                palette.push(color);
+                palette.len() - 1
+            })
+    };
+    let slots = shapes
+        .iter()
+        .map(|shape| match *shape {
+            Shape::Sphere { color, .. }
+            | Shape::Triangle { color, .. }
+            | Shape::Box { color, .. } => [place(color); 2],
+            Shape::Checkerboard { colors, .. } => colors.map(&mut place),
+        })
+        .collect();
+    palette.push(background);
+    (palette, slots)
 }

@@ -1,3 +1,5 @@
-//! The tests of the whole from outside, in one binary.
+//! One test binary, a module per subject.
 
+mod oracle;
 mod sampling;
+mod tracer;

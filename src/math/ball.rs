@@ -1,0 +1,260 @@
+//! Numbers with a bound on their error.
+
+use std::cmp::Ordering;
+
+use super::{Big, Real};
+
+/// What a decision answers that the precision at hand cannot make: the next precision has to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Doubt;
+
+/// A real number known to lie within `rad` of `mid`.
+///
+/// Every operation bounds what its operands' radii and its own rounding contribute; the constants are generous (a rounding
+/// counts four times over), which costs nothing but an occasional question to the next precision. A radius that is infinite
+/// or NaN, as after an overflow, holds every number.
+#[derive(Clone, Debug)]
+pub struct Ball<T> {
+    /// The computed number.
+    pub mid: T,
+    /// How far the true one may be, ≥ 0.
+    pub rad: f64,
+}
+
+/// Radii are computed in `f64`, to be rounded up: a few dozen roundings are less than this factor.
+pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
+
+impl<T: Real> Ball<T> {
+    /// A number that is known exactly.
+    pub fn exact(x: f64) -> Self {
+        Self {
+            mid: T::from_f64(x),
+            rad: 0.0,
+        }
+    }
+
+    /// A computed number whose operands contribute `inherited` to its radius.
+    fn rounded(mid: T, inherited: f64) -> Self {
+        let rounding = if mid.is_zero() {
+            0.0
+        } else {
+            4.0 * T::UNIT * mid.to_f64().abs() + T::TINY
+        };
+        Self {
+            mid,
+            rad: (inherited + rounding) * UP,
+        }
+    }
+
+    /// a − b.
+    pub fn difference(a: f64, b: f64) -> Self {
+        Self::rounded(T::difference(a, b), 0.0)
+    }
+
+    /// The rounding of a more precise number.
+    pub fn from_big(x: &Big) -> Self {
+        Self::rounded(T::from_big(x), 0.0)
+    }
+
+    /// The size of its middle.
+    pub fn size(&self) -> f64 {
+        self.mid.to_f64().abs()
+    }
+
+    /// Whether the sign is certain; NaN is not.
+    fn is_clear(&self) -> bool {
+        self.size() > self.rad * UP
+    }
+
+    /// Less than, equal to or greater than zero. What the last precision cannot tell from zero is zero.
+    #[inline]
+    pub fn sign(&self) -> Result<Ordering, Doubt> {
+        let mid = self.mid.to_f64();
+        let rad = self.rad * UP;
+        if mid > rad {
+            Ok(Ordering::Greater)
+        } else if mid < -rad {
+            Ok(Ordering::Less)
+        } else if T::LAST || (self.rad == 0.0 && self.mid.is_zero()) {
+            Ok(Ordering::Equal)
+        } else {
+            Err(Doubt)
+        }
+    }
+
+    /// Less than, equal to or greater than another.
+    #[inline]
+    pub fn compare(&self, other: &Self) -> Result<Ordering, Doubt> {
+        (self - other).sign()
+    }
+
+    /// self · power, for a power of two.
+    #[inline]
+    pub fn times_power(&self, power: f64) -> Self {
+        // Exact, but for an underflow.
+        Self {
+            mid: self.mid.times(&T::from_f64(power)),
+            rad: self.rad * power * UP + T::TINY,
+        }
+    }
+
+    /// self · 2^exponent.
+    pub fn scaled(&self, exponent: i32) -> Self {
+        let mid = self.mid.scaled(exponent);
+        // Exact, but for an underflow.
+        let lost = if self.mid.is_zero() { 0.0 } else { T::TINY };
+        Self {
+            mid,
+            rad: libm::ldexp(self.rad, exponent) + lost,
+        }
+    }
+
+    /// The square root of a number that is not negative.
+    #[inline]
+    pub fn sqrt(&self) -> Self {
+        if !self.is_clear() {
+            // |√a − √b| ≤ √|a − b|
+            return Self {
+                mid: T::from_f64(0.0),
+                rad: ((self.size() + self.rad) * UP).sqrt() * UP,
+            };
+        }
+        let root = self.mid.sqrt();
+        // |√a − √b| = |a − b| / (√a + √b)
+        let inherited = self.rad / root.to_f64();
+        Self::rounded(root, inherited)
+    }
+
+    /// The greatest integer that is not greater, and whether it is odd. What the last precision cannot tell from an
+    /// integer is that integer.
+    pub fn floor(&self) -> Result<(Self, bool), Doubt> {
+        let (floor, odd) = self.mid.floor();
+        let ceiling = floor.plus(&T::from_f64(1.0));
+        let below = self.mid.minus(&floor).to_f64();
+        let above = ceiling.minus(&self.mid).to_f64();
+        // A radius beyond any size that the differences could be rounded by.
+        let rad = self.rad * UP + 4.0 * T::UNIT;
+        let exact = |mid| Self { mid, rad: 0.0 };
+        if self.rad == 0.0 || (below >= rad && above > rad) {
+            Ok((exact(floor), odd))
+        } else if !T::LAST {
+            Err(Doubt)
+        } else if below < above {
+            Ok((exact(floor), odd))
+        } else {
+            Ok((exact(ceiling), !odd))
+        }
+    }
+
+    #[inline]
+    fn add(&self, other: &Self) -> Self {
+        Self::rounded(self.mid.plus(&other.mid), self.rad + other.rad)
+    }
+
+    #[inline]
+    fn sub(&self, other: &Self) -> Self {
+        Self::rounded(self.mid.minus(&other.mid), self.rad + other.rad)
+    }
+
+    #[inline]
+    fn mul(&self, other: &Self) -> Self {
+        let mid = self.mid.times(&other.mid);
+        let (a, b) = (self.size(), other.size());
+        let inherited = a * other.rad + self.rad * b + self.rad * other.rad;
+        let lost = if self.mid.is_zero() || other.mid.is_zero() {
+            0.0
+        } else {
+            T::TINY
+        };
+        Self::rounded(mid, inherited + lost)
+    }
+
+    #[inline]
+    fn div(&self, other: &Self) -> Self {
+        if !other.is_clear() {
+            return Self {
+                mid: T::from_f64(0.0),
+                rad: f64::INFINITY,
+            };
+        }
+        let mid = self.mid.over(&other.mid);
+        // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|) / |b'|, and |b'| is at least what the radius leaves of b.
+        let least = other.size() - other.rad * UP;
+        let lost = if self.mid.is_zero() { 0.0 } else { T::TINY };
+        let inherited = (self.rad + mid.to_f64().abs() * other.rad) / least * UP + lost;
+        Self::rounded(mid, inherited)
+    }
+}
+
+impl<T: Real> std::ops::Neg for &Ball<T> {
+    type Output = Ball<T>;
+    fn neg(self) -> Ball<T> {
+        Ball {
+            mid: self.mid.negated(),
+            rad: self.rad,
+        }
+    }
+}
+
+impl<T: Real> std::ops::Neg for Ball<T> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        -&self
+    }
+}
+
+/// The operator on values and references, all four ways.
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<T: Real> std::ops::$trait<&Ball<T>> for &Ball<T> {
+            type Output = Ball<T>;
+            #[inline]
+            fn $method(self, other: &Ball<T>) -> Ball<T> {
+                Ball::$method(self, other)
+            }
+        }
+        impl<T: Real> std::ops::$trait<Ball<T>> for &Ball<T> {
+            type Output = Ball<T>;
+            #[inline]
+            fn $method(self, other: Ball<T>) -> Ball<T> {
+                Ball::$method(self, &other)
+            }
+        }
+        impl<T: Real> std::ops::$trait<&Ball<T>> for Ball<T> {
+            type Output = Ball<T>;
+            #[inline]
+            fn $method(self, other: &Ball<T>) -> Ball<T> {
+                Ball::$method(&self, other)
+            }
+        }
+        impl<T: Real> std::ops::$trait for Ball<T> {
+            type Output = Ball<T>;
+            #[inline]
+            fn $method(self, other: Ball<T>) -> Ball<T> {
+                Ball::$method(&self, &other)
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+/// A vector of balls.
+pub type Ball3<T> = [Ball<T>; 3];
+
+/// The scalar product.
+pub fn dot<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball<T> {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+/// The vector product.
+pub fn cross<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball3<T> {
+    [
+        &a[1] * &b[2] - &a[2] * &b[1],
+        &a[2] * &b[0] - &a[0] * &b[2],
+        &a[0] * &b[1] - &a[1] * &b[0],
+    ]
+}

@@ -1,0 +1,182 @@
+//! Big numbers: what decides where double-double leaves a doubt.
+
+use dashu_float::{FBig, round::mode::HalfEven};
+use dashu_int::Sign;
+
+use super::{Angle, Real};
+
+/// A binary floating-point number with 320 bits and an exponent that does not run out.
+#[derive(Clone, Debug)]
+pub struct Big(Float);
+
+/// A float whose precision is that of its operands; 0 stands for unlimited, exact as long as nothing is divided.
+type Float = FBig<HalfEven, 2>;
+
+/// Bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer than about 2^−90, and one closer than
+/// that counts as a tie anyway; what remains is far more than the intermediate steps of any formula here lose.
+const PRECISION: usize = 320;
+
+/// Further bits for the few steps that cancel.
+const GUARD: usize = 320;
+
+impl Big {
+    fn round(x: Float) -> Self {
+        Self(x.with_precision(PRECISION).value())
+    }
+
+    /// Sine and cosine of an angle; of a multiple of 90° exactly 0 and ±1.
+    pub fn sin_cos(angle: Angle) -> (Self, Self) {
+        let (sin, cos) = sin_cos(angle, 1.0);
+        (Self::round(sin), Self::round(cos))
+    }
+
+    /// The tangent of half an angle, without loss near 180°.
+    pub fn tan_half(angle: Angle) -> Self {
+        let (sin, cos) = sin_cos(angle, 0.5);
+        Self::round(sin / cos)
+    }
+
+    /// The angle whose tangent is this, in degrees.
+    pub fn atan_degrees(&self) -> Self {
+        Self(self.0.atan_unit(360))
+    }
+}
+
+fn is_zero(x: &Float) -> bool {
+    x.repr().is_pos_zero() || x.repr().is_neg_zero()
+}
+
+/// Sine and cosine of `factor` (a power of two) times an angle.
+fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
+    let part = |x: f64| wide(x) * wide(factor);
+    let (sin_degrees, cos_degrees) = part(angle.degrees).sin_cos_unit(360);
+    if angle.radians == 0.0 {
+        return (sin_degrees, cos_degrees);
+    }
+    let (sin_radians, cos_radians) = part(angle.radians).sin_cos();
+    (
+        &sin_degrees * &cos_radians + &cos_degrees * &sin_radians,
+        cos_degrees * cos_radians - sin_degrees * sin_radians,
+    )
+}
+
+/// A finite `f64` with the precision for steps that cancel.
+fn wide(x: f64) -> Float {
+    exact(x).with_precision(PRECISION + GUARD).value()
+}
+
+/// A finite `f64` as a number whose sums and products are exact.
+fn exact(x: f64) -> Float {
+    // Numbers of a scene are finite, and so are sample points; anything else would be a mistake of ours, and zero keeps it
+    // from becoming a panic.
+    debug_assert!(x.is_finite());
+    Float::try_from(x)
+        .unwrap_or(Float::ZERO)
+        .with_precision(0)
+        .value()
+}
+
+impl Real for Big {
+    const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
+    /// A big number does not underflow, but its radius does.
+    const TINY: f64 = f64::from_bits(1);
+    const LAST: bool = true;
+
+    fn from_f64(x: f64) -> Self {
+        Self::round(exact(x))
+    }
+    fn difference(a: f64, b: f64) -> Self {
+        Self::round(exact(a) - exact(b))
+    }
+    fn from_big(x: &Self) -> Self {
+        x.clone()
+    }
+    fn to_f64(&self) -> f64 {
+        self.0.to_f64().value()
+    }
+    fn is_zero(&self) -> bool {
+        is_zero(&self.0)
+    }
+    fn plus(&self, other: &Self) -> Self {
+        Self(&self.0 + &other.0)
+    }
+    fn minus(&self, other: &Self) -> Self {
+        Self(&self.0 - &other.0)
+    }
+    fn times(&self, other: &Self) -> Self {
+        Self(&self.0 * &other.0)
+    }
+    fn over(&self, other: &Self) -> Self {
+        Self(&self.0 / &other.0)
+    }
+    fn sqrt(&self) -> Self {
+        Self(self.0.sqrt())
+    }
+    fn negated(&self) -> Self {
+        Self(-self.0.clone())
+    }
+    fn scaled(&self, exponent: i32) -> Self {
+        Self(self.0.clone() << exponent as isize)
+    }
+    fn floor(&self) -> (Self, bool) {
+        let floor = self.0.floor();
+        let odd = (floor.to_int().value() & dashu_int::IBig::ONE) == dashu_int::IBig::ONE;
+        (Self::round(floor), odd)
+    }
+}
+
+/// A number made of `f64` by sums, differences and products alone, without any rounding.
+///
+/// It settles the few questions that must not depend on rounding at all: does the eye lie in this plane, on this sphere, is
+/// the up vector parallel to the view direction.
+#[derive(Clone, Debug)]
+pub struct Exact(Float);
+
+impl Exact {
+    /// The number itself.
+    pub fn new(x: f64) -> Self {
+        Self(exact(x))
+    }
+
+    /// a − b.
+    pub fn difference(a: f64, b: f64) -> Self {
+        Self(exact(a) - exact(b))
+    }
+
+    /// Less than, equal to or greater than zero.
+    pub fn sign(&self) -> std::cmp::Ordering {
+        if is_zero(&self.0) {
+            std::cmp::Ordering::Equal
+        } else if self.0.sign() == Sign::Negative {
+            std::cmp::Ordering::Less
+        } else {
+            std::cmp::Ordering::Greater
+        }
+    }
+
+    /// The nearest [`Big`].
+    pub fn to_big(&self) -> Big {
+        Big::round(self.0.clone())
+    }
+}
+
+impl std::ops::Add for &Exact {
+    type Output = Exact;
+    fn add(self, other: Self) -> Exact {
+        Exact(&self.0 + &other.0)
+    }
+}
+
+impl std::ops::Sub for &Exact {
+    type Output = Exact;
+    fn sub(self, other: Self) -> Exact {
+        Exact(&self.0 - &other.0)
+    }
+}
+
+impl std::ops::Mul for &Exact {
+    type Output = Exact;
+    fn mul(self, other: Self) -> Exact {
+        Exact(&self.0 * &other.0)
+    }
+}

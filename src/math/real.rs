@@ -1,0 +1,102 @@
+//! The three precisions that decisions are made in.
+
+use std::fmt::Debug;
+
+/// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`](super::Big), from fast to precise.
+///
+/// Operations take references, since a big number is not free to copy. Each result is off by at most
+/// [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64` or `Double` that
+/// overflows becomes infinite or NaN, which every decision takes for doubt.
+pub trait Real: Clone + Debug + Sized {
+    /// Bound on the relative error of one operation.
+    const UNIT: f64;
+    /// Bound on the absolute error of one operation that underflows, its radius included.
+    const TINY: f64;
+    /// Whether there is no more precise kind to ask: a value that is not told from zero counts as zero.
+    const LAST: bool;
+
+    /// The number itself, without rounding.
+    fn from_f64(x: f64) -> Self;
+    /// a − b, without rounding where the kind can hold it.
+    fn difference(a: f64, b: f64) -> Self;
+    /// The rounding of a more precise number.
+    fn from_big(x: &super::Big) -> Self;
+    /// The nearest `f64`, or one of the two nearest.
+    fn to_f64(&self) -> f64;
+    /// Whether it is zero, and not merely too small for an `f64`.
+    fn is_zero(&self) -> bool;
+
+    /// self + other.
+    fn plus(&self, other: &Self) -> Self;
+    /// self − other.
+    fn minus(&self, other: &Self) -> Self;
+    /// self · other.
+    fn times(&self, other: &Self) -> Self;
+    /// self / other.
+    fn over(&self, other: &Self) -> Self;
+    /// The square root.
+    fn sqrt(&self) -> Self;
+    /// −self.
+    fn negated(&self) -> Self;
+    /// self · 2^exponent, exactly.
+    fn scaled(&self, exponent: i32) -> Self;
+    /// The greatest integer that is not greater, and whether it is odd.
+    fn floor(&self) -> (Self, bool);
+}
+
+impl Real for f64 {
+    const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
+    const TINY: f64 = f64::MIN_POSITIVE;
+    const LAST: bool = false;
+
+    fn from_f64(x: f64) -> Self {
+        x
+    }
+    fn difference(a: f64, b: f64) -> Self {
+        a - b
+    }
+    fn from_big(x: &super::Big) -> Self {
+        x.to_f64()
+    }
+    #[inline]
+    fn to_f64(&self) -> f64 {
+        *self
+    }
+    #[inline]
+    fn is_zero(&self) -> bool {
+        *self == 0.0
+    }
+    #[inline]
+    fn plus(&self, other: &Self) -> Self {
+        self + other
+    }
+    #[inline]
+    fn minus(&self, other: &Self) -> Self {
+        self - other
+    }
+    #[inline]
+    fn times(&self, other: &Self) -> Self {
+        self * other
+    }
+    #[inline]
+    fn over(&self, other: &Self) -> Self {
+        self / other
+    }
+    #[inline]
+    fn sqrt(&self) -> Self {
+        f64::sqrt(*self)
+    }
+    #[inline]
+    fn negated(&self) -> Self {
+        -self
+    }
+    fn scaled(&self, exponent: i32) -> Self {
+        libm::ldexp(*self, exponent)
+    }
+    #[inline]
+    fn floor(&self) -> (Self, bool) {
+        let floor = f64::floor(*self);
+        // Every f64 from 2^53 on is even, and below 2^63 the conversion is exact.
+        (floor, floor.abs() < 9.1e15 && floor as i64 & 1 == 1)
+    }
+}

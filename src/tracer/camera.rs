@@ -1,0 +1,290 @@
+//! The camera: from a sample point to a ray's direction.
+//!
+//! All rays share the eye, so the tracer works in the camera's own axes: right (u), down (−v) and ahead (−w). There a ray's
+//! direction is r = (X, Y, Z) with X and Y proportional to the distance in pixels from the picture's centre, and Z = 1 but
+//! for the widest angles, where a power of two keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
+
+use glam::{DVec2, DVec3};
+
+use crate::{
+    math::{Ball, Ball3, Big, Exact, Real},
+    scene::{self, Image, Lens, Scene, Shape, View},
+};
+
+/// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only at the end.
+#[derive(Clone, Debug)]
+pub struct Basis {
+    /// The picture's right.
+    pub u: [Big; 3],
+    /// The picture's top.
+    pub v: [Big; 3],
+    /// Against the view direction.
+    pub w: [Big; 3],
+    /// The side of a pixel at depth 1: view_height / (height · d).
+    pub pitch: Big,
+    /// Distance from the eye to the view plane, in metres.
+    pub d: Big,
+    /// The exact sign of the view direction's y.
+    pub looks: std::cmp::Ordering,
+}
+
+type Exact3 = [Exact; 3];
+
+fn exact3(v: DVec3) -> Exact3 {
+    v.to_array().map(Exact::new)
+}
+
+fn cross(a: &Exact3, b: &Exact3) -> Exact3 {
+    [
+        &(&a[1] * &b[2]) - &(&a[2] * &b[1]),
+        &(&a[2] * &b[0]) - &(&a[0] * &b[2]),
+        &(&a[0] * &b[1]) - &(&a[1] * &b[0]),
+    ]
+}
+
+fn is_zero(v: &Exact3) -> bool {
+    v.iter().all(|x| x.sign().is_eq())
+}
+
+/// v/|v|, each component to the last bits of a [`Big`].
+fn normalized(v: &Exact3) -> [Big; 3] {
+    let squares = v.each_ref().map(|x| x * x);
+    let length = (&(&squares[0] + &squares[1]) + &squares[2]).to_big().sqrt();
+    v.each_ref().map(|x| x.to_big().over(&length))
+}
+
+/// lookat − eye, or the direction, as it is.
+fn view_direction(camera: &scene::Camera) -> Exact3 {
+    match camera.view {
+        View::Lookat(lookat) => {
+            let (to, from) = (lookat.to_array(), camera.eye.to_array());
+            [0, 1, 2].map(|i| Exact::difference(to[i], from[i]))
+        }
+        View::Direction(direction) => exact3(direction),
+    }
+}
+
+impl Basis {
+    /// The basis of a camera: w = −f/|f|, u = (up × w)/|up × w|, v = w × u, then the roll.
+    ///
+    /// Numerators are exact, so u is right to the last bits however nearly parallel up and the view direction are. Where
+    /// they are parallel, u = (h × up)/|h × up| with the [level direction](scene::level_direction) h: that of the camera
+    /// which looks along h and has the same up.
+    pub fn new(camera: &scene::Camera, image: &Image) -> Self {
+        let forward = view_direction(camera);
+        let up = exact3(camera.up);
+        let backward = forward.each_ref().map(|x| &Exact::new(0.0) - x);
+        let mut right = cross(&up, &backward);
+        if is_zero(&right) {
+            right = cross(&exact3(scene::level_direction(camera.up)), &up);
+        }
+        let top = cross(&backward, &right);
+
+        let (u, v, w) = (normalized(&right), normalized(&top), normalized(&backward));
+        let (sin, cos) = Big::sin_cos(camera.roll);
+        let turned = |a: &Big, b: &Big| {
+            (
+                cos.times(a).minus(&sin.times(b)),
+                sin.times(a).plus(&cos.times(b)),
+            )
+        };
+        let turned = [0, 1, 2].map(|i| turned(&u[i], &v[i]));
+
+        let view_height = Big::from_f64(camera.view_height);
+        let (d, slope) = match camera.lens {
+            Lens::Distance(d) => {
+                let d = Big::from_f64(d);
+                let slope = view_height.over(&d);
+                (d, slope)
+            }
+            Lens::Fov(angle) => {
+                let slope = Big::from_f64(2.0).times(&Big::tan_half(angle));
+                (view_height.over(&slope), slope)
+            }
+        };
+        Self {
+            u: turned.each_ref().map(|(u, _)| u.clone()),
+            v: turned.each_ref().map(|(_, v)| v.clone()),
+            w,
+            pitch: slope.over(&Big::from_f64(f64::from(image.height))),
+            d,
+            looks: forward[1].sign(),
+        }
+    }
+}
+
+/// The part of the picture's plane that sample points come from, as bounds on a ray's direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    /// Greatest |X|.
+    pub x: f64,
+    /// Greatest |Y|.
+    pub y: f64,
+    /// Z.
+    pub z: f64,
+}
+
+/// The camera in one precision.
+#[derive(Clone, Debug)]
+pub struct Camera<T> {
+    /// Its eye, in the world.
+    pub eye: DVec3,
+    /// Lengths of the world are multiplied by two to this power, so that very large and very small worlds stay within the
+    /// range of `f64`; 0 for any other.
+    pub exponent: i32,
+    /// Right, down and ahead, in the world.
+    pub axes: [Ball3<T>; 3],
+    /// The side of a pixel, in units of X and Y.
+    pub pitch: T,
+    /// Z as T.
+    z: T,
+    /// Half the picture's width and height, in pixels.
+    half: DVec2,
+    /// Bounds on X and Y.
+    pub window: Window,
+}
+
+/// A ray's direction (X, Y, Z) with its square; each of X and Y is off by at most 5 [`UNIT`](Real::UNIT) of itself.
+#[derive(Clone, Debug)]
+pub struct Direction<T> {
+    /// To the right.
+    pub x: T,
+    /// Down.
+    pub y: T,
+    /// Ahead.
+    pub z: T,
+    /// X² + Y² + Z².
+    pub square: T,
+}
+
+/// A point of the picture, in pixels from its centre, x to the right and y down; each coordinate is the exact sum of two
+/// numbers, since a pixel's centre and an offset from it do not always have an `f64` sum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// x.
+    pub x: (f64, f64),
+    /// y.
+    pub y: (f64, f64),
+}
+
+impl<T: Real> Camera<T> {
+    /// The camera of a scene for sample points at most `reach` pixels from the picture's centre in x and y.
+    pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
+        let (eye, image) = (scene.camera.eye, scene.image);
+        let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
+        // The power of two that brings the widest X or Y below 1; a narrow view needs none.
+        let exponent = if widest.to_f64() <= 1.0 {
+            0
+        } else {
+            exponent_of(&widest)
+        };
+        let pitch = basis.pitch.scaled(-exponent);
+        let z = Big::from_f64(1.0).scaled(-exponent);
+        let extent = |pixels: f64| pitch.times(&Big::from_f64(pixels)).to_f64() * crate::math::UP;
+        let axis = |v: &[Big; 3]| v.each_ref().map(Ball::from_big);
+        Self {
+            eye,
+            exponent: exponent_of_lengths(scene),
+            axes: [
+                axis(&basis.u),
+                axis(&basis.v.each_ref().map(Real::negated)),
+                axis(&basis.w.each_ref().map(Real::negated)),
+            ],
+            window: Window {
+                x: extent(reach.x),
+                y: extent(reach.y),
+                z: z.to_f64(),
+            },
+            pitch: T::from_big(&pitch),
+            z: T::from_big(&z),
+            half: DVec2::new(f64::from(image.width), f64::from(image.height)) / 2.0,
+        }
+    }
+
+    /// The point at an offset from the centre of the pixel in column `x` and row `y`.
+    #[inline]
+    pub fn sample_point(&self, x: u32, y: u32, offset: DVec2) -> Point {
+        // Half-integers below 2^21: exact.
+        Point {
+            x: (f64::from(x) + 0.5 - self.half.x, offset.x),
+            y: (f64::from(y) + 0.5 - self.half.y, offset.y),
+        }
+    }
+
+    /// The point so many pixels to the right of the picture's top left corner, and below it.
+    pub fn picture_point(&self, pixels: DVec2) -> Point {
+        Point {
+            x: (pixels.x, -self.half.x),
+            y: (pixels.y, -self.half.y),
+        }
+    }
+
+    /// The direction of the ray through a point of the picture.
+    #[inline]
+    pub fn direction(&self, point: &Point) -> Direction<T> {
+        let coordinate = |(a, b): (f64, f64)| T::difference(a, -b).times(&self.pitch);
+        let (x, y) = (coordinate(point.x), coordinate(point.y));
+        let square = x.times(&x).plus(&y.times(&y)).plus(&self.z.times(&self.z));
+        Direction {
+            x,
+            y,
+            z: self.z.clone(),
+            square,
+        }
+    }
+
+    /// A vector of the world in the camera's axes.
+    pub fn turned(&self, v: &Ball3<T>) -> Ball3<T> {
+        self.axes.each_ref().map(|axis| crate::math::dot(axis, v))
+    }
+
+    /// A point of the world as seen from the eye: point − eye, formed without loss, in the world's axes and scaled.
+    pub fn relative(&self, point: DVec3) -> Ball3<T> {
+        [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
+    }
+
+    /// One coordinate of such a point.
+    pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
+        Ball::difference(at, self.eye[axis]).scaled(self.exponent)
+    }
+
+    /// A length of the world, scaled.
+    pub fn length(&self, length: f64) -> Ball<T> {
+        Ball::exact(length).scaled(self.exponent)
+    }
+}
+
+/// The power of two that brings the farthest lengths of a scene well within the range of `f64`, 0 if they are. Lengths that
+/// are 2^−1400 of them, and more, still are.
+fn exponent_of_lengths(scene: &Scene) -> i32 {
+    let eye = scene.camera.eye;
+    let farthest = scene
+        .objects
+        .iter()
+        .map(|object| match object.shape {
+            Shape::Sphere { center, radius, .. } => (center - eye).abs().max_element().max(radius),
+            Shape::Triangle {
+                centroid, sides, ..
+            } => (centroid - eye).abs().max(sides).max_element(),
+            Shape::Box { min, max, .. } => (min - eye).abs().max((max - eye).abs()).max_element(),
+            Shape::Checkerboard { y, .. } => (y - eye.y).abs(),
+        })
+        .fold(0.0, f64::max);
+    match libm::frexp(farthest.min(f64::MAX)).1 {
+        exponent if exponent > 400 => 400 - exponent,
+        exponent if exponent < -300 => -exponent,
+        _ => 0,
+    }
+}
+
+/// e with |x| < 2^e ≤ 2|x|, within what a scaling by it may be off.
+fn exponent_of(x: &Big) -> i32 {
+    let mut x = x.clone();
+    let mut exponent = 0;
+    // Wider than any f64: a picture of 2^20 pixels at a distance of 5e-324.
+    while !x.to_f64().is_finite() {
+        x = x.scaled(-1000);
+        exponent += 1000;
+    }
+    exponent + libm::frexp(x.to_f64()).1
+}

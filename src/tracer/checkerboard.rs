@@ -1,0 +1,134 @@
+//! The checkerboard: an infinite horizontal plane of squares.
+//!
+//! Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole
+//! squares are kept apart, since only their parity matters: far from the origin they would cost N its precision.
+
+use std::cmp::Ordering;
+
+use super::{
+    camera::{Camera, Direction, Window},
+    crossing::{Crossing, Part},
+    cuboid::axis_vector,
+    form::{Form, inverse_depth},
+};
+use crate::math::{Ball, Double, Doubt, Real};
+
+/// A checkerboard prepared for one picture.
+#[derive(Clone, Debug)]
+pub struct Checkerboard<T> {
+    /// ℓ, the inverse depth of its plane.
+    pub plane: Form<T>,
+    /// ℓ in the unit of N, a power of two that is right for the eye's height.
+    below: Form<T>,
+    /// N for x and for z, each measured from the whole square nearest to the eye.
+    across: [Form<T>; 2],
+    /// Whether those two whole squares' sum is odd.
+    odd: bool,
+}
+
+impl<T: Real> Checkerboard<T> {
+    /// Prepares a checkerboard; `None` if its plane holds the eye, which sees it edge-on: not at all.
+    pub fn new(camera: &Camera<T>, y: f64, square: f64) -> Option<Self> {
+        if y == camera.eye.y {
+            return None;
+        }
+        let height = camera.relative_coordinate(1, y);
+        let plane = inverse_depth(camera, &axis_vector(1), &height);
+        let scale = -libm::frexp(height.size()).1;
+        let h = height.scaled(scale);
+        let up = camera.turned(&axis_vector(1));
+        let (x, z) = (
+            Place::new(camera.eye.x, square),
+            Place::new(camera.eye.z, square),
+        );
+        let numerator = |axis: usize, place: &Place| {
+            // x = e_x + λ r_x, so x/square = e_x/square + (r_x/square)/ℓ, all over ℓ = r_y/h.
+            let along = camera.turned(&axis_vector(axis));
+            let exponent = -libm::frexp(place.square).1;
+            let side = Ball::exact(place.square).scaled(exponent);
+            let offset = Ball::exact(place.rest).scaled(exponent) / &side;
+            let side = side.scaled(camera.exponent + scale - place.exponent - exponent);
+            let v = [0, 1, 2].map(|i| &offset * &(&up[i] / &h) + &along[i] / &side);
+            Form::new(&v, &camera.window)
+        };
+        Some(Self {
+            below: inverse_depth(camera, &axis_vector(1), &h),
+            plane,
+            across: [numerator(0, &x), numerator(2, &z)],
+            odd: x.odd != z.odd,
+        })
+    }
+
+    /// The crossing, if the ray meets the plane in front of the eye.
+    #[inline]
+    pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
+        let inverse_depth = self.plane.at(r);
+        match inverse_depth.sign()? {
+            Ordering::Greater => Ok(Some(Crossing {
+                inverse_depth,
+                part: Part::Plane(0),
+            })),
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether the square that the ray meets has the second colour: floor(x/square) + floor(z/square) is odd.
+    #[inline]
+    pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
+        let below = self.below.at(r);
+        let mut odd = self.odd;
+        for numerator in &self.across {
+            let (_, odd_here) = (numerator.at(r) / &below).floor()?;
+            odd ^= odd_here;
+        }
+        Ok(odd)
+    }
+}
+
+impl Checkerboard<Double> {
+    /// The same checkerboard for `f64`.
+    pub fn narrowed(&self, window: &Window) -> Checkerboard<f64> {
+        Checkerboard {
+            plane: self.plane.narrowed(window),
+            below: self.below.narrowed(window),
+            across: self.across.each_ref().map(|form| form.narrowed(window)),
+            odd: self.odd,
+        }
+    }
+}
+
+/// A coordinate of the eye as whole squares and a rest.
+struct Place {
+    /// The rest, at most half a square either way.
+    rest: f64,
+    /// The side of a square, in the rest's unit.
+    square: f64,
+    /// That unit, as a power of two: its exponent.
+    exponent: i32,
+    /// Whether the number of whole squares is odd.
+    odd: bool,
+}
+
+impl Place {
+    /// Splits a coordinate without rounding.
+    fn new(coordinate: f64, square: f64) -> Self {
+        // Twice the side must not overflow; a unit four times as large loses nothing at that size.
+        let exponent = if square > 1e300 { -2 } else { 0 };
+        let [coordinate, square] = [coordinate, square].map(|x| libm::ldexp(x, exponent));
+        // The remainder of f64 is exact, and so are the differences of numbers within a factor of two (Sterbenz).
+        let rest = coordinate % (2.0 * square);
+        let whole = if rest.abs() < square * 0.5 {
+            0.0
+        } else if rest.abs() <= square * 1.5 {
+            1.0
+        } else {
+            2.0
+        };
+        Self {
+            rest: rest - whole * square.copysign(rest),
+            square,
+            exponent,
+            odd: whole == 1.0,
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Where a ray meets a surface.
+
+use crate::math::Ball;
+
+/// A point of a ray on the surface of an object.
+#[derive(Clone, Debug)]
+pub struct Crossing<T> {
+    /// 1/λ for the point λr, > 0: the nearest crossing has the greatest one.
+    pub inverse_depth: Ball<T>,
+    /// Which part of the object's surface.
+    pub part: Part,
+}
+
+/// A part of an object's surface that one formula gives the depth of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The side of a sphere where a ray enters.
+    Entry,
+    /// The side of a sphere where a ray leaves.
+    Exit,
+    /// The plane of a flat object: a triangle's, the checkerboard's, or that of the face with this index of a box.
+    Plane(u8),
+}

@@ -1,0 +1,214 @@
+//! The box: three slabs, each the space between two parallel faces.
+//!
+//! With μ = 1/λ a point λr lies between the planes x = lo and x = hi (as seen from the eye) where lo·μ ≤ r_x ≤ hi·μ. On which
+//! side of its two planes the eye lies makes of these a greatest and a least μ, each a linear form: no division by r_x, which
+//! may be zero.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::{
+    camera::{Camera, Direction, Window},
+    crossing::{Crossing, Part},
+    form::{Form, inverse_depth},
+};
+use crate::math::{Ball, Ball3, Double, Doubt, Real};
+
+/// A box prepared for one picture.
+#[derive(Clone, Debug)]
+pub struct Cuboid<T> {
+    /// Inverse depths of the planes that the eye looks at from outside: a ray is in the box from the least of them on.
+    fronts: Vec<Face<T>>,
+    /// Inverse depths of the planes that rays leave through: up to the greatest of them.
+    backs: Vec<Face<T>>,
+    /// Where the eye lies in a face's plane, that face is seen edge-on and bounds nothing, but a ray must not be on the
+    /// outside of it: each of these is ≥ 0.
+    inward: Vec<Form<T>>,
+}
+
+/// The plane of a face.
+#[derive(Clone, Debug)]
+struct Face<T> {
+    inverse_depth: Form<T>,
+    /// Twice the axis, and one more for the greater coordinate.
+    index: u8,
+}
+
+impl<T: Real> Cuboid<T> {
+    /// Prepares a box.
+    pub fn new(camera: &Camera<T>, min: DVec3, max: DVec3) -> Self {
+        let mut cuboid = Self {
+            fronts: Vec::new(),
+            backs: Vec::new(),
+            inward: Vec::new(),
+        };
+        for axis in 0..3 {
+            let eye = camera.eye[axis];
+            let normal = axis_vector::<T>(axis);
+            let face = |upper: bool| Face {
+                inverse_depth: {
+                    let at = if upper { max[axis] } else { min[axis] };
+                    inverse_depth(camera, &normal, &camera.relative_coordinate(axis, at))
+                },
+                index: 2 * axis as u8 + u8::from(upper),
+            };
+            let inward = |sign: f64| {
+                let normal = axis_vector::<T>(axis).map(|x| x.times_power(sign));
+                Form::new(&camera.turned(&normal), &camera.window)
+            };
+            let (from_min, from_max) = (eye.total_order(min[axis]), eye.total_order(max[axis]));
+            match (from_min, from_max) {
+                (Ordering::Less, _) => {
+                    cuboid.fronts.push(face(false));
+                    cuboid.backs.push(face(true));
+                }
+                (_, Ordering::Greater) => {
+                    cuboid.fronts.push(face(true));
+                    cuboid.backs.push(face(false));
+                }
+                (Ordering::Equal, _) => {
+                    cuboid.inward.push(inward(1.0));
+                    cuboid.backs.push(face(true));
+                }
+                (_, Ordering::Equal) => {
+                    cuboid.inward.push(inward(-1.0));
+                    cuboid.backs.push(face(false));
+                }
+                (Ordering::Greater, Ordering::Less) => {
+                    cuboid.backs.push(face(false));
+                    cuboid.backs.push(face(true));
+                }
+            }
+        }
+        cuboid
+    }
+
+    /// The nearest crossing in front of the eye: where the ray enters the closed box or, from inside, leaves it.
+    #[inline]
+    pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
+        let leave = extreme(&self.backs, r, Ordering::Greater);
+        let enter = extreme(&self.fronts, r, Ordering::Less);
+        let mut doubt = false;
+        if let (Some(enter), Some(leave)) = (&enter, &leave) {
+            match leave.inverse_depth.compare(&enter.inverse_depth) {
+                Ok(Ordering::Greater) => return Ok(None),
+                Ok(_) => {}
+                Err(Doubt) => doubt = true,
+            }
+            match enter.inverse_depth.sign() {
+                Ok(Ordering::Greater) => {}
+                Ok(_) => return Ok(None),
+                Err(Doubt) => doubt = true,
+            }
+        }
+        for form in &self.inward {
+            match form.at(r).sign() {
+                Ok(Ordering::Less) => return Ok(None),
+                Ok(_) => {}
+                Err(Doubt) => doubt = true,
+            }
+        }
+        if doubt {
+            return Err(Doubt);
+        }
+        match enter {
+            Some(enter) => Ok(Some(enter)),
+            None => behind_eye(leave),
+        }
+    }
+
+    /// The crossing behind the first one.
+    pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
+        if self.fronts.is_empty() {
+            return None;
+        }
+        extreme(&self.backs, r, Ordering::Greater)
+    }
+
+    /// The form of the face with an index, if the eye sees it from either side.
+    pub fn face(&self, index: u8) -> Option<&Form<T>> {
+        let mut faces = self.fronts.iter().chain(&self.backs);
+        let face = faces.find(|face| face.index == index)?;
+        Some(&face.inverse_depth)
+    }
+}
+
+/// From inside, a ray along a face's plane may leave at no finite depth only by rounding.
+fn behind_eye<T: Real>(leave: Option<Crossing<T>>) -> Result<Option<Crossing<T>>, Doubt> {
+    let Some(leave) = leave else { return Ok(None) };
+    match leave.inverse_depth.sign()? {
+        Ordering::Greater => Ok(Some(leave)),
+        _ => Ok(None),
+    }
+}
+
+impl Cuboid<Double> {
+    /// The same box for `f64`.
+    pub fn narrowed(&self, window: &Window) -> Cuboid<f64> {
+        let narrow = |faces: &[Face<Double>]| {
+            let face = |face: &Face<Double>| Face {
+                inverse_depth: face.inverse_depth.narrowed(window),
+                index: face.index,
+            };
+            faces.iter().map(face).collect()
+        };
+        Cuboid {
+            fronts: narrow(&self.fronts),
+            backs: narrow(&self.backs),
+            inward: self.inward.iter().map(|f| f.narrowed(window)).collect(),
+        }
+    }
+}
+
+/// The least or the greatest inverse depth of some faces. The middle of the least ball need not be the least number, but it
+/// is within the greatest radius of it.
+#[inline]
+fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Option<Crossing<T>> {
+    let mut extreme: Option<Crossing<T>> = None;
+    for face in faces {
+        let inverse_depth = face.inverse_depth.at(r);
+        let part = Part::Plane(face.index);
+        match &mut extreme {
+            None => {
+                extreme = Some(Crossing {
+                    inverse_depth,
+                    part,
+                });
+            }
+            Some(so_far) => {
+                let rad = so_far.inverse_depth.rad.max(inverse_depth.rad);
+                let difference = inverse_depth.mid.minus(&so_far.inverse_depth.mid).to_f64();
+                if difference.partial_cmp(&0.0) == Some(which) {
+                    *so_far = Crossing {
+                        inverse_depth,
+                        part,
+                    };
+                }
+                // NaN, from an overflow, must not be passed over.
+                so_far.inverse_depth.rad = if difference.is_nan() {
+                    f64::INFINITY
+                } else {
+                    rad
+                };
+            }
+        }
+    }
+    extreme
+}
+
+/// The unit vector along an axis.
+pub fn axis_vector<T: Real>(axis: usize) -> Ball3<T> {
+    [0, 1, 2].map(|i| Ball::exact(f64::from(u8::from(i == axis))))
+}
+
+/// The order of numbers that are not NaN.
+trait TotalOrder {
+    fn total_order(self, other: f64) -> Ordering;
+}
+
+impl TotalOrder for f64 {
+    fn total_order(self, other: f64) -> Ordering {
+        self.partial_cmp(&other).unwrap_or(Ordering::Equal)
+    }
+}

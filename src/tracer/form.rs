@@ -1,0 +1,73 @@
+//! Linear forms: the boundaries and depths of everything flat.
+//!
+//! Over the view plane every edge of a flat surface is the zero line of a linear form aX + bY + c, and so is the inverse
+//! depth of its plane.
+
+use super::camera::{Camera, Direction, Window};
+use crate::math::{Ball, Ball3, Double, Real, UP};
+
+/// A linear form over the view plane with one bound on the error of its values, whatever the sample point.
+#[derive(Clone, Debug)]
+pub struct Form<T> {
+    /// Factors of X, Y and 1.
+    factors: [T; 3],
+    /// How far a computed value may be from the true one.
+    rad: f64,
+}
+
+/// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum; half as many again to
+/// cover their products.
+const ROUNDINGS: f64 = 12.0;
+
+impl<T: Real> Form<T> {
+    /// The form v·r for a vector in the camera's axes.
+    pub fn new(v: &Ball3<T>, window: &Window) -> Self {
+        let factors = [
+            v[0].mid.clone(),
+            v[1].mid.clone(),
+            v[2].mid.times(&T::from_f64(window.z)),
+        ];
+        let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
+        let rad = (inherited + rounding::<T>(&factors, window)) * UP;
+        Self { factors, rad }
+    }
+
+    /// The value at a direction.
+    #[inline]
+    pub fn at(&self, r: &Direction<T>) -> Ball<T> {
+        let [a, b, c] = &self.factors;
+        Ball {
+            mid: a.times(&r.x).plus(&b.times(&r.y)).plus(c),
+            rad: self.rad,
+        }
+    }
+
+    /// Whether two forms have the same factors, as the forms of one plane have.
+    pub fn equals(&self, other: &Self) -> bool {
+        let equal = |(a, b): (&T, &T)| a.minus(b).to_f64() == 0.0;
+        self.factors.iter().zip(&other.factors).all(equal)
+    }
+}
+
+impl Form<Double> {
+    /// The same form for `f64`.
+    pub fn narrowed(&self, window: &Window) -> Form<f64> {
+        let factors = self.factors.map(|factor| factor.hi);
+        Form {
+            rad: (self.rad + rounding::<f64>(&factors, window)) * UP,
+            factors,
+        }
+    }
+}
+
+/// What rounding adds to the error of a form's values.
+fn rounding<T: Real>(factors: &[T; 3], window: &Window) -> f64 {
+    let [a, b, c] = factors.each_ref().map(|factor| factor.to_f64().abs());
+    ROUNDINGS * T::UNIT * (a * window.x + b * window.y + c) + T::TINY * (a + b + 8.0)
+}
+
+/// The inverse depth of the plane n·q = h as a form, for n in the world's axes and points q as seen from the eye.
+pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
+    let n = camera.turned(n).map(|component| component / h);
+    Form::new(&n, &camera.window)
+}

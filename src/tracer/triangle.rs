@@ -1,0 +1,208 @@
+//! The triangle: three edges, each a line in the view plane.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::{
+    camera::{Camera, Direction, Window},
+    crossing::{Crossing, Part},
+    form::{Form, inverse_depth},
+    sphere::PRECISE,
+};
+use crate::math::{Angle, Ball, Ball3, Big, Double, Doubt, Exact, Real, cross};
+
+/// A triangle prepared for one picture.
+#[derive(Clone, Debug)]
+pub struct Triangle<T> {
+    /// For each edge the form that is ≥ 0 on the triangle's side of it: the determinant of the edge's ends and the ray.
+    pub edges: [Form<T>; 3],
+    /// The inverse depth of its plane.
+    pub plane: Form<T>,
+}
+
+impl<T: Real> Triangle<T> {
+    /// Prepares a triangle; `None` if its plane holds the eye, which sees it edge-on: not at all.
+    pub fn new(camera: &Camera<T>, shape: &TriangleShape) -> Option<Self> {
+        let normal = unit_scaled(shape.normal);
+        let from_eye = camera.relative(shape.centroid);
+        let h = height(camera, shape.centroid, normal, &from_eye);
+        let side = h.1;
+        if side.is_eq() {
+            return None;
+        }
+        let plane = inverse_depth(camera, &normal.to_array().map(Ball::exact), &h.0);
+
+        // The edges' forms matter by their signs alone, so lengths may be scaled.
+        let offsets = offsets::<T>(shape);
+        let vertices = offsets
+            .map(|offset| [0, 1, 2].map(|i| &from_eye[i] + &offset[i].scaled(camera.exponent)));
+        let greatest = vertices
+            .iter()
+            .flatten()
+            .map(Ball::size)
+            .fold(0.0, f64::max);
+        let exponent = -libm::frexp(greatest.min(f64::MAX)).1;
+        let vertices = vertices.map(|vertex| camera.turned(&vertex.map(|x| x.scaled(exponent))));
+        let edge = |a: &Ball3<T>, b: &Ball3<T>| {
+            let n = cross(a, b);
+            // Seen from behind the triangle's turn is the other way round.
+            let n = if side.is_lt() { n.map(|x| -x) } else { n };
+            Form::new(&n, &camera.window)
+        };
+        let [left, right, apex] = &vertices;
+        Some(Self {
+            edges: [edge(left, right), edge(right, apex), edge(apex, left)],
+            plane,
+        })
+    }
+
+    /// The crossing, if the ray meets the closed triangle in front of the eye.
+    #[inline]
+    pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
+        let mut doubt = false;
+        for edge in &self.edges {
+            match edge.at(r).sign() {
+                Ok(Ordering::Less) => return Ok(None),
+                Ok(_) => {}
+                Err(Doubt) => doubt = true,
+            }
+        }
+        if doubt {
+            return Err(Doubt);
+        }
+        let inverse_depth = self.plane.at(r);
+        // With all three determinants zero the ray lies in the plane; else the sum of them, and so the depth, is positive.
+        if inverse_depth.sign()? != Ordering::Greater {
+            return Ok(None);
+        }
+        Ok(Some(Crossing {
+            inverse_depth,
+            part: Part::Plane(0),
+        }))
+    }
+}
+
+impl Triangle<Double> {
+    /// The same triangle for `f64`.
+    pub fn narrowed(&self, window: &Window) -> Triangle<f64> {
+        Triangle {
+            edges: self.edges.each_ref().map(|edge| edge.narrowed(window)),
+            plane: self.plane.narrowed(window),
+        }
+    }
+}
+
+/// A triangle as the scene gives it.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleShape {
+    /// The mean of its vertices.
+    pub centroid: DVec3,
+    /// Its normal, not zero, of any length.
+    pub normal: DVec3,
+    /// The lengths (a, b, c) of its sides.
+    pub sides: DVec3,
+    /// Its turn in its own plane.
+    pub spin: Angle,
+}
+
+impl TriangleShape {
+    /// Its vertices in the world: left base end, right base end, apex; each coordinate rounded once.
+    pub fn vertices(&self) -> [DVec3; 3] {
+        let centroid = self.centroid.to_array().map(Ball::<Big>::exact);
+        offsets::<Big>(self)
+            .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
+    }
+}
+
+/// The distance of the triangle's plane from the eye, times the normal's length, with a small relative error, and its exact
+/// sign.
+fn height<T: Real>(
+    camera: &Camera<T>,
+    centroid: DVec3,
+    normal: DVec3,
+    from_eye: &Ball3<T>,
+) -> (Ball<T>, Ordering) {
+    let h = crate::math::dot(from_eye, &normal.to_array().map(Ball::exact));
+    if h.rad <= h.size() * PRECISE
+        && let Ok(side) = h.sign()
+    {
+        return (h, side);
+    }
+    let terms =
+        [0, 1, 2].map(|i| &Exact::difference(centroid[i], camera.eye[i]) * &Exact::new(normal[i]));
+    let h = &(&terms[0] + &terms[1]) + &terms[2];
+    let side = h.sign();
+    (Ball::from_big(&h.to_big().scaled(camera.exponent)), side)
+}
+
+/// A vector divided by a power of two such that its greatest component is about 1; along an axis, the unit vector, so that
+/// planes that are equal get equal forms.
+fn unit_scaled(v: DVec3) -> DVec3 {
+    let axes = v.to_array().iter().filter(|x| **x != 0.0).count();
+    if axes == 1 {
+        let unit = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        return v.to_array().map(unit).into();
+    }
+    let exponent = libm::frexp(v.abs().max_element()).1;
+    v.to_array().map(|x| libm::ldexp(x, -exponent)).into()
+}
+
+/// The vertices as seen from the centroid, in the world's axes: left base end, right base end, apex.
+///
+/// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² + c²)/(2c) and y = 2A/c, the
+/// area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
+fn offsets<T: Real>(shape: &TriangleShape) -> [Ball3<T>; 3] {
+    let exponent = libm::frexp(shape.sides.max_element()).1;
+    let [a, b, c] = shape
+        .sides
+        .to_array()
+        .map(|side| Ball::<T>::exact(side).scaled(-exponent));
+    let two = Ball::exact(2.0);
+    let three = Ball::exact(3.0);
+    let apex_x = (&(&a - &b) * &(&a + &b) / &c + &c) / &two;
+    let heron = (&a + &b + &c) * (&b + &c - &a) * (&a + &c - &b) * (&a + &b - &c);
+    let apex_y = heron.sqrt() / (&two * &c);
+    let mean_x = (&c + &apex_x) / &three;
+    let mean_y = &apex_y / &three;
+
+    let (sin, cos) = Big::sin_cos(shape.spin);
+    let (sin, cos) = (Ball::<T>::from_big(&sin), Ball::<T>::from_big(&cos));
+    let (right, top) = plane_axes::<T>(shape.normal);
+    [
+        (-&mean_x, -&mean_y),
+        (&c - &mean_x, -&mean_y),
+        (&apex_x - &mean_x, &apex_y - &mean_y),
+    ]
+    .map(|(x, y)| {
+        let turned_x = &cos * &x - &sin * &y;
+        let turned_y = &sin * &x + &cos * &y;
+        [0, 1, 2].map(|i| (&right[i] * &turned_x + &top[i] * &turned_y).scaled(exponent))
+    })
+}
+
+/// Unit vectors in the plane of a normal n: right = (Y × n)/|Y × n| and top = n/|n| × right, with (0, 0, −1) for Y where n
+/// is parallel to it.
+fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
+    let [x, y, z] = normal.to_array();
+    let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
+    if x == 0.0 && z == 0.0 {
+        // (0, 0, −1) × (0, ±1, 0) = (±1, 0, 0), and (0, ±1, 0) × (±1, 0, 0) = (0, 0, −1).
+        let right = [Ball::exact(1f64.copysign(y)), zero.clone(), zero.clone()];
+        return (right, [zero.clone(), zero, -one]);
+    }
+    // Y × n = (z, 0, −x). Its length is formed apart from y, which may be larger by any factor.
+    let exponent = -libm::frexp(x.abs().max(z.abs())).1;
+    let [sx, sz] = [x, z].map(|k| Ball::<T>::exact(k).scaled(exponent));
+    let across = (&sx * &sx + &sz * &sz).sqrt();
+    let right = [&sz / &across, zero, -&sx / &across];
+
+    // n/|n| × right = (−s·x/|Y × n|, t, −s·z/|Y × n|) with s = y/|n| and t = |Y × n|/|n|.
+    let scale = -libm::frexp(normal.abs().max_element()).1;
+    let [nx, ny, nz] = [x, y, z].map(|k| Ball::<T>::exact(k).scaled(scale));
+    let length = (&nx * &nx + &ny * &ny + &nz * &nz).sqrt();
+    let s = &ny / &length;
+    let t = across.scaled(scale - exponent) / &length;
+    let top = [-(&s * &sx) / &across, t, -(&s * &sz) / &across];
+    (right, top)
+}

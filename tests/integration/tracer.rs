@@ -1,0 +1,449 @@
+//! The tracer against the oracle, above all within the last bits of every boundary.
+
+use glam::{DVec2, DVec3, dvec2, dvec3};
+use pinhole::{
+    color::Color,
+    math::Angle,
+    scene::{Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View},
+    source::{SourceId, Span},
+    tracer::{Precision, World},
+};
+
+use crate::oracle;
+
+const SIZE: u32 = 64;
+
+fn camera(eye: DVec3, lookat: DVec3) -> Camera {
+    Camera {
+        eye,
+        view: View::Lookat(lookat),
+        up: DVec3::Y,
+        roll: Angle::default(),
+        lens: Lens::Distance(2.0),
+        view_height: 2.0,
+        near: 0.0,
+        far: None,
+    }
+}
+
+/// A scene whose colours tell its objects apart.
+fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
+    let shapes = shapes.iter().enumerate().map(|(index, shape)| {
+        let own = Color::from_bytes([index as u8 + 1, 0, 0]);
+        let mut shape = *shape;
+        match &mut shape {
+            Shape::Sphere { color, .. }
+            | Shape::Triangle { color, .. }
+            | Shape::Box { color, .. } => *color = own,
+            Shape::Checkerboard { colors, .. } => {
+                *colors = [own, Color::from_bytes([index as u8 + 1, 1, 0])];
+            }
+        }
+        Object {
+            name: None,
+            shape,
+            span: Span::new(SourceId::File, 0, 0),
+        }
+    });
+    Scene {
+        image: Image {
+            width: SIZE,
+            height: SIZE,
+            background: Color::BLACK,
+        },
+        camera,
+        sampler: Sampler {
+            method: Method::Random,
+            count: Count::PerPixel(1),
+            seed: 0,
+        },
+        objects: shapes.collect(),
+    }
+}
+
+fn sphere(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere {
+        center,
+        radius,
+        color: Color::BLACK,
+    }
+}
+
+fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
+    Shape::Triangle {
+        centroid,
+        normal,
+        sides: dvec3(2.0, 2.0, 1.0),
+        spin: Angle::default(),
+        color: Color::BLACK,
+    }
+}
+
+fn cuboid(min: DVec3, max: DVec3) -> Shape {
+    Shape::Box {
+        min,
+        max,
+        color: Color::BLACK,
+    }
+}
+
+fn floor() -> Shape {
+    Shape::Checkerboard {
+        y: 0.0,
+        square: 1.0,
+        colors: [Color::BLACK; 2],
+    }
+}
+
+/// Reproducible numbers (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn offset(&mut self) -> DVec2 {
+        dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
+    }
+
+    fn vector(&mut self, size: f64) -> DVec3 {
+        let mut one = || self.within(-size, size);
+        dvec3(one(), one(), one())
+    }
+}
+
+/// The colour that the oracle sees, in the numbering of [`scene`].
+fn expected(scene: &Scene, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
+    match oracle::seen(scene, x, y, offset) {
+        None => [0.0; 3],
+        Some((index, odd)) => [index as f64 + 1.0, f64::from(u8::from(odd)), 0.0],
+    }
+}
+
+/// Compares the tracer with the oracle: at random points, and at the points of `f64` on both sides of the boundaries that
+/// random segments within pixels cross. Returns how many boundaries it found, so that a test can say that there were some.
+fn agrees(scene: &Scene, points: usize) -> usize {
+    let world = World::new(scene);
+    let mut random = Random(points as u64);
+    let color = |x, y, offset| world.palette()[world.slot_at(x, y, offset)].srgb;
+    let check = |x, y, offset: DVec2| {
+        assert_eq!(
+            color(x, y, offset),
+            expected(scene, x, y, offset),
+            "pixel {x}, {y} at {offset:?} of {scene:?}"
+        );
+    };
+    let mut boundaries = 0;
+    let mut tries = 0;
+    while boundaries < points && tries < 40 * points + 4000 {
+        tries += 1;
+        let (x, y) = (random.bits() as u32 % SIZE, random.bits() as u32 % SIZE);
+        let (mut a, mut b) = (random.offset(), random.offset());
+        if tries % 16 == 0 {
+            check(x, y, a);
+        }
+        if color(x, y, a) == color(x, y, b) {
+            continue;
+        }
+        // Along x or y alone, down to neighbouring numbers.
+        let axis = usize::from(tries % 2 == 0);
+        let mut corner = a;
+        corner[axis] = b[axis];
+        if color(x, y, corner) == color(x, y, a) {
+            continue;
+        }
+        b = corner;
+        loop {
+            let mut middle = a;
+            middle[axis] = a[axis] + (b[axis] - a[axis]) / 2.0;
+            if middle == a || middle == b {
+                break;
+            }
+            if color(x, y, middle) == color(x, y, a) {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        check(x, y, a);
+        check(x, y, b);
+        boundaries += 1;
+    }
+    boundaries
+}
+
+#[test]
+fn f64_alone_decides_nearly_everything() {
+    let shapes = [
+        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
+        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
+        cuboid(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
+        floor(),
+    ];
+    let scene = scene(camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0)), &shapes);
+    let world = World::new(&scene);
+    let mut random = Random(2);
+    let mut doubts = 0;
+    for _ in 0..20_000 {
+        let (x, y) = (random.bits() as u32 % SIZE, random.bits() as u32 % SIZE);
+        let offset = random.offset();
+        let double = world.slot_in(Precision::Double, x, y, offset);
+        match world.slot_in(Precision::Single, x, y, offset) {
+            None => doubts += 1,
+            single => assert_eq!(single, double),
+        }
+    }
+    // The rows at the horizon leave doubts of about 1e-10 of the samples.
+    assert_eq!(doubts, 0);
+}
+
+#[test]
+fn the_figure_agrees_with_the_oracle() {
+    let shapes = [
+        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
+        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
+        cuboid(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
+        floor(),
+    ];
+    for (roll, near, far) in [(0.0, 0.0, None), (90.0, 0.0, None), (33.0, 7.0, Some(10.0))] {
+        let mut camera = camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0));
+        camera.roll = Angle::from_degrees(roll);
+        (camera.near, camera.far) = (near, far);
+        assert_eq!(agrees(&scene(camera, &shapes), 60), 60);
+    }
+}
+
+#[test]
+fn random_objects_agree_with_the_oracle() {
+    let mut random = Random(7);
+    let mut found = 0;
+    for round in 0..24 {
+        let eye = random.vector(4.0);
+        let mut camera = camera(eye, random.vector(1.0));
+        camera.up = random.vector(1.0);
+        camera.roll = Angle {
+            degrees: random.within(-400.0, 400.0),
+            radians: random.within(-10.0, 10.0),
+        };
+        camera.lens = Lens::Fov(Angle::from_degrees(random.within(1.0, 179.0)));
+        if round % 2 == 0 {
+            (camera.near, camera.far) = (2.0, Some(6.0));
+        }
+        let mut shapes = vec![floor()];
+        for _ in 0..2 {
+            let corner = random.vector(2.0);
+            shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
+            shapes.push(Shape::Triangle {
+                centroid: random.vector(2.0),
+                normal: random.vector(1.0),
+                sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
+                spin: Angle::from_degrees(random.within(0.0, 360.0)),
+                color: Color::BLACK,
+            });
+            shapes.push(cuboid(
+                corner,
+                corner + DVec3::splat(random.within(0.1, 2.0)),
+            ));
+        }
+        found += agrees(&scene(camera, &shapes), 16);
+    }
+    assert!(found > 200);
+}
+
+#[test]
+fn nearly_parallel_up_vectors_agree_with_the_oracle() {
+    for tilt in [1e-4, 1e-8, 1e-12, 1e-15, 1e-16, 1e-30, 1e-200] {
+        let mut camera = camera(dvec3(0.3, 10.0, 0.1), DVec3::ZERO);
+        camera.view = View::Direction(dvec3(tilt, -1.0, tilt / 3.0));
+        camera.lens = Lens::Distance(1.0);
+        assert_eq!(agrees(&scene(camera, &[floor()]), 20), 20);
+    }
+}
+
+#[test]
+fn small_and_distant_spheres_agree_with_the_oracle() {
+    for distance in [1e3, 1e6, 1e9, 1e12, 1e15] {
+        let mut camera = camera(DVec3::ZERO, dvec3(1.0, 2.0, -3.0));
+        let center = dvec3(1.0, 2.0, -3.0) * distance;
+        camera.lens = Lens::Distance(center.length());
+        camera.view_height = 3.0;
+        assert_eq!(agrees(&scene(camera, &[sphere(center, 1.0)]), 20), 20);
+    }
+}
+
+#[test]
+fn huge_spheres_agree_with_the_oracle() {
+    for radius in [1e6, 1e9, 1e12, 1e15] {
+        let camera = camera(dvec3(0.1, 1.0, 0.2), dvec3(3.0, 0.9, -4.0));
+        let shapes = [
+            sphere(dvec3(0.0, -radius, 0.0), radius),
+            sphere(dvec3(3.0, 1.0, -4.0), 0.8),
+        ];
+        assert_eq!(agrees(&scene(camera, &shapes), 20), 20);
+    }
+}
+
+#[test]
+fn concentric_and_equal_spheres_agree_with_the_oracle() {
+    let camera = camera(dvec3(0.0, 0.0, 5.0), DVec3::ZERO);
+    let next = 1.0 + f64::EPSILON;
+    for radii in [[1.0, 1.0], [1.0, next], [next, 1.0]] {
+        let shapes = radii.map(|radius| sphere(DVec3::ZERO, radius));
+        assert_eq!(agrees(&scene(camera, &shapes), 20), 20);
+    }
+}
+
+#[test]
+fn an_eye_on_or_near_a_surface_agrees_with_the_oracle() {
+    let mut found = 0;
+    for above in [1e-3, 1e-8, 1e-14, 0.0, -1e-14, -1e-8, -1e-3] {
+        let camera = camera(dvec3(0.0, 1.0 + above, 0.0), dvec3(3.0, 0.8, 0.4));
+        let shapes = [
+            sphere(DVec3::ZERO, 1.0),
+            cuboid(dvec3(-4.0, 0.0, -4.0), dvec3(4.0, 1.0, 4.0)),
+            triangle(dvec3(2.0, 1.0, 0.0), DVec3::Y),
+            Shape::Checkerboard {
+                y: 1.0,
+                square: 0.3,
+                colors: [Color::BLACK; 2],
+            },
+        ];
+        found += agrees(&scene(camera, &shapes), 20);
+    }
+    assert!(found > 40);
+}
+
+#[test]
+fn the_floor_far_away_agrees_with_the_oracle() {
+    for (height, x) in [
+        (1e-9, 0.0),
+        (1e9, 0.0),
+        (1e15, 0.0),
+        (2.0, 1e9),
+        (2.0, 4e15),
+        (2.0, -1e12),
+    ] {
+        let eye = dvec3(x, height, x / 3.0);
+        let mut camera = camera(eye, DVec3::ZERO);
+        camera.view = View::Direction(dvec3(0.2, -0.1, -1.0));
+        agrees(&scene(camera, &[floor()]), 20);
+        // Within a millionth of a pixel of the horizon: a distance of 10^7 eye heights and more.
+        camera.view = View::Direction(dvec3(0.2, 0.0, -1.0));
+        let scene = scene(camera, &[floor()]);
+        let world = World::new(&scene);
+        let mut random = Random(1);
+        for exponent in 1..16 {
+            let below = libm::pow(10.0, -f64::from(exponent));
+            let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
+            let (x, y) = (random.bits() as u32 % SIZE, SIZE / 2);
+            let color = world.palette()[world.slot_at(x, y, offset)].srgb;
+            assert_eq!(color, expected(&scene, x, y, offset));
+        }
+    }
+}
+
+#[test]
+fn coincident_surfaces_agree_with_the_oracle() {
+    let below = camera(dvec3(0.4, -3.0, 0.2), dvec3(0.0, 0.0, 0.1));
+    let surfaces = [
+        floor(),
+        cuboid(dvec3(-1.0, 0.0, -1.0), dvec3(0.2, 1.0, 0.7)),
+        triangle(dvec3(0.3, 0.0, 0.3), dvec3(0.0, 3.0, 0.0)),
+        cuboid(dvec3(-2.0, -1.0, 0.3), dvec3(-0.3, 0.0, 0.9)),
+    ];
+    let mut reversed = surfaces;
+    reversed.reverse();
+    assert_eq!(agrees(&scene(below, &surfaces), 60), 60);
+    assert_eq!(agrees(&scene(below, &reversed), 60), 60);
+}
+
+#[test]
+fn rays_in_the_planes_of_faces_agree_with_the_oracle() {
+    // Odd sizes put the middle of a pixel on the axis, so that whole rows and columns of rays lie in faces' planes.
+    let shape = cuboid(dvec3(0.0, 0.0, -5.0), dvec3(1.0, 1.0, -3.0));
+    for eye in [
+        DVec3::ZERO,
+        DVec3::X,
+        dvec3(0.5, 1.0, 0.0),
+        dvec3(0.0, 0.0, -3.0),
+        dvec3(0.0, 0.0, -4.0),
+        dvec3(1.0, 0.5, -5.0),
+    ] {
+        let mut camera = camera(eye, DVec3::ZERO);
+        camera.view = View::Direction(DVec3::NEG_Z);
+        let mut scene = scene(camera, &[shape, floor()]);
+        (scene.image.width, scene.image.height) = (33, 33);
+        let world = World::new(&scene);
+        for i in 0..33 {
+            for (x, y) in [(16, i), (i, 16), (i, i)] {
+                let color = world.palette()[world.slot_at(x, y, DVec2::ZERO)].srgb;
+                assert_eq!(
+                    color,
+                    expected(&scene, x, y, DVec2::ZERO),
+                    "eye {eye}, pixel {x}, {y}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn extreme_lenses_and_sizes_agree_with_the_oracle() {
+    for d in [5e-324, 1e-300, 1e-9, 1e9, 1e300] {
+        let mut camera = camera(dvec3(0.1, 2.0, 3.0), dvec3(1.0, 0.0, 1.0));
+        camera.lens = Lens::Distance(d);
+        let shapes = [floor(), sphere(dvec3(-3.0, 1.0, 0.0), 1.0)];
+        agrees(&scene(camera, &shapes), 10);
+    }
+    for size in [1e-300, 1e-160, 1e-5, 1e160, 1e300] {
+        let camera = camera(dvec3(1.0, 2.0, 3.0) * size, DVec3::ZERO);
+        let shapes = [
+            sphere(DVec3::ZERO, 0.7 * size),
+            cuboid(DVec3::splat(0.1 * size), DVec3::splat(0.6 * size)),
+            Shape::Triangle {
+                centroid: dvec3(0.1, 0.4, 0.9) * size,
+                normal: dvec3(0.2, 0.3, 1.0) * size,
+                sides: dvec3(2.0, 2.0, 1.0) * size,
+                spin: Angle::default(),
+                color: Color::BLACK,
+            },
+            Shape::Checkerboard {
+                y: -0.5 * size,
+                square: size,
+                colors: [Color::BLACK; 2],
+            },
+        ];
+        assert_eq!(agrees(&scene(camera, &shapes), 10), 10);
+    }
+}
+
+#[test]
+fn needles_and_tiny_triangles_agree_with_the_oracle() {
+    for (scale, needle) in [
+        (1e-3, 1.0),
+        (1e-5, 1.0),
+        (1e-9, 1.0),
+        (1.0, 1e-3),
+        (1.0, 1e-9),
+    ] {
+        let mut camera = camera(dvec3(0.3, 0.2, 3.0), DVec3::ZERO);
+        camera.lens = Lens::Distance(2.0 / (scale * needle));
+        let shape = Shape::Triangle {
+            centroid: DVec3::ZERO,
+            normal: dvec3(1.0, 0.4, 2.0),
+            sides: dvec3(1.0, 1.0, needle) * scale,
+            spin: Angle::from_degrees(20.0),
+            color: Color::BLACK,
+        };
+        assert!(agrees(&scene(camera, &[shape]), 20) > 10);
+    }
+}
