@@ -1,5 +1,7 @@
 //! Rectangles of pixels.
 
+use std::{fmt, str::FromStr};
+
 /// A rectangle of pixels, counted from the picture's top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
@@ -76,6 +78,43 @@ impl Area {
 
     fn rows(self) -> std::ops::Range<u64> {
         u64::from(self.y)..u64::from(self.y) + u64::from(self.height)
+    }
+}
+
+/// `X,Y,W,H`
+impl fmt::Display for Area {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            x,
+            y,
+            width,
+            height,
+        } = self;
+        write!(f, "{x},{y},{width},{height}")
+    }
+}
+
+/// `X,Y,W,H`, four whole numbers; W and H are not 0.
+impl FromStr for Area {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers: Option<Vec<u32>> = text
+            .split(',')
+            .map(|number| number.trim().parse().ok())
+            .collect();
+        match numbers.as_deref() {
+            Some(&[_, _, 0, _] | &[_, _, _, 0]) => {
+                Err("width and height are at least 1".to_owned())
+            }
+            Some(&[x, y, width, height]) => Ok(Self {
+                x,
+                y,
+                width,
+                height,
+            }),
+            _ => Err("four whole numbers are wanted: X,Y,W,H".to_owned()),
+        }
     }
 }
 

@@ -8,4 +8,6 @@ pub mod source;
 pub mod scene;
 pub mod tracer;
 
+pub mod film;
+pub mod render;
 pub mod sampling;

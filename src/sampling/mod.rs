@@ -52,6 +52,7 @@ pub struct Sampling {
     /// The key of seed and method; a pixel's own is a part of it.
     key: Key,
     total: u64,
+    pixels: u64,
     share: Share,
 }
 
@@ -108,12 +109,22 @@ impl Sampling {
             }
             method => Share::Even(Box::new(Even::new(method, total, width, height))),
         };
-        Self { key, total, share }
+        Self {
+            key,
+            total,
+            pixels,
+            share,
+        }
     }
 
     /// How many samples the whole picture has.
     pub fn total(&self) -> u64 {
         self.total
+    }
+
+    /// How many samples a pixel has on average, rounded up.
+    pub fn samples_per_pixel(&self) -> u64 {
+        self.total.div_ceil(self.pixels)
     }
 
     /// How many samples a pixel has.
