@@ -57,7 +57,8 @@ impl Recipe {
     /// Whether it is short enough to be kept in a picture.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
-        self.scene.len() + overrides <= TEXT_LIMIT
+        let crop = self.crop.map_or(0, |crop| crop.to_string().len());
+        self.scene.len() + overrides + crop <= TEXT_LIMIT
     }
 
     fn chunks(&self) -> impl Iterator<Item = (&'static str, String)> {
