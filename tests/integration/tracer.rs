@@ -367,6 +367,22 @@ fn coincident_surfaces_agree_with_the_oracle() {
 }
 
 #[test]
+fn just_outside_the_edge_of_a_box_the_floor_that_it_stands_on_is_seen() {
+    // From below, between the point where the ray meets the common plane and the one where it enters the box.
+    let camera = camera(dvec3(0.4, -3.0, 0.2), dvec3(0.0, 0.0, 0.1));
+    let shapes = [
+        cuboid(dvec3(-1.0, 0.0, -1.0), dvec3(0.2, 1.0, 0.7)),
+        floor(),
+    ];
+    let scene = scene(camera, &shapes);
+    let world = World::new(&scene);
+    let offset = dvec2(-0.253_993_261_381_526_67, 0.204_492_435_315_225_33);
+    let color = world.palette()[world.slot_at(48, 31, offset)].srgb;
+    assert_eq!(color, [2.0, 1.0, 0.0]);
+    assert_eq!(color, expected(&scene, 48, 31, offset));
+}
+
+#[test]
 fn rays_in_the_planes_of_faces_agree_with_the_oracle() {
     // Odd sizes put the middle of a pixel on the axis, so that whole rows and columns of rays lie in faces' planes.
     let shape = cuboid(dvec3(0.0, 0.0, -5.0), dvec3(1.0, 1.0, -3.0));
