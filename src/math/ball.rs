@@ -258,3 +258,101 @@ pub fn cross<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball3<T> {
         &a[0] * &b[1] - &a[1] * &b[0],
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::math::Double;
+
+    /// A few operations that cancel, divide and take roots.
+    fn formula<T: Real>(x: f64, y: f64, z: f64) -> Vec<Ball<T>> {
+        let [a, b, c] = [x, y, z].map(Ball::<T>::exact);
+        let three = Ball::exact(3.0);
+        let third = &a / &three;
+        let square = &b * &b + &c * &c;
+        let root = square.sqrt();
+        let cancelled = &(&third * &three) - &a;
+        let small = (&root - &b) * (&root + &b) - &c * &c;
+        let quotient = &(&a + &root) / &(&square + &three);
+        vec![third, square, root, cancelled, small, quotient]
+    }
+
+    /// Whether the precise number lies in the less precise ball.
+    fn contains<T: Real>(ball: &Ball<T>, precise: &Ball<Big>) -> bool {
+        let mid = match size_of::<T>() {
+            8 => Big::from_f64(ball.mid.to_f64()),
+            // The low part is what subtracting the high one leaves.
+            _ => {
+                let low = ball.mid.minus(&T::from_f64(ball.mid.to_f64())).to_f64();
+                Big::from_f64(ball.mid.to_f64()).plus(&Big::from_f64(low))
+            }
+        };
+        mid.minus(&precise.mid).to_f64().abs() <= ball.rad
+    }
+
+    proptest! {
+        #[test]
+        fn balls_hold_the_true_number(
+            x in -1e9..1e9f64, y in -1e3..1e3f64, z in prop::num::f64::NORMAL.prop_map(|z| z % 1e6)
+        ) {
+            let precise = formula::<Big>(x, y, z);
+            for (ball, precise) in formula::<f64>(x, y, z).iter().zip(&precise) {
+                prop_assert!(contains(ball, precise), "{ball:?}");
+            }
+            for (ball, precise) in formula::<Double>(x, y, z).iter().zip(&precise) {
+                prop_assert!(contains(ball, precise), "{ball:?}");
+            }
+        }
+
+        #[test]
+        fn double_operations_keep_their_bound(
+            a in -1e20..1e20f64, low in -0.5..0.5f64, b in 1e-20..1e20f64, other in -0.5..0.5f64
+        ) {
+            let join = |hi: f64, lo: f64| crate::math::two_sum(hi, lo * hi * f64::EPSILON / 2.0);
+            let (a, b) = (join(a, low), join(b, other));
+            let big = |x: &Double| Big::from_f64(x.hi).plus(&Big::from_f64(x.lo));
+            let close = |got: Double, want: Big| {
+                let error = big(&got).minus(&want).to_f64().abs();
+                error <= Double::UNIT * want.to_f64().abs()
+            };
+            prop_assert!(close(a.plus(&b), big(&a).plus(&big(&b))));
+            prop_assert!(close(a.minus(&b), big(&a).minus(&big(&b))));
+            prop_assert!(close(a.times(&b), big(&a).times(&big(&b))));
+            prop_assert!(close(a.over(&b), big(&a).over(&big(&b))));
+            prop_assert!(close(b.sqrt(), big(&b).sqrt()));
+        }
+
+        #[test]
+        fn floors_and_parities_agree(x in -1e15..1e15f64) {
+            let ball = |x: f64| Ball::<f64> { mid: x, rad: 0.0 }.floor().map(|(f, odd)| (f.mid, odd));
+            let big = Ball::<Big>::exact(x).floor().map(|(f, odd)| (f.mid.to_f64(), odd));
+            let double = Ball::<Double>::exact(x).floor().map(|(f, odd)| (f.mid.to_f64(), odd));
+            let expected = Ok((x.floor(), (x.floor() as i64).rem_euclid(2) == 1));
+            prop_assert_eq!(ball(x), expected);
+            prop_assert_eq!(double, expected);
+            prop_assert_eq!(big, expected);
+        }
+    }
+
+    #[test]
+    fn a_number_just_below_an_integer_is_not_that_integer() {
+        let below = Ball::<Big>::exact(-5e-17)
+            .floor()
+            .map(|(f, odd)| (f.mid.to_f64(), odd));
+        assert_eq!(below, Ok((-1.0, true)));
+        let tie = Ball::<Big>::exact(1.0) / Ball::exact(3.0) * Ball::exact(3.0);
+        let tie = tie.floor().map(|(f, odd)| (f.mid.to_f64(), odd));
+        assert_eq!(tie, Ok((1.0, true)));
+    }
+
+    #[test]
+    fn overflow_is_doubt() {
+        let huge = Ball::<f64>::exact(1e200);
+        let overflow = &huge * &huge;
+        assert_eq!((&overflow - &overflow).sign(), Err(Doubt));
+        assert_eq!(overflow.compare(&huge), Err(Doubt));
+        assert_eq!((&huge / &Ball::exact(0.0)).sign(), Err(Doubt));
+    }
+}

@@ -13,7 +13,7 @@ use super::{
     crossing::{Crossing, Part},
     form::{Form, inverse_depth},
 };
-use crate::math::{Ball, Ball3, Double, Doubt, Real};
+use crate::math::{Ball, Ball3, Double, Doubt, Real, UP};
 
 /// A box prepared for one picture.
 #[derive(Clone, Debug)]
@@ -162,7 +162,8 @@ impl Cuboid<Double> {
 }
 
 /// The least or the greatest inverse depth of some faces. The middle of the least ball need not be the least number, but it
-/// is within the greatest radius of it.
+/// is within the greatest radius of it. In whose plane the crossing lies is said only where it is certain: just outside of an
+/// edge, a ray meets the one plane a little before it meets the box in the other.
 #[inline]
 fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Option<Crossing<T>> {
     let mut extreme: Option<Crossing<T>> = None;
@@ -179,18 +180,22 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
             Some(so_far) => {
                 let rad = so_far.inverse_depth.rad.max(inverse_depth.rad);
                 let difference = inverse_depth.mid.minus(&so_far.inverse_depth.mid).to_f64();
+                // NaN, from an overflow, is not clear either.
+                let is_clear = difference.abs() > 2.0 * rad * UP;
                 if difference.partial_cmp(&0.0) == Some(which) {
                     *so_far = Crossing {
                         inverse_depth,
                         part,
                     };
                 }
-                // NaN, from an overflow, must not be passed over.
                 so_far.inverse_depth.rad = if difference.is_nan() {
                     f64::INFINITY
                 } else {
                     rad
                 };
+                if !is_clear {
+                    so_far.part = Part::Edge;
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! One test binary, a module per subject.
 
+mod camera;
 mod figure;
 mod film;
 mod oracle;

@@ -13,7 +13,7 @@ use crate::oracle;
 
 const SIZE: u32 = 64;
 
-fn camera(eye: DVec3, lookat: DVec3) -> Camera {
+pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     Camera {
         eye,
         view: View::Lookat(lookat),
@@ -27,7 +27,7 @@ fn camera(eye: DVec3, lookat: DVec3) -> Camera {
 }
 
 /// A scene whose colours tell its objects apart.
-fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
+pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let shapes = shapes.iter().enumerate().map(|(index, shape)| {
         let own = Color::from_bytes([index as u8 + 1, 0, 0]);
         let mut shape = *shape;
@@ -61,7 +61,7 @@ fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     }
 }
 
-fn sphere(center: DVec3, radius: f64) -> Shape {
+pub fn sphere(center: DVec3, radius: f64) -> Shape {
     Shape::Sphere {
         center,
         radius,
@@ -69,7 +69,7 @@ fn sphere(center: DVec3, radius: f64) -> Shape {
     }
 }
 
-fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
+pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     Shape::Triangle {
         centroid,
         normal,
@@ -79,7 +79,7 @@ fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     }
 }
 
-fn cuboid(min: DVec3, max: DVec3) -> Shape {
+pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     Shape::Box {
         min,
         max,
@@ -87,7 +87,7 @@ fn cuboid(min: DVec3, max: DVec3) -> Shape {
     }
 }
 
-fn floor() -> Shape {
+pub fn floor() -> Shape {
     Shape::Checkerboard {
         y: 0.0,
         square: 1.0,
@@ -96,10 +96,10 @@ fn floor() -> Shape {
 }
 
 /// Reproducible numbers (SplitMix64).
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -107,15 +107,15 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn offset(&mut self) -> DVec2 {
+    pub fn offset(&mut self) -> DVec2 {
         dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
     }
 
-    fn vector(&mut self, size: f64) -> DVec3 {
+    pub fn vector(&mut self, size: f64) -> DVec3 {
         let mut one = || self.within(-size, size);
         dvec3(one(), one(), one())
     }
@@ -364,6 +364,22 @@ fn coincident_surfaces_agree_with_the_oracle() {
     reversed.reverse();
     assert_eq!(agrees(&scene(below, &surfaces), 60), 60);
     assert_eq!(agrees(&scene(below, &reversed), 60), 60);
+}
+
+#[test]
+fn just_outside_the_edge_of_a_box_the_floor_that_it_stands_on_is_seen() {
+    // From below, between the point where the ray meets the common plane and the one where it enters the box.
+    let camera = camera(dvec3(0.4, -3.0, 0.2), dvec3(0.0, 0.0, 0.1));
+    let shapes = [
+        cuboid(dvec3(-1.0, 0.0, -1.0), dvec3(0.2, 1.0, 0.7)),
+        floor(),
+    ];
+    let scene = scene(camera, &shapes);
+    let world = World::new(&scene);
+    let offset = dvec2(-0.253_993_261_381_526_67, 0.204_492_435_315_225_33);
+    let color = world.palette()[world.slot_at(48, 31, offset)].srgb;
+    assert_eq!(color, [2.0, 1.0, 0.0]);
+    assert_eq!(color, expected(&scene, 48, 31, offset));
 }
 
 #[test]

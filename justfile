@@ -1,0 +1,17 @@
+# What CI checks, and the rest that wants a tool of its own.
+
+# Everything that must hold before a change lands.
+check:
+    .ci/run
+
+# The tests alone.
+test:
+    cargo test
+
+# Rays per second of each method, and where the time goes.
+bench:
+    cargo bench
+
+# Licences, sources and duplicates of the dependencies (wants cargo-deny).
+deny:
+    cargo deny check

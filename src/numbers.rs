@@ -1,0 +1,89 @@
+//! Numbers as people read them.
+
+use glam::DVec3;
+
+/// A number with six significant digits at most: what a person wants to see of a computed one.
+pub fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e9).contains(&x.abs()) {
+        let text = format!("{x:.5e}");
+        let Some((digits, exponent)) = text.split_once('e') else {
+            return text;
+        };
+        return format!("{}e{exponent}", trimmed(digits));
+    }
+    // Six significant digits are 5 − ⌊log10 |x|⌋ decimals; a number of more than six digits keeps them all.
+    let mut decimals = 5;
+    let mut bound = 10.0;
+    while x.abs() >= bound && decimals > 0 {
+        bound *= 10.0;
+        decimals -= 1;
+    }
+    while x.abs() < bound / 10.0 && bound > 1e-3 {
+        bound /= 10.0;
+        decimals += 1;
+    }
+    trimmed(&format!("{x:.decimals$}")).to_owned()
+}
+
+/// Decimals without the zeros at their end.
+fn trimmed(digits: &str) -> &str {
+    if digits.contains('.') {
+        digits.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        digits
+    }
+}
+
+/// A vector or point in the language's notation, with [`short`] numbers.
+pub fn short_vector(v: DVec3) -> String {
+    format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
+}
+
+/// A count with its digits in groups of three.
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push('_');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_the_digits_that_matter() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1"),
+            (-2.75, "-2.75"),
+            (39.966_123, "39.9661"),
+            (1234.5678, "1234.57"),
+            (123_456_789.0, "123456789"),
+            (0.000_123_456_7, "0.000123457"),
+            (0.1 + 0.2, "0.3"),
+            (1e-7, "1e-7"),
+            (1.234_567e12, "1.23457e12"),
+            (9.999_999_9, "10"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn counts_are_grouped_as_the_language_reads_them() {
+        assert_eq!(grouped(7), "7");
+        assert_eq!(grouped(1234), "1_234");
+        assert_eq!(grouped(14_745_600), "14_745_600");
+    }
+}

@@ -1,0 +1,239 @@
+//! The camera: its axes, singular views, roll and lenses.
+
+use glam::{DVec2, DVec3, dvec3};
+use pinhole::{
+    math::{Angle, Big, Real},
+    scene::{Camera, Lens, View},
+    tracer::{Basis, World},
+};
+
+use crate::tracer::{Random, camera, cuboid, floor, scene, sphere, triangle};
+
+fn axes(camera: &Camera) -> [DVec3; 3] {
+    let image = scene(*camera, &[]).image;
+    let basis = Basis::new(camera, &image);
+    [&basis.u, &basis.v, &basis.w].map(|v| DVec3::from(v.each_ref().map(Big::to_f64)))
+}
+
+fn along(direction: DVec3, up: DVec3) -> Camera {
+    Camera {
+        view: View::Direction(direction),
+        up,
+        ..camera(DVec3::ZERO, DVec3::ZERO)
+    }
+}
+
+#[test]
+fn a_level_camera_along_z_has_the_worlds_axes() {
+    let camera = along(DVec3::NEG_Z, DVec3::Y);
+    assert_eq!(axes(&camera), [DVec3::X, DVec3::Y, DVec3::Z]);
+}
+
+#[test]
+fn straight_up_and_down_read_like_a_map() {
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    // (direction, up) to (right, top)
+    let cases = [
+        ((-y, y), (x, -z)),
+        ((y, y), (x, z)),
+        ((-y, -y), (-x, z)),
+        ((y, -y), (-x, -z)),
+        // The same rule about the other axes.
+        ((-z, z), (x, y)),
+        ((z, z), (x, -y)),
+        ((-x, x), (-y, -z)),
+        ((x, x), (-y, z)),
+    ];
+    for ((direction, up), (right, top)) in cases {
+        for length in [1.0, 3.0, 1e-300, 1e300] {
+            let [u, v, w] = axes(&along(direction * length, up * 7.0));
+            assert_eq!(
+                (u, v, w),
+                (right, top, -direction),
+                "along {direction}, up {up}"
+            );
+        }
+    }
+}
+
+#[test]
+fn tilting_down_or_up_ends_in_the_straight_view() {
+    for (y, up) in [(-1.0, DVec3::Y), (1.0, DVec3::Y)] {
+        let nearly = axes(&along(dvec3(0.0, y, -1e-200), up));
+        let straight = axes(&along(dvec3(0.0, y, 0.0), up));
+        for (a, b) in nearly.iter().zip(straight) {
+            assert!((*a - b).abs().max_element() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn axes_are_orthonormal_however_nearly_up_is_parallel_to_the_view() {
+    let mut random = Random(5);
+    for exponent in 1..40 {
+        for _ in 0..20 {
+            let view = random.vector(1.0);
+            let angle = libm::pow(10.0, -f64::from(exponent));
+            let camera = along(view, view + random.vector(1.0) * angle);
+            let [u, v, w] = axes(&camera);
+            let unit = f64::EPSILON / 2.0;
+            for product in [u.dot(v), u.dot(w), v.dot(w)] {
+                assert!(product.abs() <= 4.0 * unit, "{product}");
+            }
+            for axis in [u, v, w] {
+                assert!((axis.length() - 1.0).abs() <= 4.0 * unit);
+            }
+            // Seen along the view direction, up points up.
+            assert!(v.dot(camera.up) > 0.0 || u.dot(camera.up).abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn positive_roll_dips_the_right_side() {
+    let mut camera = along(DVec3::NEG_Z, DVec3::Y);
+    camera.roll = Angle::from_degrees(30.0);
+    let [u, v, _] = axes(&camera);
+    assert!(u.y < 0.0 && v.x > 0.0);
+    assert_eq!((u.y, v.x), (-0.5, 0.5));
+}
+
+#[test]
+fn quarter_rolls_are_exact_however_many() {
+    let (x, y) = (DVec3::X, DVec3::Y);
+    for turns in [0.0, 4.0, -4.0, 4e20] {
+        for (quarter, right, top) in [(0.0, x, y), (1.0, -y, x), (2.0, -x, -y), (3.0, y, -x)] {
+            let mut camera = along(DVec3::NEG_Z, DVec3::Y);
+            camera.roll = Angle::from_degrees(turns * 90.0) + Angle::from_degrees(quarter * 90.0);
+            if turns > 1e15 && quarter > 0.0 {
+                continue; // 90 is lost in the sum of such degrees
+            }
+            let [u, v, _] = axes(&camera);
+            assert_eq!((u, v), (right, top));
+        }
+    }
+}
+
+#[test]
+fn a_quarter_roll_turns_the_picture_exactly() {
+    let shapes = [
+        sphere(dvec3(-0.6, 0.3, 0.0), 1.0),
+        triangle(dvec3(0.8, 1.0, 0.6), dvec3(0.3, 0.2, 1.0)),
+        cuboid(dvec3(0.2, 0.0, -1.5), dvec3(1.1, 1.5, 0.5)),
+        floor(),
+    ];
+    let upright = camera(dvec3(1.0, 2.5, 4.0), dvec3(0.2, 0.8, 0.0));
+    let mut rolled = upright;
+    rolled.roll = Angle::from_degrees(90.0);
+    let (before, after) = (
+        World::new(&scene(upright, &shapes)),
+        World::new(&scene(rolled, &shapes)),
+    );
+    let mut random = Random(9);
+    for y in 0..64 {
+        for x in 0..64 {
+            let offset = random.offset();
+            // Counter-clockwise: what was at (p, q) from the middle, y down, is now at (q, −p).
+            let turned = DVec2::new(offset.y, -offset.x);
+            assert_eq!(
+                before.slot_at(x, y, offset),
+                after.slot_at(y, 63 - x, turned)
+            );
+        }
+    }
+}
+
+#[test]
+fn the_field_of_view_is_the_windows_height() {
+    for (degrees, d) in [
+        (90.0, 1.0),
+        (2.0 * 45.0, 1.0),
+        (179.999_999, 8.726_646_259_971_647e-9),
+    ] {
+        let mut camera = along(DVec3::NEG_Z, DVec3::Y);
+        camera.lens = Lens::Fov(Angle::from_degrees(degrees));
+        let basis = Basis::new(&camera, &scene(camera, &[]).image);
+        assert!(
+            (basis.d.to_f64() / d - 1.0).abs() < 1e-8,
+            "{}",
+            basis.d.to_f64()
+        );
+    }
+}
+
+#[test]
+fn a_half_turn_of_the_whole_world_about_y_changes_no_picture() {
+    let turned = |v: DVec3| dvec3(-v.x, v.y, -v.z);
+    let eye = dvec3(1.3, 2.5, 4.1);
+    let lookat = dvec3(0.2, 0.8, 0.1);
+    let (center, centroid, normal) = (
+        dvec3(-0.6, 0.3, 0.1),
+        dvec3(0.8, 1.0, 0.6),
+        dvec3(0.3, 0.2, 1.0),
+    );
+    let (min, max) = (dvec3(0.2, 0.0, -1.5), dvec3(1.1, 1.5, 0.5));
+    let world = scene(
+        camera(eye, lookat),
+        &[
+            sphere(center, 1.0),
+            triangle(centroid, normal),
+            cuboid(min, max),
+            floor(),
+        ],
+    );
+    let after = scene(
+        camera(turned(eye), turned(lookat)),
+        &[
+            sphere(turned(center), 1.0),
+            triangle(turned(centroid), turned(normal)),
+            cuboid(dvec3(-max.x, min.y, -max.z), dvec3(-min.x, max.y, -min.z)),
+            floor(),
+        ],
+    );
+    let (world, after) = (World::new(&world), World::new(&after));
+    let mut random = Random(9);
+    for y in 0..64 {
+        for x in 0..64 {
+            let offset = random.offset();
+            assert_eq!(world.slot_at(x, y, offset), after.slot_at(x, y, offset));
+        }
+    }
+}
+
+#[test]
+fn scaling_and_moving_the_whole_world_changes_no_picture() {
+    let base = |scale: f64, shift: DVec3| {
+        let place = |v: DVec3| v * scale + shift;
+        let mut shapes = vec![
+            sphere(place(dvec3(-0.5, 0.25, 0.125)), scale),
+            cuboid(place(dvec3(0.25, 0.0, -1.5)), place(dvec3(1.0, 1.5, 0.5))),
+        ];
+        shapes.push(pinhole::scene::Shape::Checkerboard {
+            y: place(DVec3::ZERO).y,
+            square: scale,
+            colors: [pinhole::color::Color::BLACK; 2],
+        });
+        scene(
+            camera(place(dvec3(1.25, 2.5, 4.0)), place(dvec3(0.25, 0.75, 0.0))),
+            &shapes,
+        )
+    };
+    let world = World::new(&base(1.0, DVec3::ZERO));
+    for (scale, shift) in [
+        (1.0, dvec3(2.0, 0.0, -4.0)),
+        (4.0, DVec3::ZERO),
+        (1.0 / 1024.0, DVec3::ZERO),
+        (libm::ldexp(1.0, 900), DVec3::ZERO),
+        (libm::ldexp(1.0, -900), DVec3::ZERO),
+        (1.0, dvec3(1048576.0, 7.0, -1048576.0)),
+    ] {
+        let after = World::new(&base(scale, shift));
+        let mut random = Random(9);
+        for y in 0..64 {
+            for x in 0..64 {
+                let offset = random.offset();
+                assert_eq!(world.slot_at(x, y, offset), after.slot_at(x, y, offset));
+            }
+        }
+    }
+}
