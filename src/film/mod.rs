@@ -13,7 +13,7 @@ pub use self::{
     exr::write_exr,
     memory::TooLarge,
     png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
-    write::{Sink, check_writable, write_whole},
+    write::{Sink, check_writable, write_stream, write_whole},
 };
 use crate::{
     area::Area,

@@ -46,6 +46,17 @@ pub fn write_whole(
     }
 }
 
+/// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by then cannot be taken back.
+pub fn write_stream(
+    out: impl Write,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, Checked::new(out, cancel));
+    write(&mut out)?;
+    out.flush()
+}
+
 /// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to learn it after a long render.
 pub fn check_writable(path: &Path) -> io::Result<()> {
     match place(path)? {
@@ -110,11 +121,20 @@ fn temporary(path: &Path, permissions: Option<&Permissions>) -> io::Result<Named
         // The usual permissions of a new file: the system takes the mask off.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
-    let temporary = builder.tempfile_in(folder(path))?;
+    let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
     if let Some(permissions) = permissions {
         temporary.as_file().set_permissions(permissions.clone())?;
     }
     Ok(temporary)
+}
+
+/// The system's own words: nobody wants to know what the temporary file would have been called.
+fn without_path(error: io::Error) -> io::Error {
+    let words = error.to_string();
+    match words.split_once(" at path ") {
+        Some((words, _)) => io::Error::new(error.kind(), words),
+        None => error,
+    }
 }
 
 /// A sink that fails once the flag is set.

@@ -204,7 +204,7 @@ fn halton_is_its_sequence_shifted() {
 
 #[test]
 fn sobol_has_one_point_in_each_elementary_interval() {
-    for n in [1, 4096, 5000] {
+    for n in [1, 4096, 5000, 65_536] {
         for (seed, pixel) in [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])] {
             let points = points(Method::Sobol, n, seed, pixel);
             for m in 0..=n.ilog2() {
