@@ -2,8 +2,13 @@
 
 pub mod area;
 pub mod color;
+pub mod diagnostic;
 pub mod math;
+pub mod numbers;
 pub mod source;
+pub mod suggest;
+
+pub mod syntax;
 
 pub mod scene;
 pub mod tracer;

@@ -1,11 +1,12 @@
 //! Texts and places in them.
 //!
-//! A scene comes from one file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
-//! [`Span`] names its source. Spans are byte ranges; lines and columns are computed here, when something is printed.
+//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene comes from one file and any
+//! number of `--set` arguments, and a diagnostic may point into each of them, so a [`Span`] names its source. Spans are
+//! byte ranges; lines and columns are computed here, when something is printed.
 
-use std::ops::Range;
+use std::{ops::Range, sync::OnceLock};
 
-/// Which text a span points into.
+/// Which text a span points into. The file comes before the arguments, and they come in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
     /// The scene file (or standard input).
@@ -44,5 +45,275 @@ impl Span {
             self.start.min(other.start),
             self.end.max(other.end),
         )
+    }
+}
+
+/// The texts that a scene is made from.
+#[derive(Clone, Debug)]
+pub struct Sources {
+    /// The scene file.
+    pub file: Source,
+    /// The `--set` arguments in their order, as they were typed (`TARGET=VALUE`).
+    pub sets: Vec<Source>,
+}
+
+impl Sources {
+    /// A file without overrides.
+    pub fn new(file: Source) -> Self {
+        Self {
+            file,
+            sets: Vec::new(),
+        }
+    }
+
+    /// Adds one `--set` argument; it is named `--set #1`, `--set #2` and so on, as it comes.
+    pub fn push_set(&mut self, argument: &str) {
+        let name = format!("--set #{}", self.sets.len() + 1);
+        self.sets.push(Source::from_text(name, argument));
+    }
+
+    /// The same with these `--set` arguments at the end.
+    pub fn with_sets<S: AsRef<str>>(mut self, arguments: impl IntoIterator<Item = S>) -> Self {
+        for argument in arguments {
+            self.push_set(argument.as_ref());
+        }
+        self
+    }
+
+    /// The text that a span points into; the file for an argument that does not exist.
+    pub fn get(&self, id: SourceId) -> &Source {
+        match id {
+            SourceId::File => &self.file,
+            SourceId::Set(index) => self.sets.get(index as usize).unwrap_or(&self.file),
+        }
+    }
+
+    /// The text under a span.
+    pub fn text(&self, span: Span) -> &str {
+        self.get(span.source).slice(span.range())
+    }
+}
+
+/// A line and a column, both counted from 1; columns count characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// The line.
+    pub line: usize,
+    /// The column.
+    pub column: usize,
+}
+
+/// One text with its name.
+#[derive(Clone, Debug)]
+pub struct Source {
+    name: String,
+    text: String,
+    invalid: Vec<usize>,
+    table: OnceLock<Table>,
+}
+
+impl Source {
+    /// A text from a file's bytes, offset for offset: a byte that is not UTF-8 becomes a `_`, and is remembered in
+    /// [`Source::invalid_utf8`].
+    pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Self {
+        let (text, invalid) = match String::from_utf8(bytes) {
+            Ok(text) => (text, Vec::new()),
+            Err(error) => without_invalid(error.as_bytes()),
+        };
+        Self {
+            name: name.into(),
+            text,
+            invalid,
+            table: OnceLock::new(),
+        }
+    }
+
+    /// A text that is known to be one.
+    pub fn from_text(name: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::from_bytes(name, text.into().into_bytes())
+    }
+
+    /// What reports call it: the file's path as it was given, `-` for standard input, `--set #1`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The text between two offsets; nothing where they are no places between characters.
+    pub fn slice(&self, range: Range<usize>) -> &str {
+        self.text.get(range).unwrap_or_default()
+    }
+
+    /// The offsets of the bytes that are not UTF-8, in ascending order.
+    pub fn invalid_utf8(&self) -> &[usize] {
+        &self.invalid
+    }
+
+    /// The bytes that a byte order mark takes at the start of the text: 3 or 0.
+    pub fn bom_len(&self) -> usize {
+        if self.text.starts_with(BOM) {
+            BOM.len_utf8()
+        } else {
+            0
+        }
+    }
+
+    /// How many lines the text has; the end of the last line need not be written.
+    pub fn line_count(&self) -> usize {
+        self.table().line_starts.len()
+    }
+
+    /// The bytes of a line, counted from 1, without the LF or CRLF at its end.
+    pub fn line_range(&self, line: usize) -> Range<usize> {
+        let starts = &self.table().line_starts;
+        let start = match starts.get(line.saturating_sub(1)) {
+            Some(&start) => start,
+            None => self.text.len(),
+        };
+        let Some(&next) = starts.get(line) else {
+            return start..self.text.len();
+        };
+        let ended = self.text.get(start..next).unwrap_or_default();
+        let line = ended.strip_suffix('\n').unwrap_or(ended);
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        start..start + line.len()
+    }
+
+    /// The line that an offset lies in, counted from 1.
+    pub fn line(&self, offset: usize) -> usize {
+        self.table()
+            .line_starts
+            .partition_point(|&start| start <= offset)
+    }
+
+    /// Line and column of an offset. A byte order mark has no column. An offset past the end counts as the end, one inside
+    /// a character as the start of that character.
+    pub fn place(&self, offset: usize) -> Place {
+        let offset = self.floor_char_boundary(offset);
+        let table = self.table();
+        let line = self.line(offset);
+        let start = table.line_starts.get(line - 1).copied().unwrap_or(0);
+        let start = if line == 1 { self.bom_len() } else { start };
+        let before = if offset <= start {
+            0
+        } else {
+            table.characters_before(&self.text, offset) - table.characters_before(&self.text, start)
+        };
+        Place {
+            line,
+            column: before + 1,
+        }
+    }
+
+    /// The greatest place between characters that is not past an offset.
+    pub fn floor_char_boundary(&self, offset: usize) -> usize {
+        let mut offset = offset.min(self.text.len());
+        while !self.text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        offset
+    }
+
+    fn table(&self) -> &Table {
+        self.table.get_or_init(|| Table::new(&self.text))
+    }
+}
+
+const BOM: char = '\u{feff}';
+
+fn without_invalid(bytes: &[u8]) -> (String, Vec<usize>) {
+    let mut text = String::with_capacity(bytes.len());
+    let mut invalid = Vec::new();
+    for chunk in bytes.utf8_chunks() {
+        text.push_str(chunk.valid());
+        for _ in chunk.invalid() {
+            invalid.push(text.len());
+            text.push('_');
+        }
+    }
+    (text, invalid)
+}
+
+/// Where lines start, and how many characters stand before every [`Table::STEP`]th byte, so that the place of an offset
+/// takes the same short time wherever it lies, in a line of ten megabytes too.
+#[derive(Clone, Debug)]
+struct Table {
+    line_starts: Vec<usize>,
+    characters: Vec<usize>,
+}
+
+impl Table {
+    const STEP: usize = 1024;
+
+    fn new(text: &str) -> Self {
+        let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
+        let line_starts = [0].into_iter().chain(ends.map(|(at, _)| at + 1)).collect();
+        let mut before = 0;
+        let mut characters = vec![0];
+        for piece in text.as_bytes().chunks(Self::STEP) {
+            before += count_characters(piece);
+            characters.push(before);
+        }
+        Self {
+            line_starts,
+            characters,
+        }
+    }
+
+    fn characters_before(&self, text: &str, offset: usize) -> usize {
+        let step = offset / Self::STEP;
+        let bytes = text.as_bytes();
+        let rest = bytes.get(step * Self::STEP..offset).unwrap_or_default();
+        self.characters.get(step).copied().unwrap_or(0) + count_characters(rest)
+    }
+}
+
+/// How many characters start in these bytes of a UTF-8 text.
+fn count_characters(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_count_characters_from_one() {
+        let source = Source::from_text("a.scn", "\u{feff}aé\r\nb\n");
+        let place = |offset| {
+            let place = source.place(offset);
+            (place.line, place.column)
+        };
+        assert_eq!(place(0), (1, 1));
+        assert_eq!(place(3), (1, 1));
+        assert_eq!(place(4), (1, 2));
+        assert_eq!(place(6), (1, 3));
+        assert_eq!(place(8), (2, 1));
+        assert_eq!(place(9), (2, 2));
+        assert_eq!(place(10), (3, 1));
+        assert_eq!(place(99), (3, 1));
+        assert_eq!(source.slice(source.line_range(1)), "\u{feff}aé");
+        assert_eq!(source.slice(source.line_range(2)), "b");
+        assert_eq!(source.slice(source.line_range(3)), "");
+    }
+
+    #[test]
+    fn places_in_a_long_line_agree_with_counting() {
+        let text = "aé✓".repeat(2000);
+        let source = Source::from_text("a.scn", text.as_str());
+        for (index, (offset, _)) in text.char_indices().enumerate() {
+            assert_eq!(source.place(offset).column, index + 1);
+        }
+    }
+
+    #[test]
+    fn invalid_bytes_keep_their_offsets() {
+        let source = Source::from_bytes("a.scn", b"a\xff\xfeb\xc3".to_vec());
+        assert_eq!(source.text(), "a__b_");
+        assert_eq!(source.invalid_utf8(), [1, 2, 4]);
     }
 }

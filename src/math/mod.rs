@@ -1,4 +1,4 @@
-//! Arithmetic that is the same on every machine, in three precisions.
+//! Arithmetic that is the same on every machine, in three precisions, sine and kin, and questions answered exactly.
 //!
 //! [`Real`] is the arithmetic of one precision: `f64`, [`Double`] (double-double) or [`Big`]. A [`Ball`] is a number with a
 //! bound on its error, so that a decision either is certain or says that it is in [`Doubt`]; the next precision then decides.
@@ -7,7 +7,9 @@ mod angle;
 mod ball;
 mod big;
 mod double;
+pub mod exact;
 mod real;
+pub mod trig;
 
 pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};

@@ -3,9 +3,39 @@
 //! In: a syntax tree and the overrides. Out: a [`Scene`], or problems. Defaults are filled in, alternatives decided and
 //! expressions evaluated; every condition of the language's table holds. What the tracer makes of it is not known here.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::unreachable
+    )
+)]
+
+mod css;
+mod error;
+mod eval;
+mod lower;
+mod overrides;
+pub mod schema;
+mod value;
+
+pub use lower::read;
+
 use glam::DVec3;
 
-use crate::{color::Color, math::Angle, source::Span};
+use crate::{color::Color, diagnostic::Diagnostic, math::Angle, source::Span};
+
+/// What reading a scene yields.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The scene, unless there is an error.
+    pub scene: Option<Scene>,
+    /// Errors and warnings, in the order of the text, the file's before the arguments'.
+    pub diagnostics: Vec<Diagnostic>,
+}
 
 /// A whole scene: what is rendered, through which camera, with which samples.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,188 @@
+//! The list of problems, and its two forms: for people and for programs.
+//!
+//! In: the problems of the stages, each an enum whose variants carry code, message, labels and help by miette's derive.
+//! Out: [`Diagnostic`]s in the order of the text, as a terminal shows them or as lines of JSON. Where to print them, and in
+//! which style, is the caller's decision.
+
+#[cfg(feature = "cli")]
+mod report;
+
+#[cfg(feature = "cli")]
+pub use report::{Drawing, Report, Style};
+
+use std::fmt::Write;
+
+use miette::SourceSpan;
+use serde_json::{Map, Value, json};
+
+use crate::source::{Source, SourceId, Sources, Span};
+
+/// Whether a problem keeps the scene from being read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Severity {
+    /// There is no scene.
+    Error,
+    /// There is one, perhaps not the one that was meant.
+    Warning,
+}
+
+impl Severity {
+    /// The word that stands before the message: `error` or `warning`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        }
+    }
+}
+
+/// A problem of a scene: what is wrong, where, and a way out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How grave it is.
+    pub severity: Severity,
+    /// What kind of problem it is, such as `pinhole::unknown_field`.
+    pub code: String,
+    /// What is wrong, in the scene's own words; it stands alone.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+    /// The places that explain it; the first one is the place to jump to.
+    pub labels: Vec<Label>,
+}
+
+/// A place with a few words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// The words.
+    pub message: String,
+}
+
+impl Diagnostic {
+    /// Reads a stage's problem; its labels are spans that went through [`Span`]'s conversion to miette's.
+    pub fn from_problem(problem: &dyn miette::Diagnostic) -> Self {
+        let labels = problem.labels().into_iter().flatten().map(|label| Label {
+            span: from_miette(*label.inner()),
+            message: label.label().unwrap_or_default().to_owned(),
+        });
+        Self {
+            severity: match problem.severity() {
+                Some(miette::Severity::Warning | miette::Severity::Advice) => Severity::Warning,
+                Some(miette::Severity::Error) | None => Severity::Error,
+            },
+            code: problem.code().map(|c| c.to_string()).unwrap_or_default(),
+            message: problem.to_string(),
+            help: problem.help().map(|help| help.to_string()),
+            labels: labels.collect(),
+        }
+    }
+
+    /// Whether it is an error.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+/// Puts diagnostics in the order of the text by the place to jump to, the file's before the arguments'.
+pub fn sort(diagnostics: &mut [Diagnostic]) {
+    diagnostics.sort_by_key(|diagnostic| {
+        let first = diagnostic.labels.first();
+        first.map_or((SourceId::File, 0), |label| {
+            (label.span.source, label.span.start)
+        })
+    });
+}
+
+// miette's spans know no source, so on the way through its derive the number of the source stands in the high bits of the
+// offset: 0 for the file, 1 for the first argument. That leaves a terabyte for the text of each.
+const OFFSET_BITS: u32 = 40;
+const _: () = assert!(usize::BITS == 64, "spans need an address of 64 bits");
+
+impl From<Span> for SourceSpan {
+    fn from(span: Span) -> Self {
+        let source = match span.source {
+            SourceId::File => 0,
+            SourceId::Set(index) => index as usize + 1,
+        };
+        let offset = (source << OFFSET_BITS) | span.start;
+        (offset, span.end.saturating_sub(span.start)).into()
+    }
+}
+
+fn from_miette(span: SourceSpan) -> Span {
+    let source = match span.offset() >> OFFSET_BITS {
+        0 => SourceId::File,
+        number => SourceId::Set(u32::try_from(number - 1).unwrap_or(u32::MAX)),
+    };
+    let start = span.offset() & ((1 << OFFSET_BITS) - 1);
+    Span::new(source, start, start + span.len())
+}
+
+/// Every diagnostic as a line of JSON, as the command line's contract says.
+pub fn json_lines(diagnostics: &[Diagnostic], sources: &Sources) -> String {
+    let mut lines = String::new();
+    for diagnostic in diagnostics {
+        // Writing to a string does not fail.
+        let _ = writeln!(lines, "{}", to_json(diagnostic, sources));
+    }
+    lines
+}
+
+/// A diagnostic as a JSON value.
+pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
+    let labels: Vec<_> = diagnostic
+        .labels
+        .iter()
+        .map(|label| label_to_json(label, sources))
+        .collect();
+    json!({
+        "file": sources.file.name(),
+        "severity": diagnostic.severity.word(),
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "help": diagnostic.help,
+        "labels": labels,
+    })
+}
+
+fn label_to_json(label: &Label, sources: &Sources) -> Value {
+    let source = sources.get(label.span.source);
+    let span = clamp(label.span, source);
+    let (start, end) = (source.place(span.start), source.place(span.end));
+    let mut object = Map::new();
+    if span.source != SourceId::File {
+        object.insert("file".into(), source.name().into());
+    }
+    object.insert("offset".into(), span.start.into());
+    object.insert("length".into(), (span.end - span.start).into());
+    object.insert("line".into(), start.line.into());
+    object.insert("column".into(), start.column.into());
+    object.insert("end_line".into(), end.line.into());
+    object.insert("end_column".into(), end.column.into());
+    object.insert("message".into(), label.message.as_str().into());
+    object.into()
+}
+
+/// A span that lies in its source, between characters: whatever a stage says, no printer reaches past the text.
+fn clamp(span: Span, source: &Source) -> Span {
+    let start = source.floor_char_boundary(span.start);
+    let end = source.floor_char_boundary(span.end.max(start));
+    Span::new(span.source, start, end)
+}
+
+/// How many errors and warnings there are, such as `2 errors, 1 warning`.
+pub fn summary(diagnostics: &[Diagnostic]) -> String {
+    let errors = diagnostics.iter().filter(|d| d.is_error()).count();
+    let warnings = diagnostics.len() - errors;
+    let count = |number: usize, word: &str| match number {
+        1 => format!("1 {word}"),
+        _ => format!("{number} {word}s"),
+    };
+    match (errors, warnings) {
+        (_, 0) => count(errors, "error"),
+        (0, _) => count(warnings, "warning"),
+        _ => format!("{}, {}", count(errors, "error"), count(warnings, "warning")),
+    }
+}

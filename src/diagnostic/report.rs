@@ -1,0 +1,457 @@
+//! Reports for people.
+//!
+//! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette, or narrated. Only the
+//! labelled lines are handed to miette, cut to what can be shown.
+
+use std::{fmt::Write, ops::Range};
+
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents,
+    SourceCode, SourceSpan, SpanContents,
+};
+
+use super::{Diagnostic, Label, Severity, clamp, summary};
+use crate::source::{Source, SourceId, Sources, Span};
+
+/// How reports for people are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Lines and corners, or words.
+    pub drawing: Drawing,
+    /// Whether the terminal shows colours.
+    pub color: bool,
+    /// The terminal's width in columns; help is wrapped to it.
+    pub width: usize,
+}
+
+/// What a report is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawing {
+    /// Box-drawing characters.
+    Unicode,
+    /// ASCII only, as far as the scene itself is.
+    Ascii,
+    /// No drawing: every label is a sentence, for screen readers.
+    Narrated,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            drawing: Drawing::Unicode,
+            color: false,
+            width: 100,
+        }
+    }
+}
+
+/// Draws diagnostics for people.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'s> {
+    sources: &'s Sources,
+    style: Style,
+}
+
+impl<'s> Report<'s> {
+    /// The reports that a terminal shows before it says only how many more there are; JSON has them all.
+    pub const MOST_SHOWN: usize = 100;
+
+    /// Reports on these sources in this style.
+    pub fn new(sources: &'s Sources, style: Style) -> Self {
+        Self { sources, style }
+    }
+
+    /// All reports, an empty line between, and how many there are.
+    pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
+        if diagnostics.is_empty() {
+            return String::new();
+        }
+        let mut text = String::new();
+        for diagnostic in diagnostics.iter().take(Self::MOST_SHOWN) {
+            text.push_str(&self.one(diagnostic));
+            text.push('\n');
+        }
+        let hidden = diagnostics.len().saturating_sub(Self::MOST_SHOWN);
+        text.push_str(&summary(diagnostics));
+        if hidden > 0 {
+            let _ = write!(
+                text,
+                "; the first {} are shown, `check --format json` lists them all",
+                Self::MOST_SHOWN
+            );
+        }
+        text.push('\n');
+        text
+    }
+
+    /// One report.
+    pub fn one(&self, diagnostic: &Diagnostic) -> String {
+        match self.style.drawing {
+            Drawing::Narrated => self.narrated(diagnostic),
+            Drawing::Unicode | Drawing::Ascii => self.drawn(diagnostic),
+        }
+    }
+
+    fn drawn(&self, diagnostic: &Diagnostic) -> String {
+        let word = diagnostic.severity.word();
+        let (on, off) = match (self.style.color, diagnostic.severity) {
+            (false, _) => ("", ""),
+            (true, Severity::Error) => ("\x1b[1;31m", "\x1b[0m"),
+            (true, Severity::Warning) => ("\x1b[1;33m", "\x1b[0m"),
+        };
+        let code = &diagnostic.code;
+        let mut text = format!("{on}{word}[{code}]:{off} {}\n", diagnostic.message);
+        let excerpts = excerpts(diagnostic, self.sources);
+        if excerpts.is_empty()
+            && let Some(help) = &diagnostic.help
+        {
+            let _ = writeln!(text, "  help: {help}");
+        }
+        let last = excerpts.len().saturating_sub(1);
+        for (index, excerpt) in excerpts.into_iter().enumerate() {
+            let help = diagnostic.help.clone().filter(|_| index == last);
+            text.push_str(&self.snippet(excerpt, help));
+        }
+        if self.style.drawing == Drawing::Ascii {
+            text = text.replace('−', "-").replace('…', "...");
+        }
+        text
+    }
+
+    /// The lines of one source with their labels, drawn by miette.
+    fn snippet(&self, excerpt: Excerpt<'_>, help: Option<String>) -> String {
+        let theme = match (self.style.drawing, self.style.color) {
+            (Drawing::Unicode, true) => GraphicalTheme::unicode(),
+            (Drawing::Unicode, false) => GraphicalTheme::unicode_nocolor(),
+            (_, true) => GraphicalTheme::ascii(),
+            (_, false) => GraphicalTheme::none(),
+        };
+        let handler = GraphicalReportHandler::new_themed(theme)
+            .with_width(self.style.width.max(40))
+            .with_context_lines(0)
+            .with_links(false)
+            .without_syntax_highlighting();
+        let mut text = String::new();
+        let snippet = Snippet { excerpt, help };
+        // Writing to a string does not fail, and an excerpt holds all of its labels.
+        let _ = handler.render_report(&mut text, &snippet);
+        // miette's own header is a line with an icon; ours stands above already.
+        match text.split_once('\n') {
+            Some((_, rest)) => rest
+                .lines()
+                .map(|line| line.trim_end().to_owned() + "\n")
+                .collect(),
+            None => String::new(),
+        }
+    }
+
+    fn narrated(&self, diagnostic: &Diagnostic) -> String {
+        let mut text = format!(
+            "{} {}: {}\n",
+            diagnostic.severity.word(),
+            diagnostic.code,
+            diagnostic.message
+        );
+        for label in &diagnostic.labels {
+            let source = self.sources.get(label.span.source);
+            let span = clamp(label.span, source);
+            let place = source.place(span.start);
+            let under = source.slice(span.range());
+            let _ = write!(
+                text,
+                "  {}, line {}, column {}",
+                source.name(),
+                place.line,
+                place.column
+            );
+            let one_line = under.lines().next().unwrap_or_default();
+            if !one_line.is_empty() {
+                let shown: String = one_line.chars().take(60).map(printable).collect();
+                let rest = if shown.len() < under.len() { "…" } else { "" };
+                let _ = write!(text, ", at `{shown}{rest}`");
+            }
+            let _ = writeln!(text, ": {}", label.message);
+        }
+        if let Some(help) = &diagnostic.help {
+            let _ = writeln!(text, "  help: {help}");
+        }
+        text
+    }
+}
+
+/// An excerpt as miette takes it.
+#[derive(Debug)]
+struct Snippet<'s> {
+    excerpt: Excerpt<'s>,
+    help: Option<String>,
+}
+
+impl std::fmt::Display for Snippet<'_> {
+    fn fmt(&self, _: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        Ok(())
+    }
+}
+
+impl std::error::Error for Snippet<'_> {}
+
+impl miette::Diagnostic for Snippet<'_> {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as _)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.excerpt)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(self.excerpt.labels.iter().cloned()))
+    }
+}
+
+/// The labelled lines of one source, with long lines cut to the parts around the labels.
+///
+/// miette reads it instead of the text: a line of ten megabytes is neither printed nor walked, and every label lies within
+/// it (miette leaves out a label at the end of a text, and panics past it).
+#[derive(Debug)]
+struct Excerpt<'s> {
+    source: &'s Source,
+    text: String,
+    lines: Vec<ExcerptLine>,
+    labels: Vec<LabeledSpan>,
+}
+
+#[derive(Debug)]
+struct ExcerptLine {
+    /// Its line in the source, from 1.
+    number: usize,
+    /// Where it starts in the excerpt.
+    start: usize,
+    /// Where it ends in the excerpt, without its line feed.
+    end: usize,
+    /// The pieces of the source that it shows.
+    pieces: Vec<Piece>,
+}
+
+#[derive(Debug)]
+struct Piece {
+    /// Where it starts in the excerpt.
+    start: usize,
+    /// What it shows of the source.
+    shown: Range<usize>,
+}
+
+/// A line up to this length is shown whole.
+const LONG_LINE: usize = 160;
+/// What is shown to the left and right of a label in a longer one.
+const AROUND: usize = 40;
+/// What is shown of a long label itself.
+const LONG_LABEL: usize = 80;
+/// A label over more lines than this is drawn under its first line only.
+const MOST_LINES: usize = 6;
+
+/// An excerpt for every source that the labels lie in, in the order of the labels.
+fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources) -> Vec<Excerpt<'s>> {
+    let mut ids: Vec<SourceId> = Vec::new();
+    for label in &diagnostic.labels {
+        if !ids.contains(&label.span.source) {
+            ids.push(label.span.source);
+        }
+    }
+    let excerpt = |id| {
+        let labels = diagnostic.labels.iter().filter(|l| l.span.source == id);
+        Excerpt::new(sources.get(id), labels)
+    };
+    ids.into_iter().map(excerpt).collect()
+}
+
+impl<'s> Excerpt<'s> {
+    fn new<'l>(source: &'s Source, labels: impl Iterator<Item = &'l Label>) -> Self {
+        let labels: Vec<_> = labels
+            .map(|label| (shorten(label.span, source), label.message.as_str()))
+            .collect();
+        let mut numbers: Vec<usize> = labels
+            .iter()
+            .flat_map(|(span, _)| source.line(span.start)..=source.line(span.end))
+            .collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let mut excerpt = Self {
+            source,
+            text: String::new(),
+            lines: Vec::new(),
+            labels: Vec::new(),
+        };
+        for number in numbers {
+            excerpt.push_line(number, &labels);
+        }
+        for (index, (span, message)) in labels.into_iter().enumerate() {
+            let start = excerpt.offset_of(span.start);
+            let end = excerpt.offset_of(span.end).max(start + 1);
+            let inner = SourceSpan::from((start, end - start));
+            // miette shows line and column of the primary label.
+            excerpt.labels.push(match index {
+                0 => LabeledSpan::new_primary_with_span(Some(message.to_owned()), inner),
+                _ => LabeledSpan::new_with_span(Some(message.to_owned()), inner),
+            });
+        }
+        excerpt
+    }
+
+    fn push_line(&mut self, number: usize, labels: &[(Span, &str)]) {
+        let mut range = self.source.line_range(number);
+        if number == 1 {
+            range.start = self.source.bom_len().min(range.end);
+        }
+        // miette joins the frames of labels whose lines follow one another, and numbers them on from the first.
+        let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
+        if apart {
+            self.text.push('\n');
+        }
+        let start = self.text.len();
+        let mut pieces = Vec::new();
+        for shown in shown_pieces(self.source, range.clone(), labels) {
+            if shown.start > range.start {
+                self.text.push('…');
+            }
+            pieces.push(Piece {
+                start: self.text.len(),
+                shown: shown.clone(),
+            });
+            self.text
+                .extend(self.source.slice(shown.clone()).chars().map(printable));
+        }
+        if pieces
+            .last()
+            .is_some_and(|piece| piece.shown.end < range.end)
+        {
+            self.text.push('…');
+        }
+        // A label at the end of the line needs something to stand under.
+        self.text.push(' ');
+        self.lines.push(ExcerptLine {
+            number,
+            start,
+            end: self.text.len(),
+            pieces,
+        });
+        self.text.push('\n');
+    }
+
+    /// Where an offset of the source stands in the excerpt.
+    fn offset_of(&self, offset: usize) -> usize {
+        let number = self.source.line(offset);
+        let Some(line) = self.lines.iter().find(|line| line.number == number) else {
+            return 0;
+        };
+        let piece = line
+            .pieces
+            .iter()
+            .rev()
+            .find(|piece| piece.shown.start <= offset)
+            .or(line.pieces.first());
+        match piece {
+            Some(piece) => {
+                let within = offset.clamp(piece.shown.start, piece.shown.end) - piece.shown.start;
+                (piece.start + within).min(line.end - 1)
+            }
+            None => line.start,
+        }
+    }
+
+    fn line_at(&self, offset: usize) -> Option<(usize, &ExcerptLine)> {
+        let index = self.lines.partition_point(|line| line.start <= offset);
+        let index = index.checked_sub(1)?;
+        Some((index, self.lines.get(index)?))
+    }
+}
+
+impl SourceCode for Excerpt<'_> {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        _before: usize,
+        _after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let last = (span.offset() + span.len()).saturating_sub(1);
+        let (Some((first_index, first)), Some((last_index, last))) = (
+            self.line_at(span.offset()),
+            self.line_at(last.max(span.offset())),
+        ) else {
+            return Err(MietteError::OutOfBounds);
+        };
+        // Lines that do not follow one another stay in frames of their own.
+        if last.number - first.number != last_index - first_index {
+            return Err(MietteError::OutOfBounds);
+        }
+        let data = self.text.as_bytes();
+        let data = data.get(first.start..last.end).unwrap_or_default();
+        let real = first
+            .pieces
+            .iter()
+            .rev()
+            .find(|piece| piece.start <= span.offset())
+            .map_or(0, |piece| piece.shown.start + (span.offset() - piece.start));
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.source.name().to_owned(),
+            data,
+            (first.start, last.end - first.start).into(),
+            first.number - 1,
+            self.source.place(real).column - 1,
+            last_index - first_index + 1,
+        )))
+    }
+}
+
+/// The part of a label that is drawn.
+fn shorten(span: Span, source: &Source) -> Span {
+    let span = clamp(span, source);
+    let (first, last) = (source.line(span.start), source.line(span.end));
+    let mut span = span;
+    if last - first >= MOST_LINES {
+        span.end = source.line_range(first).end.max(span.start);
+    }
+    if first == last || last - first >= MOST_LINES {
+        let long = source.floor_char_boundary(span.start + LONG_LABEL);
+        if source.line_range(first).len() > LONG_LINE {
+            span.end = span.end.min(long);
+        }
+    }
+    span
+}
+
+/// The parts of a line that are shown: all of a short one, and of a long one what stands around its labels.
+fn shown_pieces(source: &Source, line: Range<usize>, labels: &[(Span, &str)]) -> Vec<Range<usize>> {
+    if line.len() <= LONG_LINE {
+        return vec![line];
+    }
+    let mut pieces: Vec<Range<usize>> = Vec::new();
+    let mut ends: Vec<usize> = labels
+        .iter()
+        .flat_map(|(span, _)| [span.start, span.end])
+        .filter(|&end| line.start <= end && end <= line.end)
+        .collect();
+    ends.sort_unstable();
+    for end in ends {
+        let from = source.floor_char_boundary(end.saturating_sub(AROUND).max(line.start));
+        let to = source.floor_char_boundary((end + AROUND).min(line.end));
+        match pieces.last_mut() {
+            Some(last) if from <= last.end => last.end = last.end.max(to),
+            _ => pieces.push(from..to),
+        }
+    }
+    if pieces.is_empty() {
+        let to = source.floor_char_boundary((line.start + 2 * AROUND).min(line.end));
+        pieces.push(line.start..to);
+    }
+    pieces
+}
+
+/// A control character would act on the terminal; none is longer than the one byte that stands in for it, or it is shown
+/// by as many.
+fn printable(character: char) -> char {
+    match character {
+        '\t' => character,
+        _ if character.is_ascii_control() => '?',
+        _ => character,
+    }
+}

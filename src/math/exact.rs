@@ -1,0 +1,140 @@
+//! Questions that are answered without rounding.
+//!
+//! An f64 is a whole number times a power of two, so sums and products of f64s can be had as whole numbers of any length.
+//! That is slow, and asked only once for a scene.
+
+use std::cmp::Ordering;
+
+use dashu_int::IBig;
+use glam::DVec3;
+
+use super::two_sum;
+
+/// Whether the cross product of `up` with `to − from` is zero, the difference being taken exactly.
+pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
+    let up = up.to_array().map(whole);
+    let [fx, fy, fz] = from.to_array().map(whole);
+    let [tx, ty, tz] = to.to_array().map(whole);
+    let along = [tx - fx, ty - fy, tz - fz];
+    let [ux, uy, uz] = &up;
+    let [ax, ay, az] = &along;
+    uy * az == uz * ay && uz * ax == ux * az && ux * ay == uy * ax
+}
+
+/// The sign of the exact dot product of `up` with `to − from`.
+pub fn dot_sign(up: DVec3, from: DVec3, to: DVec3) -> Ordering {
+    let [ux, uy, uz] = up.to_array().map(whole);
+    let [fx, fy, fz] = from.to_array().map(whole);
+    let [tx, ty, tz] = to.to_array().map(whole);
+    let dot = ux * (tx - fx) + uy * (ty - fy) + uz * (tz - fz);
+    dot.cmp(&IBig::ZERO)
+}
+
+/// Whether three lengths are the sides of a triangle: each is less than the two others together.
+pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
+    let less = |side, one, other| exceeds(one, other, side);
+    less(a, b, c) && less(b, c, a) && less(c, a, b)
+}
+
+/// Whether the exact sum of two positive numbers is more than a third one.
+fn exceeds(one: f64, other: f64, bound: f64) -> bool {
+    let sum = one + other;
+    if sum != bound {
+        // Rounding keeps order: the exact sum lies on the same side.
+        return sum > bound;
+    }
+    let error = two_sum(one, other).lo;
+    error > 0.0
+}
+
+/// `center − size/2` and `center + size/2`, each rounded once.
+pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
+    let corner = |sign: f64| {
+        let axis = |center: f64, size: f64| offset_by_half(center, sign * size);
+        DVec3::new(
+            axis(center.x, size.x),
+            axis(center.y, size.y),
+            axis(center.z, size.z),
+        )
+    };
+    (corner(-1.0), corner(1.0))
+}
+
+/// `a + b/2`, rounded once. Half of the smallest numbers is not an f64, so it is (2a + b)/2: if the sum is rounded, it is no
+/// subnormal number, and halving it is exact. Where 2a is too large, b/2 is exact or too small to matter.
+fn offset_by_half(a: f64, b: f64) -> f64 {
+    let twice = 2.0 * a + b;
+    if twice.is_finite() {
+        twice / 2.0
+    } else {
+        a + b / 2.0
+    }
+}
+
+/// A number as a multiple of the least f64, 2^−1074.
+fn whole(number: f64) -> IBig {
+    let bits = number.to_bits();
+    let exponent = (bits >> 52) & 0x7ff;
+    let fraction = bits & ((1 << 52) - 1);
+    let magnitude = match exponent {
+        0 => IBig::from(fraction),
+        _ => IBig::from(fraction | (1 << 52)) << (exponent - 1) as usize,
+    };
+    if number.is_sign_negative() {
+        -magnitude
+    } else {
+        magnitude
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers() {
+        assert_eq!(whole(f64::from_bits(1)), IBig::ONE);
+        assert_eq!(whole(f64::MIN_POSITIVE), IBig::ONE << 52);
+        assert_eq!(whole(-1.0), -(IBig::ONE << 1074));
+        assert_eq!(whole(0.0), IBig::ZERO);
+    }
+
+    #[test]
+    fn parallel_is_not_nearly_parallel() {
+        let eye = DVec3::new(0.1, 0.2, 0.3);
+        let down = DVec3::new(0.1, -7.0, 0.3);
+        assert!(cross_is_zero(DVec3::Y, eye, down));
+        let beside = DVec3::new(0.1, -7.0, 0.3_f64.next_up());
+        assert!(!cross_is_zero(DVec3::Y, eye, beside));
+        // 0.1 + 1e30 rounds to 1e30: the difference must not be rounded.
+        let far = DVec3::new(1e30, 1e30, 1e30);
+        let near = DVec3::new(0.1, 0.1, 0.2);
+        assert!(!cross_is_zero(DVec3::ONE, near, far));
+        assert!(cross_is_zero(DVec3::ONE, DVec3::splat(0.1), far));
+        assert_eq!(dot_sign(DVec3::Y, eye, down), Ordering::Less);
+    }
+
+    #[test]
+    fn triangles() {
+        assert!(forms_triangle([2.0, 2.0, 1.0]));
+        assert!(!forms_triangle([1.0, 2.0, 3.0]));
+        assert!(forms_triangle([1.0, 2.0, 3.0_f64.next_down()]));
+        // The sum rounds to the third side, and is a little more.
+        let little = f64::EPSILON / 4.0;
+        assert!(forms_triangle([1.0, little, 1.0]));
+        assert!(
+            !forms_triangle([0.1, 0.2, 0.1 + 0.2]),
+            "the sum was rounded up"
+        );
+        assert!(forms_triangle([f64::MAX; 3]));
+    }
+
+    #[test]
+    fn corners_are_rounded_once() {
+        let least = f64::from_bits(1);
+        assert_eq!(offset_by_half(least, least), 2.0 * least);
+        assert_eq!(offset_by_half(2.0 * least, least), 2.0 * least);
+        assert_eq!(offset_by_half(f64::MAX, -f64::MAX), f64::MAX / 2.0);
+        assert_eq!(offset_by_half(0.75, -1.5), 0.0);
+    }
+}

@@ -1,0 +1,224 @@
+//! What must be known of a text before it is parsed: its comments, and where it nests too deep.
+//!
+//! In: a text. Out: the places of comments, and of values that would make every recursion after this one too deep. They
+//! are found by walking the text once, without recursion. The rest is the parser's.
+
+use std::ops::Range;
+
+/// Parentheses, signs and calls nest at most this deep.
+pub const NESTING_LIMIT: usize = 256;
+
+/// What the walk finds.
+#[derive(Debug, Default)]
+pub struct Walk {
+    /// Every comment, from `//` to before the line's end, or from `/*` to `*/`.
+    pub comments: Vec<Range<usize>>,
+    /// Whether the last comment has no `*/`.
+    pub unclosed: bool,
+    /// Values that nest too deep.
+    pub deep: Vec<Deep>,
+}
+
+impl Walk {
+    /// Moves all places by so many bytes.
+    pub fn shift(&mut self, by: usize) {
+        let places = self.deep.iter_mut().map(|deep| &mut deep.value);
+        for range in self.comments.iter_mut().chain(places) {
+            *range = range.start + by..range.end + by;
+        }
+        for deep in &mut self.deep {
+            deep.at += by;
+        }
+    }
+}
+
+/// A value that nests too deep.
+#[derive(Debug)]
+pub struct Deep {
+    /// The parenthesis or sign that is one too many.
+    pub at: usize,
+    /// From the value's outermost parenthesis or sign to its end.
+    pub value: Range<usize>,
+}
+
+/// Walks a text that starts with items (a file), or with a value (a `--set` argument's).
+pub fn walk(text: &str, start: Start) -> Walk {
+    let mut nesting = Nesting {
+        operand_may_follow: start == Start::Value,
+        ..Nesting::default()
+    };
+    let mut found = Walk::default();
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        let next = bytes.get(at + 1).copied();
+        let end = match (byte, next) {
+            (b'/', Some(b'/')) => {
+                let end = find(bytes, at, b"\n").unwrap_or(bytes.len());
+                // The carriage return of a CRLF belongs to the line's end.
+                let last = bytes.get(end.saturating_sub(1)).copied();
+                let written = end - usize::from(end < bytes.len() && last == Some(b'\r'));
+                found.comments.push(at..written);
+                end
+            }
+            (b'/', Some(b'*')) => {
+                let close = find(bytes, at + 2, b"*/");
+                found.unclosed = close.is_none();
+                let end = close.map_or(bytes.len(), |close| close + 2);
+                found.comments.push(at..end);
+                end
+            }
+            (b' ' | b'\t' | b'\r' | b'\n', _) => at + 1,
+            (b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'.' | b'#', _) => {
+                let end = end_of_word(bytes, at);
+                let word = bytes.get(at..end).unwrap_or_default();
+                nesting.word(word, at, &mut found.deep);
+                end
+            }
+            _ => {
+                nesting.sign(byte, at, &mut found.deep);
+                at + 1
+            }
+        };
+        at = end;
+    }
+    nesting.leave(bytes.len(), &mut found.deep);
+    found
+}
+
+/// What a text starts with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Items, as a file does.
+    Items,
+    /// A value.
+    Value,
+}
+
+/// How deep the walk is in, and whether an operand or an operator comes next: that tells a sign from a minus, and the name
+/// of a field from a value.
+#[derive(Debug, Default)]
+struct Nesting {
+    /// For every open parenthesis the signs before it.
+    open: Vec<usize>,
+    /// The signs in `open`.
+    signs_outside: usize,
+    /// Signs since the last operand.
+    signs: usize,
+    /// Whether a value is expected here, rather than an operator or a field's name.
+    operand_may_follow: bool,
+    /// Where the outermost parenthesis or sign stands.
+    outermost: usize,
+    /// Where it became too deep.
+    too_deep: Option<usize>,
+}
+
+impl Nesting {
+    fn word(&mut self, word: &[u8], at: usize, deep: &mut Vec<Deep>) {
+        let value = self.operand_may_follow;
+        let within = !self.open.is_empty();
+        // After a value the next word is a field's name or a kind, and its own value follows. Where a `let` or a second
+        // name comes first, a minus cannot follow, so that it does not matter here.
+        self.operand_may_follow = !value && !within && word != b"let";
+        if !value && !within {
+            self.signs = 0;
+            self.end(at, deep);
+        }
+    }
+
+    fn sign(&mut self, byte: u8, at: usize, deep: &mut Vec<Deep>) {
+        match byte {
+            b'(' | b'[' => {
+                if self.depth() == 0 {
+                    self.outermost = at;
+                }
+                self.open.push(self.signs);
+                self.signs_outside += self.signs;
+                self.signs = 0;
+                self.operand_may_follow = true;
+            }
+            b')' | b']' => {
+                let signs = self.open.pop().unwrap_or(0);
+                self.signs_outside -= signs;
+                self.signs = 0;
+                self.operand_may_follow = false;
+                if self.open.is_empty() {
+                    self.end(at + 1, deep);
+                }
+            }
+            b'{' | b'}' => {
+                self.leave(at, deep);
+                self.operand_may_follow = false;
+            }
+            b'-' | b'+' if self.operand_may_follow => {
+                if self.depth() == 0 {
+                    self.outermost = at;
+                }
+                self.signs += 1;
+            }
+            b'+' | b'-' | b'*' | b'/' | b',' | b'=' | b':' | b'^' | b'%' => {
+                self.signs = 0;
+                self.operand_may_follow = true;
+                if self.open.is_empty() {
+                    self.end(at, deep);
+                }
+            }
+            _ => {
+                self.operand_may_follow = false;
+            }
+        }
+        if self.depth() > NESTING_LIMIT && self.too_deep.is_none() {
+            self.too_deep = Some(at);
+        }
+    }
+
+    fn depth(&self) -> usize {
+        self.open.len() + self.signs_outside + self.signs
+    }
+
+    /// No parenthesis is open any more.
+    fn leave(&mut self, at: usize, deep: &mut Vec<Deep>) {
+        self.open.clear();
+        self.signs_outside = 0;
+        self.signs = 0;
+        self.end(at, deep);
+    }
+
+    fn end(&mut self, at: usize, deep: &mut Vec<Deep>) {
+        if let Some(too_deep) = self.too_deep.take() {
+            deep.push(Deep {
+                at: too_deep,
+                value: self.outermost..at,
+            });
+        }
+    }
+}
+
+fn end_of_word(bytes: &[u8], start: usize) -> usize {
+    let rest = bytes.get(start..).unwrap_or_default();
+    let word = |&byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'.');
+    let mut end = start + 1;
+    end += rest.iter().skip(1).take_while(|byte| word(byte)).count();
+    // The sign of an exponent belongs to its number.
+    let numeric = rest
+        .first()
+        .is_some_and(|b| b.is_ascii_digit() || *b == b'.');
+    let exponent = matches!(bytes.get(end.saturating_sub(1)), Some(b'e' | b'E'));
+    if numeric && exponent && matches!(bytes.get(end), Some(b'+' | b'-')) {
+        let rest = bytes.get(end + 1..).unwrap_or_default();
+        let more = rest.iter().take_while(|byte| word(byte)).count();
+        if more > 0 {
+            end += 1 + more;
+        }
+    }
+    end
+}
+
+fn find(bytes: &[u8], from: usize, what: &[u8]) -> Option<usize> {
+    let rest = bytes.get(from..)?;
+    let at = match *what {
+        [byte] => rest.iter().position(|&b| b == byte),
+        _ => rest.windows(what.len()).position(|window| window == what),
+    };
+    at.map(|at| from + at)
+}

@@ -1,0 +1,215 @@
+//! The syntax tree.
+//!
+//! It says what was written and where, and nothing of what it means. Every token of a right file has its place in a node's
+//! span, so that a formatter can put the text together again from the tree and the comments. What could not be understood
+//! is `Bad`, and a problem was reported for it.
+
+use crate::source::Span;
+
+/// A whole file, or a single value of a `--set` argument.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tree<'s> {
+    /// The items in their order.
+    pub items: Vec<Item<'s>>,
+}
+
+/// What a file is a list of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item<'s> {
+    /// `let NAME = VALUE`
+    Definition(Definition<'s>),
+    /// `KIND NAME? { FIELD VALUE … }`
+    Block(Block<'s>),
+    /// Something that is neither.
+    Bad(Span),
+}
+
+impl Item<'_> {
+    /// The whole item.
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Definition(definition) => definition.span,
+            Self::Block(block) => block.span,
+            Self::Bad(span) => *span,
+        }
+    }
+}
+
+/// A name where it stands in the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name<'s> {
+    /// The name.
+    pub text: &'s str,
+    /// Its place.
+    pub span: Span,
+}
+
+/// `let NAME = VALUE`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Definition<'s> {
+    /// `let`
+    pub keyword: Span,
+    /// What is defined; none if it was left out.
+    pub name: Option<Name<'s>>,
+    /// `=`; none if it was left out.
+    pub equals: Option<Span>,
+    /// What it is.
+    pub value: Value<'s>,
+    /// From `let` to the value's end.
+    pub span: Span,
+}
+
+/// `KIND NAME? { FIELD VALUE … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block<'s> {
+    /// What it is a block of; none if it was left out.
+    pub kind: Option<Name<'s>>,
+    /// The name of the object.
+    pub name: Option<Name<'s>>,
+    /// `{`; none if it was left out.
+    pub open: Option<Span>,
+    /// The fields in their order.
+    pub fields: Vec<Field<'s>>,
+    /// What stands among the fields and is none.
+    pub bad: Vec<Span>,
+    /// `}`; none if it was left out.
+    pub close: Option<Span>,
+    /// The whole block.
+    pub span: Span,
+}
+
+impl Block<'_> {
+    /// The place that stands for the block as a whole: its kind, or what comes first.
+    pub fn keyword(&self) -> Span {
+        match (&self.kind, self.open) {
+            (Some(kind), _) => kind.span,
+            (None, Some(open)) => open,
+            (None, None) => self.span,
+        }
+    }
+}
+
+/// `FIELD VALUE`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Its value.
+    pub value: Value<'s>,
+    /// Both.
+    pub span: Span,
+}
+
+/// A value with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Value<'s> {
+    /// What it is.
+    pub kind: ValueKind<'s>,
+    /// Its place.
+    pub span: Span,
+}
+
+/// The ways to write a value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ValueKind<'s> {
+    /// A number; its spelling stands under the span.
+    Number(&'s str),
+    /// A number with a unit.
+    Angle {
+        /// The number's spelling.
+        number: &'s str,
+        /// Its unit.
+        unit: Unit,
+    },
+    /// `#rgb` or `#rrggbb`: the spelling, with the `#`; the number of digits is right.
+    ColorCode(&'s str),
+    /// A name.
+    Name(&'s str),
+    /// `FUNCTION(ARGUMENT, …)`
+    Call {
+        /// The function.
+        function: Name<'s>,
+        /// Its arguments.
+        arguments: Vec<Element<'s>>,
+        /// `(` to `)`
+        parentheses: Span,
+    },
+    /// `(VALUE)`
+    Parentheses(Box<Value<'s>>),
+    /// `(VALUE, VALUE, …)` with two or more values, or none.
+    Tuple(Vec<Element<'s>>),
+    /// `-VALUE`
+    Negation {
+        /// `-`
+        sign: Span,
+        /// What follows it.
+        operand: Box<Value<'s>>,
+    },
+    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, done from left to right. A chain
+    /// rather than a tree, so that a long sum is no deeper than a short one.
+    Chain {
+        /// The first value.
+        first: Box<Value<'s>>,
+        /// What is done to it, in order.
+        rest: Vec<Step<'s>>,
+    },
+    /// A field's name without a value after it. It is for the next stage to report, which knows the fields' names and so
+    /// whether the value is missing or the name of a field.
+    Missing,
+    /// Something that was reported.
+    Bad,
+}
+
+/// An operator and what stands after it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step<'s> {
+    /// What is done.
+    pub operator: Operator,
+    /// Its sign.
+    pub sign: Span,
+    /// With what.
+    pub operand: Value<'s>,
+}
+
+/// A value in a list of values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element<'s> {
+    /// The value.
+    pub value: Value<'s>,
+    /// The comma after it.
+    pub comma: Option<Span>,
+}
+
+/// The unit of an angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// `deg`
+    Degrees,
+    /// `rad`
+    Radians,
+}
+
+/// What stands between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+}
+
+impl Operator {
+    /// How it is written.
+    pub fn sign(self) -> char {
+        match self {
+            Self::Add => '+',
+            Self::Subtract => '-',
+            Self::Multiply => '*',
+            Self::Divide => '/',
+        }
+    }
+}
