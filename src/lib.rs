@@ -1,5 +1,6 @@
 //! Pinhole reads a small declarative scene language and renders what it describes through a virtual pinhole camera.
 
+pub mod area;
 pub mod color;
 pub mod diagnostic;
 pub mod math;
@@ -11,3 +12,7 @@ pub mod syntax;
 
 pub mod scene;
 pub mod tracer;
+
+pub mod film;
+pub mod render;
+pub mod sampling;

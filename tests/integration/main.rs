@@ -1,5 +1,10 @@
 //! One test binary, a module per subject.
 
 mod camera;
+mod cli;
+mod figure;
+mod film;
 mod oracle;
+mod render;
+mod sampling;
 mod tracer;
