@@ -13,6 +13,11 @@ pub mod syntax;
 pub mod scene;
 pub mod tracer;
 
-pub mod film;
-pub mod render;
 pub mod sampling;
+
+pub mod render;
+
+pub mod film;
+
+pub mod inspect;
+pub mod probe;

@@ -4,34 +4,37 @@ use glam::dvec3;
 use pinhole::{
     color::Color,
     math::Angle,
-    scene::{Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View},
+    scene::{
+        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
+        Sphere, Triangle, View,
+    },
     source::{SourceId, Span},
 };
 
 pub fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
     let shapes = [
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: dvec3(-1.6, 1.0, 0.0),
             radius: 1.0,
             color: Color::from_bytes([128, 128, 0]),
-        },
-        Shape::Triangle {
+        }),
+        Shape::Triangle(Triangle {
             centroid: dvec3(0.2, 1.0, 0.6),
             normal: dvec3(0.3, 0.0, 1.0),
             sides: dvec3(2.0, 2.0, 1.0),
             spin: Angle::default(),
             color: Color::from_bytes([0, 128, 128]),
-        },
-        Shape::Box {
+        }),
+        Shape::Box(Cuboid {
             min: dvec3(1.75, 0.0, -1.5),
             max: dvec3(2.25, 1.5, 0.5),
             color: Color::from_bytes([255, 165, 0]),
-        },
-        Shape::Checkerboard {
+        }),
+        Shape::Checkerboard(Checkerboard {
             y: 0.0,
             square: 1.0,
             colors: [Color::from_bytes([128; 3]), Color::from_bytes([255; 3])],
-        },
+        }),
     ];
     Scene {
         image: Image {
