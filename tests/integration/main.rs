@@ -1,9 +1,11 @@
 //! One test binary, a module per subject.
 
+mod answers;
 mod camera;
 mod cli;
 mod figure;
 mod film;
+mod images;
 mod oracle;
 mod render;
 mod sampling;

@@ -9,8 +9,8 @@ use dashu_float::{FBig, round::mode::HalfEven};
 use glam::{DVec2, DVec3};
 use pinhole::scene::{Checkerboard, Cuboid, Lens, Scene, Shape, Sphere, Triangle, View};
 
-type N = FBig<HalfEven, 2>;
-type V = [N; 3];
+pub type N = FBig<HalfEven, 2>;
+pub type V = [N; 3];
 
 const PRECISION: usize = 1400;
 
@@ -46,8 +46,13 @@ fn cross(a: &V, b: &V) -> V {
     ]
 }
 
+/// The length of a vector.
+pub fn length(a: &V) -> N {
+    dot(a, a).sqrt()
+}
+
 fn unit(a: &V) -> V {
-    let length = dot(a, a).sqrt();
+    let length = length(a);
     [0, 1, 2].map(|i| &a[i] / &length)
 }
 
