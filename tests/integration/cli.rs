@@ -202,6 +202,11 @@ fn a_picture_renders_its_scene_again() {
     );
     assert!(read(&folder, "d.png") == read(&folder, "e.png"));
 
+    assert_eq!(
+        fails(&folder, &["render", "b.png", "--set", "image.width=20"], 2),
+        "error: the crop 10,5,30,20, which b.png carries, does not lie within the picture, which has 20 × 36 pixels\n"
+    );
+
     // The scene need not be there any more, and the picture need not be named as one.
     fs::rename(folder.path().join("b.png"), folder.path().join("b.scn")).unwrap();
     assert_eq!(done(&folder, &["check", "b.scn"]), b"");
