@@ -40,18 +40,6 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("an operator is missing between `{left}` and `{right}`")]
-    #[diagnostic(
-        code(pinhole::missing_operator),
-        help("write `{left} * {right}` to multiply them")
-    )]
-    MissingOperator {
-        left: String,
-        right: String,
-        #[label("what is to be done with this?")]
-        span: Span,
-    },
-
     #[error("{message}")]
     #[diagnostic(code(pinhole::missing_field), help("{help}"))]
     MissingField {
@@ -60,7 +48,7 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        #[label("this alone is not enough")]
+        #[label("not enough by itself")]
         half: Option<Span>,
     },
 
@@ -373,12 +361,10 @@ pub enum Problem {
         label: &'static str,
     },
 
-    #[error("`{name}` must be {must}, and it is {found}")]
+    #[error("{message}")]
     #[diagnostic(code(pinhole::out_of_range), help("{help}"))]
     OutOfRange {
-        name: String,
-        must: String,
-        found: String,
+        message: String,
         help: String,
         #[label("{label}")]
         span: Span,

@@ -257,7 +257,7 @@ impl<'s> Evaluator<'_, 's> {
         }
         let least = row.takes.len();
         if values.len() < least || (values.len() > least && !row.more) {
-            self.argument_count(row, function.span.to(parentheses), values.len());
+            self.argument_count(row, function.span.to(parentheses), arguments);
             return None;
         }
         let mut known = Vec::with_capacity(values.len());
@@ -319,7 +319,8 @@ impl<'s> Evaluator<'_, 's> {
         });
     }
 
-    fn argument_count(&mut self, row: &Function, span: Span, found: usize) {
+    fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
+        let found = arguments.len();
         let values = |count: usize| match count {
             1 => "one value".to_owned(),
             2 => "two values".to_owned(),
@@ -340,7 +341,14 @@ impl<'s> Evaluator<'_, 's> {
             name: row.name.to_owned(),
             takes,
             are,
-            example: example(row),
+            example: match arguments.get(..row.takes.len()) {
+                Some(kept) => {
+                    let text = |e: &Element<'_>| shorten(self.sources.text(e.value.span));
+                    let texts: Vec<String> = kept.iter().map(text).collect();
+                    format!("{}({})", row.name, texts.join(", "))
+                }
+                None => example(row),
+            },
             span,
             label: match found {
                 0 => "no value".to_owned(),
@@ -371,10 +379,14 @@ impl<'s> Evaluator<'_, 's> {
         }
         self.problems.push(Problem::ArgumentType {
             name: row.name.to_owned(),
-            takes: takes.noun(),
+            takes: match row.takes {
+                [_, _] => takes.two(),
+                [_, _, _] => "three numbers",
+                _ => takes.noun(),
+            },
             written,
             found: found.kind().noun(),
-            help: format!("write `{}`", example(row)),
+            help: format!("call it with {}, such as `{}`", takes.noun(), example(row)),
             span: argument.span,
             label,
         });

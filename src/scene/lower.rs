@@ -15,6 +15,7 @@ use super::{
     level_direction,
     overrides::{self, Override},
     schema::{self, Condition, Field, Kind, Literal, Preset, Type},
+    untangle::untangle,
     value::{self, Value},
 };
 use crate::{
@@ -43,10 +44,13 @@ pub fn read(sources: &Sources) -> Reading {
         overrides,
         blocks: Vec::new(),
         problems: Vec::new(),
+        slips: Vec::new(),
     };
     let scene = lowering.scene(&parsed.tree);
     let problems = lowering.problems.iter();
     diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
+    let slips = lowering.slips.iter();
+    diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
     invalid_utf8(sources, &mut diagnostics);
     diagnostic::sort(&mut diagnostics);
     let failed = diagnostics.iter().any(Diagnostic::is_error);
@@ -90,6 +94,8 @@ struct Lowering<'s> {
     overrides: Vec<Override<'s>>,
     blocks: Vec<Block<'s>>,
     problems: Vec<Problem>,
+    /// Problems of syntax that show only when the names are known.
+    slips: Vec<syntax::Problem>,
 }
 
 /// A block with what it was given.
@@ -217,8 +223,16 @@ impl<'s> Lowering<'s> {
             lowered.meant.extend(mentioned);
         }
         let replaced = self.replaced_fields(&lowered);
-        for field in &untangle(&block.fields, row, &self.names) {
-            self.field(field, &mut lowered, &replaced, &block.fields);
+        for field in untangle(
+            &block.fields,
+            row,
+            &self.names,
+            self.sources,
+            &mut self.slips,
+        )
+        .iter()
+        {
+            self.field(field, &mut lowered, &replaced);
         }
         self.conflicts(&lowered, &replaced);
         if !duplicate {
@@ -247,18 +261,12 @@ impl<'s> Lowering<'s> {
         near
     }
 
-    fn field(
-        &mut self,
-        field: &tree::Field<'s>,
-        block: &mut Block<'s>,
-        replaced: &[&str],
-        siblings: &[tree::Field<'s>],
-    ) {
+    fn field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>, replaced: &[&str]) {
         let written = field.name.text;
         let index = block.row.fields.iter().position(|row| row.name == written);
         let row = index.and_then(|index| block.row.fields.get(index));
         let (Some(index), Some(row)) = (index, row) else {
-            self.unknown_field(field, block, siblings);
+            self.unknown_field(field, block);
             return;
         };
         if matches!(field.value.kind, ValueKind::Missing) {
@@ -284,36 +292,10 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    fn unknown_field(
-        &mut self,
-        field: &tree::Field<'s>,
-        block: &mut Block<'s>,
-        siblings: &[tree::Field<'s>],
-    ) {
-        let written = field.name.text;
-        if matches!(field.value.kind, ValueKind::Missing) && self.is_name(written) {
-            // `radius 2 pi`: a name that is a value, right behind a value.
-            let before = siblings
-                .iter()
-                .filter(|other| other.span.end <= field.span.start)
-                .max_by_key(|other| other.span.end);
-            if let Some(before) = before {
-                self.problems.push(Problem::MissingOperator {
-                    left: shorten(self.sources.text(before.value.span)),
-                    right: written.to_owned(),
-                    span: field.name.span,
-                });
-                return;
-            }
-        }
+    fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
         self.evaluate_loosely(&field.value);
-        let near = block.row.nearest_field(written);
-        block.meant.extend(near);
+        block.meant.extend(block.row.nearest_field(field.name.text));
         self.problems.push(unknown_field(block.row, &field.name));
-    }
-
-    fn is_name(&self, name: &str) -> bool {
-        self.names.knows(name) || predefined(name).is_some()
     }
 
     /// Two fields that exclude each other: the later one is labelled first.
@@ -444,10 +426,12 @@ impl<'s> Lowering<'s> {
             _ => written,
         };
         let (label, help) = range_words(row, condition, value);
+        let message = match condition {
+            Condition::NotZero => format!("`{}` must not be zero", row.name),
+            _ => format!("`{}` must be {condition}, and it is {found}", row.name),
+        };
         self.problems.push(Problem::OutOfRange {
-            name: row.name.to_owned(),
-            must: condition.to_string(),
-            found,
+            message,
             help,
             span: tree.span,
             label: label.to_owned(),
@@ -687,8 +671,8 @@ impl<'s> Lowering<'s> {
             help: format!("write `{}`", examples.join("  ")),
             span: block.keyword,
             label: match missing.len() {
-                1 => "without it".to_owned(),
-                _ => "without them".to_owned(),
+                1 => "it is not given".to_owned(),
+                _ => "they are not given".to_owned(),
             },
             half,
         });
@@ -887,12 +871,12 @@ impl<'s> Lowering<'s> {
         let sides = fields.vector("sides")?;
         if !exact::forms_triangle(sides.to_array()) {
             let [a, b, c] = sides.to_array();
-            let (longest, others, where_) = if a >= b && a >= c {
-                (a, b + c, "first")
+            let (longest, [one, other], place) = if a >= b && a >= c {
+                (a, [b, c], "first")
             } else if b >= c {
-                (b, a + c, "second")
+                (b, [a, c], "second")
             } else {
-                (c, a + b, "third")
+                (c, [a, b], "third")
             };
             let shown = |x: f64| numbers::short(x);
             self.problems.push(Problem::NotATriangle {
@@ -900,13 +884,14 @@ impl<'s> Lowering<'s> {
                 b: shown(b),
                 c: shown(c),
                 help: format!(
-                    "make the {where_} side shorter than the two others together, or each of them longer"
+                    "make the {place} side shorter than the two others together, or each of them longer"
                 ),
                 span: block.given("sides").map_or(block.keyword, |given| given.span),
                 label: format!(
-                    "{} is not less than {} together",
+                    "{} is not less than {} + {}",
                     shown(longest),
-                    shown(others)
+                    shown(one),
+                    shown(other)
                 ),
             });
             return None;
@@ -1072,96 +1057,6 @@ fn is_target(block: &Block<'_>, target: &str) -> bool {
 fn mentions(text: &str, word: &str) -> bool {
     let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
     text.split(other).any(|found| found == word)
-}
-
-/// The fields as they were meant where a value was forgotten: `radius color olive` was read as a radius of `color`, and a
-/// field `olive`. A field's name that is no `let` is the next field, and the field before it has no value.
-fn untangle<'s>(
-    fields: &[tree::Field<'s>],
-    row: &schema::Block,
-    names: &Names<'s>,
-) -> Vec<tree::Field<'s>> {
-    let next_field = |value: &tree::Value<'s>| match &value.kind {
-        ValueKind::Name(text) => Some(Name {
-            text,
-            span: value.span,
-        }),
-        ValueKind::Call { function, .. } => Some(*function),
-        _ => None,
-    };
-    let is_field = |name: &Name<'_>| {
-        row.field(name.text).is_some() && !names.knows(name.text) && predefined(name.text).is_none()
-    };
-    let mut meant = Vec::with_capacity(fields.len());
-    let mut rest = fields.iter();
-    while let Some(field) = rest.next() {
-        let mut field = field.clone();
-        while let Some(next) = next_field(&field.value).filter(is_field) {
-            let at = Span::new(next.span.source, field.name.span.end, field.name.span.end);
-            let value = std::mem::replace(
-                &mut field.value,
-                tree::Value {
-                    kind: ValueKind::Missing,
-                    span: at,
-                },
-            );
-            field.span = field.name.span;
-            let name = next;
-            meant.push(field);
-            field = match value.kind {
-                ValueKind::Call {
-                    arguments,
-                    parentheses,
-                    ..
-                } => tree::Field {
-                    name,
-                    span: value.span,
-                    value: list(arguments, parentheses),
-                },
-                _ => match rest.next() {
-                    Some(following) => shifted(name, following),
-                    None => tree::Field {
-                        name,
-                        span: name.span,
-                        value: tree::Value {
-                            kind: ValueKind::Missing,
-                            span: Span::new(name.span.source, name.span.end, name.span.end),
-                        },
-                    },
-                },
-            };
-        }
-        meant.push(field);
-    }
-    meant
-}
-
-/// A field whose value is what was taken for the name of the next field.
-fn shifted<'s>(name: Name<'s>, following: &tree::Field<'s>) -> tree::Field<'s> {
-    let word = following.name;
-    let kind = match &following.value.kind {
-        ValueKind::Missing => ValueKind::Name(word.text),
-        _ => ValueKind::Bad,
-    };
-    tree::Field {
-        name,
-        span: name.span.to(word.span),
-        value: tree::Value {
-            kind,
-            span: word.span,
-        },
-    }
-}
-
-fn list<'s>(mut arguments: Vec<tree::Element<'s>>, span: Span) -> tree::Value<'s> {
-    let kind = match (arguments.len(), arguments.pop()) {
-        (1, Some(only)) => ValueKind::Parentheses(Box::new(only.value)),
-        (_, last) => {
-            arguments.extend(last);
-            ValueKind::Tuple(arguments)
-        }
-    };
-    tree::Value { kind, span }
 }
 
 fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {

@@ -20,6 +20,7 @@ mod eval;
 mod lower;
 mod overrides;
 pub mod schema;
+mod untangle;
 mod value;
 
 pub use lower::read;

@@ -86,7 +86,7 @@ pub enum Problem {
     MissingOperand {
         operator: String,
         side: &'static str,
-        #[label("{side} this, a value is missing")]
+        #[label("a value is missing {side} this")]
         span: Span,
     },
 
@@ -96,19 +96,19 @@ pub enum Problem {
         sign: String,
         name: String,
         value: String,
-        #[label("take this away")]
+        #[label("not needed")]
         span: Span,
     },
 
     #[error("no `{sign}` stands between {between}")]
     #[diagnostic(
         code(pinhole::needless_separator),
-        help("take it away; white space is enough")
+        help("take it away; white space separates {between}")
     )]
     NeedlessSeparator {
         sign: String,
         between: &'static str,
-        #[label("take this away")]
+        #[label("not needed")]
         span: Span,
     },
 
@@ -145,13 +145,11 @@ pub enum Problem {
     },
 
     #[error("an operator is missing between `{left}` and `{right}`")]
-    #[diagnostic(
-        code(pinhole::missing_operator),
-        help("write `{left} * {right}` to multiply them")
-    )]
+    #[diagnostic(code(pinhole::missing_operator), help("{help}"))]
     MissingOperator {
         left: String,
         right: String,
+        help: String,
         #[label("what is to be done with this?")]
         span: Span,
     },
@@ -214,7 +212,7 @@ pub enum Problem {
     #[diagnostic(code(pinhole::plus_sign), help("write `{value}`"))]
     PlusSign {
         value: String,
-        #[label("take this away")]
+        #[label("not needed")]
         span: Span,
     },
 

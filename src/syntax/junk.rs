@@ -30,7 +30,7 @@ pub fn written_length(text: &str) -> usize {
 }
 
 /// A field that could not be understood: its name, if it has one, and what is wrong with it. A field without anything
-/// after its name has no problem here.
+/// after its name has no problem here, nor has one that is right in itself.
 pub fn field<'s>(text: &'s str, span: Span) -> (Option<Name<'s>>, Option<Problem>) {
     let mut tokens = tokens(text, span);
     let name = match tokens.first() {
@@ -48,7 +48,7 @@ pub fn field<'s>(text: &'s str, span: Span) -> (Option<Name<'s>>, Option<Problem
     let problem = match (&name, tokens.is_empty()) {
         (Some(_), true) => None,
         (None, true) => Some(unexpected("", span)),
-        (Some(_), false) => Some(wrong_value(text, span, &tokens)),
+        (Some(_), false) => wrong_value(text, span, &tokens),
         (None, false) => Some(no_field(text, span, &tokens)),
     };
     (name, problem)
@@ -127,26 +127,21 @@ pub fn definition<'s>(text: &'s str, span: Span) -> (Option<Name<'s>>, Problem) 
             span: name.span.to(equals.span(span)),
         }
     } else {
-        wrong_value(text, span, value)
+        wrong_value(text, span, value).unwrap_or_else(|| unexpected(text, span))
     };
     (Some(name), problem)
 }
 
 /// A value of a `--set` argument that could not be understood.
 pub fn value(text: &str, span: Span) -> Problem {
-    wrong_value(text, span, &tokens(text, span))
+    wrong_value(text, span, &tokens(text, span)).unwrap_or_else(|| unexpected(text, span))
 }
 
 /// What is wrong with a value.
-fn wrong_value(text: &str, span: Span, tokens: &[Token<'_>]) -> Problem {
+fn wrong_value(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     parentheses(span, tokens)
         .or_else(|| separated(text, span, tokens))
         .or_else(|| operators(span, tokens))
-        .unwrap_or_else(|| {
-            let last = tokens.last().map_or(span, |token| token.span(span));
-            let first = tokens.first().map_or(last, |token| token.span(span));
-            unexpected(text, first.to(last))
-        })
 }
 
 /// A parenthesis that is never closed, or that closes nothing.
@@ -223,6 +218,7 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         if token.kind == Kind::Odd {
             return Some(match token.text {
                 ";" | "=" | ":" => unexpected(token.text, token.span(span)),
+                "°" => degree_sign(before, token, span),
                 _ => unknown_operator(token.text, token.span(span)),
             });
         }
@@ -238,16 +234,31 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         }
         if token.starts_value() && after_value && !token.is("(") {
             let left = before.map_or("", |before| before.text);
-            return Some(Problem::MissingOperator {
-                left: shorten(left),
-                right: shorten(token.text),
-                span: token.span(span),
-            });
+            return Some(missing_operator(left, token.text, token.span(span)));
         }
         before = Some(token);
     }
     let last = before.filter(|token| token.is_operator())?;
     Some(missing_operand(Some(last), last, span))
+}
+
+/// Two values with nothing between.
+pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
+    let (left, right) = (shorten(left), shorten(right));
+    let word = left.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    let number = right.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let help = match word && number {
+        true => format!(
+            "write `{left} * {right}` to multiply them, or `{left}({right})` if `{left}` is a function"
+        ),
+        false => format!("write `{left} * {right}` to multiply them"),
+    };
+    Problem::MissingOperator {
+        left,
+        right,
+        help,
+        span,
+    }
 }
 
 /// The first of two operators has nothing after it; one alone has nothing before it.
@@ -320,11 +331,8 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
         && same_line(value.end, place.start)
         && first.starts_value()
     {
-        return Problem::MissingOperator {
-            left: shorten(text.get(value.range()).unwrap_or_default()),
-            right: shorten(first.text),
-            span: place,
-        };
+        let left = text.get(value.range()).unwrap_or_default();
+        return missing_operator(left, first.text, place);
     }
     if tokens.iter().all(|token| token.is(",") || token.is(";")) {
         return Problem::NeedlessSeparator {
@@ -382,7 +390,7 @@ fn line_end(text: &str, from: usize) -> usize {
 }
 
 /// Something that fits nowhere.
-fn unexpected(written: &str, span: Span) -> Problem {
+pub fn unexpected(written: &str, span: Span) -> Problem {
     let written = match written.get(span.range()) {
         Some(under) if written.len() > 3 => under,
         _ => written,
@@ -401,13 +409,22 @@ pub fn unknown_operator(sign: &str, span: Span) -> Problem {
         "×" | "·" => "write `*` to multiply".to_owned(),
         "÷" => "write `/` to divide".to_owned(),
         "−" => "write a plain `-`; this is the minus sign of a typesetter".to_owned(),
-        "°" => "write `deg`, such as `30deg`".to_owned(),
         _ => "the operators are `+`, `-`, `*` and `/`".to_owned(),
     };
     Problem::UnknownOperator {
         sign: shorten(sign),
         help,
         span,
+    }
+}
+
+fn degree_sign(before: Option<&Token<'_>>, sign: &Token<'_>, span: Span) -> Problem {
+    let number = before.map_or("", |before| before.text);
+    Problem::BadNumber {
+        written: shorten(&format!("{number}{}", sign.text)),
+        help: format!("write `{}deg`", shorten(number)),
+        span: sign.span(span),
+        label: "the unit is written `deg`".to_owned(),
     }
 }
 

@@ -228,7 +228,26 @@ impl<'s> Parser<'s> {
             }
         }
         self.close_block(&mut block);
+        self.kind_of_the_next_line(&mut block);
         block
+    }
+
+    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
+    fn kind_of_the_next_line(&mut self, block: &mut Block<'s>) {
+        let (Some(Item::Definition(before)), Some(kind), Some(name)) =
+            (self.items.last(), block.kind, block.name)
+        else {
+            return;
+        };
+        let value = before.value.span;
+        let apart = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
+        if !apart(value.end, kind.span.start) && apart(kind.span.end, name.span.start) {
+            let problem = junk::missing_operator(self.written(value), kind.text, kind.span);
+            self.problems.push(problem);
+            block.kind = Some(name);
+            block.name = None;
+            block.span.start = name.span.start;
+        }
     }
 
     /// One part of a body.
@@ -578,11 +597,7 @@ impl<'s> Parser<'s> {
             ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Parentheses(_)
         );
         let problem = if number && word && elements.len() != 3 {
-            Problem::MissingOperator {
-                left: left_text,
-                right: right_text,
-                span,
-            }
+            junk::missing_operator(&left_text, &right_text, span)
         } else {
             let all = format!("({})", texts.join(", "));
             let function = self.text.get(..whole.start).unwrap_or_default();
@@ -663,11 +678,17 @@ impl<'s> Parser<'s> {
         let span = self.trimmed(whole.start, whole.end);
         match junk::field(self.text, span) {
             (Some(name), problem) => {
-                let kind = match problem {
-                    Some(_) => ValueKind::Bad,
-                    None => ValueKind::Missing,
+                let kind = match name.span.end == span.end {
+                    true => ValueKind::Missing,
+                    false => ValueKind::Bad,
                 };
-                self.problems.extend(problem);
+                let rest = self.text.get(whole.end..).unwrap_or_default();
+                match problem {
+                    Some(problem) => self.problems.push(problem),
+                    // Braces that follow are reported themselves.
+                    None if kind == ValueKind::Missing || rest.starts_with('{') => {}
+                    None => self.problems.push(junk::unexpected(self.text, span)),
+                }
                 let value = Value {
                     kind,
                     span: Span::new(self.id, name.span.end, span.end),
