@@ -13,6 +13,7 @@ pub mod syntax;
 pub mod scene;
 pub mod tracer;
 
+pub mod sampling;
+
 pub mod film;
 pub mod render;
-pub mod sampling;

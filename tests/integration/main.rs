@@ -1,6 +1,7 @@
 //! One test binary, a module per subject.
 
 mod camera;
+#[cfg(feature = "cli")]
 mod cli;
 mod figure;
 mod film;
