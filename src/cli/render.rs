@@ -185,8 +185,7 @@ impl std::fmt::Display for Output {
 
 /// The format that a file's ending stands for.
 fn format(path: &Path) -> Result<Format, Trouble> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.to_ascii_lowercase();
+    let name = path.to_string_lossy().to_ascii_lowercase();
     if name.ends_with(".png") {
         Ok(Format::Png)
     } else if name.ends_with(".exr") {

@@ -120,7 +120,7 @@ fn the_ending_of_the_file_is_its_format() {
         done(&folder, &["render", "a.scn", "-o", name]);
         assert_eq!(size(&read(&folder, name)), (64, 36));
     }
-    for name in ["b", "b.jpg", "png", "b.png.", "b.png~", "exr/"] {
+    for name in ["b", "b.jpg", "png", "b.png.", "b.png~", "b.png/"] {
         let errors = fails(&folder, &["render", "a.scn", "--output", name], 2);
         assert_eq!(
             errors,
