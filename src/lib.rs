@@ -15,5 +15,9 @@ pub mod tracer;
 
 pub mod sampling;
 
-pub mod film;
 pub mod render;
+
+pub mod film;
+
+pub mod inspect;
+pub mod probe;

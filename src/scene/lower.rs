@@ -846,18 +846,18 @@ impl<'s> Lowering<'s> {
     fn object(&mut self, block: &Block<'s>) -> Option<Object> {
         let fields = Fields::of(Some(block), block.row.kind);
         let shape = match block.row.kind {
-            Kind::Sphere => Shape::Sphere {
+            Kind::Sphere => Shape::Sphere(super::Sphere {
                 center: fields.vector("center")?,
                 radius: fields.number("radius")?,
                 color: fields.color("color")?,
-            },
+            }),
             Kind::Triangle => self.triangle(block, &fields)?,
             Kind::Box => self.cuboid(block, &fields)?,
-            Kind::Checkerboard => Shape::Checkerboard {
+            Kind::Checkerboard => Shape::Checkerboard(super::Checkerboard {
                 y: fields.number("y")?,
                 square: fields.number("square")?,
                 colors: fields.colors("colors")?,
-            },
+            }),
             Kind::Image | Kind::Camera | Kind::Sampler => return None,
         };
         Some(Object {
@@ -896,13 +896,13 @@ impl<'s> Lowering<'s> {
             });
             return None;
         }
-        Some(Shape::Triangle {
+        Some(Shape::Triangle(super::Triangle {
             centroid: fields.vector("centroid")?,
             normal: fields.vector("normal")?,
             sides,
             spin: fields.angle("spin")?,
             color: fields.color("color")?,
-        })
+        }))
     }
 
     fn cuboid(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
@@ -952,11 +952,11 @@ impl<'s> Lowering<'s> {
             });
             return None;
         }
-        Some(Shape::Box {
+        Some(Shape::Box(super::Cuboid {
             min,
             max,
             color: color?,
-        })
+        }))
     }
 }
 

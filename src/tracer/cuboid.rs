@@ -6,14 +6,15 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
-
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
     form::{Form, inverse_depth},
 };
-use crate::math::{Ball, Ball3, Double, Doubt, Real, UP};
+use crate::{
+    math::{Ball, Ball3, Double, Doubt, Real, UP},
+    scene,
+};
 
 /// A box prepared for one picture.
 #[derive(Clone, Debug)]
@@ -37,7 +38,8 @@ struct Face<T> {
 
 impl<T: Real> Cuboid<T> {
     /// Prepares a box.
-    pub fn new(camera: &Camera<T>, min: DVec3, max: DVec3) -> Self {
+    pub fn new(camera: &Camera<T>, shape: &scene::Cuboid) -> Self {
+        let scene::Cuboid { min, max, .. } = *shape;
         let mut cuboid = Self {
             fronts: Vec::new(),
             backs: Vec::new(),

@@ -12,7 +12,10 @@ use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
 };
-use crate::math::{Ball, Ball3, Double, Doubt, Exact, Real, UP, dot};
+use crate::{
+    math::{Ball, Ball3, Double, Doubt, Exact, Real, UP, dot},
+    scene,
+};
 
 /// A sphere prepared for one picture. Its lengths are scaled by a power of two to be about 1.
 #[derive(Clone, Debug)]
@@ -38,7 +41,8 @@ const ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
     /// Prepares a sphere.
-    pub fn new(camera: &Camera<T>, center: DVec3, radius: f64) -> Self {
+    pub fn new(camera: &Camera<T>, shape: &scene::Sphere) -> Self {
+        let scene::Sphere { center, radius, .. } = *shape;
         let from_eye = camera.relative(center);
         let radius_ball = camera.length(radius);
         let greatest = from_eye

@@ -326,12 +326,12 @@ impl World {
     fn is_same_surface(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
         match (&self.shapes[i], &self.shapes[j]) {
             (
-                Shape::Sphere { center, radius, .. },
-                Shape::Sphere {
+                Shape::Sphere(scene::Sphere { center, radius, .. }),
+                Shape::Sphere(scene::Sphere {
                     center: other_center,
                     radius: other_radius,
                     ..
-                },
+                }),
             ) => a == b && center == other_center && radius == other_radius,
             _ => {
                 let plane = |index, part| Double::object(self, index).plane(part);
@@ -427,10 +427,10 @@ fn palette(shapes: &[Shape], background: Color) -> (Vec<Color>, Vec<[usize; 2]>)
     let slots = shapes
         .iter()
         .map(|shape| match *shape {
-            Shape::Sphere { color, .. }
-            | Shape::Triangle { color, .. }
-            | Shape::Box { color, .. } => [place(color); 2],
-            Shape::Checkerboard { colors, .. } => colors.map(&mut place),
+            Shape::Sphere(scene::Sphere { color, .. })
+            | Shape::Triangle(scene::Triangle { color, .. })
+            | Shape::Box(scene::Cuboid { color, .. }) => [place(color); 2],
+            Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut place),
         })
         .collect();
     palette.push(background);

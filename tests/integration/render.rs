@@ -120,17 +120,17 @@ fn a_symmetric_scene_is_symmetric_to_the_bit() {
             let mut scene = figure(width, height, Method::Regular, Count::PerPixel(n));
             scene.camera.eye = dvec3(0.0, 1.0, 6.0);
             scene.camera.view = View::Lookat(dvec3(0.0, 1.0, 0.0));
-            let [ball, _, crate_, _] = &mut scene.objects[..] else {
-                unreachable!("the figure has four objects")
-            };
-            if let Shape::Sphere { center, .. } = &mut ball.shape {
-                *center = dvec3(0.0, 1.0, 0.0);
-            }
-            if let Shape::Box { min, max, .. } = &mut crate_.shape {
-                (*min, *max) = (dvec3(-1.7, 0.6, -0.5), dvec3(1.7, 1.4, 0.5));
-            }
-            let objects = [scene.objects[0].clone(), scene.objects[2].clone()];
-            scene.objects = objects.to_vec();
+            scene.objects.retain_mut(|object| match &mut object.shape {
+                Shape::Sphere(sphere) => {
+                    sphere.center = dvec3(0.0, 1.0, 0.0);
+                    true
+                }
+                Shape::Box(cuboid) => {
+                    (cuboid.min, cuboid.max) = (dvec3(-1.7, 0.6, -0.5), dvec3(1.7, 1.4, 0.5));
+                    true
+                }
+                _ => false,
+            });
             let film = picture(&scene, Area::whole(width, height), 2);
             let mut colors = 0;
             for (x, y) in Area::whole(width, height).iter() {

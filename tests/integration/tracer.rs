@@ -4,7 +4,10 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
     color::Color,
     math::Angle,
-    scene::{Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View},
+    scene::{
+        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
+        Sphere, Triangle, View,
+    },
     source::{SourceId, Span},
     tracer::{Precision, World},
 };
@@ -32,10 +35,10 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
         let own = Color::from_bytes([index as u8 + 1, 0, 0]);
         let mut shape = *shape;
         match &mut shape {
-            Shape::Sphere { color, .. }
-            | Shape::Triangle { color, .. }
-            | Shape::Box { color, .. } => *color = own,
-            Shape::Checkerboard { colors, .. } => {
+            Shape::Sphere(Sphere { color, .. })
+            | Shape::Triangle(Triangle { color, .. })
+            | Shape::Box(Cuboid { color, .. }) => *color = own,
+            Shape::Checkerboard(Checkerboard { colors, .. }) => {
                 *colors = [own, Color::from_bytes([index as u8 + 1, 1, 0])];
             }
         }
@@ -62,37 +65,37 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
 }
 
 pub fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere {
+    Shape::Sphere(Sphere {
         center,
         radius,
         color: Color::BLACK,
-    }
+    })
 }
 
 pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
-    Shape::Triangle {
+    Shape::Triangle(Triangle {
         centroid,
         normal,
         sides: dvec3(2.0, 2.0, 1.0),
         spin: Angle::default(),
         color: Color::BLACK,
-    }
+    })
 }
 
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
-    Shape::Box {
+    Shape::Box(Cuboid {
         min,
         max,
         color: Color::BLACK,
-    }
+    })
 }
 
 pub fn floor() -> Shape {
-    Shape::Checkerboard {
+    Shape::Checkerboard(Checkerboard {
         y: 0.0,
         square: 1.0,
         colors: [Color::BLACK; 2],
-    }
+    })
 }
 
 /// Reproducible numbers (SplitMix64).
@@ -251,13 +254,13 @@ fn random_objects_agree_with_the_oracle() {
         for _ in 0..2 {
             let corner = random.vector(2.0);
             shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
-            shapes.push(Shape::Triangle {
+            shapes.push(Shape::Triangle(Triangle {
                 centroid: random.vector(2.0),
                 normal: random.vector(1.0),
                 sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
                 spin: Angle::from_degrees(random.within(0.0, 360.0)),
                 color: Color::BLACK,
-            });
+            }));
             shapes.push(cuboid(
                 corner,
                 corner + DVec3::splat(random.within(0.1, 2.0)),
@@ -320,11 +323,11 @@ fn an_eye_on_or_near_a_surface_agrees_with_the_oracle() {
             sphere(DVec3::ZERO, 1.0),
             cuboid(dvec3(-4.0, 0.0, -4.0), dvec3(4.0, 1.0, 4.0)),
             triangle(dvec3(2.0, 1.0, 0.0), DVec3::Y),
-            Shape::Checkerboard {
+            Shape::Checkerboard(Checkerboard {
                 y: 1.0,
                 square: 0.3,
                 colors: [Color::BLACK; 2],
-            },
+            }),
         ];
         found += agrees(&scene(camera, &shapes), 20);
     }
@@ -414,21 +417,21 @@ fn scenes_full_of_ties_agree_with_the_oracle() {
             } else {
                 normal
             };
-            shapes.push(Shape::Triangle {
+            shapes.push(Shape::Triangle(Triangle {
                 centroid: random.point(3),
                 normal,
                 sides: dvec3(5.0, 5.0, 6.0),
                 spin: Angle::from_degrees(random.half(4) * 90.0),
                 color: Color::BLACK,
-            });
+            }));
         }
         shapes.insert(
             2,
-            Shape::Checkerboard {
+            Shape::Checkerboard(Checkerboard {
                 y: random.half(2),
                 square: 0.5,
                 colors: [Color::BLACK; 2],
-            },
+            }),
         );
         let mut scene = scene(camera, &shapes);
         (scene.image.width, scene.image.height) = (8, 8);
@@ -506,18 +509,18 @@ fn extreme_lenses_and_sizes_agree_with_the_oracle() {
         let shapes = [
             sphere(DVec3::ZERO, 0.7 * size),
             cuboid(DVec3::splat(0.1 * size), DVec3::splat(0.6 * size)),
-            Shape::Triangle {
+            Shape::Triangle(Triangle {
                 centroid: dvec3(0.1, 0.4, 0.9) * size,
                 normal: dvec3(0.2, 0.3, 1.0) * size,
                 sides: dvec3(2.0, 2.0, 1.0) * size,
                 spin: Angle::default(),
                 color: Color::BLACK,
-            },
-            Shape::Checkerboard {
+            }),
+            Shape::Checkerboard(Checkerboard {
                 y: -0.5 * size,
                 square: size,
                 colors: [Color::BLACK; 2],
-            },
+            }),
         ];
         assert_eq!(agrees(&scene(camera, &shapes), 10), 10);
     }
@@ -534,13 +537,13 @@ fn needles_and_tiny_triangles_agree_with_the_oracle() {
     ] {
         let mut camera = camera(dvec3(0.3, 0.2, 3.0), DVec3::ZERO);
         camera.lens = Lens::Distance(2.0 / (scale * needle));
-        let shape = Shape::Triangle {
+        let shape = Shape::Triangle(Triangle {
             centroid: DVec3::ZERO,
             normal: dvec3(1.0, 0.4, 2.0),
             sides: dvec3(1.0, 1.0, needle) * scale,
             spin: Angle::from_degrees(20.0),
             color: Color::BLACK,
-        };
+        });
         assert!(agrees(&scene(camera, &[shape]), 20) > 10);
     }
 }
