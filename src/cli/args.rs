@@ -87,7 +87,8 @@ pub struct RenderArgs {
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub overrides: Overrides,
-    /// Render this part only, in pixels from the top left of the whole picture; it must lie within it
+    /// Render this part only, in pixels from the top left of the whole picture, within which it must lie;
+    /// takes the place of the crop that a PNG carries
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<Area>,
     /// How many threads to use [default: one for each processor]

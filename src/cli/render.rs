@@ -36,9 +36,20 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);
     };
-    // A crop on the command line takes the place of the one that a picture carries.
+    // A crop on the command line takes the place of the one that a picture carries; both count in pixels of the whole picture.
     let crop = args.crop.or(input.crop);
-    let part = part(&scene, crop)?;
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let part = crop.unwrap_or(whole);
+    if !part.lies_in(whole) {
+        let carried = match args.crop {
+            Some(_) => String::new(),
+            None => format!(", which {} carries,", shown(&args.scene)),
+        };
+        return Err(Trouble(format!(
+            "the crop {part}{carried} does not lie within the picture, which has {} × {} pixels",
+            whole.width, whole.height
+        )));
+    }
     let cancel = interrupt.watch();
     let started = Instant::now();
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
@@ -92,19 +103,6 @@ fn film(
         };
         render::render(&World::new(scene), sampling, part, &control)
     })
-}
-
-/// The part of the picture to render.
-fn part(scene: &Scene, crop: Option<Area>) -> Result<Area, Trouble> {
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    match crop {
-        None => Ok(whole),
-        Some(crop) if crop.lies_in(whole) => Ok(crop),
-        Some(crop) => Err(Trouble(format!(
-            "the crop {crop} does not lie within the picture, which has {} × {} pixels",
-            whole.width, whole.height
-        ))),
-    }
 }
 
 /// Where a picture goes, and as what.
@@ -187,8 +185,7 @@ impl std::fmt::Display for Output {
 
 /// The format that a file's ending stands for.
 fn format(path: &Path) -> Result<Format, Trouble> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.to_ascii_lowercase();
+    let name = path.to_string_lossy().to_ascii_lowercase();
     if name.ends_with(".png") {
         Ok(Format::Png)
     } else if name.ends_with(".exr") {

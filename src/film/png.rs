@@ -6,7 +6,9 @@
 
 use std::io::{self, Cursor, Write};
 
-use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Limits, SrgbRenderingIntent};
+use png::{
+    BitDepth, ColorType, Compression, DecodeOptions, Decoder, Encoder, Limits, SrgbRenderingIntent,
+};
 use thiserror::Error;
 
 use super::{Film, srgb};
@@ -112,8 +114,12 @@ pub fn write_png(film: &Film, recipe: &Recipe, out: impl Write) -> io::Result<()
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     // The decoder reserves a few rows of at most 2^20 pixels of up to 8 bytes, besides the packed text.
     let limits = Limits { bytes: 64 << 20 };
-    let mut decoder = Decoder::new_with_limits(Cursor::new(picture), limits);
-    decoder.set_ignore_iccp_chunk(true);
+    // A chunk with a wrong checksum may have been an override, so it must not be passed over.
+    let mut options = DecodeOptions::default();
+    options.set_skip_ancillary_crc_failures(false);
+    options.set_ignore_iccp_chunk(true);
+    let mut decoder = Decoder::new_with_options(Cursor::new(picture), options);
+    decoder.set_limits(limits);
     let reader = decoder.read_info()?;
 
     let mut recipe = Recipe {

@@ -120,7 +120,7 @@ fn the_ending_of_the_file_is_its_format() {
         done(&folder, &["render", "a.scn", "-o", name]);
         assert_eq!(size(&read(&folder, name)), (64, 36));
     }
-    for name in ["b", "b.jpg", "png", "b.png.", "b.png~", "exr/"] {
+    for name in ["b", "b.jpg", "png", "b.png.", "b.png~", "b.png/"] {
         let errors = fails(&folder, &["render", "a.scn", "--output", name], 2);
         assert_eq!(
             errors,
@@ -201,6 +201,11 @@ fn a_picture_renders_its_scene_again() {
         &[&["render", "a.scn", "-o", "e.png"], &arguments[..]].concat(),
     );
     assert!(read(&folder, "d.png") == read(&folder, "e.png"));
+
+    assert_eq!(
+        fails(&folder, &["render", "b.png", "--set", "image.width=20"], 2),
+        "error: the crop 10,5,30,20, which b.png carries, does not lie within the picture, which has 20 × 36 pixels\n"
+    );
 
     // The scene need not be there any more, and the picture need not be named as one.
     fs::rename(folder.path().join("b.png"), folder.path().join("b.scn")).unwrap();

@@ -2,6 +2,7 @@
 
 mod answers;
 mod camera;
+#[cfg(feature = "cli")]
 mod cli;
 mod figure;
 mod film;

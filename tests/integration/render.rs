@@ -5,12 +5,13 @@ use std::{
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
+use glam::dvec3;
 use pinhole::{
     area::Area,
     film::Film,
     render::{Control, RenderError, render},
     sampling::Sampling,
-    scene::{Count, Method, Scene},
+    scene::{Count, Method, Scene, Shape, View},
     tracer::World,
 };
 
@@ -110,6 +111,37 @@ fn pixels_without_a_sample_show_the_background() {
         }
     }
     assert_eq!(empty, 1100);
+}
+
+#[test]
+fn a_symmetric_scene_is_symmetric_to_the_bit() {
+    for (width, height) in [(31, 20), (32, 21)] {
+        for n in [1, 2, 3, 5, 7, 14, 16] {
+            let mut scene = figure(width, height, Method::Regular, Count::PerPixel(n));
+            scene.camera.eye = dvec3(0.0, 1.0, 6.0);
+            scene.camera.view = View::Lookat(dvec3(0.0, 1.0, 0.0));
+            scene.objects.retain_mut(|object| match &mut object.shape {
+                Shape::Sphere(sphere) => {
+                    sphere.center = dvec3(0.0, 1.0, 0.0);
+                    true
+                }
+                Shape::Box(cuboid) => {
+                    (cuboid.min, cuboid.max) = (dvec3(-1.7, 0.6, -0.5), dvec3(1.7, 1.4, 0.5));
+                    true
+                }
+                _ => false,
+            });
+            let film = picture(&scene, Area::whole(width, height), 2);
+            let mut colors = 0;
+            for (x, y) in Area::whole(width, height).iter() {
+                let pixel = film.pixel(x, y);
+                assert_eq!(pixel, film.pixel(width - 1 - x, y), "{n}: {x}, {y}");
+                assert_eq!(pixel, film.pixel(x, height - 1 - y), "{n}: {x}, {y}");
+                colors += u32::from(pixel != film.pixel(0, 0));
+            }
+            assert!(colors > 50);
+        }
+    }
 }
 
 #[test]
