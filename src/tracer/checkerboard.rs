@@ -8,8 +8,7 @@ use std::cmp::Ordering;
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
-    cuboid::axis_vector,
-    form::{Form, inverse_depth},
+    form::{Form, axis_vector, inverse_depth},
 };
 use crate::{
     math::{Ball, Double, Doubt, Real},

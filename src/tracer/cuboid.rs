@@ -9,10 +9,10 @@ use std::cmp::Ordering;
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
-    form::{Form, inverse_depth},
+    form::{Form, axis_vector, inverse_depth},
 };
 use crate::{
-    math::{Ball, Ball3, Double, Doubt, Real, UP},
+    math::{Double, Doubt, Real, UP},
     scene,
 };
 
@@ -59,25 +59,24 @@ impl<T: Real> Cuboid<T> {
                 let normal = axis_vector::<T>(axis).map(|x| x.times_power(sign));
                 Form::new(&camera.turned(&normal), &camera.window)
             };
-            let (from_min, from_max) = (eye.total_order(min[axis]), eye.total_order(max[axis]));
-            match (from_min, from_max) {
-                (Ordering::Less, _) => {
+            match (eye.partial_cmp(&min[axis]), eye.partial_cmp(&max[axis])) {
+                (Some(Ordering::Less), _) => {
                     cuboid.fronts.push(face(false));
                     cuboid.backs.push(face(true));
                 }
-                (_, Ordering::Greater) => {
+                (_, Some(Ordering::Greater)) => {
                     cuboid.fronts.push(face(true));
                     cuboid.backs.push(face(false));
                 }
-                (Ordering::Equal, _) => {
+                (Some(Ordering::Equal), _) => {
                     cuboid.inward.push(inward(1.0));
                     cuboid.backs.push(face(true));
                 }
-                (_, Ordering::Equal) => {
+                (_, Some(Ordering::Equal)) => {
                     cuboid.inward.push(inward(-1.0));
                     cuboid.backs.push(face(false));
                 }
-                (Ordering::Greater, Ordering::Less) => {
+                _ => {
                     cuboid.backs.push(face(false));
                     cuboid.backs.push(face(true));
                 }
@@ -202,20 +201,4 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
         }
     }
     extreme
-}
-
-/// The unit vector along an axis.
-pub fn axis_vector<T: Real>(axis: usize) -> Ball3<T> {
-    [0, 1, 2].map(|i| Ball::exact(f64::from(u8::from(i == axis))))
-}
-
-/// The order of numbers that are not NaN.
-trait TotalOrder {
-    fn total_order(self, other: f64) -> Ordering;
-}
-
-impl TotalOrder for f64 {
-    fn total_order(self, other: f64) -> Ordering {
-        self.partial_cmp(&other).unwrap_or(Ordering::Equal)
-    }
 }

@@ -190,7 +190,7 @@ fn power<T: Real>(
     square: &Ball<T>,
 ) -> (Ball<T>, Ordering) {
     let power = dot(from_eye, from_eye) - square;
-    if power.rad <= power.size() * PRECISE
+    if power.is_precise()
         && let Ok(side) = power.sign()
     {
         return (power, side);
@@ -202,10 +202,6 @@ fn power<T: Real>(
     let side = power.sign();
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
-
-/// A computed number whose relative error is at most this needs no exact arithmetic: it is far below what one `f64` tells,
-/// and Double's decisions allow for it.
-pub const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
 
 /// Error bounds of Q and c·r over a window, from the sizes of the centre's coordinates, their error, R² and its error.
 fn radii<T: Real>(

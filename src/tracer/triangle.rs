@@ -8,7 +8,6 @@ use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
     form::{Form, inverse_depth},
-    sphere::PRECISE,
 };
 use crate::{
     math::{Ball, Ball3, Big, Double, Doubt, Exact, Real, cross},
@@ -112,7 +111,7 @@ fn height<T: Real>(
     from_eye: &Ball3<T>,
 ) -> (Ball<T>, Ordering) {
     let h = crate::math::dot(from_eye, &normal.to_array().map(Ball::exact));
-    if h.rad <= h.size() * PRECISE
+    if h.is_precise()
         && let Ok(side) = h.sign()
     {
         return (h, side);
