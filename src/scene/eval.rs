@@ -3,7 +3,10 @@
 //! In: a value's tree and the names that are defined. Out: what it is, or problems. A value that failed is unknown (`None`),
 //! and what uses it stays silent. What a value is for is not known here, beyond the type that is wanted.
 
-use std::collections::HashMap;
+use std::{
+    cell::Cell,
+    collections::{HashMap, hash_map::Entry},
+};
 
 use glam::DVec3;
 
@@ -30,9 +33,16 @@ use crate::{
 pub struct Names<'s> {
     /// The `let`s so far.
     defined: HashMap<&'s str, Defined>,
+    /// The same names, in order.
+    order: Vec<&'s str>,
     /// Every `let` of the file, wherever it stands.
     everywhere: HashMap<&'s str, Span>,
+    /// How many names may still be compared in search of the nearest: a text with as many mistakes as names would take the
+    /// time of all pairs.
+    comparisons: Cell<usize>,
 }
+
+const MOST_COMPARISONS: usize = 1_000_000;
 
 #[derive(Clone, Copy, Debug)]
 struct Defined {
@@ -47,7 +57,10 @@ struct Defined {
 impl<'s> Names<'s> {
     /// No name is defined yet; these will be.
     pub fn new(everywhere: impl IntoIterator<Item = Name<'s>>) -> Self {
-        let mut names = Self::default();
+        let mut names = Self {
+            comparisons: Cell::new(MOST_COMPARISONS),
+            ..Self::default()
+        };
         for name in everywhere {
             names.everywhere.entry(name.text).or_insert(name.span);
         }
@@ -56,11 +69,14 @@ impl<'s> Names<'s> {
 
     /// Defines a name; a second time it keeps its value.
     pub fn define(&mut self, name: Name<'s>, value: Option<Value>, set: Option<SourceId>) {
-        self.defined.entry(name.text).or_insert(Defined {
-            value,
-            place: name.span,
-            set,
-        });
+        if let Entry::Vacant(free) = self.defined.entry(name.text) {
+            self.order.push(name.text);
+            free.insert(Defined {
+                value,
+                place: name.span,
+                set,
+            });
+        }
     }
 
     /// Where a name was defined, if it was.
@@ -71,6 +87,16 @@ impl<'s> Names<'s> {
     /// Whether any `let` of the file defines it.
     pub fn knows(&self, name: &str) -> bool {
         self.everywhere.contains_key(name)
+    }
+
+    /// The names that are defined so far, to search for the nearest.
+    fn to_compare(&self) -> &[&'s str] {
+        let left = self.comparisons.get().checked_sub(self.order.len());
+        self.comparisons.set(left.unwrap_or(0));
+        match left {
+            Some(_) => &self.order,
+            None => &[],
+        }
     }
 
     /// Every name that the file defines.
@@ -206,19 +232,14 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Problem {
-        let lets = self.names.defined.keys().copied();
+        let lets = self.names.to_compare().iter().copied();
         let colors = matches!(wanted, Some(Type::Color | Type::Colors));
-        let mut lets: Vec<&str> = lets.collect();
-        lets.sort_unstable();
         let near = if colors {
-            {
-                let lets = lets.into_iter();
-                suggest::nearest(name, lets.chain(css::names().map(|name| name as &str)))
-            }
+            suggest::nearest(name, lets.chain(css::names().map(|name| name as &str)))
         } else {
             let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
             let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-            let first = lets.into_iter().chain(constants).chain(functions);
+            let first = lets.chain(constants).chain(functions);
             suggest::nearest(name, first).or_else(|| match wanted {
                 None => suggest::nearest(name, css::names()),
                 Some(_) => None,

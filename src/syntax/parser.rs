@@ -76,6 +76,8 @@ struct Parser<'s> {
     deep: Vec<Deep>,
     items: Vec<Item<'s>>,
     problems: Vec<Problem>,
+    /// Whether the last item was lines without meaning.
+    in_odd_lines: bool,
 }
 
 type Pairs<'p> = Pair<'p, Rule>;
@@ -97,6 +99,7 @@ impl<'s> Parser<'s> {
             deep: std::mem::take(&mut walk.deep),
             items: Vec::new(),
             problems: Vec::new(),
+            in_odd_lines: false,
         };
         (parser, walk)
     }
@@ -150,6 +153,7 @@ impl<'s> Parser<'s> {
                 Rule::bad_item => self.bad_item(pair),
                 _ => break,
             }
+            self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
             if length == 0 {
                 break;
             }
@@ -683,18 +687,19 @@ impl<'s> Parser<'s> {
                     false => ValueKind::Bad,
                 };
                 let rest = self.text.get(whole.end..).unwrap_or_default();
-                match problem {
-                    Some(problem) => self.problems.push(problem),
-                    // Braces that follow are reported themselves.
-                    None if kind == ValueKind::Missing || rest.starts_with('{') => {}
-                    None => self.problems.push(junk::unexpected(self.text, span)),
+                // Braces that follow are reported themselves.
+                let braces = problem.is_none() && rest.trim_start().starts_with('{');
+                if kind == ValueKind::Bad && !braces {
+                    let unexpected = || junk::unexpected(self.text, span);
+                    let problem = problem.unwrap_or_else(unexpected);
+                    self.problems.push(problem);
+                    block.bad.push(span);
                 }
                 let value = Value {
                     kind,
                     span: Span::new(self.id, name.span.end, span.end),
                 };
                 block.fields.push(Field { name, value, span });
-                block.bad.push(span);
             }
             (None, problem) => {
                 let again = block
@@ -755,7 +760,15 @@ impl<'s> Parser<'s> {
             self.items.push(Item::Block(block));
         } else {
             let problem = junk::lines(self.text, odd, block.close, previous);
-            self.problems.insert(at, problem);
+            // Lines without meaning, one after the other, are one mistake.
+            let vague = matches!(
+                problem,
+                Problem::OutsideBlock { .. } | Problem::Unexpected { .. }
+            );
+            if !(vague && self.in_odd_lines) {
+                self.problems.insert(at, problem);
+            }
+            self.in_odd_lines = vague && block.close.is_none();
             self.items.push(Item::Bad(odd));
         }
     }
