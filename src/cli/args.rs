@@ -20,6 +20,8 @@ Examples:
   pinhole render figure.scn                      writes figure.png beside it
   pinhole render figure.scn -o big.exr --set image.width=3840 --set image.height=2160
   pinhole check *.scn
+  pinhole inspect figure.scn --format json
+  pinhole probe figure.scn 640.5 360.5
 
 Exit status: 0 done, warnings or not; 1 the scene has errors; 2 usage, a file that cannot be read or
 written, a picture too large for memory; 130 after Ctrl-C.";
@@ -33,6 +35,12 @@ pub enum Command {
     /// Report the problems of scenes
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Show what a scene means: camera, field of view, vanishing points, objects
+    #[command(after_help = INSPECT_EXAMPLES)]
+    Inspect(InspectArgs),
+    /// Follow one ray, surface by surface
+    #[command(after_help = PROBE_EXAMPLES)]
+    Probe(ProbeArgs),
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -56,6 +64,16 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
   pinhole check *.scn --format json              one line for each problem";
+
+const INSPECT_EXAMPLES: &str = "\
+Examples:
+  pinhole inspect figure.scn
+  pinhole inspect figure.scn --set camera.roll=30deg --format json";
+
+const PROBE_EXAMPLES: &str = "\
+Examples:
+  pinhole probe figure.scn 640 360               the middle of a picture of 1280 × 720 pixels
+  pinhole probe figure.scn -10 0.5               left of the picture";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -108,6 +126,34 @@ pub struct CheckArgs {
     pub format: FormatArgs,
 }
 
+/// Arguments of `inspect`.
+#[derive(Debug, clap::Args)]
+pub struct InspectArgs {
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// Arguments of `probe`.
+#[derive(Debug, clap::Args)]
+pub struct ProbeArgs {
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    /// Pixels to the right of the picture's left edge; may be fractional, negative or outside
+    #[arg(allow_hyphen_values = true, value_parser = finite)]
+    pub x: f64,
+    /// Pixels down from the picture's top edge
+    #[arg(allow_hyphen_values = true, value_parser = finite)]
+    pub y: f64,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
 /// For whom the answer is.
 #[derive(Debug, clap::Args)]
 pub struct FormatArgs {
@@ -123,6 +169,14 @@ pub enum Format {
     Human,
     /// JSON for programs
     Json,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err("not a finite number".to_owned()),
+        Err(_) => Err("not a number".to_owned()),
+    }
 }
 
 #[cfg(test)]

@@ -6,9 +6,11 @@
 mod args;
 mod check;
 mod input;
+mod inspect;
 mod interrupt;
 mod manual;
 mod output;
+mod probe;
 mod progress;
 mod render;
 
@@ -28,6 +30,8 @@ pub fn run() -> ExitCode {
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Probe(args) => probe::run(&args),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });

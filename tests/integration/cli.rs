@@ -388,6 +388,79 @@ fn a_label_in_an_override_names_it_as_the_command_line_does() {
     }
 }
 
+/// Runs the binary, which has to print one line of JSON and nothing else.
+fn json(folder: &TempDir, arguments: &[&str]) -> serde_json::Value {
+    let text = String::from_utf8(done(folder, arguments)).unwrap();
+    assert!(text.ends_with('\n') && text.lines().count() == 1, "{text}");
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn inspect_says_what_a_scene_means() {
+    let folder = folder();
+    let found = json(
+        &folder,
+        &[
+            "inspect",
+            "a.scn",
+            "--format",
+            "json",
+            "--set",
+            "camera.roll=90deg",
+        ],
+    );
+    assert_eq!(
+        found["image"],
+        serde_json::json!({"width": 64, "height": 36})
+    );
+    assert_eq!(found["camera"]["d"], 2.75);
+    assert_eq!(found["camera"]["looks"], "down");
+    assert_eq!(
+        found["sampler"],
+        serde_json::json!({"method": "sobol", "per_pixel": 4, "total": 9216, "seed": 7})
+    );
+    assert_eq!(found["objects"][0]["name"], "Ball");
+    assert_eq!(found["objects"][0]["line"], 6);
+    assert_eq!(found["objects"][1]["name"], serde_json::Value::Null);
+    let output = pinhole(&folder, &["inspect", "a.scn"]);
+    assert_eq!((status(&output), output.stdout), (0, Vec::new()));
+    assert!(!output.stderr.is_empty());
+}
+
+#[test]
+fn probe_follows_a_ray_anywhere() {
+    let folder = folder();
+    let at = |x, y| json(&folder, &["probe", "a.scn", x, y, "--format", "json"]);
+    let found = at("32", "18");
+    assert_eq!(found["pixel"], serde_json::json!([32.0, 18.0]));
+    assert_eq!(found["hits"][0]["kind"], "checkerboard");
+    for (x, y) in [
+        ("-10", "0.5"),
+        ("-.5", "-1e3"),
+        ("1e300", "-1e300"),
+        ("-1.5e-7", "+4"),
+        ("0", "-0"),
+    ] {
+        assert_eq!(at(x, y)["pixel"][0], x.parse::<f64>().unwrap());
+    }
+    let output = pinhole(&folder, &["probe", "a.scn", "1", "2"]);
+    assert_eq!((status(&output), output.stdout), (0, Vec::new()));
+    assert!(!output.stderr.is_empty());
+}
+
+#[test]
+fn answers_about_a_scene_with_errors_are_nothing_but_the_errors() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
+    for arguments in [
+        &["inspect", "bad.scn", "--format", "json"][..],
+        &["probe", "bad.scn", "1", "2", "--format", "json"],
+    ] {
+        let errors = fails(&folder, arguments, 1);
+        assert!(errors.contains("error[pinhole::unknown_field]"), "{errors}");
+    }
+}
+
 #[test]
 fn wrong_usage_is_status_2() {
     let folder = folder();
@@ -399,6 +472,9 @@ fn wrong_usage_is_status_2() {
         &["render", "a.scn", "--set"],
         &["check"],
         &["check", "a.scn", "--format", "xml"],
+        &["probe", "a.scn", "1"],
+        &["probe", "a.scn", "1", "nan"],
+        &["probe", "a.scn", "1", "inf"],
         &["report", "a.scn"],
     ] {
         let errors = fails(&folder, arguments, 2);
@@ -409,7 +485,7 @@ fn wrong_usage_is_status_2() {
 #[test]
 fn help_has_examples_and_the_manual_all_commands() {
     let folder = folder();
-    for command in ["render", "check", "completions", "man"] {
+    for command in ["render", "check", "inspect", "probe", "completions", "man"] {
         let help = String::from_utf8(done(&folder, &[command, "--help"])).unwrap();
         assert!(
             help.contains(&format!("Examples:\n  pinhole {command}")),
@@ -424,12 +500,12 @@ fn help_has_examples_and_the_manual_all_commands() {
         concat!("pinhole ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()
     );
     let manual = String::from_utf8(done(&folder, &["man"])).unwrap();
-    for command in ["RENDER", "CHECK"] {
+    for command in ["RENDER", "CHECK", "INSPECT", "PROBE"] {
         assert!(manual.contains(&format!(".SH \"PINHOLE {command}\"")));
     }
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = String::from_utf8(done(&folder, &["completions", shell])).unwrap();
-        assert!(script.contains("threads"));
+        assert!(script.contains("inspect"));
     }
 }
 
