@@ -8,6 +8,7 @@ mod figure;
 mod film;
 mod images;
 mod oracle;
+mod readme;
 mod render;
 mod sampling;
 mod tracer;
