@@ -1,5 +1,10 @@
 //! One test binary, a module per subject.
 
 mod camera;
+mod diagnostics;
+mod language;
 mod oracle;
+mod overrides;
+mod robustness;
+mod syntax;
 mod tracer;
