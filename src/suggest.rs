@@ -17,20 +17,19 @@ pub fn nearest<'c>(
     let letters: Vec<char> = letters.iter().map(char::to_ascii_lowercase).collect();
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
-        let other: Vec<char> = candidate
-            .chars()
-            .take(LONGEST + 1)
-            .map(|letter| letter.to_ascii_lowercase())
-            .collect();
-        let allowed = letters.len().max(other.len()).div_ceil(3);
+        let length = candidate.chars().count();
+        let allowed = letters.len().max(length).div_ceil(3);
         // Half of a name of two letters is no longer the same name.
-        let allowed = allowed.min(letters.len().min(other.len()) / 2);
+        let allowed = allowed.min(letters.len().min(length) / 2);
         let allowed = best.map_or(allowed, |(least, _)| allowed.min(least.saturating_sub(1)));
-        if best.is_some_and(|(least, _)| least == 0)
-            || letters.len().abs_diff(other.len()) > allowed
-        {
+        let best_already = best.is_some_and(|(least, _)| least == 0);
+        if best_already || letters.len().abs_diff(length) > allowed {
             continue;
         }
+        let other: Vec<char> = candidate
+            .chars()
+            .map(|letter| letter.to_ascii_lowercase())
+            .collect();
         let slips = distance(&letters, &other);
         if slips <= allowed {
             best = Some((slips, candidate));

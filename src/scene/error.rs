@@ -279,9 +279,10 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("a vector has three parts, and this has {count}")]
-    #[diagnostic(code(pinhole::vector_size), help("{help}"))]
-    VectorSize {
+    #[error("{whole}, and this has {count}")]
+    #[diagnostic(code(pinhole::part_count), help("{help}"))]
+    PartCount {
+        whole: &'static str,
         count: String,
         help: String,
         #[label("{label}")]
@@ -475,13 +476,13 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("`{written}` cannot be set")]
+    #[error("{message}")]
     #[diagnostic(
         code(pinhole::bad_target),
         help("a target is `BLOCK.FIELD`, such as `camera.roll`, or the name of a `let`")
     )]
     BadTarget {
-        written: String,
+        message: String,
         #[label("not a target")]
         span: Span,
     },

@@ -569,6 +569,7 @@ impl<'s> Evaluator<'_, 's> {
             0 => "none".to_owned(),
             1 => "one".to_owned(),
             2 => "two".to_owned(),
+            3 => "three".to_owned(),
             4 => "four".to_owned(),
             5 => "five".to_owned(),
             count => count.to_string(),
@@ -578,11 +579,9 @@ impl<'s> Evaluator<'_, 's> {
             .map(|element| shorten(self.sources.text(element.value.span)))
             .collect();
         if pair {
-            self.problems.push(Problem::PartType {
-                whole: "a pair of colours",
-                parts: "two colours",
-                written: self.quoted(span),
-                found: "not two of them",
+            self.problems.push(Problem::PartCount {
+                whole: "a pair of colours has two parts",
+                count: parts(elements.len()),
                 help: match texts.as_slice() {
                     [first, second, ..] => format!("write `({first}, {second})`"),
                     _ => "write two colours, such as `(gray, white)`".to_owned(),
@@ -598,7 +597,8 @@ impl<'s> Evaluator<'_, 's> {
             [x, y, z, ..] => format!("write `({x}, {y}, {z})`"),
             [x] => format!("write `({x}, {x}, {x})`"),
         };
-        self.problems.push(Problem::VectorSize {
+        self.problems.push(Problem::PartCount {
+            whole: "a vector has three parts",
             count: parts(elements.len()),
             help,
             span,

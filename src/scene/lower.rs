@@ -108,7 +108,7 @@ struct Block<'s> {
     given: Vec<Option<Given>>,
     /// Fields that were probably meant, by a mistyped name or in what was not understood.
     meant: Vec<&'static str>,
-    /// Whether the end of the block is missing.
+    /// Whether a field may have been lost.
     unfinished: bool,
 }
 
@@ -215,7 +215,12 @@ impl<'s> Lowering<'s> {
             name: block.name.filter(|_| row.is_object),
             given: vec![None; row.fields.len()],
             meant: Vec::new(),
-            unfinished: block.close.is_none(),
+            // The end is missing, or what stands before the `{` may have been a field.
+            unfinished: block.close.is_none()
+                || block
+                    .bad
+                    .iter()
+                    .any(|bad| Some(bad.start) < block.open.map(|open| open.start)),
         };
         for span in &block.bad {
             let text = self.sources.text(*span);

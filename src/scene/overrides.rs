@@ -64,7 +64,11 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
             true => Span::new(id, 0, target.len() + 1),
             false => Span::new(id, start, end),
         };
-        Box::new(Problem::BadTarget { written, span })
+        let message = match written.is_empty() {
+            true => "nothing is named before this `=`".to_owned(),
+            false => format!("`{written}` cannot be set"),
+        };
+        Box::new(Problem::BadTarget { message, span })
     };
     let (block, name) = match target.split_once('.') {
         Some((block, field)) => {

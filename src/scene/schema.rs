@@ -184,7 +184,7 @@ impl fmt::Display for Condition {
             Self::LessThanTwoTo(power) => write!(f, "less than 2^{power}"),
             Self::LessThanHalfTurn => f.write_str("more than 0 and less than 180deg"),
             Self::NotZero => f.write_str("other than (0, 0, 0)"),
-            Self::EachMoreThanZero => f.write_str("more than 0 on every axis"),
+            Self::EachMoreThanZero => f.write_str("more than 0 in every part"),
         }
     }
 }

@@ -107,8 +107,10 @@ struct Nesting {
     signs: usize,
     /// Whether a value is expected here, rather than an operator or a field's name.
     operand_may_follow: bool,
-    /// Where the outermost parenthesis or sign stands.
+    /// Where the outermost parenthesis, function or sign stands.
     outermost: usize,
+    /// Where the last token stands, if it is a word in the place of a value: a function, if a parenthesis follows.
+    function: Option<usize>,
     /// Where it became too deep.
     too_deep: Option<usize>,
 }
@@ -120,6 +122,7 @@ impl Nesting {
         // After a value the next word is a field's name or a kind, and its own value follows. Where a `let` or a second
         // name comes first, a minus cannot follow, so that it does not matter here.
         self.operand_may_follow = !value && !within && word != b"let";
+        self.function = value.then_some(at);
         if !value && !within {
             self.signs = 0;
             self.end(at, deep);
@@ -127,10 +130,11 @@ impl Nesting {
     }
 
     fn sign(&mut self, byte: u8, at: usize, deep: &mut Vec<Deep>) {
+        let function = self.function.take();
         match byte {
             b'(' | b'[' => {
                 if self.depth() == 0 {
-                    self.outermost = at;
+                    self.outermost = function.unwrap_or(at);
                 }
                 self.open.push(self.signs);
                 self.signs_outside += self.signs;

@@ -217,9 +217,11 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         let after_value = before.is_some_and(Token::ends_value);
         if token.kind == Kind::Odd {
             return Some(match token.text {
-                ";" | "=" | ":" => unexpected(token.text, token.span(span)),
                 "°" => degree_sign(before, token, span),
-                _ => unknown_operator(token.text, token.span(span)),
+                "^" | "**" | "%" | "×" | "·" | "÷" | "−" | "&" | "|" | "!" | "<" | ">" | "~" => {
+                    unknown_operator(token.text, token.span(span))
+                }
+                _ => unexpected(token.text, token.span(span)),
             });
         }
         if token.is_operator() && !after_value && !token.is("-") && !token.is("+") {

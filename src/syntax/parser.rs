@@ -765,11 +765,25 @@ impl<'s> Parser<'s> {
                 problem,
                 Problem::OutsideBlock { .. } | Problem::Unexpected { .. }
             );
+            // A name that was to be defined is known from here on.
+            let item = match &problem {
+                Problem::MissingLet { span, .. } => Item::Definition(Definition {
+                    keyword: Span::new(self.id, span.start, span.start),
+                    name: Some(Name {
+                        text: self.written(*span),
+                        span: *span,
+                    }),
+                    equals: None,
+                    value: bad(Span::new(self.id, odd.end, odd.end)),
+                    span: odd,
+                }),
+                _ => Item::Bad(odd),
+            };
             if !(vague && self.in_odd_lines) {
                 self.problems.insert(at, problem);
             }
             self.in_odd_lines = vague && block.close.is_none();
-            self.items.push(Item::Bad(odd));
+            self.items.push(item);
         }
     }
 

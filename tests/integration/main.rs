@@ -2,13 +2,17 @@
 
 mod answers;
 mod camera;
-#[cfg(feature = "cli")]
 mod cli;
+mod diagnostics;
 mod figure;
 mod film;
 mod images;
+mod language;
 mod oracle;
+mod overrides;
 mod readme;
 mod render;
+mod robustness;
 mod sampling;
+mod syntax;
 mod tracer;

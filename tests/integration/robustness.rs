@@ -1,0 +1,272 @@
+//! Whatever the text, reading it ends soon, says something if there is no scene, and points into the text.
+//!
+//! The times hold for a release build; a build without optimization gets more.
+
+use std::{
+    fs,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use pinhole::{
+    diagnostic::{self, Drawing, Report, Style},
+    scene,
+    source::{Source, Sources},
+};
+
+const MEGABYTE: usize = 1 << 20;
+const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
+
+/// Reads and reports a text; answers whether there is a scene.
+#[track_caller]
+fn read(bytes: impl Into<Vec<u8>>) -> bool {
+    let bytes = bytes.into();
+    let length = bytes.len();
+    let start = Instant::now();
+    let sources = Sources::new(Source::from_bytes("test.scn", bytes));
+    let reading = scene::read(&sources);
+    for drawing in [Drawing::Unicode, Drawing::Narrated] {
+        let style = Style {
+            drawing,
+            ..Style::default()
+        };
+        let text = Report::new(&sources, style).human(&reading.diagnostics);
+        assert!(text.len() < MEGABYTE, "{} bytes of reports", text.len());
+    }
+    let json = diagnostic::json_lines(&reading.diagnostics, &sources);
+    assert_eq!(json.lines().count(), reading.diagnostics.len());
+    let time = start.elapsed();
+    let bound = if cfg!(debug_assertions) { 60 } else { 4 };
+    assert!(
+        time < Duration::from_secs(bound),
+        "{time:?} for {length} bytes"
+    );
+
+    let errors = reading.diagnostics.iter().filter(|d| d.is_error()).count();
+    assert_eq!(
+        reading.scene.is_none(),
+        errors > 0,
+        "{:?}",
+        reading.diagnostics
+    );
+    for diagnostic in &reading.diagnostics {
+        assert!(!diagnostic.labels.is_empty(), "{diagnostic:?}");
+        for label in &diagnostic.labels {
+            let text = sources.get(label.span.source).text();
+            let range = label.span.range();
+            assert!(
+                text.get(range).is_some(),
+                "{diagnostic:?} beyond {} bytes",
+                text.len()
+            );
+        }
+    }
+    reading.scene.is_some()
+}
+
+fn examples() -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let entries = fs::read_dir(folder).expect("the examples are there");
+    let mut paths: Vec<_> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "scn"));
+    paths.sort();
+    paths
+        .iter()
+        .map(|path| fs::read(path).expect("a scene"))
+        .collect()
+}
+
+/// A small generator, so that the garbage is the same everywhere (Vigna's splitmix64).
+struct Garbage(u64);
+
+impl Garbage {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn of(&mut self, length: usize, letters: &[u8]) -> Vec<u8> {
+        let letter = |_| letters[(self.next() % letters.len() as u64) as usize];
+        (0..length).map(letter).collect()
+    }
+}
+
+#[test]
+fn empty_texts() {
+    assert!(!read(""));
+    assert!(!read("\n"));
+    assert!(!read("\u{feff}"));
+    assert!(!read("\0"));
+    assert!(!read("// nothing"));
+}
+
+#[test]
+fn garbage() {
+    let mut garbage = Garbage(1);
+    let bytes: Vec<u8> = (0..=255).collect();
+    assert!(!read(garbage.of(MEGABYTE, &bytes)));
+    assert!(!read(
+        garbage.of(MEGABYTE, b" \n{}()+-*/,abcdef0123456789.#=\"let sphere")
+    ));
+    assert!(!read(garbage.of(MEGABYTE, b"(){}[] -,a1")));
+    assert!(!read(garbage.of(MEGABYTE, b" ")));
+    let many: String = (0..MEGABYTE / 4)
+        .filter_map(|_| char::from_u32((garbage.next() % 0x11_0000) as u32))
+        .collect();
+    assert!(!read(many));
+}
+
+#[test]
+fn one_thing_a_million_times() {
+    for piece in [
+        "{",
+        "}",
+        "(",
+        ")",
+        "[",
+        "-",
+        "+",
+        "/",
+        "/*",
+        "*/",
+        "//",
+        "\"",
+        "'",
+        "a ",
+        "a\n",
+        "1 ",
+        "1,",
+        ".",
+        "#",
+        "=",
+        "let ",
+        "let a ",
+        "a = ",
+        "sphere ",
+        "sphere {",
+        "sphere {}",
+        "a{",
+        "a(",
+        "a (1\n",
+        "let a = (",
+        "°",
+        "\u{feff}",
+    ] {
+        assert!(!read(piece.repeat(MEGABYTE / piece.len())), "{piece:?}");
+        let within = format!(
+            "{CAMERA} sphere {{ center {}",
+            piece.repeat(MEGABYTE / 4 / piece.len())
+        );
+        read(within);
+    }
+}
+
+#[test]
+fn deep_values() {
+    for (open, inner, close) in [
+        ("(", "1", ")"),
+        ("-", "1", ""),
+        ("abs(", "1", ")"),
+        ("(", "", ""),
+        ("-(", "", ""),
+    ] {
+        let value = format!("{}{inner}{}", open.repeat(100_000), close.repeat(100_000));
+        assert!(!read(format!("{CAMERA} let a = {value}")), "{open}");
+    }
+    let long = vec!["1"; 100_000].join(" + ");
+    assert!(
+        read(format!("{CAMERA} let a = {long}")),
+        "a long sum is not deep"
+    );
+    let long = vec!["1"; 100_000].join(" * ");
+    assert!(
+        read(format!("{CAMERA} let a = {long}")),
+        "nor is a long product"
+    );
+}
+
+#[test]
+fn ten_megabytes_in_a_line() {
+    let ten = 10 * MEGABYTE;
+    assert!(read(format!("{CAMERA}// {}", "long ".repeat(ten / 5))));
+    assert!(read(format!("{CAMERA}{}", " ".repeat(ten))));
+    assert!(!read(format!("{CAMERA}{}", "x".repeat(ten))));
+    assert!(!read(format!("{CAMERA}let {} = 1 + red", "x".repeat(ten))));
+    assert!(!read(format!(
+        "{CAMERA}sphere {{ {} center (0, 1, 0) radus 2 }}",
+        " ".repeat(ten)
+    )));
+}
+
+#[test]
+fn many_mistakes_and_many_names() {
+    let lines = |line: &dyn Fn(usize) -> String| {
+        let lines: String = (0..20_000).map(line).collect();
+        format!("{CAMERA}{lines}")
+    };
+    assert!(!read(lines(&|i| format!("let a{i} = b{i}\n"))));
+    assert!(!read(lines(&|i| format!("let a = {i}\n"))));
+    assert!(!read(lines(
+        &|_| "sphere A { center (0, 1, 0) }\n".to_owned()
+    )));
+    assert!(!read(lines(&|_| CAMERA.to_owned())));
+    assert!(!read(lines(&|_| "sphere { center (0, 1, 0 }\n".to_owned())));
+    assert!(read(
+        lines(&|i| format!("let a{} = a{i} + 1\n", i + 1)).replacen("let a1 = a0", "let a1 = 0", 1)
+    ));
+}
+
+#[test]
+fn every_example_is_right_and_says_what_it_shows() {
+    for example in examples() {
+        assert!(example.starts_with(b"// "));
+        assert!(read(example));
+    }
+}
+
+#[test]
+fn every_prefix_of_every_example() {
+    for example in examples() {
+        for end in 0..example.len() {
+            read(&example[..end]);
+        }
+    }
+}
+
+#[test]
+fn every_example_without_any_one_byte() {
+    for example in examples() {
+        for gone in 0..example.len() {
+            let mut bytes = example.clone();
+            bytes.remove(gone);
+            read(bytes);
+        }
+    }
+}
+
+#[test]
+fn every_example_with_windows_line_ends_and_a_byte_order_mark() {
+    for example in examples() {
+        let text = String::from_utf8(example).expect("a text");
+        assert!(read(format!("\u{feff}{}", text.replace('\n', "\r\n"))));
+    }
+}
+
+#[test]
+fn random_changes_of_an_example() {
+    let example = examples().swap_remove(0);
+    let mut garbage = Garbage(2);
+    let letters = b"(){}[]-+*/,.;:=\"'#a1 \n\xff";
+    for _ in 0..2000 {
+        let mut bytes = example.clone();
+        for _ in 0..=garbage.next() % 3 {
+            let at = (garbage.next() % bytes.len() as u64) as usize;
+            bytes[at] = garbage.of(1, letters)[0];
+        }
+        read(bytes);
+    }
+}
