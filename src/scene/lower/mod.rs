@@ -1,0 +1,520 @@
+//! Tree → scene.
+//!
+//! In: the tree of a file and the overrides. Out: the scene, or what is wrong with it. The items are walked once, in order:
+//! every name is defined and every field evaluated where it stands; then the overrides of fields are evaluated, which see
+//! all names; then each block is built. A problem of one field never hides one of another.
+
+mod build;
+mod overriding;
+mod words;
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use self::words::{missing_value, range_words, shown, type_help, unknown_field};
+use super::{
+    Reading, Scene,
+    error::Problem,
+    eval::{Evaluator, Names, predefined},
+    overrides::{self, Override},
+    schema::{self, Condition, Field, Kind, Type},
+    untangle::untangle,
+    value::{self, Value},
+};
+use crate::{
+    diagnostic::{self, Diagnostic},
+    source::{SourceId, Sources, Span},
+    suggest,
+    syntax::{
+        self, shorten,
+        tree::{self, Definition, Item, Name, ValueKind},
+    },
+};
+
+/// Reads a scene: parses the file and the overrides, and makes of them what they mean.
+pub fn read(sources: &Sources) -> Reading {
+    let parsed = syntax::parse(&sources.file, SourceId::File);
+    let problems = parsed.problems.iter();
+    let mut diagnostics: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
+    let overrides = overrides::read(sources, &mut diagnostics);
+    let mut lowering = Lowering {
+        sources,
+        cut: parsed.cut.is_some(),
+        names: Names::new(definitions(&parsed.tree)),
+        overrides,
+        blocks: Vec::new(),
+        problems: Vec::new(),
+        slips: Vec::new(),
+    };
+    let scene = lowering.scene(&parsed.tree);
+    let problems = lowering.problems.iter();
+    diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
+    let slips = lowering.slips.iter();
+    diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
+    invalid_utf8(sources, &mut diagnostics);
+    diagnostic::sort(&mut diagnostics);
+    let failed = diagnostics.iter().any(Diagnostic::is_error);
+    Reading {
+        scene: scene.filter(|_| !failed),
+        diagnostics,
+    }
+}
+
+/// The names that a file defines, those that it may define.
+fn definitions<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = Name<'s>> + 't {
+    tree.items.iter().filter_map(|item| match item {
+        Item::Definition(definition) => definition.name.filter(|n| predefined(n.text).is_none()),
+        Item::Block(_) | Item::Bad(_) => None,
+    })
+}
+
+/// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they are in.
+fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
+    let invalid = sources.file.invalid_utf8();
+    let Some(&first) = invalid.first() else {
+        return;
+    };
+    let holds = |span: Span| {
+        let next = invalid.partition_point(|&byte| byte < span.start);
+        span.source == SourceId::File && invalid.get(next).is_some_and(|&byte| byte < span.end)
+    };
+    diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
+    let problem = syntax::Problem::InvalidUtf8 {
+        span: Span::new(SourceId::File, first, first + 1),
+        more: invalid.len() - 1,
+    };
+    diagnostics.push(Diagnostic::from_problem(&problem));
+}
+
+struct Lowering<'s> {
+    sources: &'s Sources,
+    /// Whether an unclosed comment took the end of the text.
+    cut: bool,
+    names: Names<'s>,
+    overrides: Vec<Override<'s>>,
+    blocks: Vec<Block<'s>>,
+    problems: Vec<Problem>,
+    /// Problems of syntax that show only when the names are known.
+    slips: Vec<syntax::Problem>,
+}
+
+/// A block with what it was given.
+struct Block<'s> {
+    row: &'static schema::Block,
+    keyword: Span,
+    span: Span,
+    name: Option<Name<'s>>,
+    /// For each field of the row what it was given.
+    given: Vec<Option<Given>>,
+    /// Fields that were probably meant, by a mistyped name or in what was not understood.
+    meant: Vec<&'static str>,
+    /// Whether a field may have been lost.
+    unfinished: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Given {
+    /// The field's name.
+    name: Span,
+    /// The value's text.
+    span: Span,
+    /// None if it failed.
+    value: Option<Value>,
+}
+
+impl<'s> Lowering<'s> {
+    fn scene(&mut self, tree: &syntax::Tree<'s>) -> Option<Scene> {
+        self.keep_last_overrides();
+        for item in &tree.items {
+            match item {
+                Item::Definition(definition) => self.definition(definition),
+                Item::Block(block) => self.block(block),
+                Item::Bad(_) => {}
+            }
+        }
+        self.names_of_objects();
+        self.override_fields();
+        self.override_targets();
+        let bad = tree.items.iter().filter_map(|item| match item {
+            Item::Bad(span) => Some(self.sources.text(*span)),
+            _ => None,
+        });
+        let bad: Vec<&str> = bad.collect();
+        self.build(&bad)
+    }
+
+    fn definition(&mut self, definition: &Definition<'s>) {
+        let set = definition.name.and_then(|name| {
+            let is = |o: &&Override<'_>| o.block.is_none() && o.name.text == name.text;
+            self.overrides.iter().find(is).cloned()
+        });
+        let first = definition
+            .name
+            .is_some_and(|name| self.names.place(name.text).is_none());
+        let value = match &set {
+            Some(set) if first => self.evaluate(&set.value, None),
+            Some(_) => None,
+            None => self.evaluate(&definition.value, None),
+        };
+        let Some(name) = definition.name else {
+            return;
+        };
+        if let Some(what) = predefined(name.text) {
+            self.problems.push(Problem::PredefinedName {
+                name: name.text.to_owned(),
+                what,
+                span: name.span,
+            });
+        } else if let Some(first) = self.names.place(name.text) {
+            self.problems.push(Problem::DuplicateLet {
+                name: name.text.to_owned(),
+                second: name.span,
+                first,
+            });
+        } else {
+            self.names.define(name, value, set.map(|set| set.id));
+        }
+    }
+
+    fn block(&mut self, block: &tree::Block<'s>) {
+        let Some(row) = self.row(block) else {
+            for field in &block.fields {
+                // A single name may be a word that only the unknown block knows.
+                if !matches!(field.value.kind, ValueKind::Name(_)) {
+                    self.evaluate(&field.value, None);
+                }
+            }
+            return;
+        };
+        if let Some(name) = block.name
+            && !row.is_object
+            && block.bad.is_empty()
+        {
+            self.problems.push(Problem::UnexpectedName {
+                noun: row.noun,
+                kind: row.name,
+                name: name.text.to_owned(),
+                span: name.span,
+            });
+        }
+        // Objects come in any number, and looking through all of them for each would take long.
+        let earlier = match row.is_object {
+            true => None,
+            false => self.blocks.iter().find(|other| other.row.kind == row.kind),
+        };
+        let duplicate = earlier.is_some();
+        if let Some(earlier) = earlier {
+            self.problems.push(Problem::DuplicateBlock {
+                name: row.name,
+                second: block.keyword(),
+                first: earlier.keyword,
+            });
+        }
+        let mut lowered = Block {
+            row,
+            keyword: block.keyword(),
+            span: block.span,
+            name: block.name.filter(|_| row.is_object),
+            given: vec![None; row.fields.len()],
+            meant: Vec::new(),
+            // The end is missing, or what stands before the `{` may have been a field.
+            unfinished: block.close.is_none()
+                || block
+                    .bad
+                    .iter()
+                    .any(|bad| Some(bad.start) < block.open.map(|open| open.start)),
+        };
+        for span in &block.bad {
+            let text = self.sources.text(*span);
+            let mentioned = row.field_names().filter(|name| mentions(text, name));
+            lowered.meant.extend(mentioned);
+        }
+        let replaced = self.replaced_fields(&lowered);
+        for field in untangle(
+            &block.fields,
+            row,
+            &self.names,
+            self.sources,
+            &mut self.slips,
+        )
+        .iter()
+        {
+            self.field(field, &mut lowered, &replaced);
+        }
+        self.conflicts(&lowered, &replaced);
+        if !duplicate {
+            self.blocks.push(lowered);
+        }
+    }
+
+    /// The table's row for a block; for a mistyped kind that of the nearest one.
+    fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static schema::Block> {
+        let kind = block.kind?;
+        let row = schema::block(kind.text);
+        if row.is_some() {
+            return row;
+        }
+        let near = schema::nearest_block(kind.text);
+        let kinds = suggest::list(schema::block_names());
+        let help = match near {
+            Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
+            None => format!("the kinds are {kinds}"),
+        };
+        self.problems.push(Problem::UnknownKind {
+            written: kind.text.to_owned(),
+            help,
+            span: kind.span,
+        });
+        near
+    }
+
+    fn field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>, replaced: &[&str]) {
+        let written = field.name.text;
+        let index = block.row.fields.iter().position(|row| row.name == written);
+        let row = index.and_then(|index| block.row.fields.get(index));
+        let (Some(index), Some(row)) = (index, row) else {
+            self.unknown_field(field, block);
+            return;
+        };
+        if matches!(field.value.kind, ValueKind::Missing) {
+            self.problems.push(missing_value(&field.name, Some(row)));
+        }
+        if replaced.contains(&row.name) {
+            return;
+        }
+        let value = self.typed(row, &field.value);
+        let given = Given {
+            name: field.name.span,
+            span: field.value.span,
+            value,
+        };
+        match block.given.get_mut(index) {
+            Some(Some(first)) => self.problems.push(Problem::DuplicateField {
+                name: row.name.to_owned(),
+                second: field.name.span,
+                first: first.name,
+            }),
+            Some(free) => *free = Some(given),
+            None => {}
+        }
+    }
+
+    fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
+        self.evaluate_loosely(&field.value);
+        block.meant.extend(block.row.nearest_field(field.name.text));
+        self.problems.push(unknown_field(block.row, &field.name));
+    }
+
+    /// Two fields that exclude each other: the later one is labelled first.
+    fn conflicts(&mut self, block: &Block<'s>, replaced: &[&str]) {
+        let mut reported = Vec::new();
+        for (row, given) in block.row.fields.iter().zip(&block.given) {
+            let Some(given) = given else { continue };
+            for (other, other_given) in block.row.fields.iter().zip(&block.given) {
+                let excluded = row.excludes.contains(&other.name);
+                let Some(earlier) = other_given.filter(|o| o.name.start < given.name.start) else {
+                    continue;
+                };
+                // One report for a box with center, size, min and max.
+                if !excluded || replaced.contains(&row.name) || !reported.is_empty() {
+                    continue;
+                }
+                reported.push(row.name);
+                let why = match block.row.kind {
+                    Kind::Camera if row.takes == Type::Vector => {
+                        "either a point or a direction says where the camera looks"
+                    }
+                    Kind::Camera => "either the distance or the angle says how much it sees",
+                    Kind::Sampler => "either one says how many samples there are",
+                    _ => "a box is given by center and size, or by min and max",
+                };
+                self.problems.push(Problem::ConflictingFields {
+                    later: row.name.to_owned(),
+                    earlier: other.name.to_owned(),
+                    why: why.to_owned(),
+                    second: given.name,
+                    first: earlier.name,
+                });
+            }
+        }
+    }
+
+    /// The value of a field, if it is of the field's type and keeps its conditions.
+    fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        let value = match row.takes {
+            Type::Method => return self.method(row, tree),
+            takes => self.evaluate(tree, Some(takes))?,
+        };
+        if value.kind() != row.takes {
+            self.wrong_type(row, tree, value);
+            return None;
+        }
+        let broken = row.must.iter().find(|condition| !holds(**condition, value));
+        if let Some(&condition) = broken {
+            self.out_of_range(row, condition, tree, value);
+            return None;
+        }
+        Some(value)
+    }
+
+    fn method(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        let list = suggest::list(schema::method_names());
+        let ValueKind::Name(written) = tree.kind else {
+            if !matches!(tree.kind, ValueKind::Bad | ValueKind::Missing) {
+                let found = self.evaluate(tree, None)?.kind();
+                let problem = Problem::WrongType {
+                    name: row.name.to_owned(),
+                    takes: row.takes.noun(),
+                    written: self.evaluator().quoted(tree.span),
+                    found: found.noun().to_owned(),
+                    help: format!("the methods are {list}"),
+                    span: tree.span,
+                    label: found.noun().to_owned(),
+                };
+                self.problems.push(problem);
+            }
+            return None;
+        };
+        if let Some(method) = schema::method(written) {
+            return Some(Value::Method(method));
+        }
+        let help = match suggest::nearest(written, schema::method_names()) {
+            Some(near) => format!("did you mean `{near}`? The methods are {list}."),
+            None => format!("the methods are {list}"),
+        };
+        self.problems.push(Problem::UnknownMethod {
+            written: written.to_owned(),
+            help,
+            span: tree.span,
+        });
+        None
+    }
+
+    fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) {
+        let evaluator = self.evaluator();
+        let label = evaluator.described(tree, value.kind());
+        let written = evaluator.quoted(tree.span);
+        let text = shorten(evaluator.sources.text(tree.span));
+        let problem = if (row.takes, value.kind()) == (Type::Angle, Type::Number) {
+            let [degrees, radians] = evaluator.with_units(tree);
+            Problem::BareAngle {
+                what: format!("`{}`", row.name),
+                written,
+                help: format!("write `{degrees}` (or `{radians}`)"),
+                span: tree.span,
+                label,
+            }
+        } else {
+            Problem::WrongType {
+                name: row.name.to_owned(),
+                takes: row.takes.noun(),
+                written,
+                found: value.kind().noun().to_owned(),
+                help: type_help(row, tree, value.kind(), &text),
+                span: tree.span,
+                label,
+            }
+        };
+        self.problems.push(problem);
+    }
+
+    fn out_of_range(
+        &mut self,
+        row: &Field,
+        condition: Condition,
+        tree: &tree::Value<'s>,
+        value: Value,
+    ) {
+        let written = shorten(self.sources.text(tree.span));
+        let found = match (&tree.kind, value) {
+            (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
+                shown(value)
+            }
+            _ => written,
+        };
+        let (label, help) = range_words(row, condition, value);
+        let message = match condition {
+            Condition::NotZero => format!("`{}` must not be zero", row.name),
+            _ => format!("`{}` must be {condition}, and it is {found}", row.name),
+        };
+        self.problems.push(Problem::OutOfRange {
+            message,
+            help,
+            span: tree.span,
+            label: label.to_owned(),
+        });
+    }
+
+    fn evaluate(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
+        self.evaluator().value(value, wanted)
+    }
+
+    /// Looks for mistakes in the value of something unknown.
+    fn evaluate_loosely(&mut self, value: &tree::Value<'s>) {
+        if !matches!(value.kind, ValueKind::Name(_)) {
+            self.evaluate(value, None);
+        }
+    }
+
+    fn evaluator(&mut self) -> Evaluator<'_, 's> {
+        Evaluator {
+            sources: self.sources,
+            names: &self.names,
+            problems: &mut self.problems,
+        }
+    }
+
+    fn names_of_objects(&mut self) {
+        let mut first: HashMap<&str, Span> = HashMap::new();
+        for block in &self.blocks {
+            let Some(name) = block.name else { continue };
+            let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
+            if reserved {
+                self.problems.push(Problem::ReservedName {
+                    name: name.text.to_owned(),
+                    span: name.span,
+                });
+            } else if let Some(&first) = first.get(name.text) {
+                self.problems.push(Problem::DuplicateName {
+                    name: name.text.to_owned(),
+                    second: name.span,
+                    first,
+                });
+            } else {
+                first.insert(name.text, name.span);
+            }
+        }
+    }
+}
+
+impl Block<'_> {
+    fn given(&self, name: &str) -> Option<Given> {
+        let index = self.row.fields.iter().position(|row| row.name == name)?;
+        self.given.get(index).copied().flatten()
+    }
+}
+
+/// Whether a word stands in a text.
+fn mentions(text: &str, word: &str) -> bool {
+    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+    text.split(other).any(|found| found == word)
+}
+
+/// Whether a value keeps a condition; one of another type has no say in it.
+fn holds(condition: Condition, value: Value) -> bool {
+    let two_to = |power: u32| (1_u64 << power) as f64;
+    match (condition, value) {
+        (Condition::Whole, Value::Number(x)) => x.fract() == 0.0,
+        (Condition::MoreThan(bound), Value::Number(x)) => x > bound,
+        (Condition::AtLeast(bound), Value::Number(x)) => x >= bound,
+        (Condition::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
+        (Condition::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
+        (Condition::LessThanHalfTurn, Value::Angle(angle)) => {
+            value::compare_with_zero(angle).is_gt() && value::compare_with_half_turn(angle).is_lt()
+        }
+        (Condition::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
+        (Condition::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
+        _ => true,
+    }
+}
