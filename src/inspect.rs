@@ -132,9 +132,9 @@ fn vanishing_point(scene: &Scene, basis: &Basis, axis: usize) -> Option<[f64; 2]
     Some([rounded(&x), rounded(&y)])
 }
 
-/// Rounded to `f64`, without a negative zero.
+/// Rounded to a finite `f64`, without a negative zero.
 fn rounded(x: &Big) -> f64 {
-    x.to_f64() + 0.0
+    x.to_finite() + 0.0
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];

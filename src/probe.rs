@@ -31,8 +31,7 @@ pub struct Probe {
 /// Follows the ray through a point of the picture plane.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
-    let reach = (pixel - half).abs().max(half);
-    let world = World::reaching(scene, reach);
+    let world = World::reaching(scene, (pixel - half).abs());
     let (direction, hits) = world.ray(pixel);
     let visible = hits.iter().find(|hit| hit.visible);
     let color = visible.map_or(scene.image.background, |hit| hit.color);

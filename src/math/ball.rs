@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Big, Real};
+use super::{Big, Radius, Real};
 
 /// What a decision answers that the precision at hand cannot make: the next precision has to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,11 +14,11 @@ pub struct Doubt;
 /// counts four times over), which costs nothing but an occasional question to the next precision. A radius that is infinite
 /// or NaN, as after an overflow, holds every number.
 #[derive(Clone, Debug)]
-pub struct Ball<T> {
+pub struct Ball<T: Real> {
     /// The computed number.
     pub mid: T,
     /// How far the true one may be, ≥ 0.
-    pub rad: f64,
+    pub rad: T::Radius,
 }
 
 /// Radii are computed in `f64`, to be rounded up: a few dozen roundings are less than this factor.
@@ -29,16 +29,16 @@ impl<T: Real> Ball<T> {
     pub fn exact(x: f64) -> Self {
         Self {
             mid: T::from_f64(x),
-            rad: 0.0,
+            rad: T::Radius::ZERO,
         }
     }
 
     /// A computed number whose operands contribute `inherited` to its radius.
-    fn rounded(mid: T, inherited: f64) -> Self {
+    fn rounded(mid: T, inherited: T::Radius) -> Self {
         let rounding = if mid.is_zero() {
-            0.0
+            T::Radius::ZERO
         } else {
-            4.0 * T::UNIT * mid.to_f64().abs() + T::TINY
+            mid.magnitude() * (4.0 * T::UNIT) + T::TINY
         };
         Self {
             mid,
@@ -48,17 +48,17 @@ impl<T: Real> Ball<T> {
 
     /// a − b.
     pub fn difference(a: f64, b: f64) -> Self {
-        Self::rounded(T::difference(a, b), 0.0)
+        Self::rounded(T::difference(a, b), T::Radius::ZERO)
     }
 
     /// The rounding of a more precise number.
     pub fn from_big(x: &Big) -> Self {
-        Self::rounded(T::from_big(x), 0.0)
+        Self::rounded(T::from_big(x), T::Radius::ZERO)
     }
 
     /// The size of its middle.
-    pub fn size(&self) -> f64 {
-        self.mid.to_f64().abs()
+    pub fn size(&self) -> T::Radius {
+        self.mid.magnitude()
     }
 
     /// Whether the relative error is far below what an `f64` tells, so that exact arithmetic would add nothing to it but the
@@ -76,13 +76,13 @@ impl<T: Real> Ball<T> {
     /// Less than, equal to or greater than zero. What the last precision cannot tell from zero is zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
-        let mid = self.mid.to_f64();
-        let rad = self.rad * UP;
-        if mid > rad {
-            Ok(Ordering::Greater)
-        } else if mid < -rad {
-            Ok(Ordering::Less)
-        } else if T::LAST || (self.rad == 0.0 && self.mid.is_zero()) {
+        if self.is_clear() {
+            Ok(if self.mid.is_negative() {
+                Ordering::Less
+            } else {
+                Ordering::Greater
+            })
+        } else if T::LAST || (self.rad == T::Radius::ZERO && self.mid.is_zero()) {
             Ok(Ordering::Equal)
         } else {
             Err(Doubt)
@@ -109,10 +109,10 @@ impl<T: Real> Ball<T> {
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
         // Exact, but for an underflow.
-        let lost = if self.mid.is_zero() { 0.0 } else { T::TINY };
+        let lost = lost_of::<T>(self.mid.is_zero());
         Self {
             mid,
-            rad: libm::ldexp(self.rad, exponent) + lost,
+            rad: self.rad.scaled(exponent) + lost,
         }
     }
 
@@ -128,7 +128,7 @@ impl<T: Real> Ball<T> {
         }
         let root = self.mid.sqrt();
         // |√a − √b| = |a − b| / (√a + √b)
-        let inherited = self.rad / root.to_f64();
+        let inherited = self.rad / root.magnitude();
         Self::rounded(root, inherited)
     }
 
@@ -137,12 +137,14 @@ impl<T: Real> Ball<T> {
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
-        let below = self.mid.minus(&floor).to_f64();
-        let above = ceiling.minus(&self.mid).to_f64();
-        // A radius beyond any size that the differences could be rounded by.
-        let rad = self.rad * UP + 4.0 * T::UNIT;
-        let exact = |mid| Self { mid, rad: 0.0 };
-        if self.rad == 0.0 || (below >= rad && above > rad) {
+        let below = self.mid.minus(&floor).magnitude();
+        let above = ceiling.minus(&self.mid).magnitude();
+        let rad = self.rad * UP;
+        let exact = |mid| Self {
+            mid,
+            rad: T::Radius::ZERO,
+        };
+        if self.rad == T::Radius::ZERO || (below > rad && above > rad) {
             Ok((exact(floor), odd))
         } else if !T::LAST {
             Err(Doubt)
@@ -168,11 +170,7 @@ impl<T: Real> Ball<T> {
         let mid = self.mid.times(&other.mid);
         let (a, b) = (self.size(), other.size());
         let inherited = a * other.rad + self.rad * b + self.rad * other.rad;
-        let lost = if self.mid.is_zero() || other.mid.is_zero() {
-            0.0
-        } else {
-            T::TINY
-        };
+        let lost = lost_of::<T>(self.mid.is_zero() || other.mid.is_zero());
         Self::rounded(mid, inherited + lost)
     }
 
@@ -181,14 +179,14 @@ impl<T: Real> Ball<T> {
         if !other.is_clear() {
             return Self {
                 mid: T::from_f64(0.0),
-                rad: f64::INFINITY,
+                rad: T::Radius::INFINITE,
             };
         }
         let mid = self.mid.over(&other.mid);
         // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|) / |b'|, and |b'| is at least what the radius leaves of b.
-        let least = other.size() - other.rad * UP;
-        let lost = if self.mid.is_zero() { 0.0 } else { T::TINY };
-        let inherited = (self.rad + mid.to_f64().abs() * other.rad) / least * UP + lost;
+        let least = other.size().without(other.rad * UP);
+        let lost = lost_of::<T>(self.mid.is_zero());
+        let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;
         Self::rounded(mid, inherited)
     }
 }
@@ -249,6 +247,12 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
+/// What an operation may lose by an underflow, unless its exact result is zero.
+#[inline]
+fn lost_of<T: Real>(is_zero: bool) -> T::Radius {
+    if is_zero { T::Radius::ZERO } else { T::TINY }
+}
+
 /// A vector of balls.
 pub type Ball3<T> = [Ball<T>; 3];
 
@@ -287,7 +291,7 @@ mod tests {
     }
 
     /// Whether the precise number lies in the less precise ball.
-    fn contains<T: Real>(ball: &Ball<T>, precise: &Ball<Big>) -> bool {
+    fn contains<T: Real<Radius = f64>>(ball: &Ball<T>, precise: &Ball<Big>) -> bool {
         let mid = match size_of::<T>() {
             8 => Big::from_f64(ball.mid.to_f64()),
             // The low part is what subtracting the high one leaves.
@@ -296,7 +300,7 @@ mod tests {
                 Big::from_f64(ball.mid.to_f64()).plus(&Big::from_f64(low))
             }
         };
-        mid.minus(&precise.mid).to_f64().abs() <= ball.rad
+        Real::to_f64(&mid.minus(&precise.mid)).abs() <= ball.rad
     }
 
     proptest! {

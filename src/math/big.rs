@@ -1,9 +1,9 @@
 //! Big numbers: what decides where double-double leaves a doubt.
 
 use dashu_float::{FBig, round::mode::HalfEven};
-use dashu_int::Sign;
+use dashu_int::{Sign, ops::BitTest};
 
-use super::{Angle, Real};
+use super::{Angle, Radius, Real, Wide};
 
 /// A binary floating-point number with 320 bits and an exponent that does not run out.
 #[derive(Clone, Debug)]
@@ -34,6 +34,16 @@ impl Big {
     pub fn tan_half(angle: Angle) -> Self {
         let (sin, cos) = sin_cos(angle, 0.5);
         Self::round(sin / cos)
+    }
+
+    /// The nearest finite `f64`, and not 0 for what is not 0.
+    pub fn to_finite(&self) -> f64 {
+        let x = self.to_f64().clamp(f64::MIN, f64::MAX);
+        match x == 0.0 && !self.is_zero() {
+            true if self.is_negative() => -f64::from_bits(1),
+            true => f64::from_bits(1),
+            false => x,
+        }
     }
 
     /// The angle whose tangent is this, in degrees.
@@ -70,16 +80,17 @@ fn exact(x: f64) -> Float {
     // Numbers of a scene are finite, and so are sample points; anything else would be a mistake of ours, and zero keeps it
     // from becoming a panic.
     debug_assert!(x.is_finite());
-    Float::try_from(x)
-        .unwrap_or(Float::ZERO)
-        .with_precision(0)
-        .value()
+    let x = if x.is_finite() { x } else { 0.0 };
+    let float = Float::try_from(x).unwrap_or(Float::ZERO);
+    float.with_precision(0).value()
 }
 
 impl Real for Big {
+    type Radius = Wide;
+
     const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
-    /// A big number does not underflow, but its radius does.
-    const TINY: f64 = f64::from_bits(1);
+    /// A big number does not underflow.
+    const TINY: Wide = Wide::ZERO;
     const LAST: bool = true;
 
     fn from_f64(x: f64) -> Self {
@@ -93,6 +104,17 @@ impl Real for Big {
     }
     fn to_f64(&self) -> f64 {
         self.0.to_f64().value()
+    }
+    fn magnitude(&self) -> Wide {
+        let repr = self.0.repr();
+        let bits = repr.significand().bit_len() as isize;
+        // Between 1/2 and 1, without regard to its exponent.
+        let fraction = self.0.clone() >> (repr.exponent() + bits);
+        let exponent = (repr.exponent() + bits) as i64;
+        Wide::new(fraction.to_f64().value().abs(), exponent)
+    }
+    fn is_negative(&self) -> bool {
+        !is_zero(&self.0) && self.0.sign() == Sign::Negative
     }
     fn is_zero(&self) -> bool {
         is_zero(&self.0)

@@ -51,6 +51,8 @@ pub fn two_product(a: f64, b: f64) -> Double {
 }
 
 impl Real for Double {
+    type Radius = f64;
+
     /// 2^−102 is above the 10u² of a quotient.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
     /// The splitting loses what falls below the subnormal numbers, a few times 2^−1074.
@@ -65,11 +67,20 @@ impl Real for Double {
     }
     fn from_big(x: &Big) -> Self {
         let hi = x.to_f64();
-        let lo = x.minus(&Big::from_f64(hi)).to_f64();
+        let lo = match hi.is_finite() {
+            true => x.minus(&Big::from_f64(hi)).to_f64(),
+            false => 0.0,
+        };
         Self { hi, lo }
     }
     fn to_f64(&self) -> f64 {
         self.hi
+    }
+    fn magnitude(&self) -> f64 {
+        self.hi.abs()
+    }
+    fn is_negative(&self) -> bool {
+        self.hi < 0.0
     }
     fn is_zero(&self) -> bool {
         self.hi == 0.0

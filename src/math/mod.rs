@@ -8,6 +8,7 @@ mod ball;
 mod big;
 mod double;
 pub mod exact;
+mod radius;
 mod real;
 pub mod trig;
 
@@ -15,4 +16,5 @@ pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
 pub use big::{Big, Exact};
 pub use double::{Double, two_product, two_sum};
+pub use radius::{Radius, Wide};
 pub use real::Real;

@@ -2,16 +2,20 @@
 
 use std::fmt::Debug;
 
+use super::Radius;
+
 /// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`](super::Big), from fast to precise.
 ///
 /// Operations take references, since a big number is not free to copy. Each result is off by at most
 /// [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64` or `Double` that
 /// overflows becomes infinite or NaN, which every decision takes for doubt.
 pub trait Real: Clone + Debug + Sized {
+    /// What bounds errors: as wide in range as the kind itself.
+    type Radius: Radius;
     /// Bound on the relative error of one operation.
     const UNIT: f64;
     /// Bound on the absolute error of one operation that underflows, its radius included.
-    const TINY: f64;
+    const TINY: Self::Radius;
     /// Whether there is no more precise kind to ask: a value that is not told from zero counts as zero.
     const LAST: bool;
 
@@ -23,6 +27,10 @@ pub trait Real: Clone + Debug + Sized {
     fn from_big(x: &super::Big) -> Self;
     /// The nearest `f64`, or one of the two nearest.
     fn to_f64(&self) -> f64;
+    /// Its absolute value, rounded.
+    fn magnitude(&self) -> Self::Radius;
+    /// Whether it is less than zero.
+    fn is_negative(&self) -> bool;
     /// Whether it is zero, and not merely too small for an `f64`.
     fn is_zero(&self) -> bool;
 
@@ -45,6 +53,7 @@ pub trait Real: Clone + Debug + Sized {
 }
 
 impl Real for f64 {
+    type Radius = f64;
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
@@ -61,6 +70,14 @@ impl Real for f64 {
     #[inline]
     fn to_f64(&self) -> f64 {
         *self
+    }
+    #[inline]
+    fn magnitude(&self) -> f64 {
+        self.abs()
+    }
+    #[inline]
+    fn is_negative(&self) -> bool {
+        *self < 0.0
     }
     #[inline]
     fn is_zero(&self) -> bool {

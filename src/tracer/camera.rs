@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    math::{Ball, Ball3, Big, Exact, Real},
+    math::{Ball, Ball3, Big, Exact, Real, UP},
     scene::{self, Image, Lens, Scene, Shape, View},
 };
 
@@ -115,18 +115,18 @@ impl Basis {
 
 /// The part of the picture's plane that sample points come from, as bounds on a ray's direction.
 #[derive(Clone, Copy, Debug)]
-pub struct Window {
+pub struct Window<R> {
     /// Greatest |X|.
-    pub x: f64,
+    pub x: R,
     /// Greatest |Y|.
-    pub y: f64,
+    pub y: R,
     /// Z.
-    pub z: f64,
+    pub z: R,
 }
 
 /// The camera in one precision.
 #[derive(Clone, Debug)]
-pub struct Camera<T> {
+pub struct Camera<T: Real> {
     /// Its eye, in the world.
     pub eye: DVec3,
     /// Lengths of the world are multiplied by two to this power, so that very large and very small worlds stay within the
@@ -136,12 +136,12 @@ pub struct Camera<T> {
     pub axes: [Ball3<T>; 3],
     /// The side of a pixel, in units of X and Y.
     pub pitch: T,
-    /// Z as T.
-    z: T,
+    /// Z.
+    pub z: T,
     /// Half the picture's width and height, in pixels.
     half: DVec2,
     /// Bounds on X and Y.
-    pub window: Window,
+    pub window: Window<T::Radius>,
 }
 
 /// A ray's direction (X, Y, Z) with its square; each of X and Y is off by at most 5 [`UNIT`](Real::UNIT) of itself.
@@ -180,7 +180,10 @@ impl<T: Real> Camera<T> {
         };
         let pitch = basis.pitch.scaled(-exponent);
         let z = Big::from_f64(1.0).scaled(-exponent);
-        let extent = |pixels: f64| pitch.times(&Big::from_f64(pixels)).to_f64() * crate::math::UP;
+        let extent = |pixels: f64| {
+            let extent = T::from_big(&pitch.times(&Big::from_f64(pixels)));
+            extent.magnitude() * UP + T::TINY
+        };
         let axis = |v: &[Big; 3]| v.each_ref().map(Ball::from_big);
         Self {
             eye,
@@ -193,7 +196,7 @@ impl<T: Real> Camera<T> {
             window: Window {
                 x: extent(reach.x),
                 y: extent(reach.y),
-                z: z.to_f64(),
+                z: T::from_big(&z).magnitude(),
             },
             pitch: T::from_big(&pitch),
             z: T::from_big(&z),

@@ -11,13 +11,13 @@ use super::{
     form::{Form, axis_vector, inverse_depth},
 };
 use crate::{
-    math::{Ball, Double, Doubt, Real},
+    math::{Ball, Double, Doubt, Radius, Real},
     scene,
 };
 
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
-pub struct Checkerboard<T> {
+pub struct Checkerboard<T: Real> {
     /// ℓ, the inverse depth of its plane.
     pub plane: Form<T>,
     /// ℓ in the unit of N, a power of two that is right for the eye's height.
@@ -37,7 +37,7 @@ impl<T: Real> Checkerboard<T> {
         }
         let height = camera.relative_coordinate(1, y);
         let plane = inverse_depth(camera, &axis_vector(1), &height);
-        let scale = -libm::frexp(height.size()).1;
+        let scale = -height.size().exponent();
         let h = height.scaled(scale);
         let up = camera.turned(&axis_vector(1));
         let (x, z) = (
@@ -52,7 +52,7 @@ impl<T: Real> Checkerboard<T> {
             let offset = Ball::exact(place.rest).scaled(exponent) / &side;
             let side = side.scaled(camera.exponent + scale - place.exponent - exponent);
             let v = [0, 1, 2].map(|i| &offset * &(&up[i] / &h) + &along[i] / &side);
-            Form::new(&v, &camera.window)
+            Form::new(camera, &v)
         };
         Some(Self {
             below: inverse_depth(camera, &axis_vector(1), &h),
@@ -90,7 +90,7 @@ impl<T: Real> Checkerboard<T> {
 
 impl Checkerboard<Double> {
     /// The same checkerboard for `f64`.
-    pub fn narrowed(&self, window: &Window) -> Checkerboard<f64> {
+    pub fn narrowed(&self, window: &Window<f64>) -> Checkerboard<f64> {
         Checkerboard {
             plane: self.plane.narrowed(window),
             below: self.below.narrowed(window),

@@ -1,10 +1,10 @@
 //! Where a ray meets a surface.
 
-use crate::math::Ball;
+use crate::math::{Ball, Real};
 
 /// A point of a ray on the surface of an object.
 #[derive(Clone, Debug)]
-pub struct Crossing<T> {
+pub struct Crossing<T: Real> {
     /// 1/λ for the point λr, > 0: the nearest crossing has the greatest one.
     pub inverse_depth: Ball<T>,
     /// Which part of the object's surface.

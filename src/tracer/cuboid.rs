@@ -12,13 +12,13 @@ use super::{
     form::{Form, axis_vector, inverse_depth},
 };
 use crate::{
-    math::{Double, Doubt, Real, UP},
+    math::{Double, Doubt, Radius, Real, UP},
     scene,
 };
 
 /// A box prepared for one picture.
 #[derive(Clone, Debug)]
-pub struct Cuboid<T> {
+pub struct Cuboid<T: Real> {
     /// Inverse depths of the planes that the eye looks at from outside: a ray is in the box from the least of them on.
     fronts: Vec<Face<T>>,
     /// Inverse depths of the planes that rays leave through: up to the greatest of them.
@@ -30,7 +30,7 @@ pub struct Cuboid<T> {
 
 /// The plane of a face.
 #[derive(Clone, Debug)]
-struct Face<T> {
+struct Face<T: Real> {
     inverse_depth: Form<T>,
     /// Twice the axis, and one more for the greater coordinate.
     index: u8,
@@ -57,7 +57,7 @@ impl<T: Real> Cuboid<T> {
             };
             let inward = |sign: f64| {
                 let normal = axis_vector::<T>(axis).map(|x| x.times_power(sign));
-                Form::new(&camera.turned(&normal), &camera.window)
+                Form::new(camera, &camera.turned(&normal))
             };
             match (eye.partial_cmp(&min[axis]), eye.partial_cmp(&max[axis])) {
                 (Some(Ordering::Less), _) => {
@@ -146,7 +146,7 @@ fn behind_eye<T: Real>(leave: Option<Crossing<T>>) -> Result<Option<Crossing<T>>
 
 impl Cuboid<Double> {
     /// The same box for `f64`.
-    pub fn narrowed(&self, window: &Window) -> Cuboid<f64> {
+    pub fn narrowed(&self, window: &Window<f64>) -> Cuboid<f64> {
         let narrow = |faces: &[Face<Double>]| {
             let face = |face: &Face<Double>| Face {
                 inverse_depth: face.inverse_depth.narrowed(window),
@@ -180,19 +180,19 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
             }
             Some(so_far) => {
                 let rad = so_far.inverse_depth.rad.max(inverse_depth.rad);
-                let difference = inverse_depth.mid.minus(&so_far.inverse_depth.mid).to_f64();
+                let difference = inverse_depth.mid.minus(&so_far.inverse_depth.mid);
                 // NaN, from an overflow, is not clear either.
-                let is_clear = difference.abs() > 2.0 * rad * UP;
-                if difference.partial_cmp(&0.0) == Some(which) {
+                let is_clear = difference.magnitude() > rad * (2.0 * UP);
+                if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                     *so_far = Crossing {
                         inverse_depth,
                         part,
                     };
                 }
-                so_far.inverse_depth.rad = if difference.is_nan() {
-                    f64::INFINITY
-                } else {
+                so_far.inverse_depth.rad = if difference.magnitude() >= T::Radius::ZERO {
                     rad
+                } else {
+                    T::Radius::INFINITE
                 };
                 if !is_clear {
                     so_far.part = Part::Edge;

@@ -8,11 +8,11 @@ use crate::math::{Ball, Ball3, Double, Real, UP};
 
 /// A linear form over the view plane with one bound on the error of its values, whatever the sample point.
 #[derive(Clone, Debug)]
-pub struct Form<T> {
+pub struct Form<T: Real> {
     /// Factors of X, Y and 1.
     factors: [T; 3],
     /// How far a computed value may be from the true one.
-    rad: f64,
+    rad: T::Radius,
 }
 
 /// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum; half as many again to
@@ -21,14 +21,15 @@ const ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
     /// The form v·r for a vector in the camera's axes.
-    pub fn new(v: &Ball3<T>, window: &Window) -> Self {
+    pub fn new(camera: &Camera<T>, v: &Ball3<T>) -> Self {
+        let window = &camera.window;
         let factors = [
             v[0].mid.clone(),
             v[1].mid.clone(),
-            v[2].mid.times(&T::from_f64(window.z)),
+            v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        let rad = (inherited + rounding::<T>(&factors, window)) * UP;
+        let rad = (inherited + rounding(&factors, window)) * UP;
         Self { factors, rad }
     }
 
@@ -44,32 +45,32 @@ impl<T: Real> Form<T> {
 
     /// Whether two forms have the same factors, as the forms of one plane have.
     pub fn equals(&self, other: &Self) -> bool {
-        let equal = |(a, b): (&T, &T)| a.minus(b).to_f64() == 0.0;
+        let equal = |(a, b): (&T, &T)| a.minus(b).is_zero();
         self.factors.iter().zip(&other.factors).all(equal)
     }
 }
 
 impl Form<Double> {
     /// The same form for `f64`.
-    pub fn narrowed(&self, window: &Window) -> Form<f64> {
+    pub fn narrowed(&self, window: &Window<f64>) -> Form<f64> {
         let factors = self.factors.map(|factor| factor.hi);
         Form {
-            rad: (self.rad + rounding::<f64>(&factors, window)) * UP,
+            rad: (self.rad + rounding(&factors, window)) * UP,
             factors,
         }
     }
 }
 
 /// What rounding adds to the error of a form's values.
-fn rounding<T: Real>(factors: &[T; 3], window: &Window) -> f64 {
-    let [a, b, c] = factors.each_ref().map(|factor| factor.to_f64().abs());
-    ROUNDINGS * T::UNIT * (a * window.x + b * window.y + c) + T::TINY * (a + b + 8.0)
+fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius {
+    let [a, b, c] = factors.each_ref().map(Real::magnitude);
+    (a * window.x + b * window.y + c) * (ROUNDINGS * T::UNIT) + T::TINY * (a + b) + T::TINY * 8.0
 }
 
 /// The inverse depth of the plane n·q = h as a form, for n in the world's axes and points q as seen from the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
-    Form::new(&n, &camera.window)
+    Form::new(camera, &n)
 }
 
 /// The unit vector along an axis of the world.

@@ -16,7 +16,7 @@ use crate::{
 
 /// An object prepared for one picture.
 #[derive(Clone, Debug)]
-pub enum Object<T> {
+pub enum Object<T: Real> {
     /// A flat object in whose plane the eye lies.
     EdgeOn,
     /// A sphere.
@@ -87,7 +87,7 @@ impl<T: Real> Object<T> {
 
 impl Object<Double> {
     /// The same object for `f64`.
-    pub fn narrowed(&self, window: &Window) -> Object<f64> {
+    pub fn narrowed(&self, window: &Window<f64>) -> Object<f64> {
         match self {
             Self::EdgeOn => Object::EdgeOn,
             Self::Sphere(sphere) => Object::Sphere(sphere.narrowed(window)),

@@ -13,13 +13,13 @@ use super::{
     crossing::{Crossing, Part},
 };
 use crate::{
-    math::{Ball, Ball3, Double, Doubt, Exact, Real, UP, dot},
+    math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot},
     scene,
 };
 
 /// A sphere prepared for one picture. Its lengths are scaled by a power of two to be about 1.
 #[derive(Clone, Debug)]
-pub struct Sphere<T> {
+pub struct Sphere<T: Real> {
     /// The centre in the camera's axes.
     center: [T; 3],
     /// R².
@@ -31,9 +31,9 @@ pub struct Sphere<T> {
     /// What a scaled inverse depth is to be multiplied by: a power of two.
     scale: f64,
     /// Error bound of Q.
-    rad_q: f64,
+    rad_q: T::Radius,
     /// Error bound of c·r.
-    rad_b: f64,
+    rad_b: T::Radius,
 }
 
 /// As in a form's value, and once more for squares and their sum.
@@ -48,9 +48,9 @@ impl<T: Real> Sphere<T> {
         let greatest = from_eye
             .iter()
             .map(Ball::size)
-            .fold(radius_ball.size(), f64::max);
+            .fold(radius_ball.size(), Radius::max);
         // Within what powers of two an f64 holds; a factor of 2^74 more or less does no harm.
-        let exponent = (-libm::frexp(greatest.min(f64::MAX)).1).clamp(-1000, 1000);
+        let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
         let square = &radius_ball * &radius_ball;
@@ -65,8 +65,8 @@ impl<T: Real> Sphere<T> {
         );
         let c = camera.turned(&from_eye);
         let (rad_q, rad_b) = radii::<T>(
-            &c.each_ref().map(Ball::size),
-            c.iter().map(|x| x.rad).fold(0.0, f64::max),
+            c.each_ref().map(Ball::size),
+            c.iter().map(|x| x.rad).fold(T::Radius::ZERO, Radius::max),
             square.size(),
             square.rad,
             &camera.window,
@@ -132,12 +132,18 @@ impl<T: Real> Sphere<T> {
 
     /// Where the ray leaves the sphere: of the two forms of the root the one that does not cancel.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
-        let root = q.sqrt();
-        let inverse = if b.mid.to_f64() >= 0.0 {
-            let square = Ball {
-                rad: ROUNDINGS * T::UNIT * r.square.to_f64(),
-                mid: r.square.clone(),
-            };
+        let square = Ball {
+            rad: r.square.magnitude() * (ROUNDINGS * T::UNIT),
+            mid: r.square.clone(),
+        };
+        // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of it is the sharper one.
+        let other = b * b - &self.power * &square;
+        let root = if other.rad < q.rad {
+            other.sqrt()
+        } else {
+            q.sqrt()
+        };
+        let inverse = if !b.mid.is_negative() {
             square / (b + root)
         } else {
             (b - root) / &self.power
@@ -156,10 +162,10 @@ impl<T: Real> Sphere<T> {
 
 impl Sphere<Double> {
     /// The same sphere for `f64`.
-    pub fn narrowed(&self, window: &Window) -> Sphere<f64> {
+    pub fn narrowed(&self, window: &Window<f64>) -> Sphere<f64> {
         let center = self.center.map(|x| x.hi);
         let (rad_q, rad_b) = radii::<f64>(
-            &center.map(f64::abs),
+            center.map(f64::abs),
             0.0,
             self.square.hi,
             self.square.hi * f64::UNIT,
@@ -205,29 +211,29 @@ fn power<T: Real>(
 
 /// Error bounds of Q and c·r over a window, from the sizes of the centre's coordinates, their error, R² and its error.
 fn radii<T: Real>(
-    c: &[f64; 3],
-    rad_c: f64,
-    square: f64,
-    rad_square: f64,
-    window: &Window,
-) -> (f64, f64) {
-    let [cx, cy, cz] = *c;
+    [cx, cy, cz]: [T::Radius; 3],
+    rad_c: T::Radius,
+    square: T::Radius,
+    rad_square: T::Radius,
+    window: &Window<T::Radius>,
+) -> (T::Radius, T::Radius) {
     let Window { x, y, z } = *window;
     let unit = ROUNDINGS * T::UNIT;
-    let mut rad_q = 0.0;
-    let mut cross = 0.0;
+    let mut rad_q = T::Radius::ZERO;
+    let mut cross = T::Radius::ZERO;
     // The components of c × r: each a difference of two products.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),
         (cx * y + cy * x, x + y),
     ] {
-        let rad = rad_c * reach + unit * size;
-        rad_q += (2.0 * size + rad) * rad;
-        cross += size * size;
+        let rad = rad_c * reach + size * unit;
+        rad_q = rad_q + (size * 2.0 + rad) * rad;
+        cross = cross + size * size;
     }
     let r_square = x * x + y * y + z * z;
-    rad_q += rad_square * r_square + unit * (square * r_square + cross);
-    let rad_b = rad_c * (x + y + z) + unit * (cx * x + cy * y + cz * z);
-    ((rad_q + 8.0 * T::TINY) * UP, (rad_b + 8.0 * T::TINY) * UP)
+    rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
+    let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
+    let tiny = T::TINY * 8.0;
+    ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

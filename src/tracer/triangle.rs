@@ -10,13 +10,13 @@ use super::{
     form::{Form, inverse_depth},
 };
 use crate::{
-    math::{Ball, Ball3, Big, Double, Doubt, Exact, Real, cross},
+    math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross},
     scene,
 };
 
 /// A triangle prepared for one picture.
 #[derive(Clone, Debug)]
-pub struct Triangle<T> {
+pub struct Triangle<T: Real> {
     /// For each edge the form that is ≥ 0 on the triangle's side of it: the determinant of the edge's ends and the ray.
     pub edges: [Form<T>; 3],
     /// The inverse depth of its plane.
@@ -26,14 +26,12 @@ pub struct Triangle<T> {
 impl<T: Real> Triangle<T> {
     /// Prepares a triangle; `None` if its plane holds the eye, which sees it edge-on: not at all.
     pub fn new(camera: &Camera<T>, shape: &scene::Triangle) -> Option<Self> {
-        let normal = unit_scaled(shape.normal);
         let from_eye = camera.relative(shape.centroid);
-        let h = height(camera, shape.centroid, normal, &from_eye);
-        let side = h.1;
+        let (normal, height, side) = plane(camera, shape);
         if side.is_eq() {
             return None;
         }
-        let plane = inverse_depth(camera, &normal.to_array().map(Ball::exact), &h.0);
+        let plane = inverse_depth(camera, &normal, &height);
 
         // The edges' forms matter by their signs alone, so lengths may be scaled.
         let offsets = offsets::<T>(shape);
@@ -43,14 +41,14 @@ impl<T: Real> Triangle<T> {
             .iter()
             .flatten()
             .map(Ball::size)
-            .fold(0.0, f64::max);
-        let exponent = -libm::frexp(greatest.min(f64::MAX)).1;
+            .fold(T::Radius::ZERO, Radius::max);
+        let exponent = -greatest.exponent();
         let vertices = vertices.map(|vertex| camera.turned(&vertex.map(|x| x.scaled(exponent))));
         let edge = |a: &Ball3<T>, b: &Ball3<T>| {
             let n = cross(a, b);
             // Seen from behind the triangle's turn is the other way round.
             let n = if side.is_lt() { n.map(|x| -x) } else { n };
-            Form::new(&n, &camera.window)
+            Form::new(camera, &n)
         };
         let [left, right, apex] = &vertices;
         Some(Self {
@@ -87,7 +85,7 @@ impl<T: Real> Triangle<T> {
 
 impl Triangle<Double> {
     /// The same triangle for `f64`.
-    pub fn narrowed(&self, window: &Window) -> Triangle<f64> {
+    pub fn narrowed(&self, window: &Window<f64>) -> Triangle<f64> {
         Triangle {
             edges: self.edges.each_ref().map(|edge| edge.narrowed(window)),
             plane: self.plane.narrowed(window),
@@ -102,37 +100,22 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
         .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
 }
 
-/// The distance of the triangle's plane from the eye, times the normal's length, with a small relative error, and its exact
-/// sign.
-fn height<T: Real>(
-    camera: &Camera<T>,
-    centroid: DVec3,
-    normal: DVec3,
-    from_eye: &Ball3<T>,
-) -> (Ball<T>, Ordering) {
-    let h = crate::math::dot(from_eye, &normal.to_array().map(Ball::exact));
-    if h.is_precise()
-        && let Ok(side) = h.sign()
-    {
-        return (h, side);
-    }
-    let terms =
-        [0, 1, 2].map(|i| &Exact::difference(centroid[i], camera.eye[i]) * &Exact::new(normal[i]));
+/// The triangle's plane as seen from the eye: n and h of n·q = h, and on which side of the plane the eye lies, as the sign of
+/// h for the normal that the scene gives.
+///
+/// Here n is divided by its greatest component, and each number is a rounding of the true one: so triangles in one plane, with
+/// normals of whatever lengths, get the same n and h, and planes along the axes those of a box's faces.
+fn plane<T: Real>(camera: &Camera<T>, shape: &scene::Triangle) -> (Ball3<T>, Ball<T>, Ordering) {
+    let normal = shape.normal.to_array();
+    let greatest = shape.normal.abs().max_element();
+    let pivot = normal.into_iter().find(|x| x.abs() == greatest);
+    let pivot = Big::from_f64(pivot.unwrap_or(1.0));
+    let terms = [0, 1, 2]
+        .map(|i| &Exact::difference(shape.centroid[i], camera.eye[i]) * &Exact::new(normal[i]));
     let h = &(&terms[0] + &terms[1]) + &terms[2];
-    let side = h.sign();
-    (Ball::from_big(&h.to_big().scaled(camera.exponent)), side)
-}
-
-/// A vector divided by a power of two such that its greatest component is about 1; along an axis, the unit vector, so that
-/// planes that are equal get equal forms.
-fn unit_scaled(v: DVec3) -> DVec3 {
-    let axes = v.to_array().iter().filter(|x| **x != 0.0).count();
-    if axes == 1 {
-        let unit = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        return v.to_array().map(unit).into();
-    }
-    let exponent = libm::frexp(v.abs().max_element()).1;
-    v.to_array().map(|x| libm::ldexp(x, -exponent)).into()
+    let n = normal.map(|x| Ball::from_big(&Big::from_f64(x).over(&pivot)));
+    let height = h.to_big().over(&pivot).scaled(camera.exponent);
+    (n, Ball::from_big(&height), h.sign())
 }
 
 /// The vertices as seen from the centroid, in the world's axes: left base end, right base end, apex.

@@ -32,7 +32,7 @@ pub struct World {
 
 /// The camera and the objects in one precision.
 #[derive(Debug)]
-struct Frame<T> {
+struct Frame<T: Real> {
     camera: Camera<T>,
     /// Filled in when first asked for; `f64` at once.
     objects: Vec<OnceLock<Box<Object<T>>>>,
@@ -355,7 +355,7 @@ impl<T: Real> Frame<T> {
         let clip = |depth: f64| {
             let zero = Ball::exact(0.0);
             let inverse = Ball::exact(1.0) / camera.length(depth);
-            Form::new(&[zero.clone(), zero, inverse], &camera.window)
+            Form::new(&camera, &[zero.clone(), zero, inverse])
         };
         Self {
             near: (near > 0.0).then(|| clip(near)),
@@ -401,7 +401,7 @@ impl Level for Big {
 /// A coordinate or the square of a ray's direction, with what its few roundings may have cost.
 fn rounded(x: &Big) -> Ball<Big> {
     Ball {
-        rad: 32.0 * Big::UNIT * x.to_f64().abs() + Big::TINY,
+        rad: x.magnitude() * (32.0 * Big::UNIT),
         mid: x.clone(),
     }
 }
@@ -410,7 +410,7 @@ fn rounded(x: &Big) -> Ball<Big> {
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,
-        _ => x.mid.to_f64(),
+        _ => x.mid.to_finite(),
     }
 }
 

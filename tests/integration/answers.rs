@@ -225,3 +225,32 @@ fn what_the_probe_sees_is_what_the_picture_shows() {
         }
     }
 }
+
+#[test]
+fn the_widest_and_the_narrowest_views_are_probed() {
+    let lenses = [
+        "d 1e-300 view_height 1e300",
+        "d 1e300 view_height 1e-300",
+        "d 5e-324",
+        "d 1.7e308",
+    ];
+    for lens in lenses {
+        let text = format!(
+            "image {{ width 1 height 1 }} camera {{ eye (0, 1, 5) lookat (0, 1, 0) {lens} }} box {{ center (0, 1, 0) size (1, 1, 1) }}"
+        );
+        let probe = probed(&text, 0.5, 0.5);
+        let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
+        assert_eq!(depths, [4.5, 5.5], "{lens}");
+        let json = inspected(&text).to_json().to_string();
+        assert_eq!(json.matches("null").count(), 4, "{lens}: {json}");
+    }
+}
+
+#[test]
+fn what_is_beyond_the_range_of_numbers_is_shown_at_its_end() {
+    let text = "camera { eye (0, 1.7e308, 0) direction (0, -1, -1) } checkerboard {}";
+    let probe = probed(text, 400.0, 225.0);
+    let (hit, ..) = &probe.hits[0];
+    assert_eq!((hit.t, hit.depth), (f64::MAX, f64::MAX));
+    assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
+}

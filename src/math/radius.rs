@@ -1,0 +1,200 @@
+//! Bounds on errors.
+
+use std::ops::{Add, Div, Mul};
+
+/// A number ≥ 0 that bounds an error; computed carelessly, and rounded up where it counts.
+pub trait Radius:
+    Copy
+    + std::fmt::Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// No error at all.
+    const ZERO: Self;
+    /// No bound at all.
+    const INFINITE: Self;
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// self · 2^exponent.
+    fn scaled(self, exponent: i32) -> Self;
+    /// The exponent of the least power of two that is greater; 0 for 0.
+    fn exponent(self) -> i32;
+    /// What is left of it without `other`, which is smaller.
+    fn without(self, other: Self) -> Self;
+
+    /// The greater of two.
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+}
+
+impl Radius for f64 {
+    const ZERO: Self = 0.0;
+    const INFINITE: Self = f64::INFINITY;
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    fn scaled(self, exponent: i32) -> Self {
+        libm::ldexp(self, exponent)
+    }
+    fn exponent(self) -> i32 {
+        libm::frexp(self.min(f64::MAX)).1
+    }
+    #[inline]
+    fn without(self, other: Self) -> Self {
+        self - other
+    }
+}
+
+/// A number ≥ 0 whose exponent does not run out: mantissa · 2^exponent, the mantissa 0, infinite, or from 1 to below 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wide {
+    mantissa: f64,
+    exponent: i64,
+}
+
+impl Wide {
+    /// mantissa · 2^exponent for any mantissa ≥ 0.
+    pub fn new(mantissa: f64, exponent: i64) -> Self {
+        if mantissa == 0.0 || !mantissa.is_finite() {
+            return Self {
+                mantissa,
+                exponent: 0,
+            };
+        }
+        let (fraction, shift) = libm::frexp(mantissa);
+        Self {
+            mantissa: fraction * 2.0,
+            exponent: exponent + i64::from(shift) - 1,
+        }
+    }
+}
+
+impl PartialOrd for Wide {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        let ordinary = |x: f64| x != 0.0 && x.is_finite();
+        if ordinary(self.mantissa) && ordinary(other.mantissa) {
+            let by_exponent = self.exponent.cmp(&other.exponent);
+            return Some(by_exponent.then(self.mantissa.total_cmp(&other.mantissa)));
+        }
+        self.mantissa.partial_cmp(&other.mantissa)
+    }
+}
+
+impl Add for Wide {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let (large, small) = if self >= other {
+            (self, other)
+        } else {
+            (other, self)
+        };
+        if small.mantissa == 0.0 || !large.mantissa.is_finite() {
+            return Self {
+                mantissa: large.mantissa + small.mantissa,
+                ..large
+            };
+        }
+        // What is 2^1000 times smaller is less than what the sum is rounded up by.
+        let shift = (large.exponent - small.exponent).min(1000);
+        let sum = large.mantissa + libm::ldexp(small.mantissa, -(shift as i32));
+        Self::new(sum, large.exponent)
+    }
+}
+
+impl Mul for Wide {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self::new(
+            self.mantissa * other.mantissa,
+            self.exponent + other.exponent,
+        )
+    }
+}
+
+impl Div for Wide {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        Self::new(
+            self.mantissa / other.mantissa,
+            self.exponent - other.exponent,
+        )
+    }
+}
+
+impl Mul<f64> for Wide {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        self * Self::new(factor, 0)
+    }
+}
+
+impl Radius for Wide {
+    const ZERO: Self = Self {
+        mantissa: 0.0,
+        exponent: 0,
+    };
+    const INFINITE: Self = Self {
+        mantissa: f64::INFINITY,
+        exponent: 0,
+    };
+
+    fn sqrt(self) -> Self {
+        let odd = self.exponent & 1;
+        Self::new(
+            libm::ldexp(self.mantissa, odd as i32).sqrt(),
+            (self.exponent - odd) / 2,
+        )
+    }
+    fn scaled(self, exponent: i32) -> Self {
+        Self::new(self.mantissa, self.exponent + i64::from(exponent))
+    }
+    fn exponent(self) -> i32 {
+        let of_mantissa = i64::from(self.mantissa != 0.0);
+        (self.exponent + of_mantissa).clamp(-(1 << 20), 1 << 20) as i32
+    }
+    fn without(self, other: Self) -> Self {
+        let shift = (self.exponent - other.exponent).clamp(0, 1000);
+        let rest = self.mantissa - libm::ldexp(other.mantissa, -(shift as i32));
+        Self::new(rest.max(0.0), self.exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_numbers_are_numbers() {
+        let w = |x: f64| Wide::new(x, 0);
+        assert_eq!(w(3.0) + w(0.25), w(3.25));
+        assert_eq!(w(0.25) + w(3.0), w(3.25));
+        assert_eq!(w(3.0) * w(0.125), w(0.375));
+        assert_eq!(w(3.0) / w(4.0), w(0.75));
+        assert_eq!(w(2.25).sqrt(), w(1.5));
+        assert_eq!(w(0.5).sqrt(), w(0.5_f64.sqrt()));
+        assert_eq!(w(3.0) * 0.5, w(1.5));
+        assert_eq!(w(0.0) + w(2.0), w(2.0));
+        assert_eq!(w(2.0).without(w(0.5)), w(1.5));
+        assert_eq!(w(2.0).without(w(0.0)), w(2.0));
+        assert!(w(1.0) < w(1.5) && w(1.5) < w(4.0) && w(0.0) < w(1e-300));
+        assert!(w(1e300) < Wide::INFINITE && Wide::INFINITE + w(1.0) > w(1e300));
+    }
+
+    #[test]
+    fn exponents_do_not_run_out() {
+        let tiny = Wide::new(1.5, -5000);
+        assert!(tiny > Wide::ZERO && tiny < Wide::new(5e-324, 0));
+        assert_eq!(tiny.scaled(5000), Wide::new(1.5, 0));
+        assert_eq!(tiny * Wide::new(1.0, 5000), Wide::new(1.5, 0));
+        assert!(Wide::new(1.0, 0) + tiny >= Wide::new(1.0, 0));
+        assert_eq!(tiny.exponent(), -4999);
+        assert_eq!((Radius::exponent(0.75), Radius::exponent(1.0)), (0, 1));
+        assert_eq!(Wide::new(1.0, 0).exponent(), 1);
+    }
+}
