@@ -3,17 +3,18 @@
 use std::{
     process,
     sync::{
-        Arc,
+        Arc, OnceLock,
         atomic::{AtomicBool, Ordering},
     },
+    time::{Duration, Instant},
 };
 
 use super::{Status, Trouble};
 
 /// Whether the user has pressed Ctrl-C (or the system wants the process to end).
 ///
-/// Ends the process at once unless something has to be put away first; then it says so to whoever does. Pressed again, it ends the
-/// process in any case.
+/// Ends the process at once unless something has to be put away first; then it says so to whoever does. Pressed again after that has
+/// had its time, it ends the process in any case.
 #[derive(Clone)]
 pub struct Interrupt(Arc<Flags>);
 
@@ -22,7 +23,11 @@ struct Flags {
     /// Somebody looks at `pressed`.
     watched: AtomicBool,
     pressed: AtomicBool,
+    first: OnceLock<Instant>,
 }
+
+/// What has to be put away (a temporary file, threads) takes a small part of this.
+const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
     /// Starts to listen.
@@ -30,7 +35,8 @@ impl Interrupt {
         let flags = Arc::new(Flags::default());
         let interrupt = Self(Arc::clone(&flags));
         ctrlc::set_handler(move || {
-            let again = flags.pressed.swap(true, Ordering::SeqCst);
+            flags.pressed.store(true, Ordering::SeqCst);
+            let again = flags.first.get_or_init(Instant::now).elapsed() > GRACE;
             if again || !flags.watched.load(Ordering::SeqCst) {
                 process::exit(Status::Interrupted as i32);
             }

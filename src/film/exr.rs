@@ -20,7 +20,11 @@ pub fn write_exr(film: &Film, out: impl Write + Seek) -> io::Result<()> {
         (r as f32, g as f32, b as f32)
     });
     let encoding = Encoding {
-        compression: Compression::ZIP16,
+        // A block of 16 rows is in memory several times over, which for the widest pictures would be more than the film.
+        compression: match film.width() {
+            0..=0x1_0000 => Compression::ZIP16,
+            _ => Compression::ZIP1,
+        },
         blocks: Blocks::ScanLines,
         line_order: LineOrder::Increasing,
     };

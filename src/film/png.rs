@@ -40,7 +40,7 @@ pub struct Recipe {
 #[derive(Debug, Error)]
 pub enum NotOurs {
     /// It does not follow the format.
-    #[error("the picture is damaged: {0}")]
+    #[error("it begins as a PNG does, but is damaged or no picture")]
     Damaged(#[from] png::DecodingError),
     /// It has no scene in it.
     #[error(

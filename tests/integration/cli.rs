@@ -302,11 +302,23 @@ fn pictures_without_a_scene_are_trouble() {
         fails(&folder, &["render", "foreign.png", "-o", "b.png"], 2),
         "error: cannot read foreign.png: the picture carries no scene: another program wrote it, or its scene had more than 1 MiB of text\n"
     );
-    fs::write(folder.path().join("cut.png"), b"\x89PNG\r\n\x1a\n").unwrap();
-    let errors = fails(&folder, &["check", "cut.png"], 2);
-    assert!(
-        errors.starts_with("error: cannot read cut.png: the picture is damaged: "),
-        "{errors}"
+    for rest in [&b""[..], b"0123456789abcdef"] {
+        let cut = [b"\x89PNG\r\n\x1a\n", rest].concat();
+        fs::write(folder.path().join("cut.png"), cut).unwrap();
+        assert_eq!(
+            fails(&folder, &["check", "cut.png"], 2),
+            "error: cannot read cut.png: it begins as a PNG does, but is damaged or no picture\n"
+        );
+    }
+}
+
+#[test]
+fn standard_input_is_read_once() {
+    let output = pinhole_reading(&folder(), SCENE.as_bytes(), &["check", "-", "-"]);
+    assert_eq!(status(&output), 2);
+    assert_eq!(
+        errors(&output),
+        "error: standard input can be read once only, and `-` is given twice\n"
     );
 }
 
