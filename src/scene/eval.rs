@@ -42,7 +42,7 @@ pub struct Names<'s> {
     comparisons: Cell<usize>,
 }
 
-const MOST_COMPARISONS: usize = 1_000_000;
+const MOST_COMPARISONS: usize = 500_000;
 
 #[derive(Clone, Copy, Debug)]
 struct Defined {
@@ -89,14 +89,13 @@ impl<'s> Names<'s> {
         self.everywhere.contains_key(name)
     }
 
-    /// The names that are defined so far, to search for the nearest.
-    fn to_compare(&self) -> &[&'s str] {
-        let left = self.comparisons.get().checked_sub(self.order.len());
-        self.comparisons.set(left.unwrap_or(0));
-        match left {
-            Some(_) => &self.order,
-            None => &[],
-        }
+    /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
+    fn to_compare(&self) -> Option<&[&'s str]> {
+        const PREDEFINED: usize = 200;
+        let left = self.comparisons.get();
+        let left = left.checked_sub(self.order.len() + PREDEFINED)?;
+        self.comparisons.set(left);
+        Some(&self.order)
     }
 
     /// Every name that the file defines.
@@ -232,19 +231,9 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Problem {
-        let lets = self.names.to_compare().iter().copied();
         let colors = matches!(wanted, Some(Type::Color | Type::Colors));
-        let near = if colors {
-            suggest::nearest(name, lets.chain(css::names().map(|name| name as &str)))
-        } else {
-            let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
-            let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-            let first = lets.chain(constants).chain(functions);
-            suggest::nearest(name, first).or_else(|| match wanted {
-                None => suggest::nearest(name, css::names()),
-                Some(_) => None,
-            })
-        };
+        let lets = self.names.to_compare();
+        let near = lets.and_then(|lets| nearest(name, lets, wanted));
         let name = name.to_owned();
         if colors {
             let help = match near {
@@ -788,6 +777,22 @@ impl<'s> Evaluator<'_, 's> {
             false => format!("`{written}`"),
         }
     }
+}
+
+/// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
+fn nearest<'n>(name: &str, lets: &[&'n str], wanted: Option<Type>) -> Option<&'n str> {
+    let lets = lets.iter().copied();
+    let colors = css::names().map(|name| name as &str);
+    if matches!(wanted, Some(Type::Color | Type::Colors)) {
+        return suggest::nearest(name, lets.chain(colors));
+    }
+    let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
+    let functions = schema::FUNCTIONS.iter().map(|function| function.name);
+    let near = suggest::nearest(name, lets.chain(constants).chain(functions));
+    near.or_else(|| match wanted {
+        None => suggest::nearest(name, colors),
+        Some(_) => None,
+    })
 }
 
 /// How a function is called.

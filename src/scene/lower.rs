@@ -1,32 +1,28 @@
-//! Tree → scene.
+//! Tree → blocks with their values.
 //!
 //! In: the tree of a file and the overrides. Out: the scene, or what is wrong with it. The items are walked once, in order:
 //! every name is defined and every field evaluated where it stands; then the overrides of fields are evaluated, which see
-//! all names; then each block is built. A problem of one field never hides one of another.
+//! all names; then the scene is built. A problem of one field never hides one of another.
 
 use std::collections::HashMap;
 
-use glam::DVec3;
-
 use super::{
-    Camera, Count, Image, Lens, Object, Reading, Sampler, Scene, Shape, View, css,
+    Reading, Scene,
+    build::{self, Block, Given, Unread, mentions},
     error::Problem,
     eval::{Evaluator, Names, predefined},
-    level_direction,
+    field::{self, example},
     overrides::{self, Override},
-    schema::{self, Condition, Field, Kind, Literal, Preset, Type},
+    schema::{self, Field, Kind, Type},
     untangle::untangle,
-    value::{self, Value},
+    value::Value,
 };
 use crate::{
-    color::Color,
     diagnostic::{self, Diagnostic},
-    math::{Angle, exact},
-    numbers,
     source::{SourceId, Sources, Span},
     suggest,
     syntax::{
-        self, shorten,
+        self,
         tree::{self, Definition, Item, Name, ValueKind},
     },
 };
@@ -45,6 +41,7 @@ pub fn read(sources: &Sources) -> Reading {
         blocks: Vec::new(),
         problems: Vec::new(),
         slips: Vec::new(),
+        in_begun_blocks: false,
     };
     let scene = lowering.scene(&parsed.tree);
     let problems = lowering.problems.iter();
@@ -96,30 +93,8 @@ struct Lowering<'s> {
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
-}
-
-/// A block with what it was given.
-struct Block<'s> {
-    row: &'static schema::Block,
-    keyword: Span,
-    span: Span,
-    name: Option<Name<'s>>,
-    /// For each field of the row what it was given.
-    given: Vec<Option<Given>>,
-    /// Fields that were probably meant, by a mistyped name or in what was not understood.
-    meant: Vec<&'static str>,
-    /// Whether a field may have been lost.
-    unfinished: bool,
-}
-
-#[derive(Clone, Copy)]
-struct Given {
-    /// The field's name.
-    name: Span,
-    /// The value's text.
-    span: Span,
-    /// None if it failed.
-    value: Option<Value>,
+    /// Whether the last block was only begun.
+    in_begun_blocks: bool,
 }
 
 impl<'s> Lowering<'s> {
@@ -137,10 +112,13 @@ impl<'s> Lowering<'s> {
         self.override_targets();
         let bad = tree.items.iter().filter_map(|item| match item {
             Item::Bad(span) => Some(self.sources.text(*span)),
-            _ => None,
+            Item::Definition(_) | Item::Block(_) => None,
         });
-        let bad: Vec<&str> = bad.collect();
-        self.build(&bad)
+        let unread = Unread {
+            items: bad.collect(),
+            cut: self.cut,
+        };
+        build::scene(&self.blocks, &unread, &mut self.problems)
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {
@@ -197,11 +175,13 @@ impl<'s> Lowering<'s> {
                 span: name.span,
             });
         }
-        let earlier = self.blocks.iter().find(|other| other.row.kind == row.kind);
-        let duplicate = !row.is_object && earlier.is_some();
-        if let Some(earlier) = earlier
-            && duplicate
-        {
+        let same = |other: &&Block<'_>| other.row.kind == row.kind;
+        let earlier = match row.is_object {
+            true => None,
+            false => self.blocks.iter().find(same),
+        };
+        let duplicate = earlier.is_some();
+        if let Some(earlier) = earlier {
             self.problems.push(Problem::DuplicateBlock {
                 name: row.name,
                 second: block.keyword(),
@@ -253,6 +233,13 @@ impl<'s> Lowering<'s> {
             return row;
         }
         let near = schema::nearest_block(kind.text);
+        // Of blocks that are only begun, one after the other, the first is enough; so says the parser, too.
+        let begun = block.close.is_none() && block.fields.is_empty();
+        let again = self.in_begun_blocks && begun;
+        self.in_begun_blocks = begun;
+        if again {
+            return near;
+        }
         let kinds = suggest::list(schema::block_names());
         let help = match near {
             Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
@@ -280,7 +267,7 @@ impl<'s> Lowering<'s> {
         if replaced.contains(&row.name) {
             return;
         }
-        let value = self.typed(row, &field.value);
+        let value = field::value(&mut self.evaluator(), row, &field.value);
         let given = Given {
             name: field.name.span,
             span: field.value.span,
@@ -335,112 +322,6 @@ impl<'s> Lowering<'s> {
                 });
             }
         }
-    }
-
-    /// The value of a field, if it is of the field's type and keeps its conditions.
-    fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
-        let value = match row.takes {
-            Type::Method => return self.method(row, tree),
-            takes => self.evaluate(tree, Some(takes))?,
-        };
-        if value.kind() != row.takes {
-            self.wrong_type(row, tree, value);
-            return None;
-        }
-        let broken = row.must.iter().find(|condition| !holds(**condition, value));
-        if let Some(&condition) = broken {
-            self.out_of_range(row, condition, tree, value);
-            return None;
-        }
-        Some(value)
-    }
-
-    fn method(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
-        let list = suggest::list(schema::method_names());
-        let ValueKind::Name(written) = tree.kind else {
-            if !matches!(tree.kind, ValueKind::Bad | ValueKind::Missing) {
-                let found = self.evaluate(tree, None)?.kind();
-                let problem = Problem::WrongType {
-                    name: row.name.to_owned(),
-                    takes: row.takes.noun(),
-                    written: self.evaluator().quoted(tree.span),
-                    found: found.noun().to_owned(),
-                    help: format!("the methods are {list}"),
-                    span: tree.span,
-                    label: found.noun().to_owned(),
-                };
-                self.problems.push(problem);
-            }
-            return None;
-        };
-        if let Some(method) = schema::method(written) {
-            return Some(Value::Method(method));
-        }
-        let help = match suggest::nearest(written, schema::method_names()) {
-            Some(near) => format!("did you mean `{near}`? The methods are {list}."),
-            None => format!("the methods are {list}"),
-        };
-        self.problems.push(Problem::UnknownMethod {
-            written: written.to_owned(),
-            help,
-            span: tree.span,
-        });
-        None
-    }
-
-    fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) {
-        let evaluator = self.evaluator();
-        let label = evaluator.described(tree, value.kind());
-        let written = evaluator.quoted(tree.span);
-        let text = shorten(evaluator.sources.text(tree.span));
-        let problem = if (row.takes, value.kind()) == (Type::Angle, Type::Number) {
-            let [degrees, radians] = evaluator.with_units(tree);
-            Problem::BareAngle {
-                what: format!("`{}`", row.name),
-                written,
-                help: format!("write `{degrees}` (or `{radians}`)"),
-                span: tree.span,
-                label,
-            }
-        } else {
-            Problem::WrongType {
-                name: row.name.to_owned(),
-                takes: row.takes.noun(),
-                written,
-                found: value.kind().noun().to_owned(),
-                help: type_help(row, tree, value.kind(), &text),
-                span: tree.span,
-                label,
-            }
-        };
-        self.problems.push(problem);
-    }
-
-    fn out_of_range(
-        &mut self,
-        row: &Field,
-        condition: Condition,
-        tree: &tree::Value<'s>,
-        value: Value,
-    ) {
-        let written = shorten(self.sources.text(tree.span));
-        let found = match (&tree.kind, value) {
-            (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
-                shown(value)
-            }
-            _ => written,
-        };
-        let (label, help) = range_words(row, condition, value);
-        let message = match condition {
-            Condition::NotZero => format!("`{}` must not be zero", row.name),
-            _ => format!("`{}` must be {condition}, and it is {found}", row.name),
-        };
-        self.problems.push(Problem::OutOfRange {
-            message,
-            help,
-            span: tree.span,
-            label: label.to_owned(),
-        });
     }
 
     fn evaluate(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
@@ -555,7 +436,7 @@ impl<'s> Lowering<'s> {
                 self.problems.push(unknown_field(row, &set.name));
                 continue;
             };
-            let value = self.typed(field, &set.value);
+            let value = field::value(&mut self.evaluator(), field, &set.value);
             let given = Given {
                 name: set.name.span,
                 span: set.value.span,
@@ -594,460 +475,6 @@ impl<'s> Lowering<'s> {
             self.problems.extend(problem);
         }
     }
-
-    fn build(&mut self, bad: &[&str]) -> Option<Scene> {
-        let blocks = std::mem::take(&mut self.blocks);
-        for block in &blocks {
-            self.missing_fields(block);
-        }
-        let one = |kind| blocks.iter().find(|block| block.row.kind == kind);
-        let image = self.image(one(Kind::Image));
-        let sampler = self.sampler(one(Kind::Sampler), image);
-        let start = Span::new(SourceId::File, 0, 0);
-        let unknown = |name| self.cut || bad.iter().any(|text| mentions(text, name));
-        let camera = match one(Kind::Camera) {
-            Some(block) => self.camera(block),
-            None => {
-                if !unknown("camera") {
-                    self.problems.push(Problem::MissingCamera { span: start });
-                }
-                None
-            }
-        };
-        let mut objects = Vec::with_capacity(blocks.len());
-        for block in blocks.iter().filter(|block| block.row.is_object) {
-            objects.extend(self.object(block));
-        }
-        let none = !blocks.iter().any(|block| block.row.is_object);
-        if none && bad.is_empty() && !self.cut {
-            self.problems.push(Problem::NoObjects { span: start });
-        }
-        Some(Scene {
-            image: image?,
-            camera: camera?,
-            sampler: sampler?,
-            objects,
-        })
-    }
-
-    fn missing_fields(&mut self, block: &Block<'s>) {
-        if block.unfinished {
-            return;
-        }
-        let has = |name: &str| block.given(name).is_some() || block.meant.contains(&name);
-        let mut missing: Vec<String> = Vec::new();
-        let mut examples: Vec<String> = Vec::new();
-        let mut half = None;
-        for row in block.row.fields {
-            if row.preset == Preset::Required && !has(row.name) {
-                missing.push(format!("`{}`", row.name));
-                examples.push(format!("{} {}", row.name, example(row)));
-            }
-        }
-        if block.row.kind == Kind::Camera && !has("lookat") && !has("direction") {
-            missing.push("`lookat` or `direction`".to_owned());
-            examples.push("lookat (0, 1, 0)".to_owned());
-        }
-        if block.row.kind == Kind::Box && !has("center") {
-            match (has("min"), has("max")) {
-                (true, true) => {}
-                (false, false) => {
-                    missing.push("`center`, or `min` and `max`".to_owned());
-                    examples.push("center (0, 1, 0)".to_owned());
-                }
-                (true, false) => {
-                    missing.push("`max` beside its `min`".to_owned());
-                    examples.push("max (1, 1, 1)".to_owned());
-                    half = block.given("min").map(|given| given.name);
-                }
-                (false, true) => {
-                    missing.push("`min` beside its `max`".to_owned());
-                    examples.push("min (-1, 0, -1)".to_owned());
-                    half = block.given("max").map(|given| given.name);
-                }
-            }
-        }
-        if missing.is_empty() {
-            return;
-        }
-        let needed = suggest::list(missing.iter().map(String::as_str));
-        self.problems.push(Problem::MissingField {
-            message: format!("{} needs {needed}", block.row.noun),
-            help: format!("write `{}`", examples.join("  ")),
-            span: block.keyword,
-            label: match missing.len() {
-                1 => "it is not given".to_owned(),
-                _ => "they are not given".to_owned(),
-            },
-            half,
-        });
-    }
-
-    fn image(&mut self, block: Option<&Block<'s>>) -> Option<Image> {
-        let row = Fields::of(block, Kind::Image);
-        Some(Image {
-            width: row.number("width")? as u32,
-            height: row.number("height")? as u32,
-            background: row.color("background")?,
-        })
-    }
-
-    fn sampler(&mut self, block: Option<&Block<'s>>, image: Option<Image>) -> Option<Sampler> {
-        let fields = Fields::of(block, Kind::Sampler);
-        let pixels = image.map(|image| u64::from(image.width) * u64::from(image.height));
-        let total = block.and_then(|block| block.given("total"));
-        let count = match total {
-            Some(given) => {
-                let total = fields.number("total").map(|total| total as u64);
-                if let (Some(total), Some(pixels)) = (total, pixels)
-                    && total < pixels
-                {
-                    self.problems.push(Problem::FewSamples {
-                        total,
-                        pixels,
-                        span: given.span,
-                    });
-                }
-                total.map(Count::Total)
-            }
-            None => {
-                let per_pixel = fields.number("per_pixel").map(|count| count as u64);
-                let most = pixels.map(|pixels| (1 << 53) / pixels);
-                if let (Some(per_pixel), Some(most), Some(pixels)) = (per_pixel, most, pixels)
-                    && per_pixel > most
-                {
-                    // The default is never too many.
-                    let given = block.and_then(|block| block.given("per_pixel"));
-                    let start = Span::new(SourceId::File, 0, 0);
-                    self.problems.push(Problem::TooManySamples {
-                        per_pixel,
-                        pixels,
-                        most,
-                        span: given.map_or(start, |given| given.span),
-                    });
-                }
-                per_pixel.map(Count::PerPixel)
-            }
-        };
-        Some(Sampler {
-            method: fields.method("method")?,
-            count: count?,
-            seed: fields.number("seed")? as u64,
-        })
-    }
-
-    fn camera(&mut self, block: &Block<'s>) -> Option<Camera> {
-        let fields = Fields::of(Some(block), Kind::Camera);
-        let eye = fields.vector("eye");
-        let up = fields.vector("up");
-        let direction = block.given("direction");
-        let view = match direction {
-            Some(_) => fields.vector("direction").map(View::Direction),
-            None => fields.vector("lookat").map(View::Lookat),
-        };
-        let seen = block.given("lookat").or(direction);
-        if let (Some(eye), Some(view), Some(seen)) = (eye, view, seen) {
-            match view {
-                View::Lookat(point) if point == eye => self.problems.push(Problem::ViewUndefined {
-                    lookat: seen.span,
-                    eye: block.given("eye").map_or(block.keyword, |given| given.span),
-                }),
-                _ => self.up_parallel(block, eye, view, up, seen),
-            }
-        }
-        let near = fields.number("near");
-        let far = block
-            .given("far")
-            .map(|given| (given, fields.number("far")));
-        if let (Some(near), Some((given, Some(far)))) = (near, far)
-            && near >= far
-        {
-            self.empty_depth(block, near, far, given);
-        }
-        let lens = match block.given("fov") {
-            Some(_) => fields.angle("fov").map(Lens::Fov),
-            None => fields.number("d").map(Lens::Distance),
-        };
-        Some(Camera {
-            eye: eye?,
-            view: view?,
-            up: up?,
-            roll: fields.angle("roll")?,
-            lens: lens?,
-            view_height: fields.number("view_height")?,
-            near: near?,
-            far: match far {
-                Some((_, far)) => Some(far?),
-                None => None,
-            },
-        })
-    }
-
-    fn up_parallel(
-        &mut self,
-        block: &Block<'s>,
-        eye: DVec3,
-        view: View,
-        up: Option<DVec3>,
-        seen: Given,
-    ) {
-        let Some(up) = up else { return };
-        let (from, to) = match view {
-            View::Lookat(point) => (eye, point),
-            View::Direction(direction) => (DVec3::ZERO, direction),
-        };
-        if !exact::cross_is_zero(up, from, to) {
-            return;
-        }
-        // Against up, the top of the picture is the part of the level direction across up; along up, the opposite.
-        let level = level_direction(up);
-        let across = level * up.dot(up) - up * level.dot(up);
-        let along = exact::dot_sign(up, from, to).is_gt();
-        let top = if along { -across } else { across };
-        let shown = axis_name(top).unwrap_or_else(|| {
-            let largest = top.abs().max_element();
-            match largest > 0.0 && largest.is_finite() {
-                true => format!("towards {}", vector(top / largest)),
-                false => "across your `up`".to_owned(),
-            }
-        });
-        let suggested = axis_vector(top).unwrap_or_else(|| "(0, 1, 0)".to_owned());
-        let given = block.given("up");
-        let looks = match view {
-            View::Lookat(_) if given.is_some() => "parallel to the view direction".to_owned(),
-            View::Lookat(_) => format!("straight along up, which is {} if not given", vector(up)),
-            View::Direction(_) if given.is_some() => "parallel to the view direction".to_owned(),
-            View::Direction(_) => format!("parallel to up, which is {} if not given", vector(up)),
-        };
-        self.problems.push(Problem::UpParallel {
-            help: format!(
-                "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
-            ),
-            span: given.map_or(seen.span, |given| given.span),
-            label: looks,
-        });
-    }
-
-    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, given: Given) {
-        let near_given = block.given("near");
-        let (shown_near, shown_far) = (numbers::short(near), numbers::short(far));
-        self.problems.push(Problem::EmptyDepth {
-            help: match near_given {
-                Some(_) if far > 0.0 && near > far => {
-                    format!("exchange them: `near {shown_far}  far {shown_near}`")
-                }
-                _ => format!("write a number above {shown_near} after `far`, or leave it out"),
-            },
-            far: given.span,
-            far_label: match near_given {
-                Some(_) => format!("{shown_far} is not more"),
-                None => format!("not more than `near`, which is {shown_near} if not given"),
-            },
-            near: near_given.map(|given| given.span),
-            near_label: format!("than {shown_near}"),
-        });
-    }
-
-    fn object(&mut self, block: &Block<'s>) -> Option<Object> {
-        let fields = Fields::of(Some(block), block.row.kind);
-        let shape = match block.row.kind {
-            Kind::Sphere => Shape::Sphere {
-                center: fields.vector("center")?,
-                radius: fields.number("radius")?,
-                color: fields.color("color")?,
-            },
-            Kind::Triangle => self.triangle(block, &fields)?,
-            Kind::Box => self.cuboid(block, &fields)?,
-            Kind::Checkerboard => Shape::Checkerboard {
-                y: fields.number("y")?,
-                square: fields.number("square")?,
-                colors: fields.colors("colors")?,
-            },
-            Kind::Image | Kind::Camera | Kind::Sampler => return None,
-        };
-        Some(Object {
-            name: block.name.map(|name| name.text.to_owned()),
-            shape,
-            span: block.span,
-        })
-    }
-
-    fn triangle(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
-        let sides = fields.vector("sides")?;
-        if !exact::forms_triangle(sides.to_array()) {
-            let [a, b, c] = sides.to_array();
-            let (longest, [one, other], place) = if a >= b && a >= c {
-                (a, [b, c], "first")
-            } else if b >= c {
-                (b, [a, c], "second")
-            } else {
-                (c, [a, b], "third")
-            };
-            let shown = |x: f64| numbers::short(x);
-            self.problems.push(Problem::NotATriangle {
-                a: shown(a),
-                b: shown(b),
-                c: shown(c),
-                help: format!(
-                    "make the {place} side shorter than the two others together, or each of them longer"
-                ),
-                span: block.given("sides").map_or(block.keyword, |given| given.span),
-                label: format!(
-                    "{} is not less than {} + {}",
-                    shown(longest),
-                    shown(one),
-                    shown(other)
-                ),
-            });
-            return None;
-        }
-        Some(Shape::Triangle {
-            centroid: fields.vector("centroid")?,
-            normal: fields.vector("normal")?,
-            sides,
-            spin: fields.angle("spin")?,
-            color: fields.color("color")?,
-        })
-    }
-
-    fn cuboid(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
-        let corners = block.given("min").or(block.given("max"));
-        let (min, max) = match corners {
-            Some(_) => (fields.vector("min"), fields.vector("max")),
-            None => match (fields.vector("center"), fields.vector("size")) {
-                (Some(center), Some(size)) => {
-                    let (min, max) = exact::box_corners(center, size);
-                    (Some(min), Some(max))
-                }
-                _ => (None, None),
-            },
-        };
-        let color = fields.color("color");
-        let (min, max) = (min?, max?);
-        let axes = [
-            ("x", min.x, max.x),
-            ("y", min.y, max.y),
-            ("z", min.z, max.z),
-        ];
-        let span = |name| block.given(name).map_or(block.keyword, |g: Given| g.span);
-        if !min.is_finite() || !max.is_finite() {
-            let span = span("center");
-            self.problems.push(Problem::BoxTooLarge { span });
-            return None;
-        }
-        if let Some(&(axis, low, high)) = axes.iter().find(|(_, low, high)| low >= high) {
-            let (low, high) = (numbers::short(low), numbers::short(high));
-            self.problems.push(match corners {
-                Some(_) => Problem::EmptyBox {
-                    axis,
-                    help: format!("make `max` greater than `min` on every axis; along {axis} they are {high} and {low}"),
-                    span: span("max"),
-                    label: format!("{high} along {axis}"),
-                    other: Some(span("min")),
-                    other_label: format!("{low} along {axis}"),
-                },
-                None => Problem::EmptyBox {
-                    axis,
-                    help: "make it larger: so far from the origin, a number has no digits left for its size".to_owned(),
-                    span: block.given("size").map_or(span("center"), |g| g.span),
-                    label: format!("lost in rounding beside {low}"),
-                    other: None,
-                    other_label: String::new(),
-                },
-            });
-            return None;
-        }
-        Some(Shape::Box {
-            min,
-            max,
-            color: color?,
-        })
-    }
-}
-
-impl Block<'_> {
-    fn given(&self, name: &str) -> Option<Given> {
-        let index = self.row.fields.iter().position(|row| row.name == name)?;
-        self.given.get(index).copied().flatten()
-    }
-}
-
-/// The values of a block's fields, defaults included. None where a value is missing or failed.
-struct Fields<'b, 's> {
-    block: Option<&'b Block<'s>>,
-    kind: Kind,
-}
-
-impl<'b, 's> Fields<'b, 's> {
-    fn of(block: Option<&'b Block<'s>>, kind: Kind) -> Self {
-        Self { block, kind }
-    }
-
-    fn value(&self, name: &str) -> Option<Value> {
-        if let Some(given) = self.block.and_then(|block| block.given(name)) {
-            return given.value;
-        }
-        let row = schema::BLOCKS.iter().find(|row| row.kind == self.kind)?;
-        match row.field(name)?.preset {
-            Preset::Value(literal) => preset(literal),
-            Preset::Required | Preset::Alternative | Preset::Nothing => None,
-        }
-    }
-
-    fn number(&self, name: &str) -> Option<f64> {
-        match self.value(name)? {
-            Value::Number(number) => Some(number),
-            _ => None,
-        }
-    }
-
-    fn angle(&self, name: &str) -> Option<Angle> {
-        match self.value(name)? {
-            Value::Angle(angle) => Some(angle),
-            _ => None,
-        }
-    }
-
-    fn vector(&self, name: &str) -> Option<DVec3> {
-        match self.value(name)? {
-            Value::Vector(vector) => Some(vector),
-            _ => None,
-        }
-    }
-
-    fn color(&self, name: &str) -> Option<Color> {
-        match self.value(name)? {
-            Value::Color(color) => Some(color),
-            _ => None,
-        }
-    }
-
-    fn colors(&self, name: &str) -> Option<[Color; 2]> {
-        match self.value(name)? {
-            Value::Colors(colors) => Some(colors),
-            _ => None,
-        }
-    }
-
-    fn method(&self, name: &str) -> Option<super::Method> {
-        match self.value(name)? {
-            Value::Method(method) => Some(method),
-            _ => None,
-        }
-    }
-}
-
-fn preset(literal: Literal) -> Option<Value> {
-    Some(match literal {
-        Literal::Number(number) => Value::Number(number),
-        Literal::Degrees(degrees) => Value::Angle(Angle::from_degrees(degrees)),
-        Literal::Vector(vector) => Value::Vector(DVec3::from_array(vector)),
-        Literal::Color(name) => Value::Color(css::color(name)?),
-        Literal::Colors([first, second]) => {
-            Value::Colors([css::color(first)?, css::color(second)?])
-        }
-        Literal::Method(name) => Value::Method(schema::method(name)?),
-    })
 }
 
 fn is_target(block: &Block<'_>, target: &str) -> bool {
@@ -1056,12 +483,6 @@ fn is_target(block: &Block<'_>, target: &str) -> bool {
         Some(name) => name.text == target,
         None => false,
     }
-}
-
-/// Whether a word stands in a text.
-fn mentions(text: &str, word: &str) -> bool {
-    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
-    text.split(other).any(|found| found == word)
 }
 
 fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
@@ -1101,182 +522,4 @@ fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|first| first.to_ascii_uppercase());
     first.into_iter().chain(letters).collect()
-}
-
-/// A value that a field can have.
-fn example(row: &Field) -> String {
-    match (row.preset, row.takes) {
-        (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
-        (_, Type::Number) => "100".to_owned(),
-        (_, Type::Angle) => "30deg".to_owned(),
-        (_, Type::Vector) if row.name == "eye" => "(0, 2, 8)".to_owned(),
-        (_, Type::Vector) if row.name == "normal" => "(0, 0, 1)".to_owned(),
-        (_, Type::Vector) => "(0, 1, 0)".to_owned(),
-        (_, Type::Color) => "olive".to_owned(),
-        (_, Type::Colors) => "(gray, white)".to_owned(),
-        (_, Type::Method) => "jittered".to_owned(),
-    }
-}
-
-fn holds(condition: Condition, value: Value) -> bool {
-    let two_to = |power: u32| (1_u64 << power) as f64;
-    match (condition, value) {
-        (Condition::Whole, Value::Number(x)) => x.fract() == 0.0,
-        (Condition::MoreThan(bound), Value::Number(x)) => x > bound,
-        (Condition::AtLeast(bound), Value::Number(x)) => x >= bound,
-        (Condition::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
-        (Condition::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
-        (Condition::LessThanHalfTurn, Value::Angle(angle)) => {
-            value::compare_with_zero(angle).is_gt() && value::compare_with_half_turn(angle).is_lt()
-        }
-        (Condition::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
-        (Condition::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
-        _ => true,
-    }
-}
-
-/// The label and the help for a condition that does not hold.
-fn range_words(row: &Field, condition: Condition, value: Value) -> (&'static str, String) {
-    let example = example(row);
-    let number = match value {
-        Value::Number(number) => number,
-        _ => 0.0,
-    };
-    match condition {
-        Condition::Whole => {
-            let (below, above) = (number.floor(), number.ceil());
-            let help = match below >= 1.0 && above < 1e15 {
-                true => format!("write `{below}` or `{above}`"),
-                false => format!("write a whole number, such as `{example}`"),
-            };
-            ("not whole", help)
-        }
-        Condition::MoreThan(bound) if number < bound => (
-            "too small",
-            format!(
-                "write `{}`, or another number above {bound}",
-                numbers::short(-number)
-            ),
-        ),
-        Condition::MoreThan(bound) => (
-            "too small",
-            format!("write a number above {bound}, such as `{example}`"),
-        ),
-        Condition::AtLeast(bound) => ("too small", format!("write `{bound}` or more")),
-        Condition::AtMostTwoTo(power) => {
-            ("too large", format!("write `{}` or less", 1_u64 << power))
-        }
-        Condition::LessThanTwoTo(power) => (
-            "too large",
-            format!("write `{}` or less", (1_u64 << power) - 1),
-        ),
-        Condition::LessThanHalfTurn => (
-            "no field of view",
-            "write an angle that lies between, such as `40deg`".to_owned(),
-        ),
-        Condition::NotZero => (
-            "zero has no direction",
-            format!("write a vector that points somewhere, such as `{example}`"),
-        ),
-        Condition::EachMoreThanZero => (
-            "not all of these are above 0",
-            format!("write three numbers above 0, such as `{example}`"),
-        ),
-    }
-}
-
-fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -> String {
-    let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
-    match (row.takes, found, &tree.kind) {
-        (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => {
-            format!("write `{number}`, without a unit")
-        }
-        (Type::Number, Type::Angle, _) => {
-            format!("an angle divided by `1deg` is a number: `{text} / 1deg`")
-        }
-        (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
-            format!("write a number, such as the length of the vector: `length({text})`")
-        }
-        (Type::Vector, Type::Number, _) if literal && matches!(row.name, "size" | "sides") => {
-            format!("write three numbers, such as `({text}, {text}, {text})`")
-        }
-        (Type::Vector, Type::Number, _) => {
-            format!(
-                "write three numbers in parentheses, such as `{}`",
-                example(row)
-            )
-        }
-        (Type::Color, Type::Vector, _) if literal => {
-            format!("write `rgb{text}` if these are red, green and blue from 0 to 255")
-        }
-        (Type::Color, Type::Colors, ValueKind::Tuple(parts)) if parts.len() == 2 => {
-            "write one colour; only a checkerboard has two".to_owned()
-        }
-        (Type::Color, ..) => format!(
-            "write a colour, such as `{}`, `#808000` or `rgb(128, 128, 0)`",
-            example(row)
-        ),
-        (Type::Colors, Type::Color, _) => {
-            let other = match text {
-                "white" => "gray",
-                _ => "white",
-            };
-            format!("write two colours: `({text}, {other})`")
-        }
-        _ => format!("write {}, such as `{}`", row.takes.noun(), example(row)),
-    }
-}
-
-/// A computed value, for a message.
-fn shown(value: Value) -> String {
-    match value {
-        Value::Number(number) => numbers::short(number),
-        Value::Vector(v) => vector(v),
-        Value::Angle(Angle {
-            degrees,
-            radians: 0.0,
-        }) => format!("{}deg", numbers::short(degrees)),
-        Value::Angle(Angle {
-            degrees: 0.0,
-            radians,
-        }) => format!("{}rad", numbers::short(radians)),
-        Value::Angle(angle) => {
-            let degrees = angle.degrees + angle.radians.to_degrees();
-            format!("{}deg", numbers::short(degrees))
-        }
-        Value::Color(color) => color.to_string(),
-        Value::Colors([first, second]) => format!("({first}, {second})"),
-        Value::Method(method) => method.name().to_owned(),
-    }
-}
-
-fn vector(v: DVec3) -> String {
-    let [x, y, z] = v.to_array().map(numbers::short);
-    format!("({x}, {y}, {z})")
-}
-
-/// A vector along an axis, such as `−z`.
-fn axis_name(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let sign = if part < 0.0 { '−' } else { '+' };
-    Some(format!("{sign}{axis}"))
-}
-
-fn axis_vector(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let one = if part < 0.0 { "-1" } else { "1" };
-    Some(match axis {
-        'x' => format!("({one}, 0, 0)"),
-        'y' => format!("(0, {one}, 0)"),
-        _ => format!("(0, 0, {one})"),
-    })
-}
-
-fn axis(v: DVec3) -> Option<(char, f64)> {
-    match v.to_array() {
-        [x, 0.0, 0.0] if x != 0.0 => Some(('x', x)),
-        [0.0, y, 0.0] if y != 0.0 => Some(('y', y)),
-        [0.0, 0.0, z] if z != 0.0 => Some(('z', z)),
-        _ => None,
-    }
 }

@@ -14,9 +14,11 @@
     )
 )]
 
+mod build;
 mod css;
 mod error;
 mod eval;
+mod field;
 mod lower;
 mod overrides;
 pub mod schema;

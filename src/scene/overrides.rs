@@ -114,6 +114,7 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str]) -> Problem {
             kind.name,
             listed(objects)
         ),
+        (None, Some(near)) if objects == [near] => format!("did you mean `{near}`?"),
         (None, Some(near)) => format!("did you mean `{near}`? {}", listed(objects)),
         (None, None) => format!(
             "{} image, camera and sampler can be set too",

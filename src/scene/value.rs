@@ -197,8 +197,10 @@ mod tests {
     #[test]
     fn lengths_neither_overflow_nor_vanish() {
         assert_eq!(length(DVec3::new(3.0, 4.0, 0.0)), 5.0);
-        assert_eq!(length(DVec3::new(3e200, 4e200, 0.0)), 5e200);
-        assert_eq!(length(DVec3::new(3e-200, 4e-200, 0.0)), 5e-200);
+        for scale in [1e200, 1e-200] {
+            let v = DVec3::new(3.0, 4.0, 0.0) * scale;
+            assert!((length(v) / scale - 5.0).abs() < 2e-15);
+        }
         assert_eq!(length(DVec3::ZERO), 0.0);
         assert_eq!(length(DVec3::X * 5e-324), 5e-324);
         assert_eq!(normalize(DVec3::X * 5e-324), DVec3::X);

@@ -122,6 +122,11 @@ fn garbage() {
 
 #[test]
 fn one_thing_a_million_times() {
+    let length = if cfg!(debug_assertions) {
+        MEGABYTE / 16
+    } else {
+        MEGABYTE
+    };
     for piece in [
         "{",
         "}",
@@ -156,10 +161,10 @@ fn one_thing_a_million_times() {
         "°",
         "\u{feff}",
     ] {
-        assert!(!read(piece.repeat(MEGABYTE / piece.len())), "{piece:?}");
+        assert!(!read(piece.repeat(length / piece.len())), "{piece:?}");
         let within = format!(
             "{CAMERA} sphere {{ center {}",
-            piece.repeat(MEGABYTE / 4 / piece.len())
+            piece.repeat(length / 4 / piece.len())
         );
         read(within);
     }
