@@ -4,7 +4,7 @@
 //! and what uses it stays silent. What a value is for is not known here, beyond the type that is wanted.
 
 use std::{
-    cell::Cell,
+    cell::{Cell, RefCell},
     collections::{HashMap, hash_map::Entry},
 };
 
@@ -40,6 +40,8 @@ pub struct Names<'s> {
     /// How many names may still be compared in search of the nearest: a text with as many mistakes as names would take the
     /// time of all pairs.
     comparisons: Cell<usize>,
+    /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
+    reported: RefCell<HashMap<&'s str, usize>>,
 }
 
 const MOST_COMPARISONS: usize = 500_000;
@@ -181,7 +183,7 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    fn name(&mut self, name: &str, span: Span, wanted: Option<Type>) -> Option<Value> {
+    fn name(&mut self, name: &'s str, span: Span, wanted: Option<Type>) -> Option<Value> {
         if let Some(defined) = self.names.defined.get(name) {
             return defined.value;
         }
@@ -194,16 +196,26 @@ impl<'s> Evaluator<'_, 's> {
             "rad" => return Some(Value::Angle(Angle::from_radians(1.0))),
             _ => {}
         }
-        let problem = if let Some(function) = schema::function(name) {
-            Problem::FunctionWithoutArguments {
+        if let Some(function) = schema::function(name) {
+            self.problems.push(Problem::FunctionWithoutArguments {
                 name: name.to_owned(),
                 example: example(function),
                 span,
+            });
+            return None;
+        }
+        let mut reported = self.names.reported.borrow_mut();
+        if let Some(&index) = reported.get(name) {
+            if let Some(problem) = self.problems.get_mut(index) {
+                problem.and_here(span);
             }
-        } else if let Some(&definition) = self.names.everywhere.get(name) {
-            self.used_before(name, span, definition)
-        } else {
-            self.unknown_name(name, span, wanted)
+            return None;
+        }
+        reported.insert(name, self.problems.len());
+        drop(reported);
+        let problem = match self.names.everywhere.get(name) {
+            Some(&definition) => self.used_before(name, span, definition),
+            None => self.unknown_name(name, span, wanted),
         };
         self.problems.push(problem);
         None
@@ -227,6 +239,7 @@ impl<'s> Evaluator<'_, 's> {
             line: self.sources.get(definition.source).line(definition.start),
             span,
             definition,
+            more: Vec::new(),
         }
     }
 
@@ -240,13 +253,23 @@ impl<'s> Evaluator<'_, 's> {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
             };
-            return Problem::UnknownColor { name, help, span };
+            return Problem::UnknownColor {
+                name,
+                help,
+                span,
+                more: Vec::new(),
+            };
         }
         let help = match near {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("define it before it is used: `let {name} = …`"),
         };
-        Problem::UnknownName { name, help, span }
+        Problem::UnknownName {
+            name,
+            help,
+            span,
+            more: Vec::new(),
+        }
     }
 
     fn call(

@@ -286,7 +286,9 @@ impl<'s> Lowering<'s> {
 
     fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
         self.evaluate_loosely(&field.value);
-        block.meant.extend(block.row.nearest_field(field.name.text));
+        let near = block.row.nearest_field(field.name.text);
+        let joined = block.row.joined_field(field.name.text);
+        block.meant.extend(near.or(joined));
         self.problems.push(unknown_field(block.row, &field.name));
     }
 
@@ -506,9 +508,13 @@ fn unknown_field(row: &'static schema::Block, name: &Name<'_>) -> Problem {
     let mut fields: Vec<&str> = row.field_names().collect();
     let noun = capital(row.noun);
     let all = suggest::list(fields.drain(..));
-    let help = match row.nearest_field(name.text) {
-        Some(near) => format!("did you mean `{near}`? {noun} takes {all}."),
-        None => format!("{} takes {all}", row.noun),
+    let help = match (row.nearest_field(name.text), row.joined_field(name.text)) {
+        (Some(near), _) => format!("did you mean `{near}`? {noun} takes {all}."),
+        (None, Some(joined)) => {
+            let rest = name.text.get(joined.len()..).unwrap_or_default();
+            format!("did you mean `{joined} {rest}`? {noun} takes {all}.")
+        }
+        (None, None) => format!("{} takes {all}", row.noun),
     };
     Problem::UnknownField {
         noun: row.noun,

@@ -696,6 +696,25 @@ impl<'s> Parser<'s> {
         let whole = self.span(&pair);
         let span = self.trimmed(whole.start, whole.end);
         match junk::field(self.text, span) {
+            (
+                Some(name),
+                Some(Problem::MissingOperand {
+                    side: "before",
+                    span: operator,
+                    ..
+                }),
+            ) if self
+                .trimmed(name.span.end, operator.start)
+                .range()
+                .is_empty()
+                && !block.fields.is_empty() =>
+            {
+                // `center middle ring * 2`: no field's name stands before an operator.
+                let before = block.fields.last().map_or(span, |field| field.value.span);
+                let problem = junk::missing_operator(self.written(before), name.text, name.span);
+                self.problems.push(problem);
+                block.bad.push(span);
+            }
             (Some(name), problem) => {
                 let kind = match name.span.end == span.end {
                     true => ValueKind::Missing,
@@ -788,11 +807,11 @@ impl<'s> Parser<'s> {
             );
             // A name that was to be defined is known from here on.
             let item = match &problem {
-                Problem::MissingLet { span, .. } => Item::Definition(Definition {
-                    keyword: Span::new(self.id, span.start, span.start),
+                Problem::MissingLet { place, .. } => Item::Definition(Definition {
+                    keyword: Span::new(self.id, odd.start, odd.start),
                     name: Some(Name {
-                        text: self.written(*span),
-                        span: *span,
+                        text: self.written(*place),
+                        span: *place,
                     }),
                     equals: None,
                     value: bad(Span::new(self.id, odd.end, odd.end)),
