@@ -1,5 +1,34 @@
 //! Pinhole reads a small declarative scene language and renders what it describes through a virtual pinhole camera.
+//!
+//! The modules below stand in the order in which a scene becomes a picture; each imports those before it, none those after
+//! it. This is the whole way:
+//!
+//! ```
+//! # use std::sync::atomic::AtomicBool;
+//! use pinhole::{area::Area, film, render, sampling::Sampling, scene, source::*, tracer::World};
+//!
+//! let text = "camera { eye (0, 2, 5) lookat (0, 1, 0) } sphere { center (0, 1, 0) } checkerboard {}";
+//! let sources = Sources::new(Source::from_text("a.scn", text)).with_sets(["image.width=64", "image.height=36"]);
+//! let scene = scene::read(&sources).scene.expect("a scene without mistakes");
+//! let world = World::new(&scene);
+//! let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
+//! let cancel = AtomicBool::new(false);
+//! let control = render::Control { threads: None, progress: &|_| {}, cancel: &cancel };
+//! let film = render::render(&world, &sampling, Area::whole(64, 36), &control)?;
+//! film::write_exr(&film, std::io::Cursor::new(Vec::new()))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the terminal, JSON and editors show
+//!   alike.
+//! - [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
+//!   resolved.
+//! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
+//!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see.
+//! - [`film`] makes bytes of the means and files of the bytes.
+//! - [`inspect`] and [`probe`] answer questions about a scene. The command line reads, calls these and prints.
 
+pub mod area;
 pub mod color;
 pub mod diagnostic;
 pub mod math;
@@ -11,3 +40,12 @@ pub mod syntax;
 
 pub mod scene;
 pub mod tracer;
+
+pub mod sampling;
+
+pub mod render;
+
+pub mod film;
+
+pub mod inspect;
+pub mod probe;

@@ -61,6 +61,13 @@ impl<T: Real> Ball<T> {
         self.mid.to_f64().abs()
     }
 
+    /// Whether the relative error is far below what an `f64` tells, so that exact arithmetic would add nothing to it but the
+    /// last decisions of [`Double`](super::Double), which allow for it.
+    pub fn is_precise(&self) -> bool {
+        const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
+        self.rad <= self.size() * PRECISE
+    }
+
     /// Whether the sign is certain; NaN is not.
     fn is_clear(&self) -> bool {
         self.size() > self.rad * UP

@@ -14,11 +14,9 @@
     )
 )]
 
-mod build;
 mod css;
 mod error;
 mod eval;
-mod field;
 mod lower;
 mod overrides;
 pub mod schema;
@@ -191,55 +189,71 @@ pub struct Object {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A sphere.
-    Sphere {
-        /// Its centre.
-        center: DVec3,
-        /// Its radius, > 0.
-        radius: f64,
-        /// Its colour.
-        color: Color,
-    },
-    /// A triangle by centroid and normal.
-    Triangle {
-        /// The mean of its vertices.
-        centroid: DVec3,
-        /// Its normal, not zero, of any length.
-        normal: DVec3,
-        /// The lengths (a, b, c) of its sides, c the base; they form a triangle.
-        sides: DVec3,
-        /// Its turn in its own plane, counter-clockwise seen from the tip of the normal.
-        spin: Angle,
-        /// Its colour.
-        color: Color,
-    },
-    /// A closed, axis-aligned box.
-    Box {
-        /// The corner of least coordinates.
-        min: DVec3,
-        /// The corner of greatest coordinates, > min on every axis.
-        max: DVec3,
-        /// Its colour.
-        color: Color,
-    },
-    /// The infinite checkerboard in a horizontal plane.
-    Checkerboard {
-        /// The height of its plane.
-        y: f64,
-        /// The side of a square, > 0.
-        square: f64,
-        /// The colours of the even and of the odd squares.
-        colors: [Color; 2],
-    },
+    Sphere(Sphere),
+    /// A triangle.
+    Triangle(Triangle),
+    /// A box.
+    Box(Cuboid),
+    /// A checkerboard.
+    Checkerboard(Checkerboard),
+}
+
+/// A sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its centre.
+    pub center: DVec3,
+    /// Its radius, > 0.
+    pub radius: f64,
+    /// Its colour.
+    pub color: Color,
+}
+
+/// A triangle by centroid and normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// The mean of its vertices.
+    pub centroid: DVec3,
+    /// Its normal, not zero, of any length.
+    pub normal: DVec3,
+    /// The lengths (a, b, c) of its sides, c the base; they form a triangle.
+    pub sides: DVec3,
+    /// Its turn in its own plane, counter-clockwise seen from the tip of the normal.
+    pub spin: Angle,
+    /// Its colour.
+    pub color: Color,
+}
+
+/// A closed, axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid {
+    /// The corner of least coordinates.
+    pub min: DVec3,
+    /// The corner of greatest coordinates, > min on every axis.
+    pub max: DVec3,
+    /// Its colour.
+    pub color: Color,
+}
+
+/// The infinite checkerboard in a horizontal plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checkerboard {
+    /// The height of its plane.
+    pub y: f64,
+    /// The side of a square, > 0.
+    pub square: f64,
+    /// The colours of the even and of the odd squares.
+    pub colors: [Color; 2],
 }
 
 impl Shape {
     /// The word of its block in the language.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Sphere { .. } => "sphere",
-            Self::Triangle { .. } => "triangle",
-            Self::Box { .. } => "box",
-            Self::Checkerboard { .. } => "checkerboard",
+            Self::Sphere(_) => "sphere",
+            Self::Triangle(_) => "triangle",
+            Self::Box(_) => "box",
+            Self::Checkerboard(_) => "checkerboard",
         }
     }
 }

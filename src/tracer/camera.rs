@@ -262,12 +262,16 @@ fn exponent_of_lengths(scene: &Scene) -> i32 {
         .objects
         .iter()
         .map(|object| match object.shape {
-            Shape::Sphere { center, radius, .. } => (center - eye).abs().max_element().max(radius),
-            Shape::Triangle {
+            Shape::Sphere(scene::Sphere { center, radius, .. }) => {
+                (center - eye).abs().max_element().max(radius)
+            }
+            Shape::Triangle(scene::Triangle {
                 centroid, sides, ..
-            } => (centroid - eye).abs().max(sides).max_element(),
-            Shape::Box { min, max, .. } => (min - eye).abs().max((max - eye).abs()).max_element(),
-            Shape::Checkerboard { y, .. } => (y - eye.y).abs(),
+            }) => (centroid - eye).abs().max(sides).max_element(),
+            Shape::Box(scene::Cuboid { min, max, .. }) => {
+                (min - eye).abs().max((max - eye).abs()).max_element()
+            }
+            Shape::Checkerboard(scene::Checkerboard { y, .. }) => (y - eye.y).abs(),
         })
         .fold(0.0, f64::max);
     match libm::frexp(farthest.min(f64::MAX)).1 {

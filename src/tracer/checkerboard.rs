@@ -8,10 +8,12 @@ use std::cmp::Ordering;
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
-    cuboid::axis_vector,
-    form::{Form, inverse_depth},
+    form::{Form, axis_vector, inverse_depth},
 };
-use crate::math::{Ball, Double, Doubt, Real};
+use crate::{
+    math::{Ball, Double, Doubt, Real},
+    scene,
+};
 
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
@@ -28,7 +30,8 @@ pub struct Checkerboard<T> {
 
 impl<T: Real> Checkerboard<T> {
     /// Prepares a checkerboard; `None` if its plane holds the eye, which sees it edge-on: not at all.
-    pub fn new(camera: &Camera<T>, y: f64, square: f64) -> Option<Self> {
+    pub fn new(camera: &Camera<T>, shape: &scene::Checkerboard) -> Option<Self> {
+        let scene::Checkerboard { y, square, .. } = *shape;
         if y == camera.eye.y {
             return None;
         }

@@ -20,4 +20,6 @@ pub enum Part {
     Exit,
     /// The plane of a flat object: a triangle's, the checkerboard's, or that of the face with this index of a box.
     Plane(u8),
+    /// An edge of a box, or so near to one that the precision at hand cannot say in which of its faces' planes.
+    Edge,
 }

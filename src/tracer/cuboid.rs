@@ -6,14 +6,15 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
-
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
-    form::{Form, inverse_depth},
+    form::{Form, axis_vector, inverse_depth},
 };
-use crate::math::{Ball, Ball3, Double, Doubt, Real};
+use crate::{
+    math::{Double, Doubt, Real, UP},
+    scene,
+};
 
 /// A box prepared for one picture.
 #[derive(Clone, Debug)]
@@ -37,7 +38,8 @@ struct Face<T> {
 
 impl<T: Real> Cuboid<T> {
     /// Prepares a box.
-    pub fn new(camera: &Camera<T>, min: DVec3, max: DVec3) -> Self {
+    pub fn new(camera: &Camera<T>, shape: &scene::Cuboid) -> Self {
+        let scene::Cuboid { min, max, .. } = *shape;
         let mut cuboid = Self {
             fronts: Vec::new(),
             backs: Vec::new(),
@@ -57,25 +59,24 @@ impl<T: Real> Cuboid<T> {
                 let normal = axis_vector::<T>(axis).map(|x| x.times_power(sign));
                 Form::new(&camera.turned(&normal), &camera.window)
             };
-            let (from_min, from_max) = (eye.total_order(min[axis]), eye.total_order(max[axis]));
-            match (from_min, from_max) {
-                (Ordering::Less, _) => {
+            match (eye.partial_cmp(&min[axis]), eye.partial_cmp(&max[axis])) {
+                (Some(Ordering::Less), _) => {
                     cuboid.fronts.push(face(false));
                     cuboid.backs.push(face(true));
                 }
-                (_, Ordering::Greater) => {
+                (_, Some(Ordering::Greater)) => {
                     cuboid.fronts.push(face(true));
                     cuboid.backs.push(face(false));
                 }
-                (Ordering::Equal, _) => {
+                (Some(Ordering::Equal), _) => {
                     cuboid.inward.push(inward(1.0));
                     cuboid.backs.push(face(true));
                 }
-                (_, Ordering::Equal) => {
+                (_, Some(Ordering::Equal)) => {
                     cuboid.inward.push(inward(-1.0));
                     cuboid.backs.push(face(false));
                 }
-                (Ordering::Greater, Ordering::Less) => {
+                _ => {
                     cuboid.backs.push(face(false));
                     cuboid.backs.push(face(true));
                 }
@@ -162,7 +163,8 @@ impl Cuboid<Double> {
 }
 
 /// The least or the greatest inverse depth of some faces. The middle of the least ball need not be the least number, but it
-/// is within the greatest radius of it.
+/// is within the greatest radius of it. In whose plane the crossing lies is said only where it is certain: just outside of an
+/// edge, a ray meets the one plane a little before it meets the box in the other.
 #[inline]
 fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Option<Crossing<T>> {
     let mut extreme: Option<Crossing<T>> = None;
@@ -179,36 +181,24 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
             Some(so_far) => {
                 let rad = so_far.inverse_depth.rad.max(inverse_depth.rad);
                 let difference = inverse_depth.mid.minus(&so_far.inverse_depth.mid).to_f64();
+                // NaN, from an overflow, is not clear either.
+                let is_clear = difference.abs() > 2.0 * rad * UP;
                 if difference.partial_cmp(&0.0) == Some(which) {
                     *so_far = Crossing {
                         inverse_depth,
                         part,
                     };
                 }
-                // NaN, from an overflow, must not be passed over.
                 so_far.inverse_depth.rad = if difference.is_nan() {
                     f64::INFINITY
                 } else {
                     rad
                 };
+                if !is_clear {
+                    so_far.part = Part::Edge;
+                }
             }
         }
     }
     extreme
-}
-
-/// The unit vector along an axis.
-pub fn axis_vector<T: Real>(axis: usize) -> Ball3<T> {
-    [0, 1, 2].map(|i| Ball::exact(f64::from(u8::from(i == axis))))
-}
-
-/// The order of numbers that are not NaN.
-trait TotalOrder {
-    fn total_order(self, other: f64) -> Ordering;
-}
-
-impl TotalOrder for f64 {
-    fn total_order(self, other: f64) -> Ordering {
-        self.partial_cmp(&other).unwrap_or(Ordering::Equal)
-    }
 }

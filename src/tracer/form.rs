@@ -71,3 +71,8 @@ pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> 
     let n = camera.turned(n).map(|component| component / h);
     Form::new(&n, &camera.window)
 }
+
+/// The unit vector along an axis of the world.
+pub fn axis_vector<T: Real>(axis: usize) -> Ball3<T> {
+    [0, 1, 2].map(|i| Ball::exact(if i == axis { 1.0 } else { 0.0 }))
+}

@@ -19,5 +19,5 @@ mod triangle;
 mod world;
 
 pub use camera::{Basis, Point};
-pub use triangle::TriangleShape;
+pub use triangle::vertices;
 pub use world::{Hit, Precision, World};

@@ -7,7 +7,7 @@ use super::{
     cuboid::Cuboid,
     form::Form,
     sphere::Sphere,
-    triangle::{Triangle, TriangleShape},
+    triangle::Triangle,
 };
 use crate::{
     math::{Double, Doubt, Real},
@@ -32,28 +32,14 @@ pub enum Object<T> {
 impl<T: Real> Object<T> {
     /// Prepares an object.
     pub fn new(camera: &Camera<T>, shape: &Shape) -> Self {
-        match *shape {
-            Shape::Sphere { center, radius, .. } => {
-                Self::Sphere(Sphere::new(camera, center, radius))
+        match shape {
+            Shape::Sphere(sphere) => Self::Sphere(Sphere::new(camera, sphere)),
+            Shape::Triangle(triangle) => {
+                Triangle::new(camera, triangle).map_or(Self::EdgeOn, Self::Triangle)
             }
-            Shape::Triangle {
-                centroid,
-                normal,
-                sides,
-                spin,
-                ..
-            } => {
-                let shape = TriangleShape {
-                    centroid,
-                    normal,
-                    sides,
-                    spin,
-                };
-                Triangle::new(camera, &shape).map_or(Self::EdgeOn, Self::Triangle)
-            }
-            Shape::Box { min, max, .. } => Self::Cuboid(Cuboid::new(camera, min, max)),
-            Shape::Checkerboard { y, square, .. } => {
-                Checkerboard::new(camera, y, square).map_or(Self::EdgeOn, Self::Checkerboard)
+            Shape::Box(cuboid) => Self::Cuboid(Cuboid::new(camera, cuboid)),
+            Shape::Checkerboard(board) => {
+                Checkerboard::new(camera, board).map_or(Self::EdgeOn, Self::Checkerboard)
             }
         }
     }

@@ -12,7 +12,10 @@ use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
 };
-use crate::math::{Ball, Ball3, Double, Doubt, Exact, Real, UP, dot};
+use crate::{
+    math::{Ball, Ball3, Double, Doubt, Exact, Real, UP, dot},
+    scene,
+};
 
 /// A sphere prepared for one picture. Its lengths are scaled by a power of two to be about 1.
 #[derive(Clone, Debug)]
@@ -38,7 +41,8 @@ const ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
     /// Prepares a sphere.
-    pub fn new(camera: &Camera<T>, center: DVec3, radius: f64) -> Self {
+    pub fn new(camera: &Camera<T>, shape: &scene::Sphere) -> Self {
+        let scene::Sphere { center, radius, .. } = *shape;
         let from_eye = camera.relative(center);
         let radius_ball = camera.length(radius);
         let greatest = from_eye
@@ -186,7 +190,7 @@ fn power<T: Real>(
     square: &Ball<T>,
 ) -> (Ball<T>, Ordering) {
     let power = dot(from_eye, from_eye) - square;
-    if power.rad <= power.size() * PRECISE
+    if power.is_precise()
         && let Ok(side) = power.sign()
     {
         return (power, side);
@@ -198,10 +202,6 @@ fn power<T: Real>(
     let side = power.sign();
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
-
-/// A computed number whose relative error is at most this needs no exact arithmetic: it is far below what one `f64` tells,
-/// and Double's decisions allow for it.
-pub const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
 
 /// Error bounds of Q and c·r over a window, from the sizes of the centre's coordinates, their error, R² and its error.
 fn radii<T: Real>(

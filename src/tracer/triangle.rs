@@ -8,9 +8,11 @@ use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, Part},
     form::{Form, inverse_depth},
-    sphere::PRECISE,
 };
-use crate::math::{Angle, Ball, Ball3, Big, Double, Doubt, Exact, Real, cross};
+use crate::{
+    math::{Ball, Ball3, Big, Double, Doubt, Exact, Real, cross},
+    scene,
+};
 
 /// A triangle prepared for one picture.
 #[derive(Clone, Debug)]
@@ -23,7 +25,7 @@ pub struct Triangle<T> {
 
 impl<T: Real> Triangle<T> {
     /// Prepares a triangle; `None` if its plane holds the eye, which sees it edge-on: not at all.
-    pub fn new(camera: &Camera<T>, shape: &TriangleShape) -> Option<Self> {
+    pub fn new(camera: &Camera<T>, shape: &scene::Triangle) -> Option<Self> {
         let normal = unit_scaled(shape.normal);
         let from_eye = camera.relative(shape.centroid);
         let h = height(camera, shape.centroid, normal, &from_eye);
@@ -93,26 +95,11 @@ impl Triangle<Double> {
     }
 }
 
-/// A triangle as the scene gives it.
-#[derive(Clone, Copy, Debug)]
-pub struct TriangleShape {
-    /// The mean of its vertices.
-    pub centroid: DVec3,
-    /// Its normal, not zero, of any length.
-    pub normal: DVec3,
-    /// The lengths (a, b, c) of its sides.
-    pub sides: DVec3,
-    /// Its turn in its own plane.
-    pub spin: Angle,
-}
-
-impl TriangleShape {
-    /// Its vertices in the world: left base end, right base end, apex; each coordinate rounded once.
-    pub fn vertices(&self) -> [DVec3; 3] {
-        let centroid = self.centroid.to_array().map(Ball::<Big>::exact);
-        offsets::<Big>(self)
-            .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
-    }
+/// The vertices of a triangle in the world: left base end, right base end, apex; each coordinate rounded once.
+pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
+    let centroid = shape.centroid.to_array().map(Ball::<Big>::exact);
+    offsets::<Big>(shape)
+        .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
 }
 
 /// The distance of the triangle's plane from the eye, times the normal's length, with a small relative error, and its exact
@@ -124,7 +111,7 @@ fn height<T: Real>(
     from_eye: &Ball3<T>,
 ) -> (Ball<T>, Ordering) {
     let h = crate::math::dot(from_eye, &normal.to_array().map(Ball::exact));
-    if h.rad <= h.size() * PRECISE
+    if h.is_precise()
         && let Ok(side) = h.sign()
     {
         return (h, side);
@@ -152,7 +139,7 @@ fn unit_scaled(v: DVec3) -> DVec3 {
 ///
 /// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² + c²)/(2c) and y = 2A/c, the
 /// area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
-fn offsets<T: Real>(shape: &TriangleShape) -> [Ball3<T>; 3] {
+fn offsets<T: Real>(shape: &scene::Triangle) -> [Ball3<T>; 3] {
     let exponent = libm::frexp(shape.sides.max_element()).1;
     let [a, b, c] = shape
         .sides

@@ -156,28 +156,23 @@ impl World {
         self.sort(&mut crossings);
 
         let seen = self.seen_in_direction(&r).unwrap_or_default();
-        let along = [&r.x, &r.y, &r.z];
+        let along = [&r.x, &r.y, &r.z].map(rounded);
         let world: Ball3<Big> = [0, 1, 2].map(|i| {
-            let part = |j: usize| &camera.axes[j][i] * &plain(along[j]);
+            let part = |j: usize| &camera.axes[j][i] * &along[j];
             part(0) + part(1) + part(2)
         });
-        let length = r.square.sqrt();
-        let direction = world
-            .each_ref()
-            .map(|x| x.mid.over(&length).to_f64())
-            .into();
+        let length = rounded(&r.square).sqrt();
+        let direction = world.each_ref().map(|x| settled(&(x / &length))).into();
         let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
-            let lambda = Big::from_f64(1.0).over(&crossing.inverse_depth.mid);
+            let lambda = Ball::exact(1.0) / &crossing.inverse_depth;
             let lambda = lambda.scaled(-camera.exponent);
-            let coordinate = |i: usize| {
-                let from_eye = lambda.times(&world[i].mid);
-                Big::from_f64(camera.eye[i]).plus(&from_eye).to_f64()
-            };
+            let coordinate =
+                |i: usize| settled(&(Ball::exact(camera.eye[i]) + &lambda * &world[i]));
             let odd = Big::object(self, index).is_odd(&r).unwrap_or_default();
             Hit {
                 object: index,
-                t: lambda.times(&length).to_f64(),
-                depth: lambda.times(&r.z).to_f64(),
+                t: settled(&(&lambda * &length)),
+                depth: settled(&(&lambda * &along[2])),
                 point: [0, 1, 2].map(coordinate).into(),
                 color: self.palette[self.slots[index][usize::from(odd)]],
                 visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
@@ -326,12 +321,12 @@ impl World {
     fn is_same_surface(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
         match (&self.shapes[i], &self.shapes[j]) {
             (
-                Shape::Sphere { center, radius, .. },
-                Shape::Sphere {
+                Shape::Sphere(scene::Sphere { center, radius, .. }),
+                Shape::Sphere(scene::Sphere {
                     center: other_center,
                     radius: other_radius,
                     ..
-                },
+                }),
             ) => a == b && center == other_center && radius == other_radius,
             _ => {
                 let plane = |index, part| Double::object(self, index).plane(part);
@@ -403,11 +398,19 @@ impl Level for Big {
     }
 }
 
-/// A computed number taken as it is.
-fn plain(x: &Big) -> Ball<Big> {
+/// A coordinate or the square of a ray's direction, with what its few roundings may have cost.
+fn rounded(x: &Big) -> Ball<Big> {
     Ball {
+        rad: 32.0 * Big::UNIT * x.to_f64().abs() + Big::TINY,
         mid: x.clone(),
-        rad: 0.0,
+    }
+}
+
+/// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no height of 1e-97.
+fn settled(x: &Ball<Big>) -> f64 {
+    match x.sign() {
+        Ok(Ordering::Equal) => 0.0,
+        _ => x.mid.to_f64(),
     }
 }
 
@@ -427,10 +430,10 @@ fn palette(shapes: &[Shape], background: Color) -> (Vec<Color>, Vec<[usize; 2]>)
     let slots = shapes
         .iter()
         .map(|shape| match *shape {
-            Shape::Sphere { color, .. }
-            | Shape::Triangle { color, .. }
-            | Shape::Box { color, .. } => [place(color); 2],
-            Shape::Checkerboard { colors, .. } => colors.map(&mut place),
+            Shape::Sphere(scene::Sphere { color, .. })
+            | Shape::Triangle(scene::Triangle { color, .. })
+            | Shape::Box(scene::Cuboid { color, .. }) => [place(color); 2],
+            Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut place),
         })
         .collect();
     palette.push(background);

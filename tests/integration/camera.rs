@@ -208,11 +208,13 @@ fn scaling_and_moving_the_whole_world_changes_no_picture() {
             sphere(place(dvec3(-0.5, 0.25, 0.125)), scale),
             cuboid(place(dvec3(0.25, 0.0, -1.5)), place(dvec3(1.0, 1.5, 0.5))),
         ];
-        shapes.push(pinhole::scene::Shape::Checkerboard {
-            y: place(DVec3::ZERO).y,
-            square: scale,
-            colors: [pinhole::color::Color::BLACK; 2],
-        });
+        shapes.push(pinhole::scene::Shape::Checkerboard(
+            pinhole::scene::Checkerboard {
+                y: place(DVec3::ZERO).y,
+                square: scale,
+                colors: [pinhole::color::Color::BLACK; 2],
+            },
+        ));
         scene(
             camera(place(dvec3(1.25, 2.5, 4.0)), place(dvec3(0.25, 0.75, 0.0))),
             &shapes,

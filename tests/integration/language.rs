@@ -5,7 +5,10 @@ use std::{fs, path::Path};
 use glam::DVec3;
 use pinhole::{
     color::Color,
-    scene::{self, Camera, Count, Lens, Method, Scene, Shape, View, schema},
+    scene::{
+        self, Camera, Checkerboard, Count, Cuboid, Lens, Method, Scene, Shape, Sphere, Triangle,
+        View, schema,
+    },
     source::{Source, Sources},
 };
 
@@ -46,7 +49,7 @@ fn number(expression: &str) -> f64 {
         "{CAMERA} sphere {{ center ({expression}, 0, 0) }}"
     ));
     match scene.objects[0].shape {
-        Shape::Sphere { center, .. } => center.x,
+        Shape::Sphere(Sphere { center, .. }) => center.x,
         _ => unreachable!(),
     }
 }
@@ -56,7 +59,7 @@ fn color(expression: &str) -> Color {
         "{CAMERA} sphere {{ center (0, 0, 0) color {expression} }}"
     ));
     match scene.objects[0].shape {
-        Shape::Sphere { color, .. } => color,
+        Shape::Sphere(Sphere { color, .. }) => color,
         _ => unreachable!(),
     }
 }
@@ -170,33 +173,33 @@ fn defaults() {
     let olive = Color::from_bytes([128, 128, 0]);
     assert_eq!(
         sphere.shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::Y,
             radius: 1.0,
             color: olive
-        }
+        })
     );
     let gray = Color::from_bytes([128; 3]);
     let white = Color::from_bytes([255; 3]);
     assert_eq!(
         board.shape,
-        Shape::Checkerboard {
+        Shape::Checkerboard(Checkerboard {
             y: 0.0,
             square: 1.0,
             colors: [gray, white]
-        }
+        })
     );
     let half = DVec3::new(0.25, 0.75, 1.0);
     let orange = Color::from_bytes([255, 165, 0]);
     assert_eq!(
         cuboid.shape,
-        Shape::Box {
+        Shape::Box(Cuboid {
             min: -half,
             max: half,
             color: orange
-        }
+        })
     );
-    let Shape::Triangle { sides, normal, .. } = triangle.shape else {
+    let Shape::Triangle(Triangle { sides, normal, .. }) = triangle.shape else {
         panic!("{triangle:?}");
     };
     assert_eq!((sides, normal), (DVec3::new(2.0, 2.0, 1.0), DVec3::Z * 3.0));
@@ -490,7 +493,7 @@ fn a_box_is_rounded_once() {
     let scene = read(&format!(
         "{CAMERA} box {{ center (0.1, 0.2, 0.3) size (0.7, 0.1, 1e-3) }}"
     ));
-    let Shape::Box { min, max, .. } = scene.objects[0].shape else {
+    let Shape::Box(Cuboid { min, max, .. }) = scene.objects[0].shape else {
         panic!("{scene:?}");
     };
     assert_eq!(min, DVec3::new(0.1 - 0.35, 0.2 - 0.05, 0.3 - 0.0005));

@@ -7,10 +7,10 @@ use std::cmp::Ordering;
 
 use dashu_float::{FBig, round::mode::HalfEven};
 use glam::{DVec2, DVec3};
-use pinhole::scene::{Lens, Scene, Shape, View};
+use pinhole::scene::{Checkerboard, Cuboid, Lens, Scene, Shape, Sphere, Triangle, View};
 
-type N = FBig<HalfEven, 2>;
-type V = [N; 3];
+pub type N = FBig<HalfEven, 2>;
+pub type V = [N; 3];
 
 const PRECISION: usize = 1400;
 
@@ -46,8 +46,13 @@ fn cross(a: &V, b: &V) -> V {
     ]
 }
 
+/// The length of a vector.
+pub fn length(a: &V) -> N {
+    dot(a, a).sqrt()
+}
+
 fn unit(a: &V) -> V {
-    let length = dot(a, a).sqrt();
+    let length = length(a);
     [0, 1, 2].map(|i| &a[i] / &length)
 }
 
@@ -117,7 +122,7 @@ pub fn ray(scene: &Scene, x: u32, y: u32, offset: DVec2) -> (V, V) {
 /// All t > 0 at which the ray e + t·r meets a shape, in order.
 pub fn crossings(shape: &Shape, e: &V, r: &V) -> Vec<N> {
     match *shape {
-        Shape::Sphere { center, radius, .. } => {
+        Shape::Sphere(Sphere { center, radius, .. }) => {
             let f = sub(e, &v(center));
             let a = dot(r, r);
             let b = dot(&f, r);
@@ -141,13 +146,13 @@ pub fn crossings(shape: &Shape, e: &V, r: &V) -> Vec<N> {
                 .map(|(_, t)| t)
                 .collect()
         }
-        Shape::Triangle {
+        Shape::Triangle(Triangle {
             centroid,
             normal,
             sides,
             spin,
             ..
-        } => {
+        }) => {
             let [a, b, c] = vertices(centroid, normal, sides, spin);
             let normal = v(normal);
             let h = sub(&a, e);
@@ -171,7 +176,7 @@ pub fn crossings(shape: &Shape, e: &V, r: &V) -> Vec<N> {
             });
             if inside { vec![t] } else { Vec::new() }
         }
-        Shape::Box { min, max, .. } => {
+        Shape::Box(Cuboid { min, max, .. }) => {
             let (mut enter, mut leave): (Option<N>, Option<N>) = (None, None);
             for axis in 0..3 {
                 let (lo, hi) = (n(min[axis]) - &e[axis], n(max[axis]) - &e[axis]);
@@ -201,7 +206,7 @@ pub fn crossings(shape: &Shape, e: &V, r: &V) -> Vec<N> {
                 .filter(|t| *t > N::ZERO)
                 .collect()
         }
-        Shape::Checkerboard { y, .. } => {
+        Shape::Checkerboard(Checkerboard { y, .. }) => {
             let h = n(y) - &e[1];
             if h == N::ZERO || sign(&r[1], &dot(r, r).sqrt()) == Ordering::Equal {
                 return Vec::new();
@@ -272,7 +277,7 @@ pub fn seen(scene: &Scene, x: u32, y: u32, offset: DVec2) -> Option<(usize, bool
     }
     let (index, t) = best?;
     let odd = match scene.objects[index].shape {
-        Shape::Checkerboard { square, .. } => {
+        Shape::Checkerboard(Checkerboard { square, .. }) => {
             let p = axpy(&e, &t, &r);
             let parity = |x: &N| {
                 // An integer up to 2^−300 is that integer: 1/3 + 2/3 is not 0.999….

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pinhole::{
     math::Angle,
-    scene::{self, Count, Lens, Scene, Shape, View},
+    scene::{self, Count, Cuboid, Lens, Scene, Shape, Sphere, View},
     source::{Source, SourceId, Sources},
 };
 
@@ -52,7 +52,7 @@ fn assert_problem(sets: &[&str], code: &str, argument: u32, under: &str) {
 
 fn ball(scene: &Scene) -> (DVec3, f64) {
     match scene.objects[0].shape {
-        Shape::Sphere { center, radius, .. } => (center, radius),
+        Shape::Sphere(Sphere { center, radius, .. }) => (center, radius),
         _ => panic!("{scene:?}"),
     }
 }
@@ -103,7 +103,7 @@ fn alternatives_are_replaced() {
     let scene = read(&["sampler.per_pixel=4", "sampler.total=1e6"]);
     assert_eq!(scene.sampler.count, Count::Total(1_000_000));
     let scene = read(&["Crate.min=(0, 0, 0)", "Crate.max=(1, 2, 3)"]);
-    let Shape::Box { max, .. } = scene.objects[1].shape else {
+    let Shape::Box(Cuboid { max, .. }) = scene.objects[1].shape else {
         panic!("{scene:?}");
     };
     assert_eq!(max, DVec3::new(1.0, 2.0, 3.0));

@@ -4,7 +4,10 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
     color::Color,
     math::Angle,
-    scene::{Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View},
+    scene::{
+        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
+        Sphere, Triangle, View,
+    },
     source::{SourceId, Span},
     tracer::{Precision, World},
 };
@@ -32,10 +35,10 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
         let own = Color::from_bytes([index as u8 + 1, 0, 0]);
         let mut shape = *shape;
         match &mut shape {
-            Shape::Sphere { color, .. }
-            | Shape::Triangle { color, .. }
-            | Shape::Box { color, .. } => *color = own,
-            Shape::Checkerboard { colors, .. } => {
+            Shape::Sphere(Sphere { color, .. })
+            | Shape::Triangle(Triangle { color, .. })
+            | Shape::Box(Cuboid { color, .. }) => *color = own,
+            Shape::Checkerboard(Checkerboard { colors, .. }) => {
                 *colors = [own, Color::from_bytes([index as u8 + 1, 1, 0])];
             }
         }
@@ -62,37 +65,37 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
 }
 
 pub fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere {
+    Shape::Sphere(Sphere {
         center,
         radius,
         color: Color::BLACK,
-    }
+    })
 }
 
 pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
-    Shape::Triangle {
+    Shape::Triangle(Triangle {
         centroid,
         normal,
         sides: dvec3(2.0, 2.0, 1.0),
         spin: Angle::default(),
         color: Color::BLACK,
-    }
+    })
 }
 
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
-    Shape::Box {
+    Shape::Box(Cuboid {
         min,
         max,
         color: Color::BLACK,
-    }
+    })
 }
 
 pub fn floor() -> Shape {
-    Shape::Checkerboard {
+    Shape::Checkerboard(Checkerboard {
         y: 0.0,
         square: 1.0,
         colors: [Color::BLACK; 2],
-    }
+    })
 }
 
 /// Reproducible numbers (SplitMix64).
@@ -109,6 +112,15 @@ impl Random {
 
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A multiple of 1/2, at most `limit` halves from 0.
+    fn half(&mut self, limit: i64) -> f64 {
+        (self.bits() as i64 % (limit + 1)) as f64 / 2.0
+    }
+
+    fn point(&mut self, limit: i64) -> DVec3 {
+        dvec3(self.half(limit), self.half(limit), self.half(limit))
     }
 
     pub fn offset(&mut self) -> DVec2 {
@@ -242,13 +254,13 @@ fn random_objects_agree_with_the_oracle() {
         for _ in 0..2 {
             let corner = random.vector(2.0);
             shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
-            shapes.push(Shape::Triangle {
+            shapes.push(Shape::Triangle(Triangle {
                 centroid: random.vector(2.0),
                 normal: random.vector(1.0),
                 sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
                 spin: Angle::from_degrees(random.within(0.0, 360.0)),
                 color: Color::BLACK,
-            });
+            }));
             shapes.push(cuboid(
                 corner,
                 corner + DVec3::splat(random.within(0.1, 2.0)),
@@ -311,11 +323,11 @@ fn an_eye_on_or_near_a_surface_agrees_with_the_oracle() {
             sphere(DVec3::ZERO, 1.0),
             cuboid(dvec3(-4.0, 0.0, -4.0), dvec3(4.0, 1.0, 4.0)),
             triangle(dvec3(2.0, 1.0, 0.0), DVec3::Y),
-            Shape::Checkerboard {
+            Shape::Checkerboard(Checkerboard {
                 y: 1.0,
                 square: 0.3,
                 colors: [Color::BLACK; 2],
-            },
+            }),
         ];
         found += agrees(&scene(camera, &shapes), 20);
     }
@@ -367,6 +379,94 @@ fn coincident_surfaces_agree_with_the_oracle() {
 }
 
 #[test]
+fn scenes_full_of_ties_agree_with_the_oracle() {
+    // All numbers are small multiples of 1/2, and all sample points of 1/8 pixel: eyes on surfaces, rays in planes, through
+    // corners and along edges, faces in common planes and at the depth of the near and the far plane.
+    let mut random = Random(11);
+    for _ in 0..150 {
+        let (eye, direction, up) = (random.point(4), random.point(2), random.point(1));
+        let mut camera = camera(eye, DVec3::ZERO);
+        let direction = if direction == DVec3::ZERO {
+            DVec3::NEG_Z
+        } else {
+            direction
+        };
+        camera.view = View::Direction(direction);
+        camera.up = if up.cross(direction) == DVec3::ZERO {
+            direction.any_orthogonal_vector()
+        } else {
+            up
+        };
+        camera.roll = Angle::from_degrees(random.half(2) * 90.0);
+        camera.view_height = 4.0;
+        camera.near = random.half(2).abs();
+        camera.far = (random.half(1) > 0.0).then(|| camera.near + random.half(6).abs() + 0.5);
+        let mut shapes = Vec::new();
+        for _ in 0..2 {
+            let corner = random.point(4);
+            let size = dvec3(
+                random.half(2).abs() + 0.5,
+                random.half(2).abs() + 0.5,
+                random.half(2).abs() + 0.5,
+            );
+            shapes.push(cuboid(corner, corner + size));
+            shapes.push(sphere(random.point(4), random.half(3).abs() + 0.5));
+            let normal = random.point(1);
+            let normal = if normal == DVec3::ZERO {
+                DVec3::Y
+            } else {
+                normal
+            };
+            shapes.push(Shape::Triangle(Triangle {
+                centroid: random.point(3),
+                normal,
+                sides: dvec3(5.0, 5.0, 6.0),
+                spin: Angle::from_degrees(random.half(4) * 90.0),
+                color: Color::BLACK,
+            }));
+        }
+        shapes.insert(
+            2,
+            Shape::Checkerboard(Checkerboard {
+                y: random.half(2),
+                square: 0.5,
+                colors: [Color::BLACK; 2],
+            }),
+        );
+        let mut scene = scene(camera, &shapes);
+        (scene.image.width, scene.image.height) = (8, 8);
+        let world = World::new(&scene);
+        for _ in 0..30 {
+            let (x, y) = (random.bits() as u32 % 8, random.bits() as u32 % 8);
+            let eighth = |bits: u64| (bits % 8) as f64 / 8.0 - 0.5;
+            let offset = dvec2(eighth(random.bits()), eighth(random.bits()));
+            let color = world.palette()[world.slot_at(x, y, offset)].srgb;
+            assert_eq!(
+                color,
+                expected(&scene, x, y, offset),
+                "pixel {x}, {y} at {offset} of {scene:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn just_outside_the_edge_of_a_box_the_floor_that_it_stands_on_is_seen() {
+    // From below, between the point where the ray meets the common plane and the one where it enters the box.
+    let camera = camera(dvec3(0.4, -3.0, 0.2), dvec3(0.0, 0.0, 0.1));
+    let shapes = [
+        cuboid(dvec3(-1.0, 0.0, -1.0), dvec3(0.2, 1.0, 0.7)),
+        floor(),
+    ];
+    let scene = scene(camera, &shapes);
+    let world = World::new(&scene);
+    let offset = dvec2(-0.253_993_261_381_526_67, 0.204_492_435_315_224_93);
+    let color = world.palette()[world.slot_at(48, 31, offset)].srgb;
+    assert_eq!(color, [2.0, 1.0, 0.0]);
+    assert_eq!(color, expected(&scene, 48, 31, offset));
+}
+
+#[test]
 fn rays_in_the_planes_of_faces_agree_with_the_oracle() {
     // Odd sizes put the middle of a pixel on the axis, so that whole rows and columns of rays lie in faces' planes.
     let shape = cuboid(dvec3(0.0, 0.0, -5.0), dvec3(1.0, 1.0, -3.0));
@@ -409,18 +509,18 @@ fn extreme_lenses_and_sizes_agree_with_the_oracle() {
         let shapes = [
             sphere(DVec3::ZERO, 0.7 * size),
             cuboid(DVec3::splat(0.1 * size), DVec3::splat(0.6 * size)),
-            Shape::Triangle {
+            Shape::Triangle(Triangle {
                 centroid: dvec3(0.1, 0.4, 0.9) * size,
                 normal: dvec3(0.2, 0.3, 1.0) * size,
                 sides: dvec3(2.0, 2.0, 1.0) * size,
                 spin: Angle::default(),
                 color: Color::BLACK,
-            },
-            Shape::Checkerboard {
+            }),
+            Shape::Checkerboard(Checkerboard {
                 y: -0.5 * size,
                 square: size,
                 colors: [Color::BLACK; 2],
-            },
+            }),
         ];
         assert_eq!(agrees(&scene(camera, &shapes), 10), 10);
     }
@@ -437,13 +537,13 @@ fn needles_and_tiny_triangles_agree_with_the_oracle() {
     ] {
         let mut camera = camera(dvec3(0.3, 0.2, 3.0), DVec3::ZERO);
         camera.lens = Lens::Distance(2.0 / (scale * needle));
-        let shape = Shape::Triangle {
+        let shape = Shape::Triangle(Triangle {
             centroid: DVec3::ZERO,
             normal: dvec3(1.0, 0.4, 2.0),
             sides: dvec3(1.0, 1.0, needle) * scale,
             spin: Angle::from_degrees(20.0),
             color: Color::BLACK,
-        };
+        });
         assert!(agrees(&scene(camera, &[shape]), 20) > 10);
     }
 }

@@ -1,28 +1,33 @@
-//! Tree → blocks with their values.
+//! Tree → scene.
 //!
 //! In: the tree of a file and the overrides. Out: the scene, or what is wrong with it. The items are walked once, in order:
 //! every name is defined and every field evaluated where it stands; then the overrides of fields are evaluated, which see
-//! all names; then the scene is built. A problem of one field never hides one of another.
+//! all names; then each block is built. A problem of one field never hides one of another.
+
+mod build;
+mod overriding;
+mod words;
 
 use std::collections::HashMap;
 
+use glam::DVec3;
+
+use self::words::{missing_value, range_words, shown, type_help, unknown_field};
 use super::{
     Reading, Scene,
-    build::{self, Block, Given, Unread, mentions},
     error::Problem,
     eval::{Evaluator, Names, predefined},
-    field::{self, example},
     overrides::{self, Override},
-    schema::{self, Field, Kind, Type},
+    schema::{self, Condition, Field, Kind, Type},
     untangle::untangle,
-    value::Value,
+    value::{self, Value},
 };
 use crate::{
     diagnostic::{self, Diagnostic},
     source::{SourceId, Sources, Span},
     suggest,
     syntax::{
-        self,
+        self, shorten,
         tree::{self, Definition, Item, Name, ValueKind},
     },
 };
@@ -97,6 +102,30 @@ struct Lowering<'s> {
     in_begun_blocks: bool,
 }
 
+/// A block with what it was given.
+struct Block<'s> {
+    row: &'static schema::Block,
+    keyword: Span,
+    span: Span,
+    name: Option<Name<'s>>,
+    /// For each field of the row what it was given.
+    given: Vec<Option<Given>>,
+    /// Fields that were probably meant, by a mistyped name or in what was not understood.
+    meant: Vec<&'static str>,
+    /// Whether a field may have been lost.
+    unfinished: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Given {
+    /// The field's name.
+    name: Span,
+    /// The value's text.
+    span: Span,
+    /// None if it failed.
+    value: Option<Value>,
+}
+
 impl<'s> Lowering<'s> {
     fn scene(&mut self, tree: &syntax::Tree<'s>) -> Option<Scene> {
         self.keep_last_overrides();
@@ -112,13 +141,10 @@ impl<'s> Lowering<'s> {
         self.override_targets();
         let bad = tree.items.iter().filter_map(|item| match item {
             Item::Bad(span) => Some(self.sources.text(*span)),
-            Item::Definition(_) | Item::Block(_) => None,
+            _ => None,
         });
-        let unread = Unread {
-            items: bad.collect(),
-            cut: self.cut,
-        };
-        build::scene(&self.blocks, &unread, &mut self.problems)
+        let bad: Vec<&str> = bad.collect();
+        self.build(&bad)
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {
@@ -175,10 +201,10 @@ impl<'s> Lowering<'s> {
                 span: name.span,
             });
         }
-        let same = |other: &&Block<'_>| other.row.kind == row.kind;
+        // Objects come in any number, and looking through all of them for each would take long.
         let earlier = match row.is_object {
             true => None,
-            false => self.blocks.iter().find(same),
+            false => self.blocks.iter().find(|other| other.row.kind == row.kind),
         };
         let duplicate = earlier.is_some();
         if let Some(earlier) = earlier {
@@ -267,7 +293,7 @@ impl<'s> Lowering<'s> {
         if replaced.contains(&row.name) {
             return;
         }
-        let value = field::value(&mut self.evaluator(), row, &field.value);
+        let value = self.typed(row, &field.value);
         let given = Given {
             name: field.name.span,
             span: field.value.span,
@@ -326,6 +352,112 @@ impl<'s> Lowering<'s> {
         }
     }
 
+    /// The value of a field, if it is of the field's type and keeps its conditions.
+    fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        let value = match row.takes {
+            Type::Method => return self.method(row, tree),
+            takes => self.evaluate(tree, Some(takes))?,
+        };
+        if value.kind() != row.takes {
+            self.wrong_type(row, tree, value);
+            return None;
+        }
+        let broken = row.must.iter().find(|condition| !holds(**condition, value));
+        if let Some(&condition) = broken {
+            self.out_of_range(row, condition, tree, value);
+            return None;
+        }
+        Some(value)
+    }
+
+    fn method(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        let list = suggest::list(schema::method_names());
+        let ValueKind::Name(written) = tree.kind else {
+            if !matches!(tree.kind, ValueKind::Bad | ValueKind::Missing) {
+                let found = self.evaluate(tree, None)?.kind();
+                let problem = Problem::WrongType {
+                    name: row.name.to_owned(),
+                    takes: row.takes.noun(),
+                    written: self.evaluator().quoted(tree.span),
+                    found: found.noun().to_owned(),
+                    help: format!("the methods are {list}"),
+                    span: tree.span,
+                    label: found.noun().to_owned(),
+                };
+                self.problems.push(problem);
+            }
+            return None;
+        };
+        if let Some(method) = schema::method(written) {
+            return Some(Value::Method(method));
+        }
+        let help = match suggest::nearest(written, schema::method_names()) {
+            Some(near) => format!("did you mean `{near}`? The methods are {list}."),
+            None => format!("the methods are {list}"),
+        };
+        self.problems.push(Problem::UnknownMethod {
+            written: written.to_owned(),
+            help,
+            span: tree.span,
+        });
+        None
+    }
+
+    fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) {
+        let evaluator = self.evaluator();
+        let label = evaluator.described(tree, value.kind());
+        let written = evaluator.quoted(tree.span);
+        let text = shorten(evaluator.sources.text(tree.span));
+        let problem = if (row.takes, value.kind()) == (Type::Angle, Type::Number) {
+            let [degrees, radians] = evaluator.with_units(tree);
+            Problem::BareAngle {
+                what: format!("`{}`", row.name),
+                written,
+                help: format!("write `{degrees}` (or `{radians}`)"),
+                span: tree.span,
+                label,
+            }
+        } else {
+            Problem::WrongType {
+                name: row.name.to_owned(),
+                takes: row.takes.noun(),
+                written,
+                found: value.kind().noun().to_owned(),
+                help: type_help(row, tree, value.kind(), &text),
+                span: tree.span,
+                label,
+            }
+        };
+        self.problems.push(problem);
+    }
+
+    fn out_of_range(
+        &mut self,
+        row: &Field,
+        condition: Condition,
+        tree: &tree::Value<'s>,
+        value: Value,
+    ) {
+        let written = shorten(self.sources.text(tree.span));
+        let found = match (&tree.kind, value) {
+            (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
+                shown(value)
+            }
+            _ => written,
+        };
+        let (label, help) = range_words(row, condition, value);
+        let message = match condition {
+            Condition::NotZero => format!("`{}` must not be zero", row.name),
+            _ => format!("`{}` must be {condition}, and it is {found}", row.name),
+        };
+        self.problems.push(Problem::OutOfRange {
+            message,
+            help,
+            span: tree.span,
+            label: label.to_owned(),
+        });
+    }
+
     fn evaluate(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         self.evaluator().value(value, wanted)
     }
@@ -366,166 +498,35 @@ impl<'s> Lowering<'s> {
             }
         }
     }
+}
 
-    /// Of several overrides of one target, or of fields that exclude each other, only the last counts.
-    fn keep_last_overrides(&mut self) {
-        let all = std::mem::take(&mut self.overrides);
-        let mut kept: Vec<Override<'s>> = Vec::new();
-        for next in all {
-            kept.retain(|earlier| {
-                let same_block = match (&earlier.block, &next.block) {
-                    (Some(a), Some(b)) => a.text == b.text,
-                    (None, None) => true,
-                    _ => false,
-                };
-                let same = earlier.name.text == next.name.text;
-                let excluded = next.block.is_some()
-                    && schema::BLOCKS
-                        .iter()
-                        .filter_map(|row| row.field(next.name.text))
-                        .any(|row| row.excludes.contains(&earlier.name.text));
-                !(same_block && (same || excluded))
-            });
-            kept.push(next);
-        }
-        self.overrides = kept;
-    }
-
-    /// The fields of a block that an override replaces, alternatives included.
-    fn replaced_fields(&self, block: &Block<'s>) -> Vec<&'static str> {
-        let mut replaced = Vec::new();
-        for set in &self.overrides {
-            if set
-                .block
-                .is_some_and(|target| is_target(block, target.text))
-                && let Some(row) = block.row.field(set.name.text)
-            {
-                replaced.push(row.name);
-                replaced.extend(row.excludes);
-            }
-        }
-        replaced
-    }
-
-    /// Evaluates the overrides of fields, now that every name is defined.
-    fn override_fields(&mut self) {
-        for set in self.overrides.clone() {
-            let Some(target) = set.block else { continue };
-            let addable = schema::block(target.text).filter(|row| !row.is_object);
-            let mut index = self.blocks.iter().position(|b| is_target(b, target.text));
-            if index.is_none()
-                && let Some(row) = addable
-            {
-                index = Some(self.blocks.len());
-                self.blocks.push(Block {
-                    row,
-                    keyword: target.span,
-                    span: target.span,
-                    name: None,
-                    given: vec![None; row.fields.len()],
-                    meant: Vec::new(),
-                    unfinished: false,
-                });
-            }
-            let Some(row) = index.and_then(|i| self.blocks.get(i)).map(|b| b.row) else {
-                continue;
-            };
-            let at = row
-                .fields
-                .iter()
-                .position(|field| field.name == set.name.text);
-            let Some((at, field)) = at.and_then(|at| Some((at, row.fields.get(at)?))) else {
-                self.problems.push(unknown_field(row, &set.name));
-                continue;
-            };
-            let value = field::value(&mut self.evaluator(), field, &set.value);
-            let given = Given {
-                name: set.name.span,
-                span: set.value.span,
-                value,
-            };
-            let block = index.and_then(|index| self.blocks.get_mut(index));
-            if let Some(slot) = block.and_then(|block| block.given.get_mut(at)) {
-                *slot = Some(given);
-            }
-        }
-    }
-
-    /// Reports overrides whose target does not exist.
-    fn override_targets(&mut self) {
-        if self.overrides.is_empty() {
-            return;
-        }
-        let objects: Vec<&str> = self
-            .blocks
-            .iter()
-            .filter_map(|b| Some(b.name?.text))
-            .collect();
-        let mut lets: Vec<&str> = self.names.all().collect();
-        lets.sort_unstable();
-        for set in &self.overrides {
-            let problem = match &set.block {
-                Some(block) => {
-                    let found = self.blocks.iter().any(|b| is_target(b, block.text));
-                    (!found).then(|| overrides::no_such_block(block, &objects))
-                }
-                None => {
-                    let found = self.names.knows(set.name.text);
-                    (!found).then(|| overrides::no_such_let(&set.name, &lets, &objects))
-                }
-            };
-            self.problems.extend(problem);
-        }
+impl Block<'_> {
+    fn given(&self, name: &str) -> Option<Given> {
+        let index = self.row.fields.iter().position(|row| row.name == name)?;
+        self.given.get(index).copied().flatten()
     }
 }
 
-fn is_target(block: &Block<'_>, target: &str) -> bool {
-    match block.name {
-        _ if !block.row.is_object => block.row.name == target,
-        Some(name) => name.text == target,
-        None => false,
-    }
+/// Whether a word stands in a text.
+fn mentions(text: &str, word: &str) -> bool {
+    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+    text.split(other).any(|found| found == word)
 }
 
-fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
-    let help = match row {
-        Some(row) => format!(
-            "write {} after it, such as `{} {}`",
-            row.takes.noun(),
-            row.name,
-            example(row)
-        ),
-        None => "write a value after it".to_owned(),
-    };
-    Problem::MissingValue {
-        name: name.text.to_owned(),
-        help,
-        span: name.span,
-    }
-}
-
-fn unknown_field(row: &'static schema::Block, name: &Name<'_>) -> Problem {
-    let mut fields: Vec<&str> = row.field_names().collect();
-    let noun = capital(row.noun);
-    let all = suggest::list(fields.drain(..));
-    let help = match (row.nearest_field(name.text), row.joined_field(name.text)) {
-        (Some(near), _) => format!("did you mean `{near}`? {noun} takes {all}."),
-        (None, Some(joined)) => {
-            let rest = name.text.get(joined.len()..).unwrap_or_default();
-            format!("did you mean `{joined} {rest}`? {noun} takes {all}.")
+/// Whether a value keeps a condition; one of another type has no say in it.
+fn holds(condition: Condition, value: Value) -> bool {
+    let two_to = |power: u32| (1_u64 << power) as f64;
+    match (condition, value) {
+        (Condition::Whole, Value::Number(x)) => x.fract() == 0.0,
+        (Condition::MoreThan(bound), Value::Number(x)) => x > bound,
+        (Condition::AtLeast(bound), Value::Number(x)) => x >= bound,
+        (Condition::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
+        (Condition::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
+        (Condition::LessThanHalfTurn, Value::Angle(angle)) => {
+            value::compare_with_zero(angle).is_gt() && value::compare_with_half_turn(angle).is_lt()
         }
-        (None, None) => format!("{} takes {all}", row.noun),
-    };
-    Problem::UnknownField {
-        noun: row.noun,
-        written: name.text.to_owned(),
-        help,
-        span: name.span,
+        (Condition::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
+        (Condition::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
+        _ => true,
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_ascii_uppercase());
-    first.into_iter().chain(letters).collect()
 }

@@ -1,0 +1,159 @@
+//! Rectangles of pixels.
+
+use std::{fmt, str::FromStr};
+
+/// A rectangle of pixels, counted from the picture's top left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Area {
+    /// Its leftmost column.
+    pub x: u32,
+    /// Its topmost row.
+    pub y: u32,
+    /// How many columns it has.
+    pub width: u32,
+    /// How many rows it has.
+    pub height: u32,
+}
+
+impl Area {
+    /// A whole picture of this size.
+    pub fn whole(width: u32, height: u32) -> Self {
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
+    }
+
+    /// How many pixels it has.
+    pub fn pixels(self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Whether it lies within another one.
+    pub fn lies_in(self, other: Self) -> bool {
+        other.columns().contains(&u64::from(self.x))
+            && other.rows().contains(&u64::from(self.y))
+            && self.columns().end <= other.columns().end
+            && self.rows().end <= other.rows().end
+    }
+
+    /// Whether the two have a pixel in common.
+    pub fn meets(self, other: Self) -> bool {
+        self.columns().start < other.columns().end
+            && other.columns().start < self.columns().end
+            && self.rows().start < other.rows().end
+            && other.rows().start < self.rows().end
+    }
+
+    /// Its pixels' columns and rows in the picture, row by row.
+    pub fn iter(self) -> impl Iterator<Item = (u32, u32)> {
+        (0..self.height)
+            .flat_map(move |row| (0..self.width).map(move |column| (self.x + column, self.y + row)))
+    }
+
+    /// The place of one of its pixels in that order.
+    pub fn index(self, x: u32, y: u32) -> usize {
+        (y - self.y) as usize * self.width as usize + (x - self.x) as usize
+    }
+
+    /// Its parts: squares of this side from the top left corner on, cut off where it ends; row by row.
+    pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
+        let starts = move |length: u32| (0..length).step_by(side as usize);
+        starts(self.height).flat_map(move |top| {
+            starts(self.width).map(move |left| Self {
+                x: self.x + left,
+                y: self.y + top,
+                width: side.min(self.width - left),
+                height: side.min(self.height - top),
+            })
+        })
+    }
+
+    // As u64, so that an area that a user made up cannot overflow.
+    fn columns(self) -> std::ops::Range<u64> {
+        u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
+    }
+
+    fn rows(self) -> std::ops::Range<u64> {
+        u64::from(self.y)..u64::from(self.y) + u64::from(self.height)
+    }
+}
+
+/// `X,Y,W,H`
+impl fmt::Display for Area {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            x,
+            y,
+            width,
+            height,
+        } = self;
+        write!(f, "{x},{y},{width},{height}")
+    }
+}
+
+/// `X,Y,W,H`, four whole numbers; W and H are not 0.
+impl FromStr for Area {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers: Option<Vec<u32>> = text
+            .split(',')
+            .map(|number| number.trim().parse().ok())
+            .collect();
+        match numbers.as_deref() {
+            Some(&[_, _, 0, _] | &[_, _, _, 0]) => {
+                Err("width and height are at least 1".to_owned())
+            }
+            Some(&[x, y, width, height]) => Ok(Self {
+                x,
+                y,
+                width,
+                height,
+            }),
+            _ => Err("four whole numbers are wanted: X,Y,W,H".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        let area = Area {
+            x: 3,
+            y: 5,
+            width: 10,
+            height: 7,
+        };
+        let mut hits = vec![0; area.pixels() as usize];
+        for tile in area.tiles(4) {
+            assert!(tile.lies_in(area) && tile.meets(area));
+            for (x, y) in tile.iter() {
+                hits[area.index(x, y)] += 1;
+            }
+        }
+        assert!(hits.iter().all(|&n| n == 1));
+    }
+
+    #[test]
+    fn neighbours_do_not_meet() {
+        let [left, right] = [0, 4].map(|x| Area {
+            x,
+            ..Area::whole(4, 4)
+        });
+        assert!(!left.meets(right) && !right.meets(left) && left.meets(left));
+        assert!(!right.lies_in(left) && left.lies_in(left));
+        let huge = Area {
+            x: u32::MAX,
+            y: 1,
+            width: u32::MAX,
+            height: 1,
+        };
+        assert!(!huge.lies_in(left) && !huge.meets(left));
+    }
+}

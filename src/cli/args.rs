@@ -1,0 +1,192 @@
+//! What users type.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum, value_parser};
+use clap_complete::Shell;
+use pinhole::area::Area;
+
+/// Renders small declarative scene files through a virtual pinhole camera
+#[derive(Debug, Parser)]
+#[command(name = "pinhole", version, after_help = EXAMPLES, propagate_version = true)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  pinhole render figure.scn                      writes figure.png beside it
+  pinhole render figure.scn -o big.exr --set image.width=3840 --set image.height=2160
+  pinhole check *.scn
+  pinhole inspect figure.scn --format json
+  pinhole probe figure.scn 640.5 360.5
+
+Exit status: 0 done, warnings or not; 1 the scene has errors; 2 usage, a file that cannot be read or
+written, a picture too large for memory; 130 after Ctrl-C.";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to a picture file
+    #[command(after_help = RENDER_EXAMPLES)]
+    Render(RenderArgs),
+    /// Report the problems of scenes
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckArgs),
+    /// Show what a scene means: camera, field of view, vanishing points, objects
+    #[command(after_help = INSPECT_EXAMPLES)]
+    Inspect(InspectArgs),
+    /// Follow one ray, surface by surface
+    #[command(after_help = PROBE_EXAMPLES)]
+    Probe(ProbeArgs),
+    /// Print a completion script for a shell
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page
+    #[command(after_help = MAN_EXAMPLES)]
+    Man,
+}
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  pinhole render figure.scn
+  pinhole render figure.scn -o half.png --set camera.roll=30deg --set Ball.center='(0, 2, 0)'
+  pinhole render figure.scn -o eyes.png --crop 600,200,80,40
+  pinhole render figure.png -o again.png         renders the scene that the picture carries
+  generate | pinhole render - -o - | view        from standard input to standard output";
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  pinhole check figure.scn
+  pinhole check *.scn --format json              one line for each problem";
+
+const INSPECT_EXAMPLES: &str = "\
+Examples:
+  pinhole inspect figure.scn
+  pinhole inspect figure.scn --set camera.roll=30deg --format json";
+
+const PROBE_EXAMPLES: &str = "\
+Examples:
+  pinhole probe figure.scn 640 360               the middle of a picture of 1280 × 720 pixels
+  pinhole probe figure.scn -10 0.5               left of the picture";
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  pinhole completions bash > ~/.local/share/bash-completion/completions/pinhole
+  pinhole completions fish > ~/.config/fish/completions/pinhole.fish";
+
+const MAN_EXAMPLES: &str = "\
+Examples:
+  pinhole man > pinhole.1
+  pinhole man | man -l -";
+
+/// Which scene, and what to change in it.
+#[derive(Debug, clap::Args)]
+pub struct Overrides {
+    /// Override a field or a `let`: TARGET is BLOCK.FIELD (image, camera, sampler or an object's name)
+    /// or the name of a `let`, VALUE an expression of the language; may be given any number of times
+    #[arg(long = "set", value_name = "TARGET=VALUE", allow_hyphen_values = true)]
+    pub sets: Vec<String>,
+}
+
+/// Arguments of `render`.
+#[derive(Debug, clap::Args)]
+pub struct RenderArgs {
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    /// Where the picture goes; its ending, .png or .exr, is the format, and `-` is standard output as PNG
+    /// [default: SCENE with the ending .png]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// Render this part only, in pixels from the top left of the whole picture, within which it must lie;
+    /// takes the place of the crop that a PNG carries
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
+    pub crop: Option<Area>,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
+}
+
+/// Arguments of `check`.
+#[derive(Debug, clap::Args)]
+pub struct CheckArgs {
+    /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// Arguments of `inspect`.
+#[derive(Debug, clap::Args)]
+pub struct InspectArgs {
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// Arguments of `probe`.
+#[derive(Debug, clap::Args)]
+pub struct ProbeArgs {
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    /// Pixels to the right of the picture's left edge; may be fractional, negative or outside
+    #[arg(allow_hyphen_values = true, value_parser = finite)]
+    pub x: f64,
+    /// Pixels down from the picture's top edge
+    #[arg(allow_hyphen_values = true, value_parser = finite)]
+    pub y: f64,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// For whom the answer is.
+#[derive(Debug, clap::Args)]
+pub struct FormatArgs {
+    /// For people, on standard error, or for programs, on standard output
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+}
+
+/// For whom an answer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Text for people
+    Human,
+    /// JSON for programs
+    Json,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err("not a finite number".to_owned()),
+        Err(_) => Err("not a number".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definitions_agree_with_each_other() {
+        Args::command().debug_assert();
+    }
+}

@@ -1,0 +1,126 @@
+//! Scenes from files, from standard input and from pictures.
+
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
+
+use pinhole::{
+    area::Area,
+    diagnostic::Report,
+    film::{Recipe, SIGNATURE, read_recipe},
+    scene::{self, Reading},
+    source::{Source, Sources},
+};
+
+use super::{Trouble, args::Overrides, output};
+
+/// A scene file with more bytes than this is not read: it is not one.
+const SCENE_LIMIT: u64 = 256 << 20;
+
+/// So much of a picture is read: more than enough for what may stand before its pixels.
+const PICTURE_LIMIT: u64 = 8 << 20;
+
+/// What a scene is read from.
+pub struct Input {
+    /// The scene's text and the overrides, those that a picture carries before those of the command line.
+    pub sources: Sources,
+    /// Whether it is a picture that carries the scene.
+    pub is_picture: bool,
+    /// The crop that the picture carries.
+    pub crop: Option<Area>,
+}
+
+/// Whether SCENE or FILE is `-`.
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+impl Input {
+    /// Reads what SCENE names.
+    pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Trouble> {
+        let name = path.display().to_string();
+        let bytes = bytes(path)
+            .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(path))))?;
+        let mut input = if bytes.starts_with(&SIGNATURE) {
+            let recipe = read_recipe(&bytes)
+                .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(path))))?;
+            Self::from_picture(name, recipe)
+        } else {
+            Self {
+                sources: Sources::new(Source::from_bytes(name, bytes)),
+                is_picture: false,
+                crop: None,
+            }
+        };
+        // Numbered as on the command line, whatever a picture carries.
+        let sets = (1..).zip(&overrides.sets);
+        let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
+        input.sources.sets.extend(sets);
+        Ok(input)
+    }
+
+    fn from_picture(name: String, recipe: Recipe) -> Self {
+        let sets = (1..)
+            .zip(recipe.overrides)
+            .map(|(number, set)| Source::from_text(format!("{name}, --set #{number}"), set));
+        let mut sources = Sources::new(Source::from_text(name.clone(), recipe.scene));
+        sources.sets.extend(sets);
+        Self {
+            sources,
+            is_picture: true,
+            crop: recipe.crop,
+        }
+    }
+
+    /// Reads the scene, and reports its problems to people.
+    pub fn scene(&self) -> Reading {
+        let reading = scene::read(&self.sources);
+        let report = Report::new(&self.sources, output::style());
+        output::to_people(&report.human(&reading.diagnostics));
+        reading
+    }
+
+    /// The scene's text with the overrides, for a picture to carry.
+    pub fn recipe(&self, crop: Option<Area>) -> Recipe {
+        let sets = self.sources.sets.iter();
+        Recipe {
+            scene: self.sources.file.text().to_owned(),
+            overrides: sets.map(|set| set.text().to_owned()).collect(),
+            crop,
+        }
+    }
+}
+
+/// What SCENE or FILE is called in a message.
+pub fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    if is_standard(path) {
+        return limited(io::stdin().lock());
+    }
+    limited(File::open(path)?)
+}
+
+/// Reads a scene, or as much of a picture as can matter.
+fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let by_ref = from.by_ref();
+    by_ref
+        .take(SIGNATURE.len() as u64)
+        .read_to_end(&mut bytes)?;
+    if bytes == SIGNATURE {
+        by_ref.take(PICTURE_LIMIT).read_to_end(&mut bytes)?;
+        return Ok(bytes);
+    }
+    by_ref.take(SCENE_LIMIT).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 >= SCENE_LIMIT {
+        return Err(io::Error::other(
+            "it has more than 256 MiB, too much for a scene",
+        ));
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,24 @@
+//! `inspect`: what a scene means.
+
+use pinhole::inspect;
+
+use super::{
+    Status, Trouble,
+    args::{Format, InspectArgs},
+    input::Input,
+    output,
+};
+
+/// Prints what a scene means.
+pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
+    let input = Input::read(&args.scene, &args.overrides)?;
+    let Some(scene) = input.scene().scene else {
+        return Ok(Status::SceneErrors);
+    };
+    let inspection = inspect::inspect(&scene, &input.sources.file);
+    match args.format.format {
+        Format::Human => output::to_people(&inspection.to_string()),
+        Format::Json => output::to_programs(format!("{}\n", inspection.to_json()).as_bytes())?,
+    }
+    Ok(Status::Done)
+}

@@ -1,0 +1,70 @@
+//! `completions` and `man`: what the definitions of the arguments say, in other forms.
+
+use std::io::{self, Write};
+
+use clap::{Command, CommandFactory};
+use clap_complete::Shell;
+use clap_mangen::Man;
+
+use super::{Status, Trouble, args::Args, output};
+
+/// Prints a completion script.
+pub fn completions(shell: Shell) -> Result<Status, Trouble> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Args::command(), "pinhole", &mut script);
+    output::to_programs(&script)?;
+    Ok(Status::Done)
+}
+
+/// Prints the manual page: that of `pinhole`, with a section for each command.
+pub fn man() -> Result<Status, Trouble> {
+    let mut page = Vec::new();
+    write(&mut page).map_err(|error| Trouble(format!("cannot write the manual: {error}")))?;
+    output::to_programs(&page)?;
+    Ok(Status::Done)
+}
+
+fn write(page: &mut Vec<u8>) -> io::Result<()> {
+    let mut command = Args::command();
+    command.build();
+    let whole = Man::new(command.clone());
+    whole.render_title(page)?;
+    whole.render_name_section(page)?;
+    whole.render_synopsis_section(page)?;
+    whole.render_description_section(page)?;
+    for command in command.get_subcommands() {
+        if command.get_name() != "help" {
+            write_command(page, command)?;
+        }
+    }
+    page.write_all(examples(&whole)?.as_bytes())?;
+    whole.render_version_section(page)
+}
+
+/// A section for one command; what are sections of its own page are parts of it here.
+fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
+    let own = Man::new(command.clone());
+    let mut parts = Vec::new();
+    own.render_synopsis_section(&mut parts)?;
+    own.render_description_section(&mut parts)?;
+    own.render_options_section(&mut parts)?;
+    let parts = format!("{}{}", String::from_utf8_lossy(&parts), examples(&own)?);
+    let parts: String = parts
+        .lines()
+        .map(|line| match line.strip_prefix(".SH ") {
+            Some(title) => format!(".SS {title}\n"),
+            None => format!("{line}\n"),
+        })
+        .collect();
+    let name = command.get_name().to_uppercase();
+    write!(page, ".SH \"PINHOLE {name}\"\n{parts}")
+}
+
+/// The text after the options, line by line as it stands there.
+fn examples(man: &Man) -> io::Result<String> {
+    let mut extra = Vec::new();
+    man.render_extra_section(&mut extra)?;
+    let extra = String::from_utf8_lossy(&extra);
+    let extra = extra.replace(".SH EXTRA\nExamples:\n", ".SH EXAMPLES\n.nf\n");
+    Ok(format!("{}\n.fi\n", extra.trim_end()))
+}

@@ -1,0 +1,74 @@
+//! The command line: reads, calls, prints. A command is a file.
+//!
+//! Pictures and JSON go to standard output, everything for people to standard error. The exit status is 0 when it is done, warnings
+//! or not, 1 when the scene has errors, 2 on any other trouble and 130 after Ctrl-C.
+
+mod args;
+mod check;
+mod input;
+mod inspect;
+mod interrupt;
+mod manual;
+mod output;
+mod probe;
+mod progress;
+mod render;
+
+use std::{fmt, process::ExitCode};
+
+use clap::Parser;
+
+use self::{
+    args::{Args, Command},
+    interrupt::Interrupt,
+};
+
+/// Runs the command that the arguments name.
+pub fn run() -> ExitCode {
+    // Help, version and wrong usage end here, the latter with status 2.
+    let args = Args::parse();
+    let done = Interrupt::listen().and_then(|interrupt| match args.command {
+        Command::Render(args) => render::run(&args, &interrupt),
+        Command::Check(args) => check::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Probe(args) => probe::run(&args),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man => manual::man(),
+    });
+    match done {
+        Ok(status) => status.into(),
+        Err(trouble) => {
+            output::error(&trouble);
+            Status::Trouble.into()
+        }
+    }
+}
+
+/// How a command ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Status {
+    /// Done, warnings or not.
+    Done = 0,
+    /// The scene has errors.
+    SceneErrors = 1,
+    /// Usage, files, memory.
+    Trouble = 2,
+    /// Ctrl-C.
+    Interrupted = 130,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status as u8)
+    }
+}
+
+/// What kept a command from its work, in words for people.
+#[derive(Debug)]
+struct Trouble(String);
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

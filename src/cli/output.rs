@@ -1,0 +1,85 @@
+//! Standard output for programs, standard error for people.
+
+use std::{
+    env, fmt,
+    io::{self, ErrorKind, IsTerminal, Write},
+};
+
+use pinhole::diagnostic::{Drawing, Style};
+use terminal_size::{Width, terminal_size_of};
+
+use super::Trouble;
+
+/// Writes to standard output. A reader that has gone away, as `head` does, has had enough: that is no trouble.
+pub fn to_programs(bytes: &[u8]) -> Result<(), Trouble> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Trouble(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes to standard error; if nobody reads it, there is nobody to tell.
+pub fn to_people(text: &str) {
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Says what kept a command from its work.
+pub fn error(message: &dyn fmt::Display) {
+    word("error", "1;31", message);
+}
+
+/// Says what the user might not expect.
+pub fn warning(message: &dyn fmt::Display) {
+    word("warning", "1;33", message);
+}
+
+fn word(word: &str, color: &str, message: &dyn fmt::Display) {
+    if style().color {
+        to_people(&format!("\x1b[{color}m{word}:\x1b[0m {message}\n"));
+    } else {
+        to_people(&format!("{word}: {message}\n"));
+    }
+}
+
+/// Whether somebody watches.
+pub fn is_watched() -> bool {
+    io::stderr().is_terminal()
+}
+
+/// How reports are drawn on standard error: in colour on a terminal that has it, unless `NO_COLOR` is set; in ASCII where the locale
+/// is not one of UTF-8; in sentences if `NO_GRAPHICS` is set, for screen readers.
+pub fn style() -> Style {
+    let plain = Style::default();
+    let dumb = env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
+    Style {
+        drawing: if is_set("NO_GRAPHICS") {
+            Drawing::Narrated
+        } else if is_unicode() {
+            Drawing::Unicode
+        } else {
+            Drawing::Ascii
+        },
+        color: is_watched() && !dumb && !is_set("NO_COLOR"),
+        width: terminal_size_of(io::stderr())
+            .map_or(plain.width, |(Width(columns), _)| usize::from(columns)),
+    }
+}
+
+/// As no-color.org says: present and not empty.
+fn is_set(name: &str) -> bool {
+    env::var_os(name).is_some_and(|value| !value.is_empty())
+}
+
+/// Of the variables for the locale the first that says something counts; where none does, terminals of today know Unicode.
+fn is_unicode() -> bool {
+    ["LC_ALL", "LC_CTYPE", "LANG"]
+        .iter()
+        .find_map(|name| env::var(name).ok().filter(|value| !value.is_empty()))
+        .is_none_or(|locale| {
+            let locale = locale.to_ascii_uppercase();
+            locale.contains("UTF-8") || locale.contains("UTF8")
+        })
+}

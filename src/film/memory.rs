@@ -1,0 +1,171 @@
+//! Whether there is memory for a picture, before it is taken.
+
+use std::{fs, path::Path};
+
+use thiserror::Error;
+
+/// A picture for which there is no memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("a picture of {width} × {height} pixels needs {} of memory, {}", size(*.needed), have(*.available))]
+pub struct TooLarge {
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// How many bytes it needs.
+    pub needed: u64,
+    /// How many there are, where the system says so.
+    pub available: Option<u64>,
+}
+
+/// Reserves room for the pixels of a picture and says how many there are, or refuses.
+pub fn reserve<T>(pixels: &mut Vec<T>, width: u32, height: u32) -> Result<usize, TooLarge> {
+    let count = u64::from(width) * u64::from(height);
+    let needed = count.saturating_mul(size_of::<T>() as u64);
+    let available = available();
+    let refused = TooLarge {
+        width,
+        height,
+        needed,
+        available,
+    };
+    if available.is_some_and(|available| needed > available) {
+        return Err(refused);
+    }
+    let count = usize::try_from(count).map_err(|_| refused)?;
+    pixels.try_reserve_exact(count).map_err(|_| refused)?;
+    Ok(count)
+}
+
+/// How many bytes this process may still take: what the machine has available and what is left of its control group's limit, the
+/// smaller one. A system that hands out memory which it does not have would otherwise end the process halfway. Nothing on systems
+/// other than Linux, where the reservation itself has to fail.
+fn available() -> Option<u64> {
+    [machine(), control_group()].into_iter().flatten().min()
+}
+
+fn machine() -> Option<u64> {
+    let table = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = table
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
+    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+/// What is left of the limits of this process's control group and of the groups around it.
+fn control_group() -> Option<u64> {
+    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    groups
+        .lines()
+        .filter_map(|line| {
+            // A line is a number, the controllers and the group's path.
+            let mut fields = line.splitn(3, ':').skip(1);
+            let (controllers, group) = (fields.next()?, fields.next()?);
+            let interface = match controllers {
+                "" => &SECOND,
+                "memory" => &FIRST,
+                _ => return None,
+            };
+            interface.left(group)
+        })
+        .min()
+}
+
+/// Where a version of the control groups' interface keeps its numbers.
+struct Interface {
+    root: &'static str,
+    limit: &'static str,
+    usage: &'static str,
+    /// What of the usage gives way on demand: copies of files.
+    cache: &'static str,
+}
+
+const FIRST: Interface = Interface {
+    root: "/sys/fs/cgroup/memory",
+    limit: "memory.limit_in_bytes",
+    usage: "memory.usage_in_bytes",
+    cache: "total_inactive_file",
+};
+
+const SECOND: Interface = Interface {
+    root: "/sys/fs/cgroup",
+    limit: "memory.max",
+    usage: "memory.current",
+    cache: "inactive_file",
+};
+
+impl Interface {
+    fn left(&self, group: &str) -> Option<u64> {
+        let folder = Path::new(self.root).join(group.trim_start_matches('/'));
+        folder
+            .ancestors()
+            .take_while(|folder| folder.starts_with(self.root))
+            .filter_map(|folder| self.left_in(folder))
+            .min()
+    }
+
+    fn left_in(&self, folder: &Path) -> Option<u64> {
+        let read = |name| fs::read_to_string(folder.join(name)).ok();
+        // Without a limit there is a word here, or a huge number.
+        let limit: u64 = read(self.limit)?.trim().parse().ok()?;
+        let usage: u64 = read(self.usage)?.trim().parse().ok()?;
+        let cache: u64 = read("memory.stat")
+            .and_then(|table| {
+                let line = table
+                    .lines()
+                    .find(|line| line.split(' ').next() == Some(self.cache))?;
+                line.split(' ').nth(1)?.parse().ok()
+            })
+            .unwrap_or(0);
+        Some(limit.saturating_sub(usage.saturating_sub(cache)))
+    }
+}
+
+/// A number of bytes for people.
+fn size(bytes: u64) -> String {
+    const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
+    let mut scaled = bytes as f64;
+    let mut unit = 0;
+    while scaled >= 1024.0 && unit + 1 < UNITS.len() {
+        scaled /= 1024.0;
+        unit += 1;
+    }
+    let digits = usize::from(unit > 0);
+    format!("{scaled:.digits$} {}", UNITS[unit])
+}
+
+fn have(available: Option<u64>) -> String {
+    match available {
+        Some(available) => format!("and {} are available", size(available)),
+        None => "more than there is".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_huge_picture_is_refused_with_its_sizes() {
+        let mut pixels: Vec<[f64; 3]> = Vec::new();
+        let refused = reserve(&mut pixels, 1 << 20, 1 << 20).unwrap_err();
+        assert_eq!(refused.needed, 24 << 40);
+        assert_eq!(pixels.capacity(), 0);
+        let message = TooLarge {
+            available: Some(3 << 29),
+            ..refused
+        }
+        .to_string();
+        assert_eq!(
+            message,
+            "a picture of 1048576 × 1048576 pixels needs 24.0 TiB of memory, and 1.5 GiB are available"
+        );
+    }
+
+    #[test]
+    fn a_small_picture_is_not() {
+        let mut pixels: Vec<[f64; 3]> = Vec::new();
+        assert_eq!(reserve(&mut pixels, 64, 32), Ok(2048));
+    }
+}

@@ -1,0 +1,118 @@
+//! Pixels, and the files they go to.
+//!
+//! In: how often each colour was seen in a pixel. Out: the mean in linear light, and a picture file: `png` with the scene that made
+//! it, or `exr`. A file format is a file here; `write` sees to it that a file is written whole or not at all.
+
+mod exr;
+mod memory;
+mod png;
+mod srgb;
+mod write;
+
+pub use self::{
+    exr::write_exr,
+    memory::TooLarge,
+    png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
+    write::{Sink, check_writable, write_stream, write_whole},
+};
+use crate::{
+    area::Area,
+    math::{Double, Real, two_product},
+};
+
+/// A picture: the mean of each pixel in linear light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    /// Row by row from the top.
+    pixels: Vec<[f64; 3]>,
+}
+
+impl Film {
+    /// A black picture, if the memory for it is there.
+    pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
+        let mut pixels = Vec::new();
+        let count = memory::reserve(&mut pixels, width, height)?;
+        pixels.resize(count, [0.0; 3]);
+        Ok(Self {
+            width,
+            height,
+            pixels,
+        })
+    }
+
+    /// How many columns it has.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// How many rows it has.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// A pixel's red, green and blue, 0 to 1.
+    pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+        self.row(y)[x as usize]
+    }
+
+    /// The pixels of a row, from the left.
+    pub fn row(&self, y: u32) -> &[[f64; 3]] {
+        let width = self.width as usize;
+        &self.pixels[y as usize * width..][..width]
+    }
+
+    /// Sets the pixels of a part of the picture, row by row.
+    pub fn put(&mut self, part: Area, pixels: &[[f64; 3]]) {
+        let (left, width) = (part.x as usize, part.width as usize);
+        for (y, row) in (part.y as usize..).zip(pixels.chunks_exact(width)) {
+            let start = y * self.width as usize + left;
+            self.pixels[start..start + width].copy_from_slice(row);
+        }
+    }
+}
+
+/// The mean of a pixel's samples: Σ count · colour / n, n being the sum of the counts, rounded once.
+///
+/// The colours come in the order of the palette, so that the same counts give the same bits in whichever order they were made. The sum
+/// and the quotient are double-doubles: their errors are some 2^−100 of the mean, and a colour alone comes back as it was.
+pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
+    let mut samples = 0;
+    let mut sums = [Double::from_f64(0.0); 3];
+    for (count, color) in seen {
+        samples += count;
+        for (sum, channel) in sums.iter_mut().zip(color) {
+            // A count is at most 2^53, so it is an f64.
+            *sum = sum.plus(&two_product(count as f64, channel));
+        }
+    }
+    sums.map(|sum| sum.over(&Double::from_f64(samples as f64)).to_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Color;
+
+    #[test]
+    fn a_colour_alone_is_its_own_mean() {
+        for bytes in 0..=255 {
+            let color = Color::from_bytes([bytes, 255 - bytes, 1]).to_linear();
+            for count in [1, 3, 7, 16, 1_000_003, (1 << 53) - 1, 1 << 53] {
+                assert_eq!(mean([(count, color)].into_iter()), color);
+            }
+        }
+    }
+
+    #[test]
+    fn a_mean_is_rounded_once() {
+        // 3 · 0.1 + 7 · 0.3, of which 0.1 is 0.1000000000000000055511151231257827 and 0.3 is 0.299999999999999988897769753748: 0.24
+        // within 6e-18, a quarter of the distance between neighbours there.
+        let mean = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
+        assert_eq!(mean, [0.24; 3]);
+        // 1 of 2^53 samples is half a unit in the last place of the others: exact, where a running sum would lose it.
+        let mean = super::mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
+        assert_eq!(mean, [1.0 - f64::EPSILON / 2.0; 3]);
+    }
+}

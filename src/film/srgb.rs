@@ -1,0 +1,81 @@
+//! Linear light as bytes of sRGB.
+//!
+//! Encoding and rounding are one comparison with thresholds: byte k stands for what lies from the light of k − 1/2 to that of k + 1/2.
+//! The thresholds are decoded as colours are, so a colour of the scene that nothing else is mixed into comes out as
+//! [`Color::to_bytes`](crate::color::Color::to_bytes) has it, ties included.
+
+use std::array;
+
+use crate::color::srgb_to_linear;
+
+/// The parts that linear light is cut into to find the byte.
+const PARTS: usize = 4096;
+
+/// Encodes linear light as bytes.
+pub struct Encoder {
+    /// The light of k + 1/2, for the bytes k below 255.
+    thresholds: [f64; 255],
+    /// The byte at the dark end of each part.
+    start: [u8; PARTS + 1],
+}
+
+impl Encoder {
+    /// Prepares the thresholds.
+    pub fn new() -> Self {
+        let thresholds = array::from_fn(|k| srgb_to_linear((k as f64 + 0.5) / 255.0));
+        let start = array::from_fn(|part| {
+            let light = part as f64 / PARTS as f64;
+            thresholds.partition_point(|&threshold| threshold <= light) as u8
+        });
+        Self { thresholds, start }
+    }
+
+    /// The byte of one channel; light below 0 or above 1 counts as 0 or 1.
+    pub fn encode(&self, light: f64) -> u8 {
+        // The conversion clamps on both sides, and the scaling is exact.
+        let part = ((light * PARTS as f64) as usize).min(PARTS);
+        let mut byte = self.start[part];
+        while byte < 255 && self.thresholds[usize::from(byte)] <= light {
+            byte += 1;
+        }
+        byte
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Color;
+
+    #[test]
+    fn colours_come_back_as_their_bytes() {
+        let encoder = Encoder::new();
+        for step in 0..=255 * 64 {
+            let channel = f64::from(step) / 64.0;
+            let color = Color { srgb: [channel; 3] };
+            assert_eq!(
+                color.to_linear().map(|light| encoder.encode(light)),
+                color.to_bytes(),
+                "{channel}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_nearest_byte_is_found_all_the_way() {
+        let encoder = Encoder::new();
+        for step in 0..=200_000 {
+            let light = f64::from(step) / 200_000.0;
+            let encoded = if light <= 0.003_130_8 {
+                12.92 * light
+            } else {
+                1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+            };
+            let scaled = 255.0 * encoded;
+            let error = (scaled - f64::from(encoder.encode(light))).abs();
+            assert!(error < 0.5 + 1e-5, "{light}: off by {error}");
+        }
+        assert_eq!(encoder.encode(-1.0), 0);
+        assert_eq!(encoder.encode(2.0), 255);
+    }
+}

@@ -1,0 +1,175 @@
+//! Files that are written whole or not at all.
+
+use std::{
+    fs::{self, OpenOptions, Permissions},
+    io::{self, BufWriter, Cursor, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use tempfile::{Builder, NamedTempFile};
+
+/// What a file's content is written to.
+pub trait Sink: Write + Seek {}
+
+impl<T: Write + Seek> Sink for T {}
+
+/// Has `write` write the content of the file at `path`, which stays as it was until the new content is complete.
+///
+/// The content goes into a temporary file in the same folder, which then takes the place of the old one, with its permissions. Of a
+/// symbolic link the target is replaced, not the link. What is not a file (a device, a pipe) gets the content once it is complete.
+/// When `cancel` is set, or an error occurs, the temporary file is removed.
+pub fn write_whole(
+    path: &Path,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> io::Result<()> {
+    match place(path)? {
+        Place::File(path, permissions) => {
+            let temporary = temporary(&path, permissions.as_ref())?;
+            let mut out = BufWriter::with_capacity(1 << 16, Checked::new(temporary, cancel));
+            write(&mut out)?;
+            let temporary = out.into_inner().map_err(|error| error.into_error())?.sink;
+            // Only now it is known that there was room for all of it.
+            temporary.as_file().sync_all()?;
+            check(cancel)?;
+            temporary.persist(path).map_err(|error| error.error)?;
+            Ok(())
+        }
+        Place::Device(path) => {
+            let mut content = Checked::new(Cursor::new(Vec::new()), cancel);
+            write(&mut content)?;
+            let mut device = OpenOptions::new().write(true).open(path)?;
+            device.write_all(content.sink.get_ref())?;
+            device.flush()
+        }
+    }
+}
+
+/// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by then cannot be taken back.
+pub fn write_stream(
+    out: impl Write,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, Checked::new(out, cancel));
+    write(&mut out)?;
+    out.flush()
+}
+
+/// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to learn it after a long render.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    match place(path)? {
+        Place::File(path, permissions) => temporary(&path, permissions.as_ref())?.close(),
+        Place::Device(_) => Ok(()),
+    }
+}
+
+/// Where the content goes.
+enum Place {
+    /// A file, which may exist already and then has permissions.
+    File(PathBuf, Option<Permissions>),
+    /// Something that must not be replaced.
+    Device(PathBuf),
+}
+
+fn place(path: &Path) -> io::Result<Place> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(found) if found.is_file() => {
+            // Replacing a file only takes the right to write to its folder; not to touch a file that is write-protected is
+            // what its owner expects.
+            OpenOptions::new().write(true).open(path)?;
+            Ok(Place::File(
+                fs::canonicalize(path)?,
+                Some(found.permissions()),
+            ))
+        }
+        Ok(_) => Ok(Place::Device(path.to_owned())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            Ok(Place::File(end_of_links(path)?, None))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The file that a symbolic link to nothing would create.
+fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    // `metadata` has found nothing at the end, so the links form no circle; but somebody may be changing them.
+    for _ in 0..64 {
+        match fs::read_link(&path) {
+            Ok(target) => path = folder(&path).join(target),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::ErrorKind::NotFound.into())
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn temporary(path: &Path, permissions: Option<&Permissions>) -> io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    builder.prefix(".pinhole-").suffix(".tmp");
+    #[cfg(unix)]
+    if permissions.is_none() {
+        // The usual permissions of a new file: the system takes the mask off.
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    }
+    let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
+    if let Some(permissions) = permissions {
+        temporary.as_file().set_permissions(permissions.clone())?;
+    }
+    Ok(temporary)
+}
+
+/// The system's own words: nobody wants to know what the temporary file would have been called.
+fn without_path(error: io::Error) -> io::Error {
+    let words = error.to_string();
+    match words.split_once(" at path ") {
+        Some((words, _)) => io::Error::new(error.kind(), words),
+        None => error,
+    }
+}
+
+/// A sink that fails once the flag is set.
+struct Checked<'a, S> {
+    sink: S,
+    cancel: &'a AtomicBool,
+}
+
+impl<'a, S> Checked<'a, S> {
+    fn new(sink: S, cancel: &'a AtomicBool) -> Self {
+        Self { sink, cancel }
+    }
+}
+
+fn check(cancel: &AtomicBool) -> io::Result<()> {
+    if cancel.load(Ordering::Relaxed) {
+        // Not `Interrupted`, which means "try again" to whoever writes.
+        return Err(io::Error::other("interrupted"));
+    }
+    Ok(())
+}
+
+impl<S: Write> Write for Checked<'_, S> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        check(self.cancel)?;
+        self.sink.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.sink.flush()
+    }
+}
+
+impl<S: Seek> Seek for Checked<'_, S> {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        self.sink.seek(position)
+    }
+}

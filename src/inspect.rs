@@ -1,0 +1,312 @@
+//! What a scene means, in numbers: the camera's axes, its field of view, the vanishing points, the objects.
+
+use std::{cmp::Ordering, fmt};
+
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use crate::{
+    math::{Big, Real},
+    numbers::{grouped, short, short_vector},
+    scene::{Checkerboard, Count, Cuboid, Method, Scene, Shape, Sphere},
+    source::Source,
+    tracer::{Basis, vertices},
+};
+
+/// What `pinhole inspect` shows. Every number is the rounding of what real arithmetic makes of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inspection {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The camera.
+    pub camera: CameraFacts,
+    /// The sampling technique.
+    pub method: Method,
+    /// Samples in each pixel, if that is what the scene gives.
+    pub per_pixel: Option<u64>,
+    /// Samples in the whole picture.
+    pub total: u64,
+    /// The seed.
+    pub seed: u64,
+    /// For each of the world's axes where its parallels meet, in pixels from the picture's top left corner; `None` if the
+    /// axis is parallel to the view plane.
+    pub vanishing_points: [Option<[f64; 2]>; 3],
+    /// The objects in file order.
+    pub objects: Vec<ObjectFacts>,
+}
+
+/// A camera in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraFacts {
+    /// The eye.
+    pub eye: DVec3,
+    /// The picture's right.
+    pub u: DVec3,
+    /// The picture's top.
+    pub v: DVec3,
+    /// Against the view direction.
+    pub w: DVec3,
+    /// Distance from the eye to the view plane, in metres.
+    pub d: f64,
+    /// Height of the window, in metres.
+    pub view_height: f64,
+    /// The angle that the window's height takes up, in degrees.
+    pub fov_deg: f64,
+    /// The near plane's depth.
+    pub near: f64,
+    /// The far plane's depth.
+    pub far: Option<f64>,
+    /// Up, down or level, as the exact y of the view direction says.
+    pub looks: &'static str,
+}
+
+/// An object in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectFacts {
+    /// Its name.
+    pub name: Option<String>,
+    /// The line it begins in, counted from 1.
+    pub line: usize,
+    /// What it is.
+    pub shape: Shape,
+}
+
+/// Says what a scene means; `source` is the file that it was read from.
+pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
+    let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
+    let (per_pixel, total) = match scene.sampler.count {
+        Count::PerPixel(count) => (Some(count), count * pixels),
+        Count::Total(total) => (None, total),
+    };
+    let basis = Basis::new(&scene.camera, &scene.image);
+    let objects = scene.objects.iter().map(|object| ObjectFacts {
+        name: object.name.clone(),
+        line: source.line(object.span.start),
+        shape: object.shape,
+    });
+    Inspection {
+        size: [scene.image.width, scene.image.height],
+        vanishing_points: [0, 1, 2].map(|axis| vanishing_point(scene, &basis, axis)),
+        camera: camera_facts(scene, &basis),
+        method: scene.sampler.method,
+        per_pixel,
+        total,
+        seed: scene.sampler.seed,
+        objects: objects.collect(),
+    }
+}
+
+fn camera_facts(scene: &Scene, basis: &Basis) -> CameraFacts {
+    let vector = |v: &[Big; 3]| v.each_ref().map(rounded).into();
+    let view_height = Big::from_f64(scene.camera.view_height);
+    let slope = view_height.over(&basis.d).scaled(-1);
+    CameraFacts {
+        eye: scene.camera.eye,
+        u: vector(&basis.u),
+        v: vector(&basis.v),
+        w: vector(&basis.w),
+        d: rounded(&basis.d),
+        view_height: scene.camera.view_height,
+        fov_deg: rounded(&slope.atan_degrees().scaled(1)),
+        near: scene.camera.near,
+        far: scene.camera.far,
+        looks: match basis.looks {
+            Ordering::Greater => "up",
+            Ordering::Less => "down",
+            Ordering::Equal => "level",
+        },
+    }
+}
+
+/// Where the lines parallel to an axis meet. The ray along the axis a has the direction (a·u, a·v, −a·w) in the camera's
+/// axes, and meets the view plane where that is scaled to depth 1.
+fn vanishing_point(scene: &Scene, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
+    // w is −f/|f|, so this is zero exactly where the axis is parallel to the view plane.
+    if basis.w[axis].is_zero() {
+        return None;
+    }
+    let depth = basis.w[axis].negated().times(&basis.pitch);
+    let half = |pixels: u32| Big::from_f64(f64::from(pixels)).scaled(-1);
+    let x = half(scene.image.width).plus(&basis.u[axis].over(&depth));
+    let y = half(scene.image.height).minus(&basis.v[axis].over(&depth));
+    Some([rounded(&x), rounded(&y)])
+}
+
+/// Rounded to `f64`, without a negative zero.
+fn rounded(x: &Big) -> f64 {
+    x.to_f64() + 0.0
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Inspection {
+    /// The JSON object of the command line's contract.
+    pub fn to_json(&self) -> Value {
+        let camera = &self.camera;
+        let vanishing_points = AXES
+            .iter()
+            .zip(&self.vanishing_points)
+            .map(|(axis, pixel)| json!({ "axis": axis, "pixel": pixel }));
+        let objects = self.objects.iter().enumerate().map(|(index, object)| {
+            let mut facts = json!({
+                "index": index,
+                "kind": object.shape.kind(),
+                "name": object.name,
+                "line": object.line,
+            });
+            for (key, value) in shape_facts(&object.shape) {
+                facts[key] = value;
+            }
+            facts
+        });
+        json!({
+            "image": { "width": self.size[0], "height": self.size[1] },
+            "camera": {
+                "eye": camera.eye.to_array(),
+                "u": camera.u.to_array(),
+                "v": camera.v.to_array(),
+                "w": camera.w.to_array(),
+                "d": camera.d,
+                "view_height": camera.view_height,
+                "fov_deg": camera.fov_deg,
+                "near": camera.near,
+                "far": camera.far,
+                "looks": camera.looks,
+            },
+            "sampler": {
+                "method": self.method.name(),
+                "per_pixel": self.per_pixel,
+                "total": self.total,
+                "seed": self.seed,
+            },
+            "vanishing_points": vanishing_points.collect::<Vec<_>>(),
+            "objects": objects.collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// What is particular to a kind of object.
+fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
+    match shape {
+        Shape::Sphere(Sphere {
+            center,
+            radius,
+            color,
+        }) => vec![
+            ("center", json!(center.to_array())),
+            ("radius", json!(radius)),
+            ("color", json!(color.to_string())),
+        ],
+        Shape::Triangle(triangle) => vec![
+            ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
+            ("color", json!(triangle.color.to_string())),
+        ],
+        Shape::Box(Cuboid { min, max, color }) => vec![
+            ("min", json!(min.to_array())),
+            ("max", json!(max.to_array())),
+            ("color", json!(color.to_string())),
+        ],
+        Shape::Checkerboard(Checkerboard { y, square, colors }) => vec![
+            ("y", json!(y)),
+            ("square", json!(square)),
+            ("colors", json!(colors.map(|color| color.to_string()))),
+        ],
+    }
+}
+
+/// The same for people.
+impl fmt::Display for Inspection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let camera = &self.camera;
+        let [width, height] = self.size;
+        writeln!(f, "image     {width} x {height} pixels")?;
+        writeln!(f)?;
+        writeln!(f, "camera    looks {}", camera.looks)?;
+        let vectors = [
+            ("eye", camera.eye, ""),
+            ("u", camera.u, "  the picture's right"),
+            ("v", camera.v, "  the picture's top"),
+            ("w", camera.w, "  against the view direction"),
+        ];
+        for (name, vector, meaning) in vectors {
+            writeln!(f, "  {name:<7} {}{meaning}", short_vector(vector))?;
+        }
+        writeln!(
+            f,
+            "  d       {}, view height {}: a field of view of {} degrees",
+            short(camera.d),
+            short(camera.view_height),
+            short(camera.fov_deg)
+        )?;
+        let far = camera.far.map_or("endless".to_owned(), short);
+        writeln!(f, "  depth   from {} to {far}", short(camera.near))?;
+        writeln!(f)?;
+        writeln!(f, "vanishing points, in pixels from the top left corner")?;
+        for (axis, pixel) in AXES.iter().zip(&self.vanishing_points) {
+            match pixel {
+                Some([x, y]) => writeln!(f, "  {axis}       ({}, {})", short(*x), short(*y))?,
+                None => writeln!(f, "  {axis}       none: parallel to the view plane")?,
+            }
+        }
+        writeln!(f)?;
+        let total = grouped(self.total);
+        match self.per_pixel {
+            Some(count) => {
+                let count = grouped(count);
+                writeln!(
+                    f,
+                    "sampler   {}, {count} per pixel, {total} in all, seed {}",
+                    self.method.name(),
+                    self.seed
+                )?;
+            }
+            None => writeln!(
+                f,
+                "sampler   {}, {total} in all, seed {}",
+                self.method.name(),
+                self.seed
+            )?,
+        }
+        writeln!(f)?;
+        writeln!(f, "objects")?;
+        for (index, object) in self.objects.iter().enumerate() {
+            let kind = object.shape.kind();
+            let name = object.name.as_deref().unwrap_or("-");
+            let line = object.line;
+            writeln!(
+                f,
+                "  {index:<3} {kind:<12} {name:<10} line {line:<4} {}",
+                summary(&object.shape)
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// A shape in one line.
+fn summary(shape: &Shape) -> String {
+    match *shape {
+        Shape::Sphere(Sphere {
+            center,
+            radius,
+            color,
+        }) => format!(
+            "center {}, radius {}, {color}",
+            short_vector(center),
+            short(radius)
+        ),
+        Shape::Triangle(triangle) => {
+            let [left, right, apex] = vertices(&triangle).map(short_vector);
+            format!("base {left} to {right}, apex {apex}, {}", triangle.color)
+        }
+        Shape::Box(Cuboid { min, max, color }) => {
+            let (min, max) = (short_vector(min), short_vector(max));
+            format!("from {min} to {max}, {color}")
+        }
+        Shape::Checkerboard(Checkerboard { y, square, colors }) => {
+            let [even, odd] = colors;
+            let (y, square) = (short(y), short(square));
+            format!("y {y}, squares of {square}, {even} and {odd}")
+        }
+    }
+}

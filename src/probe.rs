@@ -1,0 +1,122 @@
+//! What one ray meets, surface by surface.
+
+use std::fmt;
+
+use glam::{DVec2, DVec3};
+use serde_json::{Value, json};
+
+use crate::{
+    color::Color,
+    numbers::{short, short_vector},
+    scene::Scene,
+    tracer::{Hit, World},
+};
+
+/// What `pinhole probe` shows: the ray through a point of the picture, and all surfaces on it. Every number is the rounding
+/// of what real arithmetic makes of the scene and the point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// The point, in pixels from the picture's top left corner; it may lie outside the picture.
+    pub pixel: DVec2,
+    /// The eye.
+    pub origin: DVec3,
+    /// The ray's direction, of length 1.
+    pub direction: DVec3,
+    /// All crossings in front of the eye, the nearest first, with the object's kind and name.
+    pub hits: Vec<(Hit, &'static str, Option<String>)>,
+    /// The colour that is seen.
+    pub color: Color,
+}
+
+/// Follows the ray through a point of the picture plane.
+pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
+    let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
+    let reach = (pixel - half).abs().max(half);
+    let world = World::reaching(scene, reach);
+    let (direction, hits) = world.ray(pixel);
+    let visible = hits.iter().find(|hit| hit.visible);
+    let color = visible.map_or(scene.image.background, |hit| hit.color);
+    let named = |hit: Hit| {
+        let object = &scene.objects[hit.object];
+        (hit, object.shape.kind(), object.name.clone())
+    };
+    Probe {
+        pixel,
+        origin: scene.camera.eye,
+        direction,
+        color,
+        hits: hits.into_iter().map(named).collect(),
+    }
+}
+
+impl Probe {
+    /// The JSON object of the command line's contract.
+    pub fn to_json(&self) -> Value {
+        let hits = self.hits.iter().map(|(hit, kind, name)| {
+            json!({
+                "object": name,
+                "index": hit.object,
+                "kind": kind,
+                "t": hit.t,
+                "depth": hit.depth,
+                "point": hit.point.to_array(),
+                "color": hit.color.to_string(),
+                "visible": hit.visible,
+            })
+        });
+        json!({
+            "pixel": self.pixel.to_array(),
+            "ray": {
+                "origin": self.origin.to_array(),
+                "direction": self.direction.to_array(),
+            },
+            "hits": hits.collect::<Vec<_>>(),
+            "color": self.color.to_string(),
+        })
+    }
+}
+
+/// The same for people.
+impl fmt::Display for Probe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (x, y) = (short(self.pixel.x), short(self.pixel.y));
+        writeln!(f, "pixel     ({x}, {y})")?;
+        writeln!(
+            f,
+            "ray       from {} along {}",
+            short_vector(self.origin),
+            short_vector(self.direction)
+        )?;
+        writeln!(f)?;
+        if self.hits.is_empty() {
+            writeln!(f, "It meets nothing: the background, {}.", self.color)?;
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "      t           depth       object                   color    point"
+        )?;
+        for (hit, kind, name) in &self.hits {
+            let mark = if hit.visible { "seen" } else { "" };
+            let object = match name {
+                Some(name) => format!("{kind} {name}"),
+                None => (*kind).to_owned(),
+            };
+            let (t, depth, point) = (short(hit.t), short(hit.depth), short_vector(hit.point));
+            writeln!(
+                f,
+                "{mark:<5} {t:<11} {depth:<11} {object:<24} {}  {point}",
+                hit.color
+            )?;
+        }
+        if !self.hits.iter().any(|(hit, ..)| hit.visible) {
+            writeln!(f)?;
+            writeln!(
+                f,
+                "Nothing between the near and the far plane: the background, {}.",
+                self.color
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,163 @@
+//! A pixel cut into n cells of equal area, for every n: rows of cells like bricks.
+//!
+//! Row k has n_k cells of width 1/n_k, and its height is n_k/n, so that every cell has the area 1/n. The number of rows m is
+//! the whole number nearest to √n, or the nearest odd one where n is odd; n_k is ⌊n/m⌋ or ⌈n/m⌉, the longer rows are
+//! spread evenly, and the rows read the same from both ends: 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (An odd n
+//! in an even number of rows cannot read the same from both ends.)
+
+use std::ops::Range;
+
+/// The cut of a pixel into n cells.
+#[derive(Clone, Copy, Debug)]
+pub struct Bricks {
+    n: u64,
+    /// How many rows, m.
+    rows: u64,
+    /// ⌊n/m⌋.
+    short: u64,
+    /// How many of the rows above the middle are longer by one.
+    longer: u64,
+}
+
+/// One row of cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// How many cells lie in the rows above; it begins at the height `first`/n.
+    pub first: u64,
+    /// How many cells it has.
+    pub cells: u64,
+}
+
+impl Bricks {
+    /// The cut into `n` cells, 1 ≤ n ≤ 2^53.
+    pub fn new(n: u64) -> Self {
+        let root = n.isqrt();
+        let rows = if n % 2 == 1 {
+            // The odd one of ⌊√n⌋ and its successor is at most 1 away from √n.
+            root | 1
+        } else if n - root * root > root {
+            // √n > root + 1/2, as n > root² + root + 1/4.
+            root + 1
+        } else {
+            root
+        };
+        Self {
+            n,
+            rows,
+            short: n / rows,
+            longer: n % rows / 2,
+        }
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> u64 {
+        self.n
+    }
+
+    /// The lengths of the shortest and of the longest rows.
+    pub fn lengths(&self) -> [u64; 2] {
+        [self.short, self.short + 1]
+    }
+
+    /// The rows that hold the cells with these indices, counted row by row, and which columns of each are meant.
+    pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (Row, Range<u64>)> {
+        let mut next = cells.start;
+        let mut k = self.row_of_cell(next.min(self.n - 1));
+        std::iter::from_fn(move || {
+            if next >= cells.end {
+                return None;
+            }
+            let row = self.row(k);
+            let columns = next - row.first..row.cells.min(cells.end - row.first);
+            k += 1;
+            next = row.first + row.cells;
+            Some((row, columns))
+        })
+    }
+
+    /// The row with index `k`, from the top.
+    fn row(&self, k: u64) -> Row {
+        let first = self.cells_above(k);
+        Row {
+            first,
+            cells: self.cells_above(k + 1) - first,
+        }
+    }
+
+    /// The index of the row that holds the cell with index `i`, counted row by row.
+    fn row_of_cell(&self, i: u64) -> u64 {
+        // The estimate is off by a row or so; what it is off by is walked.
+        let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
+        while self.cells_above(k) > i {
+            k -= 1;
+        }
+        while self.cells_above(k + 1) <= i {
+            k += 1;
+        }
+        k
+    }
+
+    /// How many cells lie in the first `k` rows.
+    fn cells_above(&self, k: u64) -> u64 {
+        if 2 * k > self.rows {
+            return self.n - self.cells_above(self.rows - k);
+        }
+        let half = self.rows / 2;
+        // There are fewer than 2^27 rows, so nothing overflows; with one row, k is 0.
+        k * self.short + k * self.longer / half.max(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lengths(n: u64) -> Vec<u64> {
+        let bricks = Bricks::new(n);
+        (0..bricks.rows).map(|k| bricks.row(k).cells).collect()
+    }
+
+    #[test]
+    fn rows_are_as_the_reference_says() {
+        assert_eq!(lengths(1), [1]);
+        assert_eq!(lengths(2), [2]);
+        assert_eq!(lengths(3), [3]);
+        assert_eq!(lengths(5), [2, 1, 2]);
+        assert_eq!(lengths(7), [2, 3, 2]);
+        assert_eq!(lengths(12), [4, 4, 4]);
+        assert_eq!(lengths(14), [3, 4, 4, 3]);
+        assert_eq!(lengths(16), [4, 4, 4, 4]);
+        assert_eq!(lengths(25), [5, 5, 5, 5, 5]);
+    }
+
+    #[test]
+    fn rows_are_even_and_read_the_same_from_both_ends() {
+        for n in 1..5000_u64 {
+            let rows = lengths(n);
+            assert_eq!(rows.iter().sum::<u64>(), n);
+            assert!(rows.iter().eq(rows.iter().rev()), "{n}: {rows:?}");
+            let (least, most) = (rows.iter().min(), rows.iter().max());
+            assert!(most.unwrap() - least.unwrap() <= 1, "{n}: {rows:?}");
+            if n.isqrt() * n.isqrt() == n {
+                assert!(rows.iter().all(|&cells| cells == n.isqrt()));
+            }
+        }
+    }
+
+    #[test]
+    fn cells_are_found_in_their_rows() {
+        for n in (1..300).chain([(1 << 53) - 111, 1 << 53]) {
+            let bricks = Bricks::new(n);
+            for i in (0..n.min(300)).chain([n / 3, n / 2, n - 1]) {
+                let (row, columns) = bricks.parts(i..i + 1).next().unwrap();
+                assert_eq!(columns.start, i - row.first);
+                assert_eq!(columns.end, columns.start + 1);
+                assert!(columns.end <= row.cells);
+            }
+        }
+        let bricks = Bricks::new(14);
+        let parts: Vec<_> = bricks.parts(2..9).map(|(_, columns)| columns).collect();
+        assert_eq!(parts, [2..3, 0..4, 0..2]);
+        assert_eq!(bricks.parts(14..14).count(), 0);
+    }
+}

@@ -1,0 +1,83 @@
+//! `halton`: the points (φ₂(i), φ₃(i)), shifted per pixel (Halton 1960; Cranley and Patterson 1976 for the shift).
+//!
+//! φ_b is the radical inverse: the digits of i in base b, mirrored at the point. The sequence begins at i = 0. The shift wraps
+//! around at the pixel's edge. Fractions are 64-bit integers, rounded up, so that they fall into the elementary interval that the
+//! true value lies in (or begins).
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{hash::Key, lattice};
+
+/// So many radical inverses in base 3 are stored.
+const STORED: u64 = 1 << 16;
+
+/// The first radical inverses in base 3.
+#[derive(Debug)]
+pub struct Halton {
+    inverses: Vec<u64>,
+}
+
+impl Halton {
+    /// The points of a sequence of which `n` are wanted.
+    pub fn new(n: u64) -> Self {
+        Self {
+            inverses: (0..n.min(STORED)).map(radical_inverse_3).collect(),
+        }
+    }
+
+    /// Appends the points with these indices.
+    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+        let shift = [0, 1].map(|axis| key.bits(axis));
+        out.extend(range.map(|i| {
+            let inverse_3 = match self.inverses.get(i as usize) {
+                Some(&inverse) => inverse,
+                None => radical_inverse_3(i),
+            };
+            DVec2::new(
+                lattice::offset_of_bits(i.reverse_bits().wrapping_add(shift[0])),
+                lattice::offset_of_bits(inverse_3.wrapping_add(shift[1])),
+            )
+        }));
+    }
+}
+
+/// φ₃(i) in units of 2^−64, rounded up; i < 3^40. The mirrored digits are gathered as a whole number and divided once.
+fn radical_inverse_3(i: u64) -> u64 {
+    let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
+    while rest > 0 {
+        mirrored = 3 * mirrored + rest % 3;
+        power *= 3;
+        rest /= 3;
+    }
+    // The greatest value, 1 − 3^−40, is more than a unit below 1.
+    (u128::from(mirrored) << 64).div_ceil(u128::from(power)) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverses_lie_one_in_each_elementary_interval() {
+        for digits in 0..8 {
+            let n = 3_u64.pow(digits);
+            for first in [0, n, 5 * n, (1 << 53) / n * n] {
+                let mut seen = vec![false; n as usize];
+                for i in first..first + n {
+                    let interval = (u128::from(radical_inverse_3(i)) * u128::from(n)) >> 64;
+                    assert!(!std::mem::replace(&mut seen[interval as usize], true));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn inverses_are_the_mirrored_digits() {
+        // 5 is 12 in base 3, so φ₃(5) is 0.21 in base 3: 7/9.
+        assert_eq!(radical_inverse_3(5), ((7_u128 << 64) / 9) as u64 + 1);
+        assert_eq!(radical_inverse_3(0), 0);
+        assert!(radical_inverse_3(3_u64.pow(33) - 1) > u64::MAX - (1 << 12));
+    }
+}

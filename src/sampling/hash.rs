@@ -1,0 +1,83 @@
+//! Random bits without a generator: a number is a hash of what it is for.
+//!
+//! A [`Key`] names a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the i-th 64-bit number of that
+//! purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators") with its state
+//! computed instead of carried: the numbers of a key are the outputs of a generator that starts at the key.
+
+/// The odd number nearest to 2^64 divided by the golden ratio: the step of SplitMix64.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// What a number is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key(u64);
+
+impl Key {
+    /// The key of a seed and a method's own number.
+    pub fn new(seed: u64, method: u64) -> Self {
+        Self(mix(mix(seed.wrapping_add(GOLDEN)) ^ method))
+    }
+
+    /// The key of one part of this purpose, such as a pixel or an axis. Distinct parts have distinct keys.
+    pub fn part(self, part: u64) -> Self {
+        Self(mix(self.0 ^ mix(part.wrapping_add(GOLDEN))))
+    }
+
+    /// The 64 random bits with this index.
+    pub fn bits(self, index: u64) -> u64 {
+        mix(self
+            .0
+            .wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
+    }
+
+    /// A number from 0 to `n` − 1. Its bias is below n/2^64 (Lemire 2019, without the rejection).
+    pub fn below(self, index: u64, n: u64) -> u64 {
+        scale(self.bits(index), n)
+    }
+}
+
+/// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1.
+pub fn scale(bits: u64, n: u64) -> u64 {
+    ((u128::from(bits) * u128::from(n)) >> 64) as u64
+}
+
+/// The finaliser of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_bit_of_every_argument_matters() {
+        let base = Key::new(7, 1).part(3).bits(5);
+        for bit in 0..53 {
+            let flip = 1 << bit;
+            for other in [
+                Key::new(7 ^ flip, 1).part(3).bits(5),
+                Key::new(7, 1).part(3 ^ flip).bits(5),
+                Key::new(7, 1).part(3).bits(5 ^ flip),
+            ] {
+                let changed = (base ^ other).count_ones();
+                assert!(
+                    (10..=54).contains(&changed),
+                    "bit {bit}: {changed} bits changed"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_below_n_are_even() {
+        let key = Key::new(1, 2);
+        let mut hits = [0_u32; 7];
+        for index in 0..70_000 {
+            hits[key.below(index, 7) as usize] += 1;
+        }
+        // Standard deviation: √(70 000 · 1/7 · 6/7) = 93.
+        assert!(hits.iter().all(|&n| n.abs_diff(10_000) < 400), "{hits:?}");
+    }
+}

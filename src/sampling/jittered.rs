@@ -1,0 +1,50 @@
+//! `jittered`: one point at random in each of n cells of equal area (Cook, Porter and Carpenter 1984, "Distributed ray
+//! tracing"; the cells are [`Bricks`], so that every n has them).
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{
+    bricks::Bricks,
+    hash::Key,
+    lattice::{self, Strata},
+};
+
+/// The cells, and the strata that bound them.
+#[derive(Debug)]
+pub struct Jittered {
+    bricks: Bricks,
+    /// Of the rows of either length.
+    columns: [Strata; 2],
+    /// The pixel's height in n parts: a row of n_k cells is n_k of them tall.
+    rows: Strata,
+}
+
+impl Jittered {
+    /// The cells for `n` points.
+    pub fn new(n: u64) -> Self {
+        let bricks = Bricks::new(n);
+        Self {
+            columns: bricks.lengths().map(Strata::new),
+            rows: Strata::new(n),
+            bricks,
+        }
+    }
+
+    /// Appends the points with these indices, row by row.
+    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+        let [short, _] = self.bricks.lengths();
+        for (row, columns) in self.bricks.parts(range) {
+            let strata = &self.columns[(row.cells - short) as usize];
+            let places = self.rows.places(row.first, row.first + row.cells);
+            out.extend(columns.map(|column| {
+                let i = row.first + column;
+                DVec2::new(
+                    strata.choose(column, key.bits(2 * i)),
+                    lattice::choose(places.clone(), key.bits(2 * i + 1)),
+                )
+            }));
+        }
+    }
+}

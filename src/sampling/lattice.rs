@@ -1,0 +1,103 @@
+//! The numbers that a random offset can be, and the strata that they fall into.
+//!
+//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an f64, none lies on a pixel's edge
+//! or on its middle, and they are symmetric about 0, so that a mean over all of them is exactly that of the pixel. An offset
+//! is handled as its place k, from 0 to 2^53 − 1, among them.
+
+use std::ops::Range;
+
+use super::hash::scale;
+
+/// How many offsets there are.
+const PLACES: u64 = 1 << 53;
+
+/// Strata of more parts than this are computed one by one instead of stored.
+const STORED: u64 = 1 << 16;
+
+/// The offset at a place, 0 to 2^53 − 1.
+pub fn offset(place: u64) -> f64 {
+    debug_assert!(place < PLACES);
+    // An odd whole number below 2^53 in magnitude, times a power of two: exact.
+    (2 * place as i64 + 1 - PLACES as i64) as f64 * (0.5 / PLACES as f64)
+}
+
+/// The offset that 64 bits, read as a fraction of the pixel from its left or top edge, fall on.
+pub fn offset_of_bits(bits: u64) -> f64 {
+    offset(bits >> 11)
+}
+
+/// The offset of a place chosen among some by random bits.
+pub fn choose(places: Range<u64>, bits: u64) -> f64 {
+    offset(places.start + scale(bits, places.end - places.start))
+}
+
+/// A pixel's width or height, cut into n equal strata: which places lie in which. Each holds at least one place, up to n = 2^53.
+#[derive(Debug)]
+pub struct Strata {
+    n: u64,
+    /// The first place of each stratum, and then 2^53; empty where n is large.
+    starts: Vec<u64>,
+}
+
+impl Strata {
+    /// The cut into `n` strata, 1 ≤ n ≤ 2^53.
+    pub fn new(n: u64) -> Self {
+        let starts = if n <= STORED {
+            (0..=n).map(|i| start(i, n)).collect()
+        } else {
+            Vec::new()
+        };
+        Self { n, starts }
+    }
+
+    /// The places in the strata from `first` to before `end`.
+    pub fn places(&self, first: u64, end: u64) -> Range<u64> {
+        if self.starts.is_empty() {
+            start(first, self.n)..start(end, self.n)
+        } else {
+            self.starts[first as usize]..self.starts[end as usize]
+        }
+    }
+
+    /// An offset chosen in one stratum by random bits.
+    pub fn choose(&self, stratum: u64, bits: u64) -> f64 {
+        choose(self.places(stratum, stratum + 1), bits)
+    }
+}
+
+/// The first place in stratum i of n: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
+fn start(i: u64, n: u64) -> u64 {
+    let (i, n) = (u128::from(i), u128::from(n));
+    (i << 54).saturating_sub(n).div_ceil(2 * n) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offsets_are_symmetric_and_inside() {
+        assert_eq!(offset(0), -0.5 + 0.5 / PLACES as f64);
+        assert_eq!(offset(PLACES - 1), -offset(0));
+        assert!(offset(PLACES - 1) < 0.5);
+        assert_eq!(offset(PLACES / 2), -offset(PLACES / 2 - 1));
+        assert_eq!(offset_of_bits(u64::MAX), offset(PLACES - 1));
+    }
+
+    #[test]
+    fn strata_hold_the_places_between_their_bounds() {
+        for n in (1..200).chain([65_535, 65_536, 65_537, PLACES - 1, PLACES]) {
+            let strata = Strata::new(n);
+            for i in (0..n.min(200)).chain([n / 3, n / 2, n - 1]) {
+                let places = strata.places(i, i + 1);
+                assert!(!places.is_empty());
+                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for their neighbours.
+                let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
+                assert_eq!(stratum(places.start), u128::from(i));
+                assert_eq!(stratum(places.end - 1), u128::from(i));
+                assert_eq!(stratum(places.end), u128::from(i) + 1);
+                assert!(i == 0 || stratum(places.start - 1) == u128::from(i) - 1);
+            }
+        }
+    }
+}

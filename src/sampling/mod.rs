@@ -1,0 +1,236 @@
+//! Where a picture's samples lie.
+//!
+//! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and where in the pixel they lie. What is
+//! seen there is the tracer's business. A sample is a pure function of method, seed, pixel, index, the pixel's count and the picture's
+//! size: there is no generator whose state would depend on what was asked before. So any part of a picture can be
+//! rendered in any order, on any number of threads, and comes out the same.
+//!
+//! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2). A file per method:
+//!
+//! | method | file | unbiased |
+//! | --- | --- | --- |
+//! | regular | `regular` | no: the same in every pixel |
+//! | random | `random` | yes |
+//! | jittered | `jittered` | yes |
+//! | n_rooks, multi_jittered | `multi_jittered` | yes |
+//! | hammersley | `hammersley` | yes |
+//! | halton | `halton` | yes |
+//! | sobol | `sobol` | yes |
+//! | scatter | `scatter` and `random` | but for the pixels that it leaves empty |
+
+mod binomial;
+mod bricks;
+mod halton;
+mod hammersley;
+mod hash;
+mod jittered;
+mod lattice;
+mod multi_jittered;
+mod order;
+mod random;
+mod regular;
+mod scatter;
+mod shuffle;
+mod sobol;
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use self::{
+    bricks::Bricks, halton::Halton, hammersley::Hammersley, hash::Key, jittered::Jittered,
+    multi_jittered::MultiJittered, order::Order, scatter::Scatter, sobol::Sobol,
+};
+use crate::{
+    area::Area,
+    scene::{Count, Method, Sampler},
+};
+
+/// The samples of a picture.
+#[derive(Debug)]
+pub struct Sampling {
+    /// The key of seed and method; a pixel's own is a part of it.
+    key: Key,
+    total: u64,
+    pixels: u64,
+    share: Share,
+}
+
+/// How the samples are shared out to the pixels.
+#[derive(Debug)]
+enum Share {
+    /// Evenly.
+    Even(Box<Even>),
+    /// As they fall.
+    Scattered(Scatter),
+}
+
+/// The same number of samples for each pixel, or one more for some.
+#[derive(Debug)]
+struct Even {
+    /// The smaller number.
+    count: u64,
+    /// How many pixels have one more.
+    extra: u64,
+    pixels: u64,
+    /// Along which the extra ones are dealt out.
+    order: Order,
+    /// How `count` points lie, and how one more.
+    patterns: [Pattern; 2],
+}
+
+/// How a known number of points lie in a pixel.
+#[derive(Debug)]
+enum Pattern {
+    /// No point at all.
+    Empty,
+    Regular(Bricks),
+    Random,
+    Jittered(Jittered),
+    MultiJittered(MultiJittered),
+    Hammersley(Hammersley),
+    Halton(Halton),
+    Sobol(Sobol),
+}
+
+impl Sampling {
+    /// The samples of a picture of this size; each side is at least 1 and at most 2^20.
+    pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
+        let key = Key::new(sampler.seed, number(sampler.method));
+        let pixels = u64::from(width) * u64::from(height);
+        let total = match sampler.count {
+            Count::PerPixel(n) => n.saturating_mul(pixels),
+            Count::Total(total) => total,
+        };
+        let share = match sampler.method {
+            // No pixel has this number.
+            Method::Scatter => {
+                Share::Scattered(Scatter::new(key.part(u64::MAX), total, width, height))
+            }
+            method => Share::Even(Box::new(Even::new(method, total, width, height))),
+        };
+        Self {
+            key,
+            total,
+            pixels,
+            share,
+        }
+    }
+
+    /// How many samples the whole picture has.
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    /// How many samples a pixel has on average, rounded up.
+    pub fn samples_per_pixel(&self) -> u64 {
+        self.total.div_ceil(self.pixels)
+    }
+
+    /// How many samples a pixel has.
+    pub fn count(&self, x: u32, y: u32) -> u64 {
+        let pixel = Area {
+            x,
+            y,
+            width: 1,
+            height: 1,
+        };
+        self.counts(pixel)[0]
+    }
+
+    /// How many samples each pixel of a part of the picture has, row by row: much faster than asking pixel by pixel.
+    pub fn counts(&self, part: Area) -> Vec<u64> {
+        match &self.share {
+            Share::Even(even) if even.extra == 0 => vec![even.count; part.pixels() as usize],
+            Share::Even(even) => part.iter().map(|(x, y)| even.count(x, y)).collect(),
+            Share::Scattered(scatter) => scatter.counts(part),
+        }
+    }
+
+    /// Appends the points of a pixel with the indices in `range`, which ends at `count` or before; `count` is what
+    /// [`count`](Self::count) says of the pixel.
+    ///
+    /// What a pixel's points have in common is prepared anew in each call, so ask for a few thousand at once.
+    pub fn points(&self, x: u32, y: u32, count: u64, range: Range<u64>, out: &mut Vec<DVec2>) {
+        debug_assert!(range.end <= count);
+        let key = self.key.part(u64::from(y) << 32 | u64::from(x));
+        match &self.share {
+            Share::Even(even) => {
+                let [few, more] = &even.patterns;
+                let pattern = if count == even.count { few } else { more };
+                pattern.points(key, range, out);
+            }
+            Share::Scattered(_) => random::points(key, range, out),
+        }
+    }
+}
+
+impl Even {
+    fn new(method: Method, total: u64, width: u32, height: u32) -> Self {
+        let pixels = u64::from(width) * u64::from(height);
+        let (count, extra) = (total / pixels, total % pixels);
+        let more = if extra > 0 { count + 1 } else { 0 };
+        Self {
+            count,
+            extra,
+            pixels,
+            order: Order::new(width, height),
+            patterns: [count, more].map(|n| Pattern::new(method, n)),
+        }
+    }
+
+    /// The pixel with rank i has ⌊(i + 1)N/P⌋ − ⌊iN/P⌋ of the N samples, P being the number of pixels.
+    fn count(&self, x: u32, y: u32) -> u64 {
+        // Of N = count·P + extra, only the extra ones make a difference: there is one more of ⌊(i + 1)·extra/P⌋ than of ⌊i·extra/P⌋
+        // where the remainder of the latter is within extra of P.
+        let extra = u128::from(self.extra);
+        let remainder = u128::from(self.order.rank(x, y)) * extra % u128::from(self.pixels);
+        self.count + u64::from(remainder + extra >= u128::from(self.pixels))
+    }
+}
+
+impl Pattern {
+    fn new(method: Method, n: u64) -> Self {
+        if n == 0 {
+            return Self::Empty;
+        }
+        match method {
+            Method::Regular => Self::Regular(Bricks::new(n)),
+            Method::Random | Method::Scatter => Self::Random,
+            Method::Jittered => Self::Jittered(Jittered::new(n)),
+            Method::NRooks => Self::MultiJittered(MultiJittered::n_rooks(n)),
+            Method::MultiJittered => Self::MultiJittered(MultiJittered::new(n)),
+            Method::Hammersley => Self::Hammersley(Hammersley::new(n)),
+            Method::Halton => Self::Halton(Halton::new(n)),
+            Method::Sobol => Self::Sobol(Sobol::new(n)),
+        }
+    }
+
+    fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+        match self {
+            Self::Empty => {}
+            Self::Regular(bricks) => regular::points(bricks, range, out),
+            Self::Random => random::points(key, range, out),
+            Self::Jittered(jittered) => jittered.points(key, range, out),
+            Self::MultiJittered(grid) => grid.points(key, range, out),
+            Self::Hammersley(hammersley) => hammersley.points(key, range, out),
+            Self::Halton(halton) => halton.points(key, range, out),
+            Self::Sobol(sobol) => sobol.points(key, range, out),
+        }
+    }
+}
+
+/// A method's own number, which must not change: pictures depend on it.
+fn number(method: Method) -> u64 {
+    match method {
+        Method::Regular => 0,
+        Method::Random => 1,
+        Method::Jittered => 2,
+        Method::NRooks => 3,
+        Method::MultiJittered => 4,
+        Method::Hammersley => 5,
+        Method::Halton => 6,
+        Method::Sobol => 7,
+        Method::Scatter => 8,
+    }
+}

@@ -1,0 +1,23 @@
+//! `regular`: the middles of equal cells.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::bricks::Bricks;
+
+/// Appends the points with these indices: the middles of the cells of [`Bricks`], row by row. The same in every pixel.
+///
+/// Point i of a row of n lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at exactly the negative of that.
+pub fn points(bricks: &Bricks, range: Range<u64>, out: &mut Vec<DVec2>) {
+    for (row, columns) in bricks.parts(range) {
+        let y = middle(row.first, row.cells, bricks.cells());
+        out.extend(columns.map(|i| DVec2::new(middle(i, 1, row.cells), y)));
+    }
+}
+
+/// The middle of the parts from `first` to before `first` + `parts` of `n`, relative to the middle of all.
+fn middle(first: u64, parts: u64, n: u64) -> f64 {
+    // The numerator is at most 2^53 in magnitude, so only the division rounds.
+    (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64
+}

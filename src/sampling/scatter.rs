@@ -1,0 +1,108 @@
+//! `scatter`: points uniform over the whole picture, as a pure function of the pixel.
+//!
+//! How many of N uniform points fall into each pixel is multinomial, and a multinomial splits: of n points in a rectangle, the part
+//! that one half takes is binomial, and given that, the halves are independent. So N is split down a fixed binary tree of
+//! rectangles of pixels, each draw decided by its node. A rectangle's longer side (its width, if they are equal) is cut at the
+//! greatest power of two below it, so that nearly all cuts are into halves, whose draws count random bits. Where in its pixel a point
+//! lies is then uniform.
+
+use super::{binomial, hash::Key};
+use crate::area::Area;
+
+/// How `total` points fall into the pixels of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Scatter {
+    key: Key,
+    total: u64,
+    picture: Area,
+}
+
+/// A rectangle of the tree, and what fell into it.
+#[derive(Clone, Copy)]
+struct Node {
+    /// The way to it from the root: a bit for each cut, behind a one.
+    path: u64,
+    area: Area,
+    points: u64,
+}
+
+impl Scatter {
+    /// The fall of `total` points that `key` decides.
+    pub fn new(key: Key, total: u64, width: u32, height: u32) -> Self {
+        Self {
+            key,
+            total,
+            picture: Area::whole(width, height),
+        }
+    }
+
+    /// How many points fall into each pixel of a part of the picture, row by row.
+    pub fn counts(&self, part: Area) -> Vec<u64> {
+        let mut counts = vec![0; part.pixels() as usize];
+        let root = Node {
+            path: 1,
+            area: self.picture,
+            points: self.total,
+        };
+        self.fall(root, part, &mut counts);
+        counts
+    }
+
+    fn fall(&self, node: Node, part: Area, counts: &mut [u64]) {
+        if node.points == 0 || !node.area.meets(part) {
+            return;
+        }
+        if node.area.pixels() == 1 {
+            counts[part.index(node.area.x, node.area.y)] = node.points;
+            return;
+        }
+        for half in self.split(node) {
+            self.fall(half, part, counts);
+        }
+    }
+
+    fn split(&self, node: Node) -> [Node; 2] {
+        let area = node.area;
+        let (first, second) = if area.width >= area.height {
+            let width = area.width.next_power_of_two() / 2;
+            let (x, rest) = (area.x + width, area.width - width);
+            (
+                Area { width, ..area },
+                Area {
+                    x,
+                    width: rest,
+                    ..area
+                },
+            )
+        } else {
+            let height = area.height.next_power_of_two() / 2;
+            let (y, rest) = (area.y + height, area.height - height);
+            (
+                Area { height, ..area },
+                Area {
+                    y,
+                    height: rest,
+                    ..area
+                },
+            )
+        };
+        let fallen = binomial::draw(
+            self.key.part(node.path),
+            node.points,
+            first.pixels(),
+            area.pixels(),
+        );
+        [
+            Node {
+                path: 2 * node.path,
+                area: first,
+                points: fallen,
+            },
+            Node {
+                path: 2 * node.path + 1,
+                area: second,
+                points: node.points - fallen,
+            },
+        ]
+    }
+}

@@ -1,0 +1,114 @@
+//! `sobol`: Sobol' points with Owen's scrambling, per pixel (Sobol' 1967; Owen 1995, "Randomly permuted (t, m, s)-nets").
+//!
+//! The first coordinate of point i is its bits, mirrored; the second multiplies them by Pascal's triangle modulo 2 first. The sequence
+//! begins at i = 0, which must not be left out (Owen 2020). The first n = 2^m points have exactly one in every box of 2^−a by
+//! 2^(a−m), and so has every further block of 2^m.
+//!
+//! Owen's nested uniform scrambling flips each bit of a coordinate by a random bit that belongs to all the bits above it. The n points
+//! differ in their first m = ⌈log₂ n⌉ bits on either axis. Below these, every point is alone in its part of the tree, and its bits are
+//! independent: random bits do. So this is the true scrambling, with m decisions a coordinate instead of 53; for the m a hash of 64
+//! bits decides a subtree of six levels at a time. (Laine and Karras' one-multiplication scrambles were not tried: known to have weak
+//! bits, and no cheaper at the counts that pictures use.)
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{hash::Key, lattice};
+
+/// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
+const LEVELS: u32 = 6;
+
+/// A scrambled prefix of the sequence.
+#[derive(Clone, Copy, Debug)]
+pub struct Sobol {
+    /// The least m with n ≤ 2^m.
+    depth: u32,
+}
+
+impl Sobol {
+    /// The first `n` points.
+    pub fn new(n: u64) -> Self {
+        Self {
+            depth: u64::BITS - (n - 1).leading_zeros(),
+        }
+    }
+
+    /// Appends the points with these indices.
+    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+        let axes = [0, 1].map(|axis| Tree::new(key.part(axis), self.depth));
+        out.extend(range.map(|i| {
+            DVec2::new(
+                lattice::offset_of_bits(axes[0].scramble(i.reverse_bits())),
+                lattice::offset_of_bits(axes[1].scramble(pascal(i).reverse_bits())),
+            )
+        }));
+    }
+}
+
+/// Multiplies the bits of i by Pascal's triangle: bit j of the result is the sum modulo 2 of binomial(k, j) times bit k. That
+/// binomial is odd where the ones of j are among those of k, so one step for each bit of the *position* does it.
+fn pascal(mut bits: u64) -> u64 {
+    bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
+    bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
+    bits ^= (bits >> 4) & 0x0f0f_0f0f_0f0f_0f0f;
+    bits ^= (bits >> 8) & 0x00ff_00ff_00ff_00ff;
+    bits ^= (bits >> 16) & 0x0000_ffff_0000_ffff;
+    bits ^ (bits >> 32)
+}
+
+/// The scrambling of one axis of one pixel.
+struct Tree {
+    key: Key,
+    /// The flips of the topmost levels.
+    top: u64,
+    depth: u32,
+}
+
+impl Tree {
+    fn new(key: Key, depth: u32) -> Self {
+        Self {
+            key,
+            top: key.bits(1),
+            depth,
+        }
+    }
+
+    /// Scrambles a fraction, in units of 2^−64.
+    fn scramble(&self, fraction: u64) -> u64 {
+        let mut scrambled = 0;
+        let mut flips = self.top;
+        let mut above = 0;
+        loop {
+            // A node is named by the bits that lead to it, behind a one.
+            let levels = (self.depth - above).min(LEVELS);
+            let below = above + levels;
+            let part = high_bits(fraction << above, levels);
+            scrambled = scrambled << levels | (part ^ flips_along(flips, part, levels));
+            let node = 1 << below | high_bits(fraction, below);
+            flips = self.key.bits(node);
+            above = below;
+            if above == self.depth {
+                break;
+            }
+        }
+        // The remaining bits of a point are its own, so the last hash has them all.
+        match self.depth {
+            0 => flips,
+            depth => scrambled << (u64::BITS - depth) | flips >> depth,
+        }
+    }
+}
+
+/// The random bits on the way down a subtree whose nodes, in order of depth, have the bits 1, 2 … 63 of `flips`.
+fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
+    (0..levels).fold(0, |found, level| {
+        let node = 1 << level | part >> (levels - level);
+        found << 1 | (flips >> node & 1)
+    })
+}
+
+/// The topmost bits of a number, `count` of them.
+fn high_bits(number: u64, count: u32) -> u64 {
+    number.checked_shr(u64::BITS - count).unwrap_or(0)
+}

@@ -1,0 +1,480 @@
+//! Blocks → scene: what each part is, once all fields have their values, and the conditions between several fields.
+
+use glam::DVec3;
+
+use super::{
+    Block, Given, Lowering, mentions,
+    words::{axis_name, axis_vector, example},
+};
+use crate::{
+    color::Color,
+    math::{Angle, exact},
+    numbers,
+    scene::{
+        self, Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View, css,
+        error::Problem,
+        level_direction,
+        schema::{self, Kind, Literal, Preset},
+        value::Value,
+    },
+    source::{SourceId, Span},
+    suggest,
+};
+
+impl<'s> Lowering<'s> {
+    /// The scene, or nothing if a part of it failed; `bad` are the texts of items that could not be understood.
+    pub(super) fn build(&mut self, bad: &[&str]) -> Option<Scene> {
+        let blocks = std::mem::take(&mut self.blocks);
+        for block in &blocks {
+            self.missing_fields(block);
+        }
+        let one = |kind| blocks.iter().find(|block| block.row.kind == kind);
+        let image = self.image(one(Kind::Image));
+        let sampler = self.sampler(one(Kind::Sampler), image);
+        let start = Span::new(SourceId::File, 0, 0);
+        let unknown = |name| self.cut || bad.iter().any(|text| mentions(text, name));
+        let camera = match one(Kind::Camera) {
+            Some(block) => self.camera(block),
+            None => {
+                if !unknown("camera") {
+                    self.problems.push(Problem::MissingCamera { span: start });
+                }
+                None
+            }
+        };
+        let mut objects = Vec::with_capacity(blocks.len());
+        for block in blocks.iter().filter(|block| block.row.is_object) {
+            objects.extend(self.object(block));
+        }
+        let none = !blocks.iter().any(|block| block.row.is_object);
+        if none && bad.is_empty() && !self.cut {
+            self.problems.push(Problem::NoObjects { span: start });
+        }
+        Some(Scene {
+            image: image?,
+            camera: camera?,
+            sampler: sampler?,
+            objects,
+        })
+    }
+
+    fn missing_fields(&mut self, block: &Block<'s>) {
+        if block.unfinished {
+            return;
+        }
+        let has = |name: &str| block.given(name).is_some() || block.meant.contains(&name);
+        let mut missing: Vec<String> = Vec::new();
+        let mut examples: Vec<String> = Vec::new();
+        let mut half = None;
+        for row in block.row.fields {
+            if row.preset == Preset::Required && !has(row.name) {
+                missing.push(format!("`{}`", row.name));
+                examples.push(format!("{} {}", row.name, example(row)));
+            }
+        }
+        if block.row.kind == Kind::Camera && !has("lookat") && !has("direction") {
+            missing.push("`lookat` or `direction`".to_owned());
+            examples.push("lookat (0, 1, 0)".to_owned());
+        }
+        if block.row.kind == Kind::Box && !has("center") {
+            match (has("min"), has("max")) {
+                (true, true) => {}
+                (false, false) => {
+                    missing.push("`center`, or `min` and `max`".to_owned());
+                    examples.push("center (0, 1, 0)".to_owned());
+                }
+                (true, false) => {
+                    missing.push("`max` beside its `min`".to_owned());
+                    examples.push("max (1, 1, 1)".to_owned());
+                    half = block.given("min").map(|given| given.name);
+                }
+                (false, true) => {
+                    missing.push("`min` beside its `max`".to_owned());
+                    examples.push("min (-1, 0, -1)".to_owned());
+                    half = block.given("max").map(|given| given.name);
+                }
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        let needed = suggest::list(missing.iter().map(String::as_str));
+        self.problems.push(Problem::MissingField {
+            message: format!("{} needs {needed}", block.row.noun),
+            help: format!("write `{}`", examples.join("  ")),
+            span: block.keyword,
+            label: match missing.len() {
+                1 => "it is not given".to_owned(),
+                _ => "they are not given".to_owned(),
+            },
+            half,
+        });
+    }
+
+    fn image(&mut self, block: Option<&Block<'s>>) -> Option<Image> {
+        let row = Fields::of(block, Kind::Image);
+        Some(Image {
+            width: row.number("width")? as u32,
+            height: row.number("height")? as u32,
+            background: row.color("background")?,
+        })
+    }
+
+    fn sampler(&mut self, block: Option<&Block<'s>>, image: Option<Image>) -> Option<Sampler> {
+        let fields = Fields::of(block, Kind::Sampler);
+        let pixels = image.map(|image| u64::from(image.width) * u64::from(image.height));
+        let total = block.and_then(|block| block.given("total"));
+        let count = match total {
+            Some(given) => {
+                let total = fields.number("total").map(|total| total as u64);
+                if let (Some(total), Some(pixels)) = (total, pixels)
+                    && total < pixels
+                {
+                    self.problems.push(Problem::FewSamples {
+                        total,
+                        pixels,
+                        span: given.span,
+                    });
+                }
+                total.map(Count::Total)
+            }
+            None => {
+                let per_pixel = fields.number("per_pixel").map(|count| count as u64);
+                let most = pixels.map(|pixels| (1 << 53) / pixels);
+                if let (Some(per_pixel), Some(most), Some(pixels)) = (per_pixel, most, pixels)
+                    && per_pixel > most
+                {
+                    // The default is never too many.
+                    let given = block.and_then(|block| block.given("per_pixel"));
+                    let start = Span::new(SourceId::File, 0, 0);
+                    self.problems.push(Problem::TooManySamples {
+                        per_pixel,
+                        pixels,
+                        most,
+                        span: given.map_or(start, |given| given.span),
+                    });
+                }
+                per_pixel.map(Count::PerPixel)
+            }
+        };
+        Some(Sampler {
+            method: fields.method("method")?,
+            count: count?,
+            seed: fields.number("seed")? as u64,
+        })
+    }
+
+    fn camera(&mut self, block: &Block<'s>) -> Option<Camera> {
+        let fields = Fields::of(Some(block), Kind::Camera);
+        let eye = fields.vector("eye");
+        let up = fields.vector("up");
+        let direction = block.given("direction");
+        let view = match direction {
+            Some(_) => fields.vector("direction").map(View::Direction),
+            None => fields.vector("lookat").map(View::Lookat),
+        };
+        let seen = block.given("lookat").or(direction);
+        if let (Some(eye), Some(view), Some(seen)) = (eye, view, seen) {
+            match view {
+                View::Lookat(point) if point == eye => self.problems.push(Problem::ViewUndefined {
+                    lookat: seen.span,
+                    eye: block.given("eye").map_or(block.keyword, |given| given.span),
+                }),
+                _ => self.up_parallel(block, eye, view, up, seen),
+            }
+        }
+        let near = fields.number("near");
+        let far = block
+            .given("far")
+            .map(|given| (given, fields.number("far")));
+        if let (Some(near), Some((given, Some(far)))) = (near, far)
+            && near >= far
+        {
+            self.empty_depth(block, near, far, given);
+        }
+        let lens = match block.given("fov") {
+            Some(_) => fields.angle("fov").map(Lens::Fov),
+            None => fields.number("d").map(Lens::Distance),
+        };
+        Some(Camera {
+            eye: eye?,
+            view: view?,
+            up: up?,
+            roll: fields.angle("roll")?,
+            lens: lens?,
+            view_height: fields.number("view_height")?,
+            near: near?,
+            far: match far {
+                Some((_, far)) => Some(far?),
+                None => None,
+            },
+        })
+    }
+
+    fn up_parallel(
+        &mut self,
+        block: &Block<'s>,
+        eye: DVec3,
+        view: View,
+        up: Option<DVec3>,
+        seen: Given,
+    ) {
+        let Some(up) = up else { return };
+        let (from, to) = match view {
+            View::Lookat(point) => (eye, point),
+            View::Direction(direction) => (DVec3::ZERO, direction),
+        };
+        if !exact::cross_is_zero(up, from, to) {
+            return;
+        }
+        // Against up, the top of the picture is the part of the level direction across up; along up, the opposite.
+        // The scale of up does not matter, and its square could be too large.
+        let up = up / up.abs().max_element();
+        let level = level_direction(up);
+        let across = level * up.dot(up) - up * level.dot(up);
+        let along = exact::dot_sign(up, from, to).is_gt();
+        let top = if along { -across } else { across };
+        let shown = axis_name(top).unwrap_or_else(|| {
+            let largest = top.abs().max_element();
+            match largest > 0.0 && largest.is_finite() {
+                true => format!("towards {}", numbers::short_vector(top / largest)),
+                false => "across your `up`".to_owned(),
+            }
+        });
+        let suggested = axis_vector(top).unwrap_or_else(|| "(0, 1, 0)".to_owned());
+        let given = block.given("up");
+        let looks = match view {
+            View::Lookat(_) if given.is_some() => "parallel to the view direction".to_owned(),
+            View::Lookat(_) => format!(
+                "straight along up, which is {} if not given",
+                numbers::short_vector(up)
+            ),
+            View::Direction(_) if given.is_some() => "parallel to the view direction".to_owned(),
+            View::Direction(_) => format!(
+                "parallel to up, which is {} if not given",
+                numbers::short_vector(up)
+            ),
+        };
+        self.problems.push(Problem::UpParallel {
+            help: format!(
+                "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
+            ),
+            span: given.map_or(seen.span, |given| given.span),
+            label: looks,
+        });
+    }
+
+    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, given: Given) {
+        let near_given = block.given("near");
+        let (shown_near, shown_far) = (numbers::short(near), numbers::short(far));
+        self.problems.push(Problem::EmptyDepth {
+            help: match near_given {
+                Some(_) if far > 0.0 && near > far => {
+                    format!("exchange them: `near {shown_far}  far {shown_near}`")
+                }
+                _ => format!("write a number above {shown_near} after `far`, or leave it out"),
+            },
+            far: given.span,
+            far_label: match near_given {
+                Some(_) => format!("{shown_far} is not more"),
+                None => format!("not more than `near`, which is {shown_near} if not given"),
+            },
+            near: near_given.map(|given| given.span),
+            near_label: format!("than {shown_near}"),
+        });
+    }
+
+    fn object(&mut self, block: &Block<'s>) -> Option<Object> {
+        let fields = Fields::of(Some(block), block.row.kind);
+        let shape = match block.row.kind {
+            Kind::Sphere => Shape::Sphere(scene::Sphere {
+                center: fields.vector("center")?,
+                radius: fields.number("radius")?,
+                color: fields.color("color")?,
+            }),
+            Kind::Triangle => self.triangle(block, &fields)?,
+            Kind::Box => self.cuboid(block, &fields)?,
+            Kind::Checkerboard => Shape::Checkerboard(scene::Checkerboard {
+                y: fields.number("y")?,
+                square: fields.number("square")?,
+                colors: fields.colors("colors")?,
+            }),
+            Kind::Image | Kind::Camera | Kind::Sampler => return None,
+        };
+        Some(Object {
+            name: block.name.map(|name| name.text.to_owned()),
+            shape,
+            span: block.span,
+        })
+    }
+
+    fn triangle(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
+        let sides = fields.vector("sides")?;
+        if !exact::forms_triangle(sides.to_array()) {
+            let [a, b, c] = sides.to_array();
+            let (longest, [one, other], place) = if a >= b && a >= c {
+                (a, [b, c], "first")
+            } else if b >= c {
+                (b, [a, c], "second")
+            } else {
+                (c, [a, b], "third")
+            };
+            let shown = |x: f64| numbers::short(x);
+            self.problems.push(Problem::NotATriangle {
+                a: shown(a),
+                b: shown(b),
+                c: shown(c),
+                help: format!(
+                    "make the {place} side shorter than the two others together, or each of them longer"
+                ),
+                span: block.given("sides").map_or(block.keyword, |given| given.span),
+                label: format!(
+                    "{} is not less than {} + {}",
+                    shown(longest),
+                    shown(one),
+                    shown(other)
+                ),
+            });
+            return None;
+        }
+        Some(Shape::Triangle(scene::Triangle {
+            centroid: fields.vector("centroid")?,
+            normal: fields.vector("normal")?,
+            sides,
+            spin: fields.angle("spin")?,
+            color: fields.color("color")?,
+        }))
+    }
+
+    fn cuboid(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
+        let corners = block.given("min").or(block.given("max"));
+        let (min, max) = match corners {
+            Some(_) => (fields.vector("min"), fields.vector("max")),
+            None => match (fields.vector("center"), fields.vector("size")) {
+                (Some(center), Some(size)) => {
+                    let (min, max) = exact::box_corners(center, size);
+                    (Some(min), Some(max))
+                }
+                _ => (None, None),
+            },
+        };
+        let color = fields.color("color");
+        let (min, max) = (min?, max?);
+        let axes = [
+            ("x", min.x, max.x),
+            ("y", min.y, max.y),
+            ("z", min.z, max.z),
+        ];
+        let span = |name| block.given(name).map_or(block.keyword, |g: Given| g.span);
+        if !min.is_finite() || !max.is_finite() {
+            let span = span("center");
+            self.problems.push(Problem::BoxTooLarge { span });
+            return None;
+        }
+        if let Some(&(axis, low, high)) = axes.iter().find(|(_, low, high)| low >= high) {
+            let (low, high) = (numbers::short(low), numbers::short(high));
+            self.problems.push(match corners {
+                Some(_) => Problem::EmptyBox {
+                    axis,
+                    help: format!("make `max` greater than `min` on every axis; along {axis} they are {high} and {low}"),
+                    span: span("max"),
+                    label: format!("{high} along {axis}"),
+                    other: Some(span("min")),
+                    other_label: format!("{low} along {axis}"),
+                },
+                None => Problem::EmptyBox {
+                    axis,
+                    help: "make it larger: so far from the origin, a number has no digits left for its size".to_owned(),
+                    span: block.given("size").map_or(span("center"), |g| g.span),
+                    label: format!("lost in rounding beside {low}"),
+                    other: None,
+                    other_label: String::new(),
+                },
+            });
+            return None;
+        }
+        Some(Shape::Box(scene::Cuboid {
+            min,
+            max,
+            color: color?,
+        }))
+    }
+}
+
+/// The values of a block's fields, defaults included. None where a value is missing or failed.
+struct Fields<'b, 's> {
+    block: Option<&'b Block<'s>>,
+    kind: Kind,
+}
+
+impl<'b, 's> Fields<'b, 's> {
+    fn of(block: Option<&'b Block<'s>>, kind: Kind) -> Self {
+        Self { block, kind }
+    }
+
+    fn value(&self, name: &str) -> Option<Value> {
+        if let Some(given) = self.block.and_then(|block| block.given(name)) {
+            return given.value;
+        }
+        let row = schema::BLOCKS.iter().find(|row| row.kind == self.kind)?;
+        match row.field(name)?.preset {
+            Preset::Value(literal) => preset(literal),
+            Preset::Required | Preset::Alternative | Preset::Nothing => None,
+        }
+    }
+
+    fn number(&self, name: &str) -> Option<f64> {
+        match self.value(name)? {
+            Value::Number(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    fn angle(&self, name: &str) -> Option<Angle> {
+        match self.value(name)? {
+            Value::Angle(angle) => Some(angle),
+            _ => None,
+        }
+    }
+
+    fn vector(&self, name: &str) -> Option<DVec3> {
+        match self.value(name)? {
+            Value::Vector(vector) => Some(vector),
+            _ => None,
+        }
+    }
+
+    fn color(&self, name: &str) -> Option<Color> {
+        match self.value(name)? {
+            Value::Color(color) => Some(color),
+            _ => None,
+        }
+    }
+
+    fn colors(&self, name: &str) -> Option<[Color; 2]> {
+        match self.value(name)? {
+            Value::Colors(colors) => Some(colors),
+            _ => None,
+        }
+    }
+
+    fn method(&self, name: &str) -> Option<Method> {
+        match self.value(name)? {
+            Value::Method(method) => Some(method),
+            _ => None,
+        }
+    }
+}
+
+fn preset(literal: Literal) -> Option<Value> {
+    Some(match literal {
+        Literal::Number(number) => Value::Number(number),
+        Literal::Degrees(degrees) => Value::Angle(Angle::from_degrees(degrees)),
+        Literal::Vector(vector) => Value::Vector(DVec3::from_array(vector)),
+        Literal::Color(name) => Value::Color(css::color(name)?),
+        Literal::Colors([first, second]) => {
+            Value::Colors([css::color(first)?, css::color(second)?])
+        }
+        Literal::Method(name) => Value::Method(schema::method(name)?),
+    })
+}

@@ -1,0 +1,218 @@
+//! The words of problems: what was found, what would do, in the author's own numbers and names.
+
+use glam::DVec3;
+
+use crate::{
+    math::Angle,
+    numbers,
+    scene::{
+        error::Problem,
+        schema::{self, Condition, Field, Literal, Preset, Type},
+        value::Value,
+    },
+    suggest,
+    syntax::tree::{self, Name, ValueKind},
+};
+
+/// A field without a value.
+pub fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
+    let help = match row {
+        Some(row) => format!(
+            "write {} after it, such as `{} {}`",
+            row.takes.noun(),
+            row.name,
+            example(row)
+        ),
+        None => "write a value after it".to_owned(),
+    };
+    Problem::MissingValue {
+        name: name.text.to_owned(),
+        help,
+        span: name.span,
+    }
+}
+
+/// A field that the block does not have.
+pub fn unknown_field(row: &'static schema::Block, name: &Name<'_>) -> Problem {
+    let mut fields: Vec<&str> = row.field_names().collect();
+    let noun = capital(row.noun);
+    let all = suggest::list(fields.drain(..));
+    let help = match (row.nearest_field(name.text), row.joined_field(name.text)) {
+        (Some(near), _) => format!("did you mean `{near}`? {noun} takes {all}."),
+        (None, Some(joined)) => {
+            let rest = name.text.get(joined.len()..).unwrap_or_default();
+            format!("did you mean `{joined} {rest}`? {noun} takes {all}.")
+        }
+        (None, None) => format!("{} takes {all}", row.noun),
+    };
+    Problem::UnknownField {
+        noun: row.noun,
+        written: name.text.to_owned(),
+        help,
+        span: name.span,
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
+}
+
+/// A value that a field can have.
+pub fn example(row: &Field) -> String {
+    match (row.preset, row.takes) {
+        (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
+        (_, Type::Number) => "100".to_owned(),
+        (_, Type::Angle) => "30deg".to_owned(),
+        (_, Type::Vector) if row.name == "eye" => "(0, 2, 8)".to_owned(),
+        (_, Type::Vector) if row.name == "normal" => "(0, 0, 1)".to_owned(),
+        (_, Type::Vector) => "(0, 1, 0)".to_owned(),
+        (_, Type::Color) => "olive".to_owned(),
+        (_, Type::Colors) => "(gray, white)".to_owned(),
+        (_, Type::Method) => "jittered".to_owned(),
+    }
+}
+
+/// The label and the help for a condition that does not hold.
+pub fn range_words(row: &Field, condition: Condition, value: Value) -> (&'static str, String) {
+    let example = example(row);
+    let number = match value {
+        Value::Number(number) => number,
+        _ => 0.0,
+    };
+    match condition {
+        Condition::Whole => {
+            let (below, above) = (number.floor(), number.ceil());
+            let help = match below >= 1.0 && above < 1e15 {
+                true => format!("write `{below}` or `{above}`"),
+                false => format!("write a whole number, such as `{example}`"),
+            };
+            ("not whole", help)
+        }
+        Condition::MoreThan(bound) if number < bound => (
+            "too small",
+            format!(
+                "write `{}`, or another number above {bound}",
+                numbers::short(-number)
+            ),
+        ),
+        Condition::MoreThan(bound) => (
+            "too small",
+            format!("write a number above {bound}, such as `{example}`"),
+        ),
+        Condition::AtLeast(bound) => ("too small", format!("write `{bound}` or more")),
+        Condition::AtMostTwoTo(power) => {
+            ("too large", format!("write `{}` or less", 1_u64 << power))
+        }
+        Condition::LessThanTwoTo(power) => (
+            "too large",
+            format!("write `{}` or less", (1_u64 << power) - 1),
+        ),
+        Condition::LessThanHalfTurn => (
+            "no field of view",
+            "write an angle that lies between, such as `40deg`".to_owned(),
+        ),
+        Condition::NotZero => (
+            "zero has no direction",
+            format!("write a vector that points somewhere, such as `{example}`"),
+        ),
+        Condition::EachMoreThanZero => (
+            "not all of these are above 0",
+            format!("write three numbers above 0, such as `{example}`"),
+        ),
+    }
+}
+
+/// What to write in place of a value of the wrong type.
+pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -> String {
+    let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
+    match (row.takes, found, &tree.kind) {
+        (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => {
+            format!("write `{number}`, without a unit")
+        }
+        (Type::Number, Type::Angle, _) => {
+            format!("an angle divided by `1deg` is a number: `{text} / 1deg`")
+        }
+        (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
+            format!("write a number, such as the length of the vector: `length({text})`")
+        }
+        (Type::Vector, Type::Number, _) if literal && matches!(row.name, "size" | "sides") => {
+            format!("write three numbers, such as `({text}, {text}, {text})`")
+        }
+        (Type::Vector, Type::Number, _) => {
+            format!(
+                "write three numbers in parentheses, such as `{}`",
+                example(row)
+            )
+        }
+        (Type::Color, Type::Vector, _) if literal => {
+            format!("write `rgb{text}` if these are red, green and blue from 0 to 255")
+        }
+        (Type::Color, Type::Colors, ValueKind::Tuple(parts)) if parts.len() == 2 => {
+            "write one colour; only a checkerboard has two".to_owned()
+        }
+        (Type::Color, ..) => format!(
+            "write a colour, such as `{}`, `#808000` or `rgb(128, 128, 0)`",
+            example(row)
+        ),
+        (Type::Colors, Type::Color, _) => {
+            let other = match text {
+                "white" => "gray",
+                _ => "white",
+            };
+            format!("write two colours: `({text}, {other})`")
+        }
+        _ => format!("write {}, such as `{}`", row.takes.noun(), example(row)),
+    }
+}
+
+/// A computed value, for a message.
+pub fn shown(value: Value) -> String {
+    match value {
+        Value::Number(number) => numbers::short(number),
+        Value::Vector(v) => numbers::short_vector(v),
+        Value::Angle(Angle {
+            degrees,
+            radians: 0.0,
+        }) => format!("{}deg", numbers::short(degrees)),
+        Value::Angle(Angle {
+            degrees: 0.0,
+            radians,
+        }) => format!("{}rad", numbers::short(radians)),
+        Value::Angle(angle) => {
+            let degrees = angle.degrees + angle.radians.to_degrees();
+            format!("{}deg", numbers::short(degrees))
+        }
+        Value::Color(color) => color.to_string(),
+        Value::Colors([first, second]) => format!("({first}, {second})"),
+        Value::Method(method) => method.name().to_owned(),
+    }
+}
+
+/// A vector along an axis, such as `−z`.
+pub fn axis_name(v: DVec3) -> Option<String> {
+    let (axis, part) = axis(v)?;
+    let sign = if part < 0.0 { '−' } else { '+' };
+    Some(format!("{sign}{axis}"))
+}
+
+/// The unit vector along an axis as it is written.
+pub fn axis_vector(v: DVec3) -> Option<String> {
+    let (axis, part) = axis(v)?;
+    let one = if part < 0.0 { "-1" } else { "1" };
+    Some(match axis {
+        'x' => format!("({one}, 0, 0)"),
+        'y' => format!("(0, {one}, 0)"),
+        _ => format!("(0, 0, {one})"),
+    })
+}
+
+fn axis(v: DVec3) -> Option<(char, f64)> {
+    match v.to_array() {
+        [x, 0.0, 0.0] if x != 0.0 => Some(('x', x)),
+        [0.0, y, 0.0] if y != 0.0 => Some(('y', y)),
+        [0.0, 0.0, z] if z != 0.0 => Some(('z', z)),
+        _ => None,
+    }
+}

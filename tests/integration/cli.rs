@@ -1,0 +1,558 @@
+//! The binary from outside: arguments, files, output and exit status.
+
+use std::{
+    fs,
+    io::Write,
+    path::Path,
+    process::{Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use tempfile::TempDir;
+
+/// A small scene that sees something of everything.
+const SCENE: &str = "\u{feff}// A ball on a floor.\r
+let h = 1
+image { width 64 height 36 }
+camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
+sampler { method sobol per_pixel 4 seed 7 }
+sphere Ball { center (-1.6, h, 0) }
+checkerboard {}
+";
+
+const SLOW: &str = "image { width 2000 height 2000 } camera { eye (0, 1, 5) lookat (0, 1, 0) }
+sampler { per_pixel 100_000 } sphere { center (0, 1, 0) }";
+
+/// A fresh folder with the scene in `a.scn`.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
+    folder
+}
+
+/// The binary in a folder, with the surroundings that its words depend on.
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .env("LC_ALL", "C.UTF-8")
+        .env_remove("NO_COLOR")
+        .env_remove("NO_GRAPHICS")
+        .stdin(Stdio::null());
+    command
+}
+
+fn pinhole(folder: &TempDir, arguments: &[&str]) -> Output {
+    command(folder.path(), arguments).output().unwrap()
+}
+
+/// With something on standard input.
+fn pinhole_reading(folder: &TempDir, input: &[u8], arguments: &[&str]) -> Output {
+    let mut child = command(folder.path(), arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A command that does not read its input may be gone already.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    child.wait_with_output().unwrap()
+}
+
+fn status(output: &Output) -> i32 {
+    output.status.code().expect("the process was not killed")
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Runs the binary, which has to be done without a word.
+fn done(folder: &TempDir, arguments: &[&str]) -> Vec<u8> {
+    let output = pinhole(folder, arguments);
+    assert_eq!((status(&output), errors(&output)), (0, String::new()));
+    output.stdout
+}
+
+/// Runs the binary, which has to fail with this status and nothing on standard output.
+fn fails(folder: &TempDir, arguments: &[&str], expected: i32) -> String {
+    let output = pinhole(folder, arguments);
+    let errors = errors(&output);
+    assert_eq!(status(&output), expected, "{arguments:?}: {errors}");
+    assert_eq!(output.stdout, b"", "{arguments:?}");
+    errors
+}
+
+fn names(folder: &TempDir) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+fn read(folder: &TempDir, name: &str) -> Vec<u8> {
+    fs::read(folder.path().join(name)).unwrap()
+}
+
+fn size(picture: &[u8]) -> (u32, u32) {
+    let picture = image::load_from_memory(picture).unwrap();
+    (picture.width(), picture.height())
+}
+
+#[test]
+fn render_writes_a_picture_beside_the_scene() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::write(folder.path().join("sub/b.scene.scn"), SCENE).unwrap();
+    assert_eq!(done(&folder, &["render", "sub/b.scene.scn"]), b"");
+    assert_eq!(size(&read(&folder, "sub/b.scene.png")), (64, 36));
+    assert_eq!(names(&folder), ["a.scn", "sub"]);
+}
+
+#[test]
+fn the_ending_of_the_file_is_its_format() {
+    let folder = folder();
+    for name in ["b.png", "b.PNG", "b.exr"] {
+        done(&folder, &["render", "a.scn", "-o", name]);
+        assert_eq!(size(&read(&folder, name)), (64, 36));
+    }
+    for name in ["b", "b.jpg", "png", "b.png.", "b.png~", "b.png/"] {
+        let errors = fails(&folder, &["render", "a.scn", "--output", name], 2);
+        assert_eq!(
+            errors,
+            format!(
+                "error: the ending of {name} stands for no format: a picture's file ends in .png or .exr\n"
+            )
+        );
+    }
+}
+
+#[test]
+fn scene_and_picture_go_through_pipes() {
+    let folder = folder();
+    done(&folder, &["render", "a.scn"]);
+    let picture = read(&folder, "a.png");
+    let piped = pinhole_reading(&folder, SCENE.as_bytes(), &["render", "-", "-o", "-"]);
+    assert_eq!((status(&piped), errors(&piped)), (0, String::new()));
+    assert!(piped.stdout == picture);
+    // The picture that came out can go in again.
+    let again = pinhole_reading(&folder, &picture, &["render", "-", "-o", "-"]);
+    assert!(again.stdout == picture);
+    let nowhere = pinhole_reading(&folder, SCENE.as_bytes(), &["render", "-"]);
+    assert_eq!(status(&nowhere), 2);
+    assert_eq!(
+        errors(&nowhere),
+        "error: the scene comes from standard input: say with `-o FILE` where the picture goes\n"
+    );
+}
+
+#[test]
+fn neither_threads_nor_a_second_run_change_a_byte() {
+    let folder = folder();
+    done(&folder, &["render", "a.scn"]);
+    for threads in ["1", "2", "7", "100000"] {
+        done(
+            &folder,
+            &["render", "a.scn", "-o", "b.png", "--threads", threads],
+        );
+        assert!(read(&folder, "a.png") == read(&folder, "b.png"));
+    }
+    for threads in ["0", "-1", "1.5", "many", ""] {
+        fails(&folder, &["render", "a.scn", "--threads", threads], 2);
+    }
+}
+
+#[test]
+fn a_picture_renders_its_scene_again() {
+    let folder = folder();
+    let arguments = [
+        "--set",
+        "Ball.center=(0, 1.5, 0)",
+        "--set",
+        "h = 2",
+        "--crop",
+        "10,5,30,20",
+    ];
+    let first = [&["render", "a.scn", "-o", "b.png"], &arguments[..]].concat();
+    done(&folder, &first);
+    done(&folder, &["render", "b.png", "-o", "c.png"]);
+    assert!(read(&folder, "b.png") == read(&folder, "c.png"));
+    assert_eq!(size(&read(&folder, "c.png")), (30, 20));
+
+    // What is set and cropped now comes after what was set and cropped then.
+    let again = [
+        "render",
+        "b.png",
+        "-o",
+        "d.png",
+        "--set",
+        "h=3",
+        "--crop",
+        "0,0,64,36",
+    ];
+    done(&folder, &again);
+    let arguments = [&arguments[..4], &["--set", "h=3", "--crop", "0,0,64,36"]].concat();
+    done(
+        &folder,
+        &[&["render", "a.scn", "-o", "e.png"], &arguments[..]].concat(),
+    );
+    assert!(read(&folder, "d.png") == read(&folder, "e.png"));
+
+    assert_eq!(
+        fails(&folder, &["render", "b.png", "--set", "image.width=20"], 2),
+        "error: the crop 10,5,30,20, which b.png carries, does not lie within the picture, which has 20 × 36 pixels\n"
+    );
+
+    // The scene need not be there any more, and the picture need not be named as one.
+    fs::rename(folder.path().join("b.png"), folder.path().join("b.scn")).unwrap();
+    assert_eq!(done(&folder, &["check", "b.scn"]), b"");
+}
+
+#[test]
+fn a_crop_has_the_pixels_of_the_whole() {
+    let folder = folder();
+    done(&folder, &["render", "a.scn"]);
+    done(
+        &folder,
+        &["render", "a.scn", "-o", "b.png", "--crop", "20,10,31,17"],
+    );
+    let whole = image::load_from_memory(&read(&folder, "a.png")).unwrap();
+    let crop = image::load_from_memory(&read(&folder, "b.png")).unwrap();
+    assert!(whole.crop_imm(20, 10, 31, 17).to_rgb8() == crop.to_rgb8());
+    for outside in ["1,0,64,36", "0,36,1,1", "64,0,1,1", "0,0,4294967295,1"] {
+        assert_eq!(
+            fails(&folder, &["render", "a.scn", "--crop", outside], 2),
+            format!(
+                "error: the crop {outside} does not lie within the picture, which has 64 × 36 pixels\n"
+            )
+        );
+    }
+    for wrong in [
+        "0,0,0,1",
+        "1,2,3",
+        "1,2,3,4,5",
+        "-1,0,2,2",
+        "a",
+        "",
+        "1,1,1,4294967296",
+    ] {
+        fails(&folder, &["render", "a.scn", "--crop", wrong], 2);
+    }
+}
+
+#[test]
+fn a_scene_with_errors_is_status_1_and_trouble_with_files_2() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
+    fs::write(folder.path().join("latin.scn"), b"// \xe9\n").unwrap();
+    fs::write(folder.path().join("old.png"), b"old").unwrap();
+
+    let errors = fails(&folder, &["render", "bad.scn", "-o", "old.png"], 1);
+    assert!(errors.contains("error[pinhole::unknown_field]"), "{errors}");
+    assert_eq!(read(&folder, "old.png"), b"old");
+    fails(&folder, &["render", "latin.scn"], 1);
+    fails(&folder, &["render", "a.scn", "--set", "Bal.radius=2"], 1);
+
+    assert_eq!(
+        fails(&folder, &["render", "none.scn"], 2),
+        "error: cannot read none.scn: No such file or directory (os error 2)\n"
+    );
+    assert_eq!(
+        fails(&folder, &["render", "."], 2),
+        "error: cannot read .: Is a directory (os error 21)\n"
+    );
+    assert_eq!(
+        fails(&folder, &["render", "a.scn", "-o", "no/b.png"], 2),
+        "error: cannot write to no/b.png: No such file or directory (os error 2)\n"
+    );
+    // Trouble with the file outweighs errors of the scene; both are told.
+    let errors = fails(&folder, &["render", "bad.scn", "-o", "no/b.png"], 2);
+    assert!(errors.contains("error[pinhole::unknown_field]"), "{errors}");
+    assert!(
+        errors
+            .ends_with("error: cannot write to no/b.png: No such file or directory (os error 2)\n")
+    );
+    let errors = fails(&folder, &["check", "bad.scn", "none.scn", "a.scn"], 2);
+    assert!(errors.contains("error[pinhole::unknown_field]"), "{errors}");
+    assert_eq!(names(&folder), ["a.scn", "bad.scn", "latin.scn", "old.png"]);
+}
+
+#[test]
+fn a_scene_is_not_replaced_by_its_picture() {
+    let folder = folder();
+    fs::write(folder.path().join("a.png"), SCENE).unwrap();
+    assert_eq!(
+        fails(&folder, &["render", "a.png"], 2),
+        "error: a.png is the scene itself: say with `-o FILE` where the picture goes\n"
+    );
+    assert_eq!(read(&folder, "a.png"), SCENE.as_bytes());
+}
+
+#[test]
+fn pictures_without_a_scene_are_trouble() {
+    let folder = folder();
+    image::DynamicImage::new_rgb8(4, 4)
+        .save(folder.path().join("foreign.png"))
+        .unwrap();
+    assert_eq!(
+        fails(&folder, &["render", "foreign.png", "-o", "b.png"], 2),
+        "error: cannot read foreign.png: the picture carries no scene: another program wrote it, or its scene had more than 1 MiB of text\n"
+    );
+    fs::write(folder.path().join("cut.png"), b"\x89PNG\r\n\x1a\n").unwrap();
+    let errors = fails(&folder, &["check", "cut.png"], 2);
+    assert!(
+        errors.starts_with("error: cannot read cut.png: the picture is damaged: "),
+        "{errors}"
+    );
+}
+
+#[test]
+fn a_scene_of_a_megabyte_is_left_out_of_its_picture_with_a_warning() {
+    let folder = folder();
+    let long = format!("{SCENE}//{}\n", " ".repeat(1 << 20));
+    fs::write(folder.path().join("long.scn"), long).unwrap();
+    let output = pinhole(&folder, &["render", "long.scn"]);
+    assert_eq!(status(&output), 0);
+    assert_eq!(
+        errors(&output),
+        "warning: the scene and its overrides have more than 1 MiB of text, so long.png does not carry them\n"
+    );
+    fails(&folder, &["render", "long.png", "-o", "again.png"], 2);
+    // An EXR never carries one.
+    done(&folder, &["render", "long.scn", "-o", "long.exr"]);
+}
+
+#[test]
+fn a_picture_too_large_for_memory_is_refused() {
+    let folder = folder();
+    let huge = [
+        "--set",
+        "image.width=1048576",
+        "--set",
+        "image.height=1048576",
+    ];
+    let errors = fails(&folder, &[&["render", "a.scn"], &huge[..]].concat(), 2);
+    assert!(
+        errors
+            .starts_with("error: a picture of 1048576 × 1048576 pixels needs 24.0 TiB of memory, "),
+        "{errors}"
+    );
+    assert_eq!(names(&folder), ["a.scn"]);
+    let part = ["-o", "part.png", "--crop", "524288,524288,3,2"];
+    done(&folder, &[&["render", "a.scn"], &huge[..], &part].concat());
+    assert_eq!(size(&read(&folder, "part.png")), (3, 2));
+}
+
+#[test]
+fn check_reports_to_people_or_to_programs() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
+    assert_eq!(done(&folder, &["check", "a.scn"]), b"");
+    assert_eq!(done(&folder, &["check", "a.scn", "--format", "json"]), b"");
+    fails(&folder, &["check", "bad.scn"], 1);
+    let output = pinhole(&folder, &["check", "a.scn", "bad.scn", "--format", "json"]);
+    assert_eq!((status(&output), errors(&output)), (1, String::new()));
+    for line in String::from_utf8(output.stdout).unwrap().lines() {
+        let problem: serde_json::Value = serde_json::from_str(line).unwrap();
+        assert_eq!(problem["file"], "bad.scn");
+    }
+    let output = pinhole_reading(&folder, b"nonsense", &["check", "-", "--format=json"]);
+    assert_eq!(status(&output), 1);
+    assert!(output.stdout.starts_with(b"{\"file\":\"-\","));
+}
+
+#[test]
+fn a_label_in_an_override_names_it_as_the_command_line_does() {
+    let folder = folder();
+    done(&folder, &["render", "a.scn", "-o", "b.png", "--set", "h=2"]);
+    for scene in ["a.scn", "b.png"] {
+        let arguments = [
+            "check",
+            scene,
+            "--format",
+            "json",
+            "--set",
+            "h=3",
+            "--set",
+            "Bal.radius=2",
+        ];
+        let output = pinhole(&folder, &arguments);
+        assert_eq!(status(&output), 1);
+        let problem: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(problem["file"], scene);
+        assert_eq!(problem["labels"][0]["file"], "--set #2");
+    }
+}
+
+/// Runs the binary, which has to print one line of JSON and nothing else.
+fn json(folder: &TempDir, arguments: &[&str]) -> serde_json::Value {
+    let text = String::from_utf8(done(folder, arguments)).unwrap();
+    assert!(text.ends_with('\n') && text.lines().count() == 1, "{text}");
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn inspect_says_what_a_scene_means() {
+    let folder = folder();
+    let found = json(
+        &folder,
+        &[
+            "inspect",
+            "a.scn",
+            "--format",
+            "json",
+            "--set",
+            "camera.roll=90deg",
+        ],
+    );
+    assert_eq!(
+        found["image"],
+        serde_json::json!({"width": 64, "height": 36})
+    );
+    assert_eq!(found["camera"]["d"], 2.75);
+    assert_eq!(found["camera"]["looks"], "down");
+    assert_eq!(
+        found["sampler"],
+        serde_json::json!({"method": "sobol", "per_pixel": 4, "total": 9216, "seed": 7})
+    );
+    assert_eq!(found["objects"][0]["name"], "Ball");
+    assert_eq!(found["objects"][0]["line"], 6);
+    assert_eq!(found["objects"][1]["name"], serde_json::Value::Null);
+    let output = pinhole(&folder, &["inspect", "a.scn"]);
+    assert_eq!((status(&output), output.stdout), (0, Vec::new()));
+    assert!(!output.stderr.is_empty());
+}
+
+#[test]
+fn probe_follows_a_ray_anywhere() {
+    let folder = folder();
+    let at = |x, y| json(&folder, &["probe", "a.scn", x, y, "--format", "json"]);
+    let found = at("32", "18");
+    assert_eq!(found["pixel"], serde_json::json!([32.0, 18.0]));
+    assert_eq!(found["hits"][0]["kind"], "checkerboard");
+    for (x, y) in [
+        ("-10", "0.5"),
+        ("-.5", "-1e3"),
+        ("1e300", "-1e300"),
+        ("-1.5e-7", "+4"),
+        ("0", "-0"),
+    ] {
+        assert_eq!(at(x, y)["pixel"][0], x.parse::<f64>().unwrap());
+    }
+    let output = pinhole(&folder, &["probe", "a.scn", "1", "2"]);
+    assert_eq!((status(&output), output.stdout), (0, Vec::new()));
+    assert!(!output.stderr.is_empty());
+}
+
+#[test]
+fn answers_about_a_scene_with_errors_are_nothing_but_the_errors() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
+    for arguments in [
+        &["inspect", "bad.scn", "--format", "json"][..],
+        &["probe", "bad.scn", "1", "2", "--format", "json"],
+    ] {
+        let errors = fails(&folder, arguments, 1);
+        assert!(errors.contains("error[pinhole::unknown_field]"), "{errors}");
+    }
+}
+
+#[test]
+fn wrong_usage_is_status_2() {
+    let folder = folder();
+    for arguments in [
+        &[][..],
+        &["rendr", "a.scn"],
+        &["render"],
+        &["render", "a.scn", "b.scn"],
+        &["render", "a.scn", "--set"],
+        &["check"],
+        &["check", "a.scn", "--format", "xml"],
+        &["probe", "a.scn", "1"],
+        &["probe", "a.scn", "1", "nan"],
+        &["probe", "a.scn", "1", "inf"],
+        &["report", "a.scn"],
+    ] {
+        let errors = fails(&folder, arguments, 2);
+        assert!(!errors.is_empty());
+    }
+}
+
+#[test]
+fn help_has_examples_and_the_manual_all_commands() {
+    let folder = folder();
+    for command in ["render", "check", "inspect", "probe", "completions", "man"] {
+        let help = String::from_utf8(done(&folder, &[command, "--help"])).unwrap();
+        assert!(
+            help.contains(&format!("Examples:\n  pinhole {command}")),
+            "{help}"
+        );
+    }
+    let help = String::from_utf8(done(&folder, &["--help"])).unwrap();
+    assert!(help.contains("Examples:\n"));
+    let version = done(&folder, &["--version"]);
+    assert_eq!(
+        version,
+        concat!("pinhole ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()
+    );
+    let manual = String::from_utf8(done(&folder, &["man"])).unwrap();
+    for command in ["RENDER", "CHECK", "INSPECT", "PROBE"] {
+        assert!(manual.contains(&format!(".SH \"PINHOLE {command}\"")));
+    }
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = String::from_utf8(done(&folder, &["completions", shell])).unwrap();
+        assert!(script.contains("inspect"));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_away_is_no_panic() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.scn"), "x y z ".repeat(5000)).unwrap();
+    for arguments in [
+        &["check", "bad.scn", "--format", "json"][..],
+        &["render", "a.scn", "-o", "-"],
+        &["man"],
+        &["--help"],
+    ] {
+        let mut child = command(folder.path(), arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(!errors(&output).contains("panicked"), "{arguments:?}");
+        assert!(output.status.code().is_some(), "{arguments:?} was killed");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_the_old_file() {
+    let folder = folder();
+    fs::write(folder.path().join("slow.scn"), SLOW).unwrap();
+    fs::write(folder.path().join("slow.png"), b"old").unwrap();
+    let mut child = command(folder.path(), &["render", "slow.scn"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Long enough to have begun, and far from long enough to be done.
+    thread::sleep(Duration::from_millis(700));
+    assert!(child.try_wait().unwrap().is_none());
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    let start = Instant::now();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(start.elapsed() < Duration::from_secs(5));
+    assert_eq!(read(&folder, "slow.png"), b"old");
+    assert_eq!(names(&folder), ["a.scn", "slow.png", "slow.scn"]);
+}

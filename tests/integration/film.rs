@@ -1,0 +1,253 @@
+//! Picture files: what is in them, and that they are whole.
+
+use std::{fs, io, io::Cursor, sync::atomic::AtomicBool};
+
+use pinhole::{
+    area::Area,
+    film::{
+        Film, NotOurs, Recipe, TEXT_LIMIT, check_writable, read_recipe, write_exr, write_png,
+        write_whole,
+    },
+};
+
+/// A film of colours from dark to light, some out of the ordinary.
+fn film(width: u32, height: u32) -> Film {
+    let mut film = Film::new(width, height).unwrap();
+    let area = Area::whole(width, height);
+    let pixels: Vec<_> = area
+        .iter()
+        .map(|(x, y)| {
+            let light = f64::from(y * width + x) / f64::from(width * height - 1).max(1.0);
+            [light, 1.0 - light, light * light]
+        })
+        .collect();
+    film.put(area, &pixels);
+    film
+}
+
+fn recipe() -> Recipe {
+    Recipe {
+        scene: "\u{feff}// Grüße\r\nsphere { center (0, 1, 0) }\n\0\r".to_owned(),
+        overrides: vec!["Ball.center=(0, 2, 0)".to_owned(), "h = 1.5 ".to_owned()],
+        crop: Some("3,4,10,20".parse().unwrap()),
+    }
+}
+
+fn png_bytes(film: &Film, recipe: &Recipe) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_png(film, recipe, &mut bytes).unwrap();
+    bytes
+}
+
+/// The chunks of a PNG: their kinds and contents.
+fn chunks(mut png: &[u8]) -> Vec<(String, Vec<u8>)> {
+    png = &png[8..];
+    let mut chunks = Vec::new();
+    while let Some((length, rest)) = png.split_first_chunk::<4>() {
+        let length = u32::from_be_bytes(*length) as usize;
+        chunks.push((
+            String::from_utf8(rest[..4].to_vec()).unwrap(),
+            rest[4..4 + length].to_vec(),
+        ));
+        png = &rest[4 + length + 4..];
+    }
+    chunks
+}
+
+#[test]
+fn png_is_true_colour_and_nothing_but() {
+    let film = film(31, 17);
+    let png = png_bytes(&film, &recipe());
+    let chunks = chunks(&png);
+    let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| kind.as_str()).collect();
+    kinds.dedup();
+    assert_eq!(kinds, ["IHDR", "sRGB", "iTXt", "IDAT", "IEND"]);
+    // Width, height, 8 bits, truecolour, and not interlaced.
+    assert_eq!(chunks[0].1, [0, 0, 0, 31, 0, 0, 0, 17, 8, 2, 0, 0, 0]);
+    let read = image::load_from_memory(&png).unwrap();
+    let image::DynamicImage::ImageRgb8(read) = read else {
+        panic!("not RGB of 8 bits")
+    };
+    for (x, y, pixel) in read.enumerate_pixels() {
+        for (light, byte) in film.pixel(x, y).into_iter().zip(pixel.0) {
+            let encoded = if light <= 0.003_130_8 {
+                12.92 * light
+            } else {
+                1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+            };
+            assert!((255.0 * encoded - f64::from(byte)).abs() < 0.5001);
+        }
+    }
+}
+
+#[test]
+fn png_carries_its_recipe_to_the_letter() {
+    let png = png_bytes(&film(3, 2), &recipe());
+    assert_eq!(read_recipe(&png).unwrap(), recipe());
+    assert_eq!(png, png_bytes(&film(3, 2), &recipe()));
+    let plain = Recipe {
+        overrides: Vec::new(),
+        crop: None,
+        ..recipe()
+    };
+    assert_eq!(read_recipe(&png_bytes(&film(3, 2), &plain)).unwrap(), plain);
+    let texts: Vec<_> = chunks(&png)
+        .into_iter()
+        .filter(|(kind, _)| kind == "iTXt")
+        .map(|(_, content)| content)
+        .collect();
+    assert!(texts[0].starts_with(b"Software\0\x01\0"));
+    assert!(texts[1].starts_with(b"pinhole:scene\0\x01\0"));
+}
+
+#[test]
+fn a_long_recipe_is_left_out() {
+    for (length, fits) in [(TEXT_LIMIT - 38, true), (TEXT_LIMIT - 37, false)] {
+        let long = Recipe {
+            scene: "/".repeat(length),
+            ..recipe()
+        };
+        assert_eq!(long.fits(), fits);
+        let png = png_bytes(&film(3, 2), &long);
+        if fits {
+            assert_eq!(read_recipe(&png).unwrap(), long);
+        } else {
+            assert!(matches!(read_recipe(&png), Err(NotOurs::NoScene)));
+        }
+    }
+}
+
+#[test]
+fn pictures_of_others_are_told_from_ours() {
+    let mut foreign = Vec::new();
+    image::DynamicImage::new_rgb8(4, 4)
+        .write_to(&mut Cursor::new(&mut foreign), image::ImageFormat::Png)
+        .unwrap();
+    assert!(matches!(read_recipe(&foreign), Err(NotOurs::NoScene)));
+    let png = png_bytes(&film(3, 2), &recipe());
+    let idat = png.windows(4).position(|four| four == b"IDAT").unwrap();
+    for length in 0..idat {
+        assert!(matches!(
+            read_recipe(&png[..length]),
+            Err(NotOurs::Damaged(_))
+        ));
+    }
+    // Whatever byte is wrong, it is no panic; nor is anything behind the scene looked at.
+    for at in 0..png.len() {
+        for bit in 0..8 {
+            let mut flipped = png.clone();
+            flipped[at] ^= 1 << bit;
+            if let Ok(read) = read_recipe(&flipped) {
+                assert_eq!(read, recipe());
+            }
+        }
+    }
+    // A bit of the header flipped is found by its checksum; a header of a huge picture is not believed.
+    let mut flipped = png.clone();
+    flipped[18] ^= 1;
+    assert!(matches!(read_recipe(&flipped), Err(NotOurs::Damaged(_))));
+}
+
+#[test]
+fn a_text_that_unpacks_without_end_is_refused() {
+    let mut bomb = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bomb, 1, 1);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    for _ in 0..3 {
+        let text = " ".repeat(TEXT_LIMIT / 2);
+        let mut chunk = png::text_metadata::ITXtChunk::new("pinhole:set", text);
+        chunk.compressed = true;
+        writer.write_text_chunk(&chunk).unwrap();
+    }
+    writer.write_image_data(&[0, 0, 0]).unwrap();
+    writer.finish().unwrap();
+    assert!(matches!(read_recipe(&bomb), Err(NotOurs::TooMuchText)));
+}
+
+#[test]
+fn exr_holds_the_means_as_floats() {
+    let film = film(33, 70);
+    let mut bytes = Cursor::new(Vec::new());
+    write_exr(&film, &mut bytes).unwrap();
+    let read = image::load_from_memory_with_format(bytes.get_ref(), image::ImageFormat::OpenExr);
+    let image::DynamicImage::ImageRgb32F(read) = read.unwrap() else {
+        panic!("not RGB of floats")
+    };
+    for (x, y, pixel) in read.enumerate_pixels() {
+        assert_eq!(pixel.0, film.pixel(x, y).map(|light| light as f32));
+    }
+    let mut again = Cursor::new(Vec::new());
+    write_exr(&film, &mut again).unwrap();
+    assert_eq!(bytes, again);
+}
+
+fn write(path: &std::path::Path, content: &[u8]) -> io::Result<()> {
+    write_whole(path, &AtomicBool::new(false), |out| out.write_all(content))
+}
+
+#[test]
+fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    write(&path, b"old").unwrap();
+    let failed = write_whole(&path, &AtomicBool::new(false), |out| {
+        out.write_all(&[0; 1 << 20])?;
+        assert_eq!(fs::read(&path)?, b"old");
+        Err(io::Error::other("the disk is full"))
+    });
+    assert_eq!(failed.unwrap_err().to_string(), "the disk is full");
+    let cancelled = write_whole(&path, &AtomicBool::new(true), |out| out.write_all(b"new"));
+    assert!(cancelled.is_err());
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    write(&path, b"new").unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"new");
+    check_writable(&path).unwrap();
+    check_writable(&folder.path().join("b.png")).unwrap();
+    let names: Vec<_> = fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(names, ["a.png"], "something was left behind");
+}
+
+#[test]
+fn where_no_file_can_be_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    for (path, kind) in [
+        (folder.path().join("no/a.png"), io::ErrorKind::NotFound),
+        (folder.path().to_owned(), io::ErrorKind::IsADirectory),
+    ] {
+        assert_eq!(check_writable(&path).unwrap_err().kind(), kind);
+        assert_eq!(write(&path, b"new").unwrap_err().kind(), kind);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_permissions_and_devices_stay_what_they_are() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = tempfile::tempdir().unwrap();
+    let mode = |path: &std::path::Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    let [file, plain, link, dangling, created] =
+        ["file", "plain", "link", "dangling", "created"].map(|name| folder.path().join(name));
+
+    fs::write(&plain, b"").unwrap();
+    write(&file, b"old").unwrap();
+    assert_eq!(mode(&file), mode(&plain));
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("file", &link).unwrap();
+    write(&link, b"new").unwrap();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read(&file).unwrap(), b"new");
+    assert_eq!(mode(&file), 0o640);
+
+    symlink("created", &dangling).unwrap();
+    write(&dangling, b"new").unwrap();
+    assert!(fs::symlink_metadata(&dangling).unwrap().is_symlink());
+    assert_eq!(fs::read(&created).unwrap(), b"new");
+
+    write("/dev/null".as_ref(), b"new").unwrap();
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
