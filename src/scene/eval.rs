@@ -4,7 +4,7 @@
 //! and what uses it stays silent. What a value is for is not known here, beyond the type that is wanted.
 
 use std::{
-    cell::{Cell, RefCell},
+    cell::RefCell,
     collections::{HashMap, hash_map::Entry},
 };
 
@@ -21,7 +21,7 @@ use crate::{
     math::Angle,
     numbers,
     source::{SourceId, Sources, Span},
-    suggest,
+    suggest::{self, Budget},
     syntax::{
         shorten,
         tree::{self, Element, Name, Operator, Step, Unit, ValueKind},
@@ -37,14 +37,11 @@ pub struct Names<'s> {
     order: Vec<&'s str>,
     /// Every `let` of the file, wherever it stands.
     everywhere: HashMap<&'s str, Span>,
-    /// How many names may still be compared in search of the nearest: a text with as many mistakes as names would take the
-    /// time of all pairs.
-    comparisons: Cell<usize>,
+    /// The comparisons that are left in search of the nearest name.
+    budget: Budget,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
     reported: RefCell<HashMap<&'s str, usize>>,
 }
-
-const MOST_COMPARISONS: usize = 500_000;
 
 #[derive(Clone, Copy, Debug)]
 struct Defined {
@@ -59,10 +56,7 @@ struct Defined {
 impl<'s> Names<'s> {
     /// No name is defined yet; these will be.
     pub fn new(everywhere: impl IntoIterator<Item = Name<'s>>) -> Self {
-        let mut names = Self {
-            comparisons: Cell::new(MOST_COMPARISONS),
-            ..Self::default()
-        };
+        let mut names = Self::default();
         for name in everywhere {
             names.everywhere.entry(name.text).or_insert(name.span);
         }
@@ -94,10 +88,13 @@ impl<'s> Names<'s> {
     /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
     fn to_compare(&self) -> Option<&[&'s str]> {
         const PREDEFINED: usize = 200;
-        let left = self.comparisons.get();
-        let left = left.checked_sub(self.order.len() + PREDEFINED)?;
-        self.comparisons.set(left);
-        Some(&self.order)
+        let enough = self.budget.spend(self.order.len() + PREDEFINED);
+        enough.then_some(&self.order)
+    }
+
+    /// The comparisons that are left in search of the nearest name.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
     }
 
     /// Every name that the file defines.

@@ -43,7 +43,9 @@ pub fn read(sources: &Sources) -> Reading {
         cut: parsed.cut.is_some(),
         names: Names::new(definitions(&parsed.tree)),
         overrides,
+        targets: HashMap::new(),
         blocks: Vec::new(),
+        first_blocks: HashMap::new(),
         problems: Vec::new(),
         slips: Vec::new(),
         in_begun_blocks: false,
@@ -94,7 +96,11 @@ struct Lowering<'s> {
     cut: bool,
     names: Names<'s>,
     overrides: Vec<Override<'s>>,
+    /// The overrides by the block and the field or `let` that they set.
+    targets: HashMap<(Option<&'s str>, &'s str), usize>,
     blocks: Vec<Block<'s>>,
+    /// The blocks by the names that `--set` knows them by; of several of one name the first.
+    first_blocks: HashMap<&'s str, usize>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
@@ -128,7 +134,7 @@ struct Given {
 
 impl<'s> Lowering<'s> {
     fn scene(&mut self, tree: &syntax::Tree<'s>) -> Option<Scene> {
-        self.keep_last_overrides();
+        self.keep_last_overrides(tree);
         for item in &tree.items {
             match item {
                 Item::Definition(definition) => self.definition(definition),
@@ -149,8 +155,8 @@ impl<'s> Lowering<'s> {
 
     fn definition(&mut self, definition: &Definition<'s>) {
         let set = definition.name.and_then(|name| {
-            let is = |o: &&Override<'_>| o.block.is_none() && o.name.text == name.text;
-            self.overrides.iter().find(is).cloned()
+            let index = *self.targets.get(&(None, name.text))?;
+            self.overrides.get(index).cloned()
         });
         let first = definition
             .name
@@ -201,11 +207,11 @@ impl<'s> Lowering<'s> {
                 span: name.span,
             });
         }
-        // Objects come in any number, and looking through all of them for each would take long.
         let earlier = match row.is_object {
             true => None,
-            false => self.blocks.iter().find(|other| other.row.kind == row.kind),
+            false => self.first_blocks.get(row.name),
         };
+        let earlier = earlier.and_then(|&index| self.blocks.get(index));
         let duplicate = earlier.is_some();
         if let Some(earlier) = earlier {
             self.problems.push(Problem::DuplicateBlock {
@@ -247,7 +253,7 @@ impl<'s> Lowering<'s> {
         }
         self.conflicts(&lowered, &replaced);
         if !duplicate {
-            self.blocks.push(lowered);
+            self.push(lowered);
         }
     }
 
