@@ -13,7 +13,6 @@ pub use report::{Drawing, Report, Style};
 use std::fmt::Write;
 
 use miette::SourceSpan;
-use serde_json::{Map, Value, json};
 
 use crate::source::{Source, SourceId, Sources, Span};
 
@@ -124,45 +123,67 @@ fn from_miette(span: SourceSpan) -> Span {
 pub fn json_lines(diagnostics: &[Diagnostic], sources: &Sources) -> String {
     let mut lines = String::new();
     for diagnostic in diagnostics {
-        // Writing to a string does not fail.
-        let _ = writeln!(lines, "{}", to_json(diagnostic, sources));
+        push_json(&mut lines, diagnostic, sources);
+        lines.push('\n');
     }
     lines
 }
 
 /// A diagnostic as a JSON value.
-pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
-    let labels: Vec<_> = diagnostic
-        .labels
-        .iter()
-        .map(|label| label_to_json(label, sources))
-        .collect();
-    json!({
-        "file": sources.file.name(),
-        "severity": diagnostic.severity.word(),
-        "code": diagnostic.code,
-        "message": diagnostic.message,
-        "help": diagnostic.help,
-        "labels": labels,
-    })
+pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> serde_json::Value {
+    let mut line = String::new();
+    push_json(&mut line, diagnostic, sources);
+    serde_json::from_str(&line).unwrap_or_default()
 }
 
-fn label_to_json(label: &Label, sources: &Sources) -> Value {
+// The objects are written field by field: a megabyte of garbage has hundreds of thousands of them.
+fn push_json(line: &mut String, diagnostic: &Diagnostic, sources: &Sources) {
+    push_field(line, "{\"file\":", sources.file.name());
+    push_field(line, ",\"severity\":", diagnostic.severity.word());
+    push_field(line, ",\"code\":", &diagnostic.code);
+    push_field(line, ",\"message\":", &diagnostic.message);
+    match &diagnostic.help {
+        Some(help) => push_field(line, ",\"help\":", help),
+        None => line.push_str(",\"help\":null"),
+    }
+    line.push_str(",\"labels\":[");
+    for (index, label) in diagnostic.labels.iter().enumerate() {
+        if index > 0 {
+            line.push(',');
+        }
+        push_label(line, label, sources);
+    }
+    line.push_str("]}");
+}
+
+fn push_label(line: &mut String, label: &Label, sources: &Sources) {
     let source = sources.get(label.span.source);
     let span = clamp(label.span, source);
     let (start, end) = (source.place(span.start), source.place(span.end));
-    let mut object = Map::new();
+    line.push('{');
     if span.source != SourceId::File {
-        object.insert("file".into(), source.name().into());
+        push_field(line, "\"file\":", source.name());
+        line.push(',');
     }
-    object.insert("offset".into(), span.start.into());
-    object.insert("length".into(), (span.end - span.start).into());
-    object.insert("line".into(), start.line.into());
-    object.insert("column".into(), start.column.into());
-    object.insert("end_line".into(), end.line.into());
-    object.insert("end_column".into(), end.column.into());
-    object.insert("message".into(), label.message.as_str().into());
-    object.into()
+    // Writing to a string does not fail.
+    let _ = write!(
+        line,
+        "\"offset\":{},\"length\":{},\"line\":{},\"column\":{},\"end_line\":{},\"end_column\":{}",
+        span.start,
+        span.end - span.start,
+        start.line,
+        start.column,
+        end.line,
+        end.column
+    );
+    push_field(line, ",\"message\":", &label.message);
+    line.push('}');
+}
+
+fn push_field(line: &mut String, name: &str, text: &str) {
+    line.push_str(name);
+    // A text is always JSON.
+    line.push_str(&serde_json::to_string(text).unwrap_or_default());
 }
 
 /// A span that lies in its source, between characters: whatever a stage says, no printer reaches past the text.

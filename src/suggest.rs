@@ -2,6 +2,27 @@
 //!
 //! In: what was written and what could stand there. Out: the one that was probably meant, if any is near.
 
+use std::cell::Cell;
+
+/// How many names may still be compared: a text with as many mistakes as names would take the time of all pairs.
+#[derive(Debug)]
+pub struct Budget(Cell<usize>);
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self(Cell::new(500_000))
+    }
+}
+
+impl Budget {
+    /// Whether so many names may be compared; if so, they count as compared.
+    pub fn spend(&self, names: usize) -> bool {
+        let left = self.0.get().checked_sub(names);
+        self.0.set(left.unwrap_or(self.0.get()));
+        left.is_some()
+    }
+}
+
 /// The nearest of the candidates, if it is near: the same but for upper and lower case, or about one slip for every three
 /// letters. Of equally near ones the first.
 pub fn nearest<'c>(

@@ -176,6 +176,8 @@ pub enum Problem {
         help: String,
         #[label("not defined")]
         span: Span,
+        #[label(collection, "and here")]
+        more: Vec<Span>,
     },
 
     #[error("there is no colour named `{name}`")]
@@ -185,6 +187,8 @@ pub enum Problem {
         help: String,
         #[label("not a colour, and not defined")]
         span: Span,
+        #[label(collection, "and here")]
+        more: Vec<Span>,
     },
 
     #[error("`{name}` is used before it is defined")]
@@ -200,6 +204,8 @@ pub enum Problem {
         span: Span,
         #[label("defined here, in line {line}")]
         definition: Span,
+        #[label(collection, "and used here")]
+        more: Vec<Span>,
     },
 
     #[error("there is no function `{name}`")]
@@ -503,4 +509,21 @@ pub enum Problem {
         span: Span,
         label: &'static str,
     },
+}
+
+impl Problem {
+    /// Adds another place where the same name is used.
+    pub fn and_here(&mut self, span: Span) {
+        // More places than these would hide the first.
+        const MOST: usize = 20;
+        let (Self::UnknownName { more, .. }
+        | Self::UnknownColor { more, .. }
+        | Self::UsedBeforeDefinition { more, .. }) = self
+        else {
+            return;
+        };
+        if more.len() < MOST {
+            more.push(span);
+        }
+    }
 }

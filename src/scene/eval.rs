@@ -4,7 +4,7 @@
 //! and what uses it stays silent. What a value is for is not known here, beyond the type that is wanted.
 
 use std::{
-    cell::Cell,
+    cell::RefCell,
     collections::{HashMap, hash_map::Entry},
 };
 
@@ -21,7 +21,7 @@ use crate::{
     math::Angle,
     numbers,
     source::{SourceId, Sources, Span},
-    suggest,
+    suggest::{self, Budget},
     syntax::{
         shorten,
         tree::{self, Element, Name, Operator, Step, Unit, ValueKind},
@@ -37,12 +37,11 @@ pub struct Names<'s> {
     order: Vec<&'s str>,
     /// Every `let` of the file, wherever it stands.
     everywhere: HashMap<&'s str, Span>,
-    /// How many names may still be compared in search of the nearest: a text with as many mistakes as names would take the
-    /// time of all pairs.
-    comparisons: Cell<usize>,
+    /// The comparisons that are left in search of the nearest name.
+    budget: Budget,
+    /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
+    reported: RefCell<HashMap<&'s str, usize>>,
 }
-
-const MOST_COMPARISONS: usize = 1_000_000;
 
 #[derive(Clone, Copy, Debug)]
 struct Defined {
@@ -57,10 +56,7 @@ struct Defined {
 impl<'s> Names<'s> {
     /// No name is defined yet; these will be.
     pub fn new(everywhere: impl IntoIterator<Item = Name<'s>>) -> Self {
-        let mut names = Self {
-            comparisons: Cell::new(MOST_COMPARISONS),
-            ..Self::default()
-        };
+        let mut names = Self::default();
         for name in everywhere {
             names.everywhere.entry(name.text).or_insert(name.span);
         }
@@ -89,14 +85,16 @@ impl<'s> Names<'s> {
         self.everywhere.contains_key(name)
     }
 
-    /// The names that are defined so far, to search for the nearest.
-    fn to_compare(&self) -> &[&'s str] {
-        let left = self.comparisons.get().checked_sub(self.order.len());
-        self.comparisons.set(left.unwrap_or(0));
-        match left {
-            Some(_) => &self.order,
-            None => &[],
-        }
+    /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
+    fn to_compare(&self) -> Option<&[&'s str]> {
+        const PREDEFINED: usize = 200;
+        let enough = self.budget.spend(self.order.len() + PREDEFINED);
+        enough.then_some(&self.order)
+    }
+
+    /// The comparisons that are left in search of the nearest name.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
     }
 
     /// Every name that the file defines.
@@ -182,7 +180,7 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    fn name(&mut self, name: &str, span: Span, wanted: Option<Type>) -> Option<Value> {
+    fn name(&mut self, name: &'s str, span: Span, wanted: Option<Type>) -> Option<Value> {
         if let Some(defined) = self.names.defined.get(name) {
             return defined.value;
         }
@@ -195,16 +193,26 @@ impl<'s> Evaluator<'_, 's> {
             "rad" => return Some(Value::Angle(Angle::from_radians(1.0))),
             _ => {}
         }
-        let problem = if let Some(function) = schema::function(name) {
-            Problem::FunctionWithoutArguments {
+        if let Some(function) = schema::function(name) {
+            self.problems.push(Problem::FunctionWithoutArguments {
                 name: name.to_owned(),
                 example: example(function),
                 span,
+            });
+            return None;
+        }
+        let mut reported = self.names.reported.borrow_mut();
+        if let Some(&index) = reported.get(name) {
+            if let Some(problem) = self.problems.get_mut(index) {
+                problem.and_here(span);
             }
-        } else if let Some(&definition) = self.names.everywhere.get(name) {
-            self.used_before(name, span, definition)
-        } else {
-            self.unknown_name(name, span, wanted)
+            return None;
+        }
+        reported.insert(name, self.problems.len());
+        drop(reported);
+        let problem = match self.names.everywhere.get(name) {
+            Some(&definition) => self.used_before(name, span, definition),
+            None => self.unknown_name(name, span, wanted),
         };
         self.problems.push(problem);
         None
@@ -228,36 +236,37 @@ impl<'s> Evaluator<'_, 's> {
             line: self.sources.get(definition.source).line(definition.start),
             span,
             definition,
+            more: Vec::new(),
         }
     }
 
     fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Problem {
-        let lets = self.names.to_compare().iter().copied();
         let colors = matches!(wanted, Some(Type::Color | Type::Colors));
-        let near = if colors {
-            suggest::nearest(name, lets.chain(css::names().map(|name| name as &str)))
-        } else {
-            let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
-            let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-            let first = lets.chain(constants).chain(functions);
-            suggest::nearest(name, first).or_else(|| match wanted {
-                None => suggest::nearest(name, css::names()),
-                Some(_) => None,
-            })
-        };
+        let lets = self.names.to_compare();
+        let near = lets.and_then(|lets| nearest(name, lets, wanted));
         let name = name.to_owned();
         if colors {
             let help = match near {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
             };
-            return Problem::UnknownColor { name, help, span };
+            return Problem::UnknownColor {
+                name,
+                help,
+                span,
+                more: Vec::new(),
+            };
         }
         let help = match near {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("define it before it is used: `let {name} = …`"),
         };
-        Problem::UnknownName { name, help, span }
+        Problem::UnknownName {
+            name,
+            help,
+            span,
+            more: Vec::new(),
+        }
     }
 
     fn call(
@@ -788,6 +797,22 @@ impl<'s> Evaluator<'_, 's> {
             false => format!("`{written}`"),
         }
     }
+}
+
+/// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
+fn nearest<'n>(name: &str, lets: &[&'n str], wanted: Option<Type>) -> Option<&'n str> {
+    let lets = lets.iter().copied();
+    let colors = css::names().map(|name| name as &str);
+    if matches!(wanted, Some(Type::Color | Type::Colors)) {
+        return suggest::nearest(name, lets.chain(colors));
+    }
+    let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
+    let functions = schema::FUNCTIONS.iter().map(|function| function.name);
+    let near = suggest::nearest(name, lets.chain(constants).chain(functions));
+    near.or_else(|| match wanted {
+        None => suggest::nearest(name, colors),
+        Some(_) => None,
+    })
 }
 
 /// How a function is called.

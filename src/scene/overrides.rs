@@ -7,7 +7,7 @@ use super::{error::Problem, schema};
 use crate::{
     diagnostic::Diagnostic,
     source::{SourceId, Sources, Span},
-    suggest,
+    suggest::{self, Budget},
     syntax::{
         self, shorten,
         tree::{Name, Value},
@@ -27,7 +27,7 @@ pub struct Override<'s> {
     pub value: Value<'s>,
 }
 
-/// Reads the arguments; of several for one target, and for fields that exclude each other, only the last is kept.
+/// Reads the arguments.
 pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<Override<'s>> {
     let mut overrides: Vec<Override<'s>> = Vec::new();
     for (index, source) in sources.sets.iter().enumerate() {
@@ -98,7 +98,7 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
 }
 
 /// What is wrong with a target whose block is neither in the file nor one that can be added.
-pub fn no_such_block(block: &Name<'_>, objects: &[&str]) -> Problem {
+pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Problem {
     let listed = |names: &[&str]| match names.len() {
         0 => "The scene's objects have no names.".to_owned(),
         1..=8 => format!("The scene has {}.", suggest::list(names.iter().copied())),
@@ -106,7 +106,10 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str]) -> Problem {
     };
     let blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let blocks = blocks.map(|block| block.name);
-    let near = suggest::nearest(block.text, objects.iter().copied().chain(blocks));
+    let near = match budget.spend(objects.len() + schema::BLOCKS.len()) {
+        true => suggest::nearest(block.text, objects.iter().copied().chain(blocks)),
+        false => None,
+    };
     let kind = schema::block(block.text).filter(|kind| kind.is_object);
     let help = match (kind, near) {
         (Some(kind), _) => format!(
@@ -114,6 +117,7 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str]) -> Problem {
             kind.name,
             listed(objects)
         ),
+        (None, Some(near)) if objects == [near] => format!("did you mean `{near}`?"),
         (None, Some(near)) => format!("did you mean `{near}`? {}", listed(objects)),
         (None, None) => format!(
             "{} image, camera and sampler can be set too",
@@ -128,15 +132,18 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str]) -> Problem {
     }
 }
 
-/// What is wrong with a target that is no `let` of the file.
-pub fn no_such_let(name: &Name<'_>, lets: &[&str], objects: &[&str]) -> Problem {
-    let is_block = objects.contains(&name.text) || schema::block(name.text).is_some();
+/// What is wrong with a target that is no `let` of the file, but may be a block.
+pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budget) -> Problem {
     let fields = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = fields
         .filter(|block| block.field(name.text).is_some())
         .map(|block| block.name)
         .next();
-    let help = match (suggest::nearest(name.text, lets.iter().copied()), of_block) {
+    let near = match budget.spend(lets.len()) {
+        true => suggest::nearest(name.text, lets.iter().copied()),
+        false => None,
+    };
+    let help = match (near, of_block) {
         _ if is_block => format!("name a field of it as well: `{}.FIELD=…`", name.text),
         (_, Some(block)) => format!("did you mean `{block}.{}`?", name.text),
         (Some(near), None) => format!("did you mean `{near}`?"),

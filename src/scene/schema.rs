@@ -211,6 +211,14 @@ impl Block {
         let tried = self.fields.iter().find(tried).map(|field| field.name);
         tried.or_else(|| crate::suggest::nearest(written, self.field_names()))
     }
+
+    /// The field whose name another word was joined to: `centerball` is the center and `ball`.
+    pub fn joined_field(&self, written: &str) -> Option<&'static str> {
+        let joined = |name: &&str| name.len() > 2 && written.starts_with(*name);
+        self.field_names()
+            .filter(joined)
+            .max_by_key(|name| name.len())
+    }
 }
 
 /// The words that blocks start with.

@@ -66,16 +66,20 @@ pub fn untangle<'t, 's>(
     Cow::Owned(meant)
 }
 
-/// Whether a block's fields may have been taken for one another.
+/// Whether a block's fields may have been taken for one another: a value is missing, a field's name stands for a value, or
+/// the name of a value for a field.
 fn is_tangled(fields: &[tree::Field<'_>], row: &schema::Block, names: &Names<'_>) -> bool {
-    fields.iter().any(|field| match &field.value.kind {
-        ValueKind::Missing => true,
-        ValueKind::Name(name)
-        | ValueKind::Call {
-            function: Name { text: name, .. },
-            ..
-        } => row.field(name).is_some() && !names.knows(name) && predefined(name).is_none(),
-        _ => false,
+    let is_value = |name: &str| names.knows(name) || predefined(name).is_some();
+    let is_field = |name: &str| row.field(name).is_some();
+    fields.iter().any(|field| {
+        let name = match &field.value.kind {
+            ValueKind::Missing => return true,
+            ValueKind::Name(name) => name,
+            ValueKind::Call { function, .. } => function.text,
+            _ => "",
+        };
+        let field = field.name.text;
+        (is_field(name) && !is_value(name)) || (is_value(field) && !is_field(field))
     })
 }
 

@@ -307,7 +307,9 @@ pub enum Problem {
     MissingLet {
         name: String,
         value: String,
-        #[label("`let` should stand before this")]
+        /// Where the name stands.
+        place: Span,
+        #[label("`let {name}` should stand here")]
         span: Span,
     },
 

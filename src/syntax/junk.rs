@@ -4,7 +4,7 @@
 //! the author's words. It is read again here token by token, and strictly.
 
 use super::{Problem, tree::Name};
-use crate::source::Span;
+use crate::{source::Span, suggest};
 
 /// What stands at some place, in a message: on one line, and not too long.
 pub fn shorten(written: &str) -> String {
@@ -349,22 +349,11 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
     if first.kind != Kind::Word {
         return unexpected(first.text, place);
     }
+    if let Some(problem) = missing_let(text, odd, &tokens) {
+        return problem;
+    }
     let name = first.text.to_owned();
     let second = rest.first();
-    if let Some(equals) = second
-        && equals.is("=")
-    {
-        let value = Span::new(
-            odd.source,
-            equals.span(odd).end,
-            line_end(text, equals.span(odd).end),
-        );
-        return Problem::MissingLet {
-            name,
-            value: shorten(text.get(value.range()).unwrap_or_default()),
-            span: place,
-        };
-    }
     // `sphere Ball`, and then fields: the `{` is missing. `radius 2`: a field that stands outside.
     let alone = second.is_none_or(|token| !same_line(place.end, token.span(odd).start));
     let named = second.filter(|token| token.kind == Kind::Word && !alone);
@@ -384,6 +373,38 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
         name: shorten(&name),
         span: place,
     }
+}
+
+/// `x = 3`, and what may have been `let x = 3`.
+fn missing_let(text: &str, odd: Span, tokens: &[Token<'_>]) -> Option<Problem> {
+    let (name, label, equals) = match tokens {
+        [name, equals, ..] if equals.is("=") => {
+            let place = name.span(odd);
+            match name.text.strip_prefix("let") {
+                Some(rest) if !rest.is_empty() => {
+                    let start = place.start + "let".len();
+                    (Span::new(odd.source, start, place.end), place, equals)
+                }
+                _ => (place, place, equals),
+            }
+        }
+        [word, name, equals, ..]
+            if equals.is("=")
+                && name.kind == Kind::Word
+                && suggest::nearest(word.text, ["let"]).is_some() =>
+        {
+            (name.span(odd), word.span(odd), equals)
+        }
+        _ => return None,
+    };
+    let from = equals.span(odd).end;
+    let value = text.get(from..line_end(text, from)).unwrap_or_default();
+    Some(Problem::MissingLet {
+        name: text.get(name.range()).unwrap_or_default().to_owned(),
+        value: shorten(value),
+        place: name,
+        span: label,
+    })
 }
 
 fn line_end(text: &str, from: usize) -> usize {

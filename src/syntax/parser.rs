@@ -279,6 +279,14 @@ impl<'s> Parser<'s> {
         let next = block.span.end;
         let before = (next < self.end).then(|| self.word_at(next));
         block.span = self.trimmed(block.span.start, next);
+        let again = match self.items.last() {
+            Some(Item::Block(last)) => last.close.is_none() && last.fields.is_empty(),
+            _ => false,
+        };
+        if again && block.fields.is_empty() {
+            // One block after the other that is only begun is one mistake.
+            return;
+        }
         let kind = block.kind.map_or("this block", |kind| kind.text);
         self.problems.push(Problem::UnclosedBlock {
             kind: kind.to_owned(),
@@ -666,7 +674,14 @@ impl<'s> Parser<'s> {
         let span = self.trimmed(whole.start, whole.end);
         let keyword = self.word_at(span.start);
         let (name, problem) = junk::definition(self.text, span);
-        self.problems.push(problem);
+        let again = match self.items.last() {
+            Some(Item::Definition(last)) => last.value.span.range().is_empty(),
+            _ => false,
+        };
+        // One definition after the other that is only begun is one mistake, on one line.
+        if !(again && self.is_on_line_of_last(span.start)) {
+            self.problems.push(problem);
+        }
         let value = bad(Span::new(self.id, span.end, span.end));
         self.items.push(Item::Definition(Definition {
             keyword,
@@ -681,6 +696,25 @@ impl<'s> Parser<'s> {
         let whole = self.span(&pair);
         let span = self.trimmed(whole.start, whole.end);
         match junk::field(self.text, span) {
+            (
+                Some(name),
+                Some(Problem::MissingOperand {
+                    side: "before",
+                    span: operator,
+                    ..
+                }),
+            ) if self
+                .trimmed(name.span.end, operator.start)
+                .range()
+                .is_empty()
+                && !block.fields.is_empty() =>
+            {
+                // `center middle ring * 2`: no field's name stands before an operator.
+                let before = block.fields.last().map_or(span, |field| field.value.span);
+                let problem = junk::missing_operator(self.written(before), name.text, name.span);
+                self.problems.push(problem);
+                block.bad.push(span);
+            }
             (Some(name), problem) => {
                 let kind = match name.span.end == span.end {
                     true => ValueKind::Missing,
@@ -755,7 +789,13 @@ impl<'s> Parser<'s> {
             let (kind, name, problem) = junk::head(self.text, odd, open);
             block.kind = kind;
             block.name = name;
-            self.problems.insert(at, problem);
+            let again = match self.items.last() {
+                Some(Item::Block(last)) => last.kind.is_none(),
+                _ => false,
+            };
+            if !(again && kind.is_none() && self.is_on_line_of_last(whole.start)) {
+                self.problems.insert(at, problem);
+            }
             block.bad.push(odd);
             self.items.push(Item::Block(block));
         } else {
@@ -767,11 +807,11 @@ impl<'s> Parser<'s> {
             );
             // A name that was to be defined is known from here on.
             let item = match &problem {
-                Problem::MissingLet { span, .. } => Item::Definition(Definition {
-                    keyword: Span::new(self.id, span.start, span.start),
+                Problem::MissingLet { place, .. } => Item::Definition(Definition {
+                    keyword: Span::new(self.id, odd.start, odd.start),
                     name: Some(Name {
-                        text: self.written(*span),
-                        span: *span,
+                        text: self.written(*place),
+                        span: *place,
                     }),
                     equals: None,
                     value: bad(Span::new(self.id, odd.end, odd.end)),
@@ -785,6 +825,13 @@ impl<'s> Parser<'s> {
             self.in_odd_lines = vague && block.close.is_none();
             self.items.push(item);
         }
+    }
+
+    /// Whether no line ends between the last item and an offset.
+    fn is_on_line_of_last(&self, start: usize) -> bool {
+        let end = self.items.last().map_or(start, |item| item.span().end);
+        let between = self.text.get(end..start).unwrap_or_default();
+        !between.contains('\n')
     }
 
     fn needless_separator(&mut self, separator: Option<Span>, between: &'static str) {

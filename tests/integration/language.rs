@@ -5,7 +5,6 @@ use std::{fs, path::Path};
 use glam::DVec3;
 use pinhole::{
     color::Color,
-    diagnostic::{Drawing, Report, Style},
     scene::{
         self, Camera, Checkerboard, Count, Cuboid, Lens, Method, Scene, Shape, Sphere, Triangle,
         View, schema,
@@ -31,18 +30,9 @@ fn codes(text: &str) -> Vec<String> {
 
 /// A scene without errors; its warnings may be some.
 fn read(text: &str) -> Scene {
-    let sources = sources(text);
-    let reading = scene::read(&sources);
-    let report = Report::new(
-        &sources,
-        Style {
-            drawing: Drawing::Unicode,
-            ..Style::default()
-        },
-    );
-    reading
-        .scene
-        .unwrap_or_else(|| panic!("{}", report.human(&reading.diagnostics)))
+    let reading = scene::read(&sources(text));
+    let found = &reading.diagnostics;
+    reading.scene.unwrap_or_else(|| panic!("{found:#?}"))
 }
 
 /// The camera of a scene with one sphere.
@@ -491,6 +481,7 @@ fn up_along_the_view_is_a_warning_exactly_where_it_is() {
         ("direction (0, 1, 0) up (0, -1, 0)", "−z", "(0, 0, -1)"),
         ("direction (0, 0, -1) up (0, 0, 1)", "+y", "(0, 1, 0)"),
         ("direction (-1, 0, 0) up (1, 0, 0)", "−z", "(0, 0, -1)"),
+        ("direction (0, -1, 0) up (0, 1e300, 0)", "−z", "(0, 0, -1)"),
     ] {
         let help = help(&format!("eye (0, 0, 0) {fields}"));
         assert!(help.contains(top) && help.contains(up), "{fields}: {help}");

@@ -3,6 +3,7 @@
 mod answers;
 mod camera;
 mod cli;
+#[cfg(feature = "cli")]
 mod diagnostics;
 mod figure;
 mod film;
@@ -12,6 +13,7 @@ mod oracle;
 mod overrides;
 mod readme;
 mod render;
+#[cfg(feature = "cli")]
 mod robustness;
 mod sampling;
 mod syntax;

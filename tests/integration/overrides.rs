@@ -111,6 +111,30 @@ fn alternatives_are_replaced() {
 }
 
 #[test]
+fn fields_exclude_each_other_in_their_own_block_only() {
+    assert_eq!(
+        problems(SCENE, &["Ball.center=(0, 2, 0)", "Ball.min=(0, 0, 0)"]),
+        [("unknown_field".to_owned(), 2, "min".to_owned())]
+    );
+    let text = "camera { eye (0, 2, 8) lookat (0, 1, 0) } sphere Ball { radius 2 }";
+    assert_eq!(
+        problems(text, &["Ball.center=(0, 2, 0)", "Ball.min=(0, 0, 0)"]),
+        [("unknown_field".to_owned(), 2, "min".to_owned())]
+    );
+}
+
+#[test]
+fn of_two_objects_of_one_name_the_first_is_set() {
+    let text = "camera { eye (0, 2, 8) lookat (0, 1, 0) }
+        sphere S { center (0, 0, 0) }
+        sphere S { center (1, 0, 0) }";
+    assert_eq!(
+        problems(text, &["S.center=(0, 2, 0)"]),
+        [("duplicate_name".to_owned(), 0, "S".to_owned())]
+    );
+}
+
+#[test]
 fn what_is_replaced_is_not_judged() {
     let text = "camera { eye (0, 2, 8) lookat nothing }
         sphere Ball { center (0, 0, 0) radius red }

@@ -20,10 +20,16 @@ const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 /// Reads and reports a text; answers whether there is a scene.
 #[track_caller]
 fn read(bytes: impl Into<Vec<u8>>) -> bool {
+    read_with_sets(bytes, &[])
+}
+
+/// The same with `--set` arguments.
+#[track_caller]
+fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
     let length = bytes.len();
     let start = Instant::now();
-    let sources = Sources::new(Source::from_bytes("test.scn", bytes));
+    let sources = Sources::new(Source::from_bytes("test.scn", bytes)).with_sets(sets);
     let reading = scene::read(&sources);
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
         let style = Style {
@@ -122,6 +128,11 @@ fn garbage() {
 
 #[test]
 fn one_thing_a_million_times() {
+    let length = if cfg!(debug_assertions) {
+        MEGABYTE / 16
+    } else {
+        MEGABYTE
+    };
     for piece in [
         "{",
         "}",
@@ -156,10 +167,10 @@ fn one_thing_a_million_times() {
         "°",
         "\u{feff}",
     ] {
-        assert!(!read(piece.repeat(MEGABYTE / piece.len())), "{piece:?}");
+        assert!(!read(piece.repeat(length / piece.len())), "{piece:?}");
         let within = format!(
             "{CAMERA} sphere {{ center {}",
-            piece.repeat(MEGABYTE / 4 / piece.len())
+            piece.repeat(length / 4 / piece.len())
         );
         read(within);
     }
@@ -217,6 +228,30 @@ fn many_mistakes_and_many_names() {
     assert!(!read(lines(&|_| "sphere { center (0, 1, 0 }\n".to_owned())));
     assert!(read(
         lines(&|i| format!("let a{} = a{i} + 1\n", i + 1)).replacen("let a1 = a0", "let a1 = 0", 1)
+    ));
+}
+
+#[test]
+fn many_overrides() {
+    let lines = |line: &dyn Fn(usize) -> String| -> String { (0..10_000).map(line).collect() };
+    let sets = |set: &dyn Fn(usize) -> String| -> Vec<String> { (0..10_000).map(set).collect() };
+    let lets = format!("{CAMERA}{}", lines(&|i| format!("let a{i} = {i}\n")));
+    assert!(read_with_sets(&*lets, &sets(&|i| format!("a{i}=2"))));
+    assert!(!read_with_sets(&*lets, &sets(&|i| format!("zz{i}=2"))));
+    let sphere = |i| format!("sphere S{i} {{ center (0, 1, 0) }}\n");
+    let spheres = format!("{CAMERA}{}", lines(&sphere));
+    assert!(read_with_sets(
+        &*spheres,
+        &sets(&|i| format!("S{i}.radius=2"))
+    ));
+    assert!(!read_with_sets(
+        &*spheres,
+        &sets(&|i| format!("T{i}.radius=2"))
+    ));
+    assert!(!read_with_sets(&*spheres, &sets(&|i| format!("S{i}=2"))));
+    assert!(!read_with_sets(
+        &*spheres,
+        &sets(&|_| "camera.e=2".to_owned())
     ));
 }
 

@@ -228,6 +228,8 @@ impl<'s> Lowering<'s> {
             return;
         }
         // Against up, the top of the picture is the part of the level direction across up; along up, the opposite.
+        // The scale of up does not matter, and its square could be too large.
+        let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
         let along = exact::dot_sign(up, from, to).is_gt();

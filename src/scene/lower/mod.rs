@@ -43,9 +43,12 @@ pub fn read(sources: &Sources) -> Reading {
         cut: parsed.cut.is_some(),
         names: Names::new(definitions(&parsed.tree)),
         overrides,
+        targets: HashMap::new(),
         blocks: Vec::new(),
+        first_blocks: HashMap::new(),
         problems: Vec::new(),
         slips: Vec::new(),
+        in_begun_blocks: false,
     };
     let scene = lowering.scene(&parsed.tree);
     let problems = lowering.problems.iter();
@@ -93,10 +96,16 @@ struct Lowering<'s> {
     cut: bool,
     names: Names<'s>,
     overrides: Vec<Override<'s>>,
+    /// The overrides by the block and the field or `let` that they set.
+    targets: HashMap<(Option<&'s str>, &'s str), usize>,
     blocks: Vec<Block<'s>>,
+    /// The blocks by the names that `--set` knows them by; of several of one name the first.
+    first_blocks: HashMap<&'s str, usize>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
+    /// Whether the last block was only begun.
+    in_begun_blocks: bool,
 }
 
 /// A block with what it was given.
@@ -125,7 +134,7 @@ struct Given {
 
 impl<'s> Lowering<'s> {
     fn scene(&mut self, tree: &syntax::Tree<'s>) -> Option<Scene> {
-        self.keep_last_overrides();
+        self.keep_last_overrides(tree);
         for item in &tree.items {
             match item {
                 Item::Definition(definition) => self.definition(definition),
@@ -146,8 +155,8 @@ impl<'s> Lowering<'s> {
 
     fn definition(&mut self, definition: &Definition<'s>) {
         let set = definition.name.and_then(|name| {
-            let is = |o: &&Override<'_>| o.block.is_none() && o.name.text == name.text;
-            self.overrides.iter().find(is).cloned()
+            let index = *self.targets.get(&(None, name.text))?;
+            self.overrides.get(index).cloned()
         });
         let first = definition
             .name
@@ -198,11 +207,11 @@ impl<'s> Lowering<'s> {
                 span: name.span,
             });
         }
-        // Objects come in any number, and looking through all of them for each would take long.
         let earlier = match row.is_object {
             true => None,
-            false => self.blocks.iter().find(|other| other.row.kind == row.kind),
+            false => self.first_blocks.get(row.name),
         };
+        let earlier = earlier.and_then(|&index| self.blocks.get(index));
         let duplicate = earlier.is_some();
         if let Some(earlier) = earlier {
             self.problems.push(Problem::DuplicateBlock {
@@ -244,7 +253,7 @@ impl<'s> Lowering<'s> {
         }
         self.conflicts(&lowered, &replaced);
         if !duplicate {
-            self.blocks.push(lowered);
+            self.push(lowered);
         }
     }
 
@@ -256,6 +265,13 @@ impl<'s> Lowering<'s> {
             return row;
         }
         let near = schema::nearest_block(kind.text);
+        // Of blocks that are only begun, one after the other, the first is enough; so says the parser, too.
+        let begun = block.close.is_none() && block.fields.is_empty();
+        let again = self.in_begun_blocks && begun;
+        self.in_begun_blocks = begun;
+        if again {
+            return near;
+        }
         let kinds = suggest::list(schema::block_names());
         let help = match near {
             Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
@@ -302,7 +318,9 @@ impl<'s> Lowering<'s> {
 
     fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
         self.evaluate_loosely(&field.value);
-        block.meant.extend(block.row.nearest_field(field.name.text));
+        let near = block.row.nearest_field(field.name.text);
+        let joined = block.row.joined_field(field.name.text);
+        block.meant.extend(near.or(joined));
         self.problems.push(unknown_field(block.row, &field.name));
     }
 

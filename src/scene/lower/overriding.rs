@@ -1,45 +1,55 @@
 //! What `--set` arguments change in the blocks.
 
+use std::collections::{HashMap, HashSet};
+
 use super::{Block, Given, Lowering, words::unknown_field};
-use crate::scene::{
-    overrides::{self, Override},
-    schema,
+use crate::{
+    scene::{overrides, schema},
+    syntax::{
+        Tree,
+        tree::{self, Item},
+    },
 };
 
 impl<'s> Lowering<'s> {
     /// Of several overrides of one target, or of fields that exclude each other, only the last counts.
-    pub(super) fn keep_last_overrides(&mut self) {
-        let all = std::mem::take(&mut self.overrides);
-        let mut kept: Vec<Override<'s>> = Vec::new();
-        for next in all {
-            kept.retain(|earlier| {
-                let same_block = match (&earlier.block, &next.block) {
-                    (Some(a), Some(b)) => a.text == b.text,
-                    (None, None) => true,
-                    _ => false,
-                };
-                let same = earlier.name.text == next.name.text;
-                let excluded = next.block.is_some()
-                    && schema::BLOCKS
-                        .iter()
-                        .filter_map(|row| row.field(next.name.text))
-                        .any(|row| row.excludes.contains(&earlier.name.text));
-                !(same_block && (same || excluded))
+    pub(super) fn keep_last_overrides(&mut self, tree: &Tree<'s>) {
+        if self.overrides.is_empty() {
+            return;
+        }
+        let rows = rows_of_objects(tree);
+        let mut later = HashSet::new();
+        let mut kept = Vec::with_capacity(self.overrides.len());
+        for set in std::mem::take(&mut self.overrides).into_iter().rev() {
+            let block = set.block.map(|block| block.text);
+            let row = block.and_then(|block| schema::block(block).or(rows.get(block).copied()));
+            let row = row.and_then(|row| row.field(set.name.text));
+            let excluded = row.is_some_and(|row| {
+                let mut others = row.excludes.iter();
+                others.any(|other| later.contains(&(block, *other)))
             });
-            kept.push(next);
+            if later.insert((block, set.name.text)) && !excluded {
+                kept.push(set);
+            }
+        }
+        kept.reverse();
+        for (index, set) in kept.iter().enumerate() {
+            let block = set.block.map(|block| block.text);
+            self.targets.insert((block, set.name.text), index);
         }
         self.overrides = kept;
     }
 
-    /// The fields of a block that an override replaces, alternatives included.
+    /// The fields of a block that an override replaces, alternatives included. Of several blocks of one name it is the first
+    /// that is meant.
     pub(super) fn replaced_fields(&self, block: &Block<'s>) -> Vec<&'static str> {
         let mut replaced = Vec::new();
-        for set in &self.overrides {
-            if set
-                .block
-                .is_some_and(|target| is_target(block, target.text))
-                && let Some(row) = block.row.field(set.name.text)
-            {
+        let target = target(block).filter(|target| !self.first_blocks.contains_key(target));
+        if target.is_none() || self.overrides.is_empty() {
+            return replaced;
+        }
+        for row in block.row.fields {
+            if self.targets.contains_key(&(target, row.name)) {
                 replaced.push(row.name);
                 replaced.extend(row.excludes);
             }
@@ -47,17 +57,25 @@ impl<'s> Lowering<'s> {
         replaced
     }
 
+    /// Adds a block, the first of its name or not.
+    pub(super) fn push(&mut self, block: Block<'s>) {
+        if let Some(target) = target(&block) {
+            let index = self.blocks.len();
+            self.first_blocks.entry(target).or_insert(index);
+        }
+        self.blocks.push(block);
+    }
+
     /// Evaluates the overrides of fields, now that every name is defined.
     pub(super) fn override_fields(&mut self) {
-        for set in self.overrides.clone() {
+        let overrides = std::mem::take(&mut self.overrides);
+        for set in &overrides {
             let Some(target) = set.block else { continue };
             let addable = schema::block(target.text).filter(|row| !row.is_object);
-            let mut index = self.blocks.iter().position(|b| is_target(b, target.text));
-            if index.is_none()
+            if !self.first_blocks.contains_key(target.text)
                 && let Some(row) = addable
             {
-                index = Some(self.blocks.len());
-                self.blocks.push(Block {
+                self.push(Block {
                     row,
                     keyword: target.span,
                     span: target.span,
@@ -67,6 +85,7 @@ impl<'s> Lowering<'s> {
                     unfinished: false,
                 });
             }
+            let index = self.first_blocks.get(target.text).copied();
             let Some(row) = index.and_then(|i| self.blocks.get(i)).map(|b| b.row) else {
                 continue;
             };
@@ -89,6 +108,7 @@ impl<'s> Lowering<'s> {
                 *slot = Some(given);
             }
         }
+        self.overrides = overrides;
     }
 
     /// Reports overrides whose target does not exist.
@@ -103,15 +123,19 @@ impl<'s> Lowering<'s> {
             .collect();
         let mut lets: Vec<&str> = self.names.all().collect();
         lets.sort_unstable();
+        let budget = self.names.budget();
         for set in &self.overrides {
             let problem = match &set.block {
                 Some(block) => {
-                    let found = self.blocks.iter().any(|b| is_target(b, block.text));
-                    (!found).then(|| overrides::no_such_block(block, &objects))
+                    let found = self.first_blocks.contains_key(block.text);
+                    (!found).then(|| overrides::no_such_block(block, &objects, budget))
                 }
                 None => {
-                    let found = self.names.knows(set.name.text);
-                    (!found).then(|| overrides::no_such_let(&set.name, &lets, &objects))
+                    let name = &set.name;
+                    let is_block = self.first_blocks.contains_key(name.text)
+                        || schema::block(name.text).is_some();
+                    let found = self.names.knows(name.text);
+                    (!found).then(|| overrides::no_such_let(name, &lets, is_block, budget))
                 }
             };
             self.problems.extend(problem);
@@ -119,10 +143,29 @@ impl<'s> Lowering<'s> {
     }
 }
 
-fn is_target(block: &Block<'_>, target: &str) -> bool {
-    match block.name {
-        _ if !block.row.is_object => block.row.name == target,
-        Some(name) => name.text == target,
-        None => false,
+/// What kind of object each name is; of a name that stands twice, the first.
+fn rows_of_objects<'s>(tree: &Tree<'s>) -> HashMap<&'s str, &'static schema::Block> {
+    let mut rows = HashMap::new();
+    for item in &tree.items {
+        if let Item::Block(tree::Block {
+            kind: Some(kind),
+            name: Some(name),
+            ..
+        }) = item
+            && let Some(row) = schema::block(kind.text)
+            && row.is_object
+        {
+            rows.entry(name.text).or_insert(row);
+        }
     }
+    rows
+}
+
+/// The name by which `--set` names a block.
+fn target<'s>(block: &Block<'s>) -> Option<&'s str> {
+    if !block.row.is_object {
+        return Some(block.row.name);
+    }
+    let is_reserved = |name: &str| schema::block(name).is_some_and(|row| !row.is_object);
+    block.name.map(|name| name.text).filter(|n| !is_reserved(n))
 }

@@ -37,9 +37,13 @@ pub fn unknown_field(row: &'static schema::Block, name: &Name<'_>) -> Problem {
     let mut fields: Vec<&str> = row.field_names().collect();
     let noun = capital(row.noun);
     let all = suggest::list(fields.drain(..));
-    let help = match row.nearest_field(name.text) {
-        Some(near) => format!("did you mean `{near}`? {noun} takes {all}."),
-        None => format!("{} takes {all}", row.noun),
+    let help = match (row.nearest_field(name.text), row.joined_field(name.text)) {
+        (Some(near), _) => format!("did you mean `{near}`? {noun} takes {all}."),
+        (None, Some(joined)) => {
+            let rest = name.text.get(joined.len()..).unwrap_or_default();
+            format!("did you mean `{joined} {rest}`? {noun} takes {all}.")
+        }
+        (None, None) => format!("{} takes {all}", row.noun),
     };
     Problem::UnknownField {
         noun: row.noun,
