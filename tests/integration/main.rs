@@ -3,7 +3,6 @@
 mod answers;
 mod camera;
 mod cli;
-#[cfg(feature = "cli")]
 mod diagnostics;
 mod figure;
 mod film;
@@ -13,7 +12,6 @@ mod oracle;
 mod overrides;
 mod readme;
 mod render;
-#[cfg(feature = "cli")]
 mod robustness;
 mod sampling;
 mod syntax;
