@@ -543,3 +543,30 @@ fn all_mistakes_are_reported_in_the_order_of_the_text() {
         ]
     );
 }
+
+#[test]
+fn angles_of_degrees_and_radians_are_compared_exactly() {
+    let view = |fov: &str| {
+        codes(&format!(
+            "camera {{ eye (0, 2, 8) lookat (0, 1, 0) fov {fov} }} sphere {{ center (0, 0, 0) }}"
+        ))
+    };
+    for fov in [
+        "179deg + 0.017453292519943295rad",
+        "1e-20deg + 3.141592653589793rad",
+        "1deg - 0.017453292519943295rad",
+        "3.141592653589793rad",
+        "180deg - 1e-300rad",
+    ] {
+        assert!(view(fov).is_empty(), "{fov}");
+    }
+    for fov in [
+        "1e-10deg + 3.141592653589793rad",
+        "1deg - 0.0174532925199433rad",
+        "3.1415926535897936rad",
+        "180deg + 1e-300rad",
+        "180deg + 1rad - 1rad",
+    ] {
+        assert_eq!(view(fov), ["out_of_range"], "{fov}");
+    }
+}

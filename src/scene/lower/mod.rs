@@ -20,10 +20,11 @@ use super::{
     overrides::{self, Override},
     schema::{self, Condition, Field, Kind, Type},
     untangle::untangle,
-    value::{self, Value},
+    value::Value,
 };
 use crate::{
     diagnostic::{self, Diagnostic},
+    math::compare_half_turns,
     source::{SourceId, Sources, Span},
     suggest,
     syntax::{
@@ -529,7 +530,7 @@ fn holds(condition: Condition, value: Value) -> bool {
         (Condition::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
         (Condition::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
         (Condition::LessThanHalfTurn, Value::Angle(angle)) => {
-            value::compare_with_zero(angle).is_gt() && value::compare_with_half_turn(angle).is_lt()
+            compare_half_turns(angle, 0.0).is_gt() && compare_half_turns(angle, 1.0).is_lt()
         }
         (Condition::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
         (Condition::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
