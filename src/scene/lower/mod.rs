@@ -42,7 +42,7 @@ pub fn read(sources: &Sources) -> Reading {
     let mut lowering = Lowering {
         sources,
         cut: parsed.cut.is_some(),
-        names: Names::new(definitions(&parsed.tree)),
+        names: Names::new(definitions(&parsed.tree), names_of_objects(&parsed.tree)),
         overrides,
         targets: HashMap::new(),
         blocks: Vec::new(),
@@ -70,6 +70,14 @@ fn definitions<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = Name<
     tree.items.iter().filter_map(|item| match item {
         Item::Definition(definition) => definition.name.filter(|n| predefined(n.text).is_none()),
         Item::Block(_) | Item::Bad(_) => None,
+    })
+}
+
+/// The names of a file's objects.
+fn names_of_objects<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = &'s str> + 't {
+    tree.items.iter().filter_map(|item| match item {
+        Item::Block(block) => block.name.map(|name| name.text),
+        Item::Definition(_) | Item::Bad(_) => None,
     })
 }
 
@@ -361,6 +369,7 @@ impl<'s> Lowering<'s> {
 
     /// The value of a field, if it is of the field's type and keeps its conditions.
     fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        let before = self.problems.len();
         let value = match row.takes {
             Type::Method => return self.method(row, tree),
             takes => self.evaluate(tree, Some(takes))?,
@@ -371,7 +380,26 @@ impl<'s> Lowering<'s> {
         }
         let broken = row.must.iter().find(|condition| !holds(**condition, value));
         if let Some(&condition) = broken {
-            self.out_of_range(row, condition, tree, value);
+            let rounded_to_zero = matches!(
+                (&tree.kind, self.problems.last()),
+                (ValueKind::Number(_), Some(Problem::NumberUnderflow { .. }))
+            ) && self.problems.len() > before;
+            if rounded_to_zero {
+                self.problems.truncate(before);
+            }
+            let found = match (&tree.kind, value) {
+                (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
+                    shown(value, condition)
+                }
+                _ if rounded_to_zero => {
+                    format!(
+                        "{}, which rounds to 0",
+                        shorten(self.sources.text(tree.span))
+                    )
+                }
+                _ => shorten(self.sources.text(tree.span)),
+            };
+            self.out_of_range(row, condition, tree, value, &found);
             return None;
         }
         Some(value)
@@ -444,23 +472,21 @@ impl<'s> Lowering<'s> {
         condition: Condition,
         tree: &tree::Value<'s>,
         value: Value,
+        found: &str,
     ) {
-        let written = shorten(self.sources.text(tree.span));
-        let found = match (&tree.kind, value) {
-            (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
-                shown(value)
-            }
-            _ => written,
-        };
         let (label, help) = range_words(row, condition, value);
         let message = match condition {
             Condition::NotZero => format!("`{}` must not be zero", row.name),
             _ => format!("`{}` must be {condition}, and it is {found}", row.name),
         };
+        let (span, label) = match part_not_above_zero(condition, tree, value) {
+            Some(part) => (part, "not above 0"),
+            None => (tree.span, label),
+        };
         self.problems.push(Problem::OutOfRange {
             message,
             help,
-            span: tree.span,
+            span,
             label: label.to_owned(),
         });
     }
@@ -512,6 +538,17 @@ impl Block<'_> {
         let index = self.row.fields.iter().position(|row| row.name == name)?;
         self.given.get(index).copied().flatten()
     }
+}
+
+/// The first part of a written vector that is not above 0, if all were to be.
+fn part_not_above_zero(condition: Condition, tree: &tree::Value<'_>, value: Value) -> Option<Span> {
+    let (Condition::EachMoreThanZero, ValueKind::Tuple(parts), Value::Vector(v)) =
+        (condition, &tree.kind, value)
+    else {
+        return None;
+    };
+    let mut parts = parts.iter().zip(v.to_array());
+    parts.find_map(|(part, x)| (x <= 0.0).then_some(part.value.span))
 }
 
 /// Whether a word stands in a text.
