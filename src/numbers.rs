@@ -28,6 +28,18 @@ pub fn short(x: f64) -> String {
     trimmed(&format!("{x:.decimals$}")).to_owned()
 }
 
+/// A number that is compared with others: short, unless the digits that are left out decide.
+pub fn beside(x: f64, others: &[f64]) -> String {
+    let text = short(x);
+    let read = text.parse().unwrap_or(x);
+    let decides = |other: &f64| f64::partial_cmp(&read, other) != x.partial_cmp(other);
+    match others.iter().any(decides) {
+        true if (1e-4..1e17).contains(&x.abs()) => format!("{x}"),
+        true => format!("{x:e}"),
+        false => text,
+    }
+}
+
 /// Decimals without the zeros at their end.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') {
@@ -78,6 +90,15 @@ mod tests {
         for (x, text) in cases {
             assert_eq!(short(x), text);
         }
+    }
+
+    #[test]
+    fn digits_that_decide_are_shown() {
+        assert_eq!(beside(5.000_000_1, &[5.0]), "5.0000001");
+        assert_eq!(beside(5.000_000_1, &[4.0, 6.0]), "5");
+        assert_eq!(beside(5.0, &[5.0]), "5");
+        assert_eq!(beside(1e-300, &[0.0]), "1e-300");
+        assert_eq!(beside(1.000_000_1e-300, &[1e-300]), "1.0000001e-300");
     }
 
     #[test]

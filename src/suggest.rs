@@ -39,7 +39,7 @@ pub fn nearest<'c>(
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
         let length = candidate.chars().count();
-        let allowed = letters.len().max(length).div_ceil(3);
+        let allowed = (letters.len().max(length) / 3).max(1);
         // Half of a name of two letters is no longer the same name.
         let allowed = allowed.min(letters.len().min(length) / 2);
         let allowed = best.map_or(allowed, |(least, _)| allowed.min(least.saturating_sub(1)));

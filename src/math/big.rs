@@ -1,5 +1,7 @@
 //! Big numbers: what decides where double-double leaves a doubt.
 
+use std::cmp::Ordering;
+
 use dashu_float::{FBig, round::mode::HalfEven};
 use dashu_int::{Sign, ops::BitTest};
 
@@ -50,6 +52,22 @@ impl Big {
     pub fn atan_degrees(&self) -> Self {
         Self(self.0.atan_unit(360))
     }
+}
+
+/// How an angle compares with so many half turns. Degrees are compared as they are; where radians are added to them, π is,
+/// which is irrational: what is left is never zero, and has more digits than would have to cancel.
+pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
+    let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
+    if angle.radians == 0.0 {
+        return degrees.cmp(&Float::ZERO);
+    }
+    if is_zero(&degrees) {
+        return exact(angle.radians).cmp(&Float::ZERO);
+    }
+    let bits = PRECISION + GUARD;
+    let degrees = degrees.with_precision(bits).value();
+    let left = degrees * Float::pi(bits) / wide(180.0) + wide(angle.radians);
+    left.cmp(&Float::ZERO)
 }
 
 fn is_zero(x: &Float) -> bool {
@@ -166,13 +184,13 @@ impl Exact {
     }
 
     /// Less than, equal to or greater than zero.
-    pub fn sign(&self) -> std::cmp::Ordering {
+    pub fn sign(&self) -> Ordering {
         if is_zero(&self.0) {
-            std::cmp::Ordering::Equal
+            Ordering::Equal
         } else if self.0.sign() == Sign::Negative {
-            std::cmp::Ordering::Less
+            Ordering::Less
         } else {
-            std::cmp::Ordering::Greater
+            Ordering::Greater
         }
     }
 

@@ -14,7 +14,7 @@ pub mod trig;
 
 pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
-pub use big::{Big, Exact};
+pub use big::{Big, Exact, compare_half_turns};
 pub use double::{Double, two_product, two_sum};
 pub use radius::{Radius, Wide};
 pub use real::Real;

@@ -84,12 +84,14 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
         quarters -= 1.0;
     }
     let (s, c) = sin_cos_up_to_45(rest);
-    match quarters.rem_euclid(4.0) as u8 {
+    let (sine, cosine) = match quarters.rem_euclid(4.0) as u8 {
         0 => (s, c),
         1 => (c, -s),
         2 => (-s, -c),
         _ => (-c, s),
-    }
+    };
+    // The sign of a zero would show in atan2; adding 0 takes it away.
+    (sine + 0.0, cosine + 0.0)
 }
 
 fn sin_cos_up_to_45(degrees: f64) -> (f64, f64) {
@@ -127,6 +129,8 @@ mod tests {
                 let angle = degrees(turns * 360.0 + quarter as f64 * 90.0);
                 if turns.abs() < 1e12 {
                     assert_eq!((sin(angle), cos(angle)), (*s, *c), "{angle:?}");
+                    let negative = |x: f64| x == 0.0 && x.is_sign_negative();
+                    assert!(!negative(sin(angle)) && !negative(cos(angle)), "{angle:?}");
                 }
             }
         }

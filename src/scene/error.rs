@@ -192,13 +192,10 @@ pub enum Problem {
     },
 
     #[error("`{name}` is used before it is defined")]
-    #[diagnostic(
-        code(pinhole::used_before_definition),
-        help("move `let {name}` {before}")
-    )]
+    #[diagnostic(code(pinhole::used_before_definition), help("{help}"))]
     UsedBeforeDefinition {
         name: String,
-        before: String,
+        help: String,
         line: usize,
         #[label("used here")]
         span: Span,
@@ -452,7 +449,7 @@ pub enum Problem {
         help("at most {most} samples per pixel keep the whole count within 2^53")
     )]
     TooManySamples {
-        per_pixel: u64,
+        per_pixel: String,
         pixels: u64,
         most: u64,
         #[label("{per_pixel} in each pixel")]

@@ -5,7 +5,7 @@
 
 use std::{
     cell::RefCell,
-    collections::{HashMap, hash_map::Entry},
+    collections::{HashMap, HashSet, hash_map::Entry},
 };
 
 use glam::DVec3;
@@ -37,6 +37,8 @@ pub struct Names<'s> {
     order: Vec<&'s str>,
     /// Every `let` of the file, wherever it stands.
     everywhere: HashMap<&'s str, Span>,
+    /// The names of objects, which are no values.
+    objects: HashSet<&'s str>,
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
@@ -55,8 +57,14 @@ struct Defined {
 
 impl<'s> Names<'s> {
     /// No name is defined yet; these will be.
-    pub fn new(everywhere: impl IntoIterator<Item = Name<'s>>) -> Self {
-        let mut names = Self::default();
+    pub fn new(
+        everywhere: impl IntoIterator<Item = Name<'s>>,
+        objects: impl IntoIterator<Item = &'s str>,
+    ) -> Self {
+        let mut names = Self {
+            objects: objects.into_iter().collect(),
+            ..Self::default()
+        };
         for name in everywhere {
             names.everywhere.entry(name.text).or_insert(name.span);
         }
@@ -222,17 +230,20 @@ impl<'s> Evaluator<'_, 's> {
         let own = span.source == SourceId::File
             && self.sources.file.line(span.start) == self.sources.file.line(definition.start)
             && definition.start < span.start;
-        let before = match span.source {
-            SourceId::Set(_) => "before what is set".to_owned(),
-            SourceId::File if own => "away: it cannot use itself".to_owned(),
+        let help = match span.source {
+            SourceId::Set(_) => format!("move `let {name}` before what is set"),
+            SourceId::File if own => {
+                "a `let` cannot use itself: write a value, or the name of an earlier `let`"
+                    .to_owned()
+            }
             SourceId::File => {
                 let line = self.sources.file.line(span.start);
-                format!("up, before line {line}")
+                format!("move `let {name}` up, before line {line}")
             }
         };
         Problem::UsedBeforeDefinition {
             name: name.to_owned(),
-            before,
+            help,
             line: self.sources.get(definition.source).line(definition.start),
             span,
             definition,
@@ -258,6 +269,10 @@ impl<'s> Evaluator<'_, 's> {
             };
         }
         let help = match near {
+            _ if self.names.objects.contains(name.as_str()) => {
+                "an object is no value: define its place with `let`, and use that in both"
+                    .to_owned()
+            }
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("define it before it is used: `let {name} = …`"),
         };
@@ -371,20 +386,31 @@ impl<'s> Evaluator<'_, 's> {
             name: row.name.to_owned(),
             takes,
             are,
-            example: match arguments.get(..row.takes.len()) {
-                Some(kept) => {
-                    let text = |e: &Element<'_>| shorten(self.sources.text(e.value.span));
-                    let texts: Vec<String> = kept.iter().map(text).collect();
-                    format!("{}({})", row.name, texts.join(", "))
-                }
-                None => example(row),
-            },
+            example: self.argument_example(row, arguments),
             span,
             label: match found {
                 0 => "no value".to_owned(),
                 count => values(count),
             },
         });
+    }
+
+    /// The call with as many of its values as it takes; what a vector is made of stands in parentheses of its own, and what
+    /// numbers are does not.
+    fn argument_example(&self, row: &Function, arguments: &[Element<'s>]) -> String {
+        let text = |e: &Element<'_>| shorten(self.sources.text(e.value.span));
+        let texts: Vec<String> = arguments.iter().map(text).collect();
+        match (row.takes, arguments) {
+            ([Type::Vector], [_, _, _]) => format!("{}(({}))", row.name, texts.join(", ")),
+            (takes, [only]) if matches!(&only.value.kind, ValueKind::Tuple(parts) if parts.len() == takes.len()) =>
+            {
+                format!("{}{}", row.name, texts.join(", "))
+            }
+            (takes, _) => match texts.get(..takes.len()) {
+                Some(kept) => format!("{}({})", row.name, kept.join(", ")),
+                None => example(row),
+            },
+        }
     }
 
     fn argument_type(
@@ -437,7 +463,7 @@ impl<'s> Evaluator<'_, 's> {
             };
             self.problems.push(Problem::ColorRange {
                 channel: name,
-                found: numbers::short(channel),
+                found: numbers::beside(channel, &[0.0, 255.0]),
                 help: format!("write `{bound}`, or a number that lies between"),
                 span: argument.value.span,
                 label,
@@ -602,7 +628,7 @@ impl<'s> Evaluator<'_, 's> {
         }
         let help = match texts.as_slice() {
             [] => "write three numbers, such as `(0, 1, 0)`".to_owned(),
-            [x, y] => format!("write `({x}, {y}, 0)` if the third is 0"),
+            [x, y] => format!("write a third number, such as `({x}, {y}, 1)`"),
             [x, y, z, ..] => format!("write `({x}, {y}, {z})`"),
             [x] => format!("write `({x}, {x}, {x})`"),
         };
@@ -760,10 +786,9 @@ impl<'s> Evaluator<'_, 's> {
             return noun.to_owned();
         };
         match self.names.defined.get(name) {
-            Some(Defined {
-                set: Some(SourceId::Set(index)),
-                ..
-            }) => format!("{noun} (from --set #{})", index + 1),
+            Some(Defined { set: Some(set), .. }) => {
+                format!("{noun} (from {})", self.sources.get(*set).name())
+            }
             Some(defined) => {
                 let line = self.sources.file.line(defined.place.start);
                 format!("{noun} (defined in line {line})")

@@ -64,6 +64,8 @@ pub struct Field {
     pub help: &'static str,
     /// Other words that people try for it.
     pub also_tried: &'static [&'static str],
+    /// A value that it can have, if neither its default nor any of its type will do.
+    pub example: &'static str,
 }
 
 /// What a value can be.
@@ -245,6 +247,7 @@ const FIELD: Field = Field {
     excludes: &[],
     help: "",
     also_tried: &[],
+    example: "",
 };
 
 const fn number(value: f64) -> Preset {
@@ -300,6 +303,7 @@ pub const BLOCKS: &[Block] = &[
                 takes: Type::Vector,
                 help: "the point that all rays pass through",
                 also_tried: &["position", "pos", "from", "center", "centre", "origin"],
+                example: "(0, 2, 8)",
                 ..FIELD
             },
             Field {
@@ -318,7 +322,8 @@ pub const BLOCKS: &[Block] = &[
                 must: &[Condition::NotZero],
                 excludes: &["lookat"],
                 help: "the direction that it looks in, of any length",
-                also_tried: &["dir", "forward", "view"],
+                also_tried: &["dir", "forward"],
+                example: "(0, 0, -1)",
             },
             Field {
                 name: "up",
@@ -361,6 +366,7 @@ pub const BLOCKS: &[Block] = &[
                 excludes: &["d"],
                 help: "the angle that the window's height takes up, instead of d",
                 also_tried: &["field_of_view", "angle", "vfov"],
+                ..FIELD
             },
             Field {
                 name: "near",
@@ -477,6 +483,7 @@ pub const BLOCKS: &[Block] = &[
                 must: &[Condition::NotZero],
                 help: "what its plane is perpendicular to, of any length",
                 also_tried: &["direction", "facing"],
+                example: "(0, 0, 1)",
                 ..FIELD
             },
             Field {
@@ -525,6 +532,7 @@ pub const BLOCKS: &[Block] = &[
                 excludes: &["min", "max"],
                 help: "its extents along x, y and z",
                 also_tried: &["sides", "dimensions", "extent"],
+                ..FIELD
             },
             Field {
                 name: "min",

@@ -3,8 +3,6 @@
 //! Operators and functions know no places in a text: they say what comes out, or that the types do not go together, and
 //! the caller adds the place. What is not finite comes out as it is; the caller reports it.
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use super::{Method, schema::Type};
@@ -104,30 +102,6 @@ fn in_radians(angle: Angle) -> f64 {
     angle.degrees.to_radians() + angle.radians
 }
 
-/// How an angle compares with half a turn: 180 degrees, or π, which no f64 is.
-pub fn compare_with_half_turn(angle: Angle) -> Ordering {
-    let (degrees, radians) = (angle.degrees, angle.radians);
-    let order = if radians == 0.0 {
-        degrees.partial_cmp(&180.0)
-    } else if degrees == 0.0 && radians == std::f64::consts::PI {
-        // The f64 next to π is below it.
-        Some(Ordering::Less)
-    } else {
-        radians.partial_cmp(&(180.0 - degrees).to_radians())
-    };
-    order.unwrap_or(Ordering::Greater)
-}
-
-/// How an angle compares with zero.
-pub fn compare_with_zero(angle: Angle) -> Ordering {
-    let order = if angle.radians == 0.0 {
-        angle.degrees.partial_cmp(&0.0)
-    } else {
-        in_radians(angle).partial_cmp(&0.0)
-    };
-    order.unwrap_or(Ordering::Less)
-}
-
 /// What a function gives, if the arguments have its types. `rgb` is not among them: it can refuse a value.
 pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     use Value::{Number, Vector};
@@ -205,23 +179,5 @@ mod tests {
         assert_eq!(length(DVec3::X * 5e-324), 5e-324);
         assert_eq!(normalize(DVec3::X * 5e-324), DVec3::X);
         assert!(normalize(DVec3::ZERO).is_nan());
-    }
-
-    #[test]
-    fn angles_against_half_a_turn() {
-        let radians = Angle::from_radians;
-        let degrees = Angle::from_degrees;
-        assert_eq!(compare_with_half_turn(degrees(180.0)), Ordering::Equal);
-        assert_eq!(
-            compare_with_half_turn(degrees(180.0_f64.next_down())),
-            Ordering::Less
-        );
-        let pi = std::f64::consts::PI;
-        assert_eq!(compare_with_half_turn(radians(pi)), Ordering::Less);
-        assert_eq!(
-            compare_with_half_turn(radians(pi.next_up())),
-            Ordering::Greater
-        );
-        assert_eq!(compare_with_zero(degrees(-0.0)), Ordering::Equal);
     }
 }

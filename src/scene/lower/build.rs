@@ -127,8 +127,11 @@ impl<'s> Lowering<'s> {
         let count = match total {
             Some(given) => {
                 let total = fields.number("total").map(|total| total as u64);
+                // Beside a conflict it is not certain that the total is meant.
+                let conflict = block.is_some_and(|block| block.given("per_pixel").is_some());
                 if let (Some(total), Some(pixels)) = (total, pixels)
                     && total < pixels
+                    && !conflict
                 {
                     self.problems.push(Problem::FewSamples {
                         total,
@@ -139,22 +142,25 @@ impl<'s> Lowering<'s> {
                 total.map(Count::Total)
             }
             None => {
-                let per_pixel = fields.number("per_pixel").map(|count| count as u64);
+                let per_pixel = fields.number("per_pixel");
                 let most = pixels.map(|pixels| (1 << 53) / pixels);
                 if let (Some(per_pixel), Some(most), Some(pixels)) = (per_pixel, most, pixels)
-                    && per_pixel > most
+                    && per_pixel > most as f64
                 {
                     // The default is never too many.
                     let given = block.and_then(|block| block.given("per_pixel"));
                     let start = Span::new(SourceId::File, 0, 0);
                     self.problems.push(Problem::TooManySamples {
-                        per_pixel,
+                        per_pixel: match per_pixel < 1e15 {
+                            true => per_pixel.to_string(),
+                            false => numbers::short(per_pixel),
+                        },
                         pixels,
                         most,
                         span: given.map_or(start, |given| given.span),
                     });
                 }
-                per_pixel.map(Count::PerPixel)
+                per_pixel.map(|count| Count::PerPixel(count as u64))
             }
         };
         Some(Sampler {
@@ -234,14 +240,9 @@ impl<'s> Lowering<'s> {
         let across = level * up.dot(up) - up * level.dot(up);
         let along = exact::dot_sign(up, from, to).is_gt();
         let top = if along { -across } else { across };
-        let shown = axis_name(top).unwrap_or_else(|| {
-            let largest = top.abs().max_element();
-            match largest > 0.0 && largest.is_finite() {
-                true => format!("towards {}", numbers::short_vector(top / largest)),
-                false => "across your `up`".to_owned(),
-            }
-        });
-        let suggested = axis_vector(top).unwrap_or_else(|| "(0, 1, 0)".to_owned());
+        let vector = numbers::short_vector(top / top.abs().max_element());
+        let shown = axis_name(top).unwrap_or_else(|| format!("towards {vector}"));
+        let suggested = axis_vector(top).unwrap_or(vector);
         let given = block.given("up");
         let looks = match view {
             View::Lookat(_) if given.is_some() => "parallel to the view direction".to_owned(),
@@ -266,7 +267,8 @@ impl<'s> Lowering<'s> {
 
     fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, given: Given) {
         let near_given = block.given("near");
-        let (shown_near, shown_far) = (numbers::short(near), numbers::short(far));
+        let (shown_near, shown_far) =
+            (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
         self.problems.push(Problem::EmptyDepth {
             help: match near_given {
                 Some(_) if far > 0.0 && near > far => {
@@ -319,7 +321,14 @@ impl<'s> Lowering<'s> {
             } else {
                 (c, [a, b], "third")
             };
-            let shown = |x: f64| numbers::short(x);
+            let long = numbers::beside(longest, &[one + other, one, other]);
+            let [one, other] = [(one, other), (other, one)]
+                .map(|(x, y)| (x, numbers::beside(x, &[longest - y, longest])));
+            let shown = |x: f64| match x {
+                x if x == longest => long.clone(),
+                x if x == one.0 => one.1.clone(),
+                _ => other.1.clone(),
+            };
             self.problems.push(Problem::NotATriangle {
                 a: shown(a),
                 b: shown(b),
@@ -328,12 +337,7 @@ impl<'s> Lowering<'s> {
                     "make the {place} side shorter than the two others together, or each of them longer"
                 ),
                 span: block.given("sides").map_or(block.keyword, |given| given.span),
-                label: format!(
-                    "{} is not less than {} + {}",
-                    shown(longest),
-                    shown(one),
-                    shown(other)
-                ),
+                label: format!("{long} is not less than {} + {}", one.1, other.1),
             });
             return None;
         }
@@ -372,7 +376,7 @@ impl<'s> Lowering<'s> {
             return None;
         }
         if let Some(&(axis, low, high)) = axes.iter().find(|(_, low, high)| low >= high) {
-            let (low, high) = (numbers::short(low), numbers::short(high));
+            let (low, high) = (numbers::beside(low, &[high]), numbers::beside(high, &[low]));
             self.problems.push(match corners {
                 Some(_) => Problem::EmptyBox {
                     axis,

@@ -20,10 +20,11 @@ use super::{
     overrides::{self, Override},
     schema::{self, Condition, Field, Kind, Type},
     untangle::untangle,
-    value::{self, Value},
+    value::Value,
 };
 use crate::{
     diagnostic::{self, Diagnostic},
+    math::compare_half_turns,
     source::{SourceId, Sources, Span},
     suggest,
     syntax::{
@@ -41,7 +42,7 @@ pub fn read(sources: &Sources) -> Reading {
     let mut lowering = Lowering {
         sources,
         cut: parsed.cut.is_some(),
-        names: Names::new(definitions(&parsed.tree)),
+        names: Names::new(definitions(&parsed.tree), names_of_objects(&parsed.tree)),
         overrides,
         targets: HashMap::new(),
         blocks: Vec::new(),
@@ -69,6 +70,14 @@ fn definitions<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = Name<
     tree.items.iter().filter_map(|item| match item {
         Item::Definition(definition) => definition.name.filter(|n| predefined(n.text).is_none()),
         Item::Block(_) | Item::Bad(_) => None,
+    })
+}
+
+/// The names of a file's objects.
+fn names_of_objects<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = &'s str> + 't {
+    tree.items.iter().filter_map(|item| match item {
+        Item::Block(block) => block.name.map(|name| name.text),
+        Item::Definition(_) | Item::Bad(_) => None,
     })
 }
 
@@ -360,6 +369,7 @@ impl<'s> Lowering<'s> {
 
     /// The value of a field, if it is of the field's type and keeps its conditions.
     fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        let before = self.problems.len();
         let value = match row.takes {
             Type::Method => return self.method(row, tree),
             takes => self.evaluate(tree, Some(takes))?,
@@ -370,7 +380,26 @@ impl<'s> Lowering<'s> {
         }
         let broken = row.must.iter().find(|condition| !holds(**condition, value));
         if let Some(&condition) = broken {
-            self.out_of_range(row, condition, tree, value);
+            let rounded_to_zero = matches!(
+                (&tree.kind, self.problems.last()),
+                (ValueKind::Number(_), Some(Problem::NumberUnderflow { .. }))
+            ) && self.problems.len() > before;
+            if rounded_to_zero {
+                self.problems.truncate(before);
+            }
+            let found = match (&tree.kind, value) {
+                (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
+                    shown(value, condition)
+                }
+                _ if rounded_to_zero => {
+                    format!(
+                        "{}, which rounds to 0",
+                        shorten(self.sources.text(tree.span))
+                    )
+                }
+                _ => shorten(self.sources.text(tree.span)),
+            };
+            self.out_of_range(row, condition, tree, value, &found);
             return None;
         }
         Some(value)
@@ -443,23 +472,21 @@ impl<'s> Lowering<'s> {
         condition: Condition,
         tree: &tree::Value<'s>,
         value: Value,
+        found: &str,
     ) {
-        let written = shorten(self.sources.text(tree.span));
-        let found = match (&tree.kind, value) {
-            (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
-                shown(value)
-            }
-            _ => written,
-        };
         let (label, help) = range_words(row, condition, value);
         let message = match condition {
             Condition::NotZero => format!("`{}` must not be zero", row.name),
             _ => format!("`{}` must be {condition}, and it is {found}", row.name),
         };
+        let (span, label) = match part_not_above_zero(condition, tree, value) {
+            Some(part) => (part, "not above 0"),
+            None => (tree.span, label),
+        };
         self.problems.push(Problem::OutOfRange {
             message,
             help,
-            span: tree.span,
+            span,
             label: label.to_owned(),
         });
     }
@@ -513,6 +540,17 @@ impl Block<'_> {
     }
 }
 
+/// The first part of a written vector that is not above 0, if all were to be.
+fn part_not_above_zero(condition: Condition, tree: &tree::Value<'_>, value: Value) -> Option<Span> {
+    let (Condition::EachMoreThanZero, ValueKind::Tuple(parts), Value::Vector(v)) =
+        (condition, &tree.kind, value)
+    else {
+        return None;
+    };
+    let mut parts = parts.iter().zip(v.to_array());
+    parts.find_map(|(part, x)| (x <= 0.0).then_some(part.value.span))
+}
+
 /// Whether a word stands in a text.
 fn mentions(text: &str, word: &str) -> bool {
     let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
@@ -529,7 +567,7 @@ fn holds(condition: Condition, value: Value) -> bool {
         (Condition::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
         (Condition::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
         (Condition::LessThanHalfTurn, Value::Angle(angle)) => {
-            value::compare_with_zero(angle).is_gt() && value::compare_with_half_turn(angle).is_lt()
+            compare_half_turns(angle, 0.0).is_gt() && compare_half_turns(angle, 1.0).is_lt()
         }
         (Condition::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
         (Condition::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,

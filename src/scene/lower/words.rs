@@ -62,11 +62,10 @@ fn capital(text: &str) -> String {
 /// A value that a field can have.
 pub fn example(row: &Field) -> String {
     match (row.preset, row.takes) {
+        _ if !row.example.is_empty() => row.example.to_owned(),
         (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
         (_, Type::Number) => "100".to_owned(),
         (_, Type::Angle) => "30deg".to_owned(),
-        (_, Type::Vector) if row.name == "eye" => "(0, 2, 8)".to_owned(),
-        (_, Type::Vector) if row.name == "normal" => "(0, 0, 1)".to_owned(),
         (_, Type::Vector) => "(0, 1, 0)".to_owned(),
         (_, Type::Color) => "olive".to_owned(),
         (_, Type::Colors) => "(gray, white)".to_owned(),
@@ -167,23 +166,28 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
     }
 }
 
-/// A computed value, for a message.
-pub fn shown(value: Value) -> String {
+/// A computed value that does not keep a condition.
+pub fn shown(value: Value, condition: Condition) -> String {
+    let two_to = |power: u32| (1_u64 << power) as f64;
+    let bound = match (condition, value) {
+        (Condition::Whole, Value::Number(number)) => number.round(),
+        (Condition::MoreThan(bound) | Condition::AtLeast(bound), _) => bound,
+        (Condition::AtMostTwoTo(power) | Condition::LessThanTwoTo(power), _) => two_to(power),
+        (Condition::LessThanHalfTurn, _) => 180.0,
+        _ => 0.0,
+    };
     match value {
-        Value::Number(number) => numbers::short(number),
+        Value::Number(number) => numbers::beside(number, &[bound]),
         Value::Vector(v) => numbers::short_vector(v),
         Value::Angle(Angle {
             degrees,
             radians: 0.0,
-        }) => format!("{}deg", numbers::short(degrees)),
+        }) => format!("{}deg", numbers::beside(degrees, &[bound])),
         Value::Angle(Angle {
             degrees: 0.0,
             radians,
-        }) => format!("{}rad", numbers::short(radians)),
-        Value::Angle(angle) => {
-            let degrees = angle.degrees + angle.radians.to_degrees();
-            format!("{}deg", numbers::short(degrees))
-        }
+        }) => format!("{}rad", numbers::beside(radians, &[std::f64::consts::PI])),
+        Value::Angle(angle) => format!("{}deg + {}rad", angle.degrees, angle.radians),
         Value::Color(color) => color.to_string(),
         Value::Colors([first, second]) => format!("({first}, {second})"),
         Value::Method(method) => method.name().to_owned(),
