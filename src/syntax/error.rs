@@ -330,7 +330,7 @@ pub enum Problem {
     #[diagnostic(code(pinhole::unexpected), help("{help}"))]
     Unexpected {
         written: String,
-        help: &'static str,
+        help: String,
         #[label("not here")]
         span: Span,
     },

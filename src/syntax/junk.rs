@@ -66,7 +66,7 @@ fn no_field(text: &str, span: Span, tokens: &[Token<'_>]) -> Problem {
         Some(token) if token.is("{") => Problem::NestedBraces { span: first },
         Some(token) if token.is(")") || token.is("]") => stray_parenthesis(token, span),
         _ => {
-            let help = "write a field's name and its value, such as `radius 2`";
+            let help = "write a field's name and its value, such as `radius 2`".to_owned();
             Problem::Unexpected {
                 written: shorten(text.get(span.range()).unwrap_or_default()),
                 help,
@@ -141,6 +141,7 @@ pub fn value(text: &str, span: Span) -> Problem {
 fn wrong_value(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     parentheses(span, tokens)
         .or_else(|| separated(text, span, tokens))
+        .or_else(|| side_by_side(text, span, tokens))
         .or_else(|| operators(span, tokens))
 }
 
@@ -210,6 +211,36 @@ fn separated(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     })
 }
 
+/// Three numbers with nothing between and no parentheses around: `0 1 0`.
+fn side_by_side(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
+    let (first, last) = (tokens.first()?, tokens.last()?);
+    let whole = first.span(span).to(last.span(span));
+    let mut values: Vec<String> = Vec::new();
+    let mut sign: Option<&Token<'_>> = None;
+    for token in tokens {
+        match token.kind {
+            Kind::Sign if token.is("-") && sign.is_none() => sign = Some(token),
+            Kind::Number => {
+                // `0 -2 8` has three numbers, `0 - 2 8` two.
+                if sign.is_some_and(|sign| sign.end < token.start) {
+                    return None;
+                }
+                let from = sign.take().map_or(token.start, |sign| sign.start);
+                let range = span.start + from..span.start + token.end;
+                values.push(text.get(range).unwrap_or_default().to_owned());
+            }
+            _ => return None,
+        }
+        if values.len() > 3 {
+            return None;
+        }
+    }
+    (values.len() == 3 && sign.is_none()).then(|| Problem::MissingParentheses {
+        values: shorten(&values.join(", ")),
+        span: whole,
+    })
+}
+
 /// An operator without its operand, or a sign that is none.
 fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     let mut before: Option<&Token<'_>> = None;
@@ -244,8 +275,24 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     Some(missing_operand(Some(last), last, span))
 }
 
+/// A function with nothing around its argument.
+pub fn call_without_parentheses(function: &str, argument: &str, span: Span) -> Problem {
+    let (left, right) = (shorten(function), shorten(argument));
+    Problem::MissingOperator {
+        help: format!("write `{left}({right})`"),
+        left,
+        right,
+        span,
+    }
+}
+
 /// Two values with nothing between.
 pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
+    let is_number = left.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+        && left.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-'));
+    if is_number && is_unit(right) {
+        return spaced_unit(left, right, span);
+    }
     let (left, right) = (shorten(left), shorten(right));
     let word = left.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let number = right.starts_with(|c: char| c.is_ascii_digit() || c == '.');
@@ -261,6 +308,30 @@ pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
         help,
         span,
     }
+}
+
+/// A number and a word that is a unit elsewhere.
+fn spaced_unit(number: &str, unit: &str, span: Span) -> Problem {
+    let joined = match unit {
+        "degs" | "degree" | "degrees" => "deg",
+        "rads" | "radian" | "radians" => "rad",
+        _ => {
+            let start = span.start.saturating_sub(number.len());
+            let whole = Span::new(span.source, start, span.end);
+            return odd_number(&format!("{number}{unit}"), whole);
+        }
+    };
+    let joined = format!("{}{joined}", shorten(number));
+    Problem::SpacedUnit { joined, span }
+}
+
+/// Whether a word behind a number is taken for a unit, one of the language's or not.
+pub fn is_unit(word: &str) -> bool {
+    const UNITS: &[&str] = &[
+        "degs", "degree", "degrees", "rads", "radian", "radians", "m", "cm", "mm", "km", "px",
+        "in", "ft", "s",
+    ];
+    UNITS.contains(&word)
 }
 
 /// The first of two operators has nothing after it; one alone has nothing before it.
@@ -420,7 +491,7 @@ pub fn unexpected(written: &str, span: Span) -> Problem {
     };
     Problem::Unexpected {
         written: shorten(written),
-        help: "a file holds `let NAME = VALUE` and blocks such as `sphere { radius 2 }`",
+        help: "a file holds `let NAME = VALUE` and blocks such as `sphere { radius 2 }`".to_owned(),
         span,
     }
 }
@@ -470,7 +541,11 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             ),
             "`_` stands between two digits".to_owned(),
         ),
-        "m" | "cm" | "mm" | "km" | "px" | "in" | "ft" | "s" => (
+        "px" | "s" => (
+            format!("write `{number}`; only angles have a unit"),
+            format!("`{word}` is no unit"),
+        ),
+        "m" | "cm" | "mm" | "km" | "in" | "ft" => (
             format!("write `{number}`; all lengths are in metres"),
             format!("`{word}` is no unit; only angles have one"),
         ),
@@ -486,6 +561,15 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             format!("write the exponent, such as `{number}e3`"),
             "the digits of the exponent are missing".to_owned(),
         ),
+        _ if lower
+            .strip_prefix('e')
+            .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) =>
+        {
+            (
+                format!("write a whole exponent, such as `{number}e3`"),
+                "the exponent is no whole number".to_owned(),
+            )
+        }
         _ if number == "0" && lower.starts_with(['x', 'b', 'o']) => (
             "write it in decimal digits; a colour is written `#ffaa00`".to_owned(),
             "numbers are decimal".to_owned(),
