@@ -212,7 +212,7 @@ impl<'s> Dealt<'_, 's> {
                 return ValueKind::Name(text);
             }
             (_, [only]) => return only.kind.clone(),
-            (_, [left, right]) if let Some(call) = call(left, right) => return call,
+            (_, [left, right]) if is_call(left, right) => return call(left, right),
             (Some(Type::Method), [_, right, ..]) => syntax::Problem::Unexpected {
                 written: syntax::shorten(sources.text(right.span)),
                 help:
@@ -228,6 +228,14 @@ impl<'s> Dealt<'_, 's> {
                 }
             }
             (_, [left, right, ..]) => {
+                if let Some(sign) = self.operator_before_field(left) {
+                    problems.push(syntax::Problem::MissingOperand {
+                        operator: sources.text(sign).to_owned(),
+                        side: "after",
+                        span: sign,
+                    });
+                    return ValueKind::Bad;
+                }
                 let texts = (sources.text(left.span), sources.text(right.span));
                 match left.kind {
                     ValueKind::Name(name) if schema::function(name).is_some() => {
@@ -242,14 +250,32 @@ impl<'s> Dealt<'_, 's> {
     }
 }
 
-/// A name, and in parentheses what it is called with.
-fn call<'s>(left: &tree::Value<'s>, right: &tree::Value<'s>) -> Option<ValueKind<'s>> {
-    let ValueKind::Name(text) = left.kind else {
-        return None;
-    };
+impl Dealt<'_, '_> {
+    /// The last operator of a value, if the name of a field follows it: `2+ color`.
+    fn operator_before_field(&self, value: &tree::Value<'_>) -> Option<Span> {
+        let ValueKind::Chain { rest, .. } = &value.kind else {
+            return None;
+        };
+        let last = rest.last()?;
+        match last.operand.kind {
+            ValueKind::Name(name) => self.row.field(name).map(|_| last.sign),
+            _ => self.operator_before_field(&last.operand),
+        }
+    }
+}
+
+/// Whether a value is a name, and the next one in parentheses.
+fn is_call(left: &tree::Value<'_>, right: &tree::Value<'_>) -> bool {
     let list = matches!(right.kind, ValueKind::Tuple(_) | ValueKind::Parentheses(_));
+    list && matches!(left.kind, ValueKind::Name(_))
+}
+
+fn call<'s>(left: &tree::Value<'s>, right: &tree::Value<'s>) -> ValueKind<'s> {
     let span = left.span;
-    list.then(|| called(Name { text, span }, right.clone()))
+    match left.kind {
+        ValueKind::Name(text) => called(Name { text, span }, right.clone()),
+        _ => ValueKind::Bad,
+    }
 }
 
 fn called<'s>(function: Name<'s>, list: tree::Value<'s>) -> ValueKind<'s> {

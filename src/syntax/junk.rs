@@ -3,7 +3,7 @@
 //! In: a piece of text that the grammar's junk rules ate. Out: one problem, at the place where it stops making sense, in
 //! the author's words. It is read again here token by token, and strictly.
 
-use super::{Problem, tree::Name};
+use super::{Problem, comments::is_odd_space, tree::Name};
 use crate::{source::Span, suggest};
 
 /// What stands at some place, in a message: on one line, and not too long.
@@ -127,14 +127,14 @@ pub fn definition<'s>(text: &'s str, span: Span) -> (Option<Name<'s>>, Problem) 
             span: name.span.to(equals.span(span)),
         }
     } else {
-        wrong_value(text, span, value).unwrap_or_else(|| unexpected(text, span))
+        wrong_value(text, span, value).unwrap_or_else(|| unexpected_value(text, span))
     };
     (Some(name), problem)
 }
 
 /// A value of a `--set` argument that could not be understood.
 pub fn value(text: &str, span: Span) -> Problem {
-    wrong_value(text, span, &tokens(text, span)).unwrap_or_else(|| unexpected(text, span))
+    wrong_value(text, span, &tokens(text, span)).unwrap_or_else(|| unexpected_value(text, span))
 }
 
 /// What is wrong with a value.
@@ -142,7 +142,7 @@ fn wrong_value(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> 
     parentheses(span, tokens)
         .or_else(|| separated(text, span, tokens))
         .or_else(|| side_by_side(text, span, tokens))
-        .or_else(|| operators(span, tokens))
+        .or_else(|| operators(text, span, tokens))
 }
 
 /// A parenthesis that is never closed, or that closes nothing.
@@ -242,9 +242,9 @@ fn side_by_side(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem>
 }
 
 /// An operator without its operand, or a sign that is none.
-fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
+fn operators(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     let mut before: Option<&Token<'_>> = None;
-    for token in tokens {
+    for (index, token) in tokens.iter().enumerate() {
         let after_value = before.is_some_and(Token::ends_value);
         if token.kind == Kind::Odd {
             return Some(match token.text {
@@ -252,7 +252,7 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
                 "^" | "**" | "%" | "×" | "·" | "÷" | "−" | "&" | "|" | "!" | "<" | ">" | "~" => {
                     unknown_operator(token.text, token.span(span))
                 }
-                _ => unexpected(token.text, token.span(span)),
+                _ => unexpected_value(token.text, token.span(span)),
             });
         }
         if token.is_operator() && !after_value && !token.is("-") && !token.is("+") {
@@ -265,14 +265,38 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         if (token.is(")") || token.is(",")) && before.is_some_and(Token::is_operator) {
             return before.map(|operator| missing_operand(Some(operator), operator, span));
         }
-        if token.starts_value() && after_value && !token.is("(") {
-            let left = before.map_or("", |before| before.text);
-            return Some(missing_operator(left, token.text, token.span(span)));
+        let called = token.is("(") && before.is_some_and(|before| before.kind == Kind::Word);
+        if token.starts_value() && after_value && !called {
+            let (start, end) = group_around(tokens, index);
+            let written = |from: usize, to: usize| {
+                text.get(span.start + from..span.start + to)
+                    .unwrap_or_default()
+            };
+            let left = before.map_or("", |before| written(start, before.end));
+            let right = written(token.start, end);
+            return Some(missing_operator(left, right, token.span(span)));
         }
         before = Some(token);
     }
     let last = before.filter(|token| token.is_operator())?;
     Some(missing_operand(Some(last), last, span))
+}
+
+/// Where the value before a token starts, and where the one that starts with it ends: parentheses are taken whole.
+fn group_around(tokens: &[Token<'_>], index: usize) -> (usize, usize) {
+    let (before, after) = tokens.split_at(index.min(tokens.len()));
+    let mut depth = 0_usize;
+    let first = before.iter().rev().find(|token| {
+        depth += usize::from(token.is(")"));
+        depth = depth.saturating_sub(usize::from(token.is("(")));
+        depth == 0
+    });
+    let last = after.iter().find(|token| {
+        depth += usize::from(token.is("("));
+        depth = depth.saturating_sub(usize::from(token.is(")")));
+        depth == 0
+    });
+    (first.map_or(0, |t| t.start), last.map_or(0, |t| t.end))
 }
 
 /// A function with nothing around its argument.
@@ -377,6 +401,35 @@ pub fn head<'s>(
         };
         return (Some(kind), None, problem);
     }
+    if let [name, equals, kind] = tokens.as_slice()
+        && equals.is("=")
+        && name.kind == Kind::Word
+        && kind.kind == Kind::Word
+    {
+        let help = format!("write `{} {} {{`", kind.text, name.text);
+        let span = name.span(odd).to(equals.span(odd));
+        let (kind, name) = (kind.name(text, odd), name.name(text, odd));
+        return (Some(kind), Some(name), Problem::BadHead { help, span });
+    }
+    if let (Some(kind), Some(first), Some(last)) = (kind, rest.first(), rest.last())
+        && rest.len() > 1
+        && rest
+            .windows(2)
+            .all(|two| matches!(two, [a, b] if a.end == b.start))
+        && rest
+            .iter()
+            .all(|t| t.is("-") || t.is(".") || matches!(t.kind, Kind::Word | Kind::Number))
+        && first.kind == Kind::Word
+    {
+        let span = first.span(odd).to(last.span(odd));
+        let joined = text.get(span.range()).unwrap_or_default();
+        let help = format!(
+            "write `{} {} {{`",
+            kind.text,
+            shorten(&joined.replace(['-', '.'], "_"))
+        );
+        return (Some(kind), name, Problem::BadHead { help, span });
+    }
     let wrong = match (kind, name) {
         (None, _) => Some(first),
         (Some(_), None) => rest.first(),
@@ -427,8 +480,15 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
     let second = rest.first();
     // `sphere Ball`, and then fields: the `{` is missing. `radius 2`: a field that stands outside.
     let alone = second.is_none_or(|token| !same_line(place.end, token.span(odd).start));
+    // `sphere center (0, 1, 0)`, `sphere color red`: the second word is a field.
+    let field = rest.len() == 2 || rest.get(1).is_some_and(|third| third.kind != Kind::Word);
+    let in_parentheses = matches!(rest, [name, open, ..] if name.kind == Kind::Word && open.is("("))
+        && matches!(rest.get(2..4), Some([a, b]) if a.kind == Kind::Word && b.starts_value());
+    let opened = close.is_some() || (alone && rest.len() > 1) || in_parentheses;
+    let head_only = !field || in_parentheses;
     let named = second.filter(|token| token.kind == Kind::Word && !alone);
-    if close.is_some() && (alone || named.is_some()) {
+    if opened && (alone || named.is_some()) {
+        let named = named.filter(|_| head_only);
         let head = match named {
             Some(token) => format!("{name} {}", token.text),
             None => name,
@@ -446,6 +506,12 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
     }
 }
 
+/// What other languages write for `let`.
+const OTHER_LETS: &[&str] = &[
+    "var", "const", "def", "define", "set", "val", "auto", "local", "int", "float", "double",
+    "number", "vec3", "vector",
+];
+
 /// `x = 3`, and what may have been `let x = 3`.
 fn missing_let(text: &str, odd: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     let (name, label, equals) = match tokens {
@@ -462,7 +528,8 @@ fn missing_let(text: &str, odd: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         [word, name, equals, ..]
             if equals.is("=")
                 && name.kind == Kind::Word
-                && suggest::nearest(word.text, ["let"]).is_some() =>
+                && (OTHER_LETS.contains(&word.text)
+                    || suggest::nearest(word.text, ["let"]).is_some()) =>
         {
             (name.span(odd), word.span(odd), equals)
         }
@@ -481,6 +548,37 @@ fn missing_let(text: &str, odd: Span, tokens: &[Token<'_>]) -> Option<Problem> {
 fn line_end(text: &str, from: usize) -> usize {
     let rest = text.get(from..).unwrap_or_default();
     from + rest.find('\n').unwrap_or(rest.len())
+}
+
+/// Something in a value that fits nowhere.
+pub fn unexpected_value(written: &str, span: Span) -> Problem {
+    let written = match written.get(span.range()) {
+        Some(under) if written.len() > 3 => under,
+        _ => written,
+    };
+    Problem::Unexpected {
+        written: shorten(written),
+        help: "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`".to_owned(),
+        span,
+    }
+}
+
+/// What a character that cannot be seen is called.
+pub fn name_of_space(text: &str) -> String {
+    let character = text.chars().next().unwrap_or_default();
+    let name = match character {
+        '\0' => "a NUL",
+        '\u{A0}' => "a no-break space",
+        '\u{202F}' => "a narrow no-break space",
+        '\u{200B}' => "a zero-width space",
+        '\u{200C}' => "a zero-width non-joiner",
+        '\u{200D}' => "a zero-width joiner",
+        '\u{FEFF}' => "a byte order mark",
+        '\u{3000}' => "an ideographic space",
+        c if c.is_whitespace() => "a space",
+        _ => "a control character",
+    };
+    format!("U+{:04X}, {name},", u32::from(character))
 }
 
 /// Something that fits nowhere.
@@ -676,7 +774,8 @@ impl<'s> Tokens<'s> {
     fn skip_gap(&mut self) {
         loop {
             let rest = self.rest();
-            let trimmed = rest.trim_start_matches([' ', '\t', '\r', '\n']);
+            let gap = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n') || is_odd_space(c);
+            let trimmed = rest.trim_start_matches(gap);
             self.at += rest.len() - trimmed.len();
             let length = if trimmed.starts_with("//") {
                 trimmed.find('\n')
