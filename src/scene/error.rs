@@ -524,3 +524,15 @@ impl Problem {
         }
     }
 }
+
+impl Problem {
+    /// Whether it is about a name that stands for nothing.
+    pub fn is_of_name(&self) -> bool {
+        matches!(
+            self,
+            Self::UnknownName { .. }
+                | Self::UnknownFunction { .. }
+                | Self::UsedBeforeDefinition { .. }
+        )
+    }
+}

@@ -17,13 +17,20 @@ pub struct Walk {
     pub unclosed: bool,
     /// Values that nest too deep.
     pub deep: Vec<Deep>,
+    /// Characters outside of comments that cannot be seen and are no white space of the language.
+    pub odd_spaces: Vec<Range<usize>>,
 }
 
 impl Walk {
     /// Moves all places by so many bytes.
     pub fn shift(&mut self, by: usize) {
         let places = self.deep.iter_mut().map(|deep| &mut deep.value);
-        for range in self.comments.iter_mut().chain(places) {
+        for range in self
+            .comments
+            .iter_mut()
+            .chain(places)
+            .chain(&mut self.odd_spaces)
+        {
             *range = range.start + by..range.end + by;
         }
         for deep in &mut self.deep {
@@ -69,6 +76,11 @@ pub fn walk(text: &str, start: Start) -> Walk {
                 end
             }
             (b' ' | b'\t' | b'\r' | b'\n', _) => at + 1,
+            (0..=0x1F | 0x80.., _) if odd_space(text, at) > 0 => {
+                let end = at + odd_space(text, at);
+                found.odd_spaces.push(at..end);
+                end
+            }
             (b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'.' | b'#', _) => {
                 let end = end_of_word(bytes, at);
                 let word = bytes.get(at..end).unwrap_or_default();
@@ -84,6 +96,24 @@ pub fn walk(text: &str, start: Start) -> Walk {
     }
     nesting.leave(bytes.len(), &mut found.deep);
     found
+}
+
+/// The length of the character at an offset, if it cannot be seen and is no white space of the language; or 0.
+fn odd_space(text: &str, at: usize) -> usize {
+    let rest = text.get(at..).unwrap_or_default();
+    let character = rest.chars().next().filter(|c| is_odd_space(*c));
+    character.map_or(0, char::len_utf8)
+}
+
+/// Whether a character cannot be seen and is no white space of the language.
+pub fn is_odd_space(c: char) -> bool {
+    let other = c.is_whitespace() && !matches!(c, ' ' | '\t' | '\r' | '\n');
+    other
+        || c.is_ascii_control() && !c.is_whitespace()
+        || matches!(
+            c,
+            '\u{200B}'..='\u{200F}' | '\u{2060}' | '\u{FEFF}' | '\u{AD}'
+        )
 }
 
 /// What a text starts with.

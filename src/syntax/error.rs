@@ -21,6 +21,25 @@ pub enum Problem {
         more: usize,
     },
 
+    #[error("this file is UTF-16, not UTF-8")]
+    #[diagnostic(code(pinhole::invalid_utf8), help("save the file as UTF-8"))]
+    Utf16 {
+        #[label("the byte order mark of UTF-16")]
+        span: Span,
+    },
+
+    #[error("{what} is no white space here{}", times(*more))]
+    #[diagnostic(
+        code(pinhole::odd_space),
+        help("write a plain space in its place, or take it away")
+    )]
+    OddSpace {
+        what: String,
+        more: usize,
+        #[label("it cannot be seen")]
+        span: Span,
+    },
+
     #[error("a comment is never closed")]
     #[diagnostic(
         code(pinhole::unclosed_comment),
@@ -74,6 +93,13 @@ pub enum Problem {
     )]
     MissingValue {
         name: String,
+        #[label("a value should follow")]
+        span: Span,
+    },
+
+    #[error("this `--set` gives no value")]
+    #[diagnostic(code(pinhole::missing_value), help("write a value after the `=`"))]
+    SetWithoutValue {
         #[label("a value should follow")]
         span: Span,
     },
@@ -195,7 +221,7 @@ pub enum Problem {
     #[diagnostic(code(pinhole::brackets), help("write `({inner})`"))]
     Brackets {
         inner: String,
-        #[label("not in square brackets")]
+        #[label("not in these")]
         span: Span,
     },
 
@@ -244,12 +270,10 @@ pub enum Problem {
     },
 
     #[error("`{written}` is no colour")]
-    #[diagnostic(
-        code(pinhole::bad_color_code),
-        help("write three or six digits from 0 to 9 and a to f, such as `#fa0` or `#ffaa00`")
-    )]
+    #[diagnostic(code(pinhole::bad_color_code), help("{help}"))]
     BadColorCode {
         written: String,
+        help: String,
         #[label("{label}")]
         span: Span,
         label: String,
@@ -330,10 +354,18 @@ pub enum Problem {
     #[diagnostic(code(pinhole::unexpected), help("{help}"))]
     Unexpected {
         written: String,
-        help: &'static str,
+        help: String,
         #[label("not here")]
         span: Span,
     },
+}
+
+fn times(more: usize) -> String {
+    match more {
+        0 => String::new(),
+        1 => ", and at one more place".to_owned(),
+        _ => format!(", and at {more} more places"),
+    }
 }
 
 fn and_more(more: usize) -> String {

@@ -3,7 +3,7 @@
 //! In: a piece of text that the grammar's junk rules ate. Out: one problem, at the place where it stops making sense, in
 //! the author's words. It is read again here token by token, and strictly.
 
-use super::{Problem, tree::Name};
+use super::{Problem, comments::is_odd_space, tree::Name};
 use crate::{source::Span, suggest};
 
 /// What stands at some place, in a message: on one line, and not too long.
@@ -66,7 +66,7 @@ fn no_field(text: &str, span: Span, tokens: &[Token<'_>]) -> Problem {
         Some(token) if token.is("{") => Problem::NestedBraces { span: first },
         Some(token) if token.is(")") || token.is("]") => stray_parenthesis(token, span),
         _ => {
-            let help = "write a field's name and its value, such as `radius 2`";
+            let help = "write a field's name and its value, such as `radius 2`".to_owned();
             Problem::Unexpected {
                 written: shorten(text.get(span.range()).unwrap_or_default()),
                 help,
@@ -127,21 +127,22 @@ pub fn definition<'s>(text: &'s str, span: Span) -> (Option<Name<'s>>, Problem) 
             span: name.span.to(equals.span(span)),
         }
     } else {
-        wrong_value(text, span, value).unwrap_or_else(|| unexpected(text, span))
+        wrong_value(text, span, value).unwrap_or_else(|| unexpected_value(text, span))
     };
     (Some(name), problem)
 }
 
 /// A value of a `--set` argument that could not be understood.
 pub fn value(text: &str, span: Span) -> Problem {
-    wrong_value(text, span, &tokens(text, span)).unwrap_or_else(|| unexpected(text, span))
+    wrong_value(text, span, &tokens(text, span)).unwrap_or_else(|| unexpected_value(text, span))
 }
 
 /// What is wrong with a value.
 fn wrong_value(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     parentheses(span, tokens)
         .or_else(|| separated(text, span, tokens))
-        .or_else(|| operators(span, tokens))
+        .or_else(|| side_by_side(text, span, tokens))
+        .or_else(|| operators(text, span, tokens))
 }
 
 /// A parenthesis that is never closed, or that closes nothing.
@@ -210,10 +211,40 @@ fn separated(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     })
 }
 
-/// An operator without its operand, or a sign that is none.
-fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
-    let mut before: Option<&Token<'_>> = None;
+/// Three numbers with nothing between and no parentheses around: `0 1 0`.
+fn side_by_side(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
+    let (first, last) = (tokens.first()?, tokens.last()?);
+    let whole = first.span(span).to(last.span(span));
+    let mut values: Vec<String> = Vec::new();
+    let mut sign: Option<&Token<'_>> = None;
     for token in tokens {
+        match token.kind {
+            Kind::Sign if token.is("-") && sign.is_none() => sign = Some(token),
+            Kind::Number => {
+                // `0 -2 8` has three numbers, `0 - 2 8` two.
+                if sign.is_some_and(|sign| sign.end < token.start) {
+                    return None;
+                }
+                let from = sign.take().map_or(token.start, |sign| sign.start);
+                let range = span.start + from..span.start + token.end;
+                values.push(text.get(range).unwrap_or_default().to_owned());
+            }
+            _ => return None,
+        }
+        if values.len() > 3 {
+            return None;
+        }
+    }
+    (values.len() == 3 && sign.is_none()).then(|| Problem::MissingParentheses {
+        values: shorten(&values.join(", ")),
+        span: whole,
+    })
+}
+
+/// An operator without its operand, or a sign that is none.
+fn operators(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
+    let mut before: Option<&Token<'_>> = None;
+    for (index, token) in tokens.iter().enumerate() {
         let after_value = before.is_some_and(Token::ends_value);
         if token.kind == Kind::Odd {
             return Some(match token.text {
@@ -221,7 +252,7 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
                 "^" | "**" | "%" | "×" | "·" | "÷" | "−" | "&" | "|" | "!" | "<" | ">" | "~" => {
                     unknown_operator(token.text, token.span(span))
                 }
-                _ => unexpected(token.text, token.span(span)),
+                _ => unexpected_value(token.text, token.span(span)),
             });
         }
         if token.is_operator() && !after_value && !token.is("-") && !token.is("+") {
@@ -234,9 +265,16 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         if (token.is(")") || token.is(",")) && before.is_some_and(Token::is_operator) {
             return before.map(|operator| missing_operand(Some(operator), operator, span));
         }
-        if token.starts_value() && after_value && !token.is("(") {
-            let left = before.map_or("", |before| before.text);
-            return Some(missing_operator(left, token.text, token.span(span)));
+        let called = token.is("(") && before.is_some_and(|before| before.kind == Kind::Word);
+        if token.starts_value() && after_value && !called {
+            let (start, end) = group_around(tokens, index);
+            let written = |from: usize, to: usize| {
+                text.get(span.start + from..span.start + to)
+                    .unwrap_or_default()
+            };
+            let left = before.map_or("", |before| written(start, before.end));
+            let right = written(token.start, end);
+            return Some(missing_operator(left, right, token.span(span)));
         }
         before = Some(token);
     }
@@ -244,8 +282,41 @@ fn operators(span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     Some(missing_operand(Some(last), last, span))
 }
 
+/// Where the value before a token starts, and where the one that starts with it ends: parentheses are taken whole.
+fn group_around(tokens: &[Token<'_>], index: usize) -> (usize, usize) {
+    let (before, after) = tokens.split_at(index.min(tokens.len()));
+    let mut depth = 0_usize;
+    let first = before.iter().rev().find(|token| {
+        depth += usize::from(token.is(")"));
+        depth = depth.saturating_sub(usize::from(token.is("(")));
+        depth == 0
+    });
+    let last = after.iter().find(|token| {
+        depth += usize::from(token.is("("));
+        depth = depth.saturating_sub(usize::from(token.is(")")));
+        depth == 0
+    });
+    (first.map_or(0, |t| t.start), last.map_or(0, |t| t.end))
+}
+
+/// A function with nothing around its argument.
+pub fn call_without_parentheses(function: &str, argument: &str, span: Span) -> Problem {
+    let (left, right) = (shorten(function), shorten(argument));
+    Problem::MissingOperator {
+        help: format!("write `{left}({right})`"),
+        left,
+        right,
+        span,
+    }
+}
+
 /// Two values with nothing between.
 pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
+    let is_number = left.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+        && left.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-'));
+    if is_number && is_unit(right) {
+        return spaced_unit(left, right, span);
+    }
     let (left, right) = (shorten(left), shorten(right));
     let word = left.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let number = right.starts_with(|c: char| c.is_ascii_digit() || c == '.');
@@ -261,6 +332,30 @@ pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
         help,
         span,
     }
+}
+
+/// A number and a word that is a unit elsewhere.
+fn spaced_unit(number: &str, unit: &str, span: Span) -> Problem {
+    let joined = match unit {
+        "degs" | "degree" | "degrees" => "deg",
+        "rads" | "radian" | "radians" => "rad",
+        _ => {
+            let start = span.start.saturating_sub(number.len());
+            let whole = Span::new(span.source, start, span.end);
+            return odd_number(&format!("{number}{unit}"), whole);
+        }
+    };
+    let joined = format!("{}{joined}", shorten(number));
+    Problem::SpacedUnit { joined, span }
+}
+
+/// Whether a word behind a number is taken for a unit, one of the language's or not.
+pub fn is_unit(word: &str) -> bool {
+    const UNITS: &[&str] = &[
+        "degs", "degree", "degrees", "rads", "radian", "radians", "m", "cm", "mm", "km", "px",
+        "in", "ft", "s",
+    ];
+    UNITS.contains(&word)
 }
 
 /// The first of two operators has nothing after it; one alone has nothing before it.
@@ -305,6 +400,35 @@ pub fn head<'s>(
             span: token.span(odd),
         };
         return (Some(kind), None, problem);
+    }
+    if let [name, equals, kind] = tokens.as_slice()
+        && equals.is("=")
+        && name.kind == Kind::Word
+        && kind.kind == Kind::Word
+    {
+        let help = format!("write `{} {} {{`", kind.text, name.text);
+        let span = name.span(odd).to(equals.span(odd));
+        let (kind, name) = (kind.name(text, odd), name.name(text, odd));
+        return (Some(kind), Some(name), Problem::BadHead { help, span });
+    }
+    if let (Some(kind), Some(first), Some(last)) = (kind, rest.first(), rest.last())
+        && rest.len() > 1
+        && rest
+            .windows(2)
+            .all(|two| matches!(two, [a, b] if a.end == b.start))
+        && rest
+            .iter()
+            .all(|t| t.is("-") || t.is(".") || matches!(t.kind, Kind::Word | Kind::Number))
+        && first.kind == Kind::Word
+    {
+        let span = first.span(odd).to(last.span(odd));
+        let joined = text.get(span.range()).unwrap_or_default();
+        let help = format!(
+            "write `{} {} {{`",
+            kind.text,
+            shorten(&joined.replace(['-', '.'], "_"))
+        );
+        return (Some(kind), name, Problem::BadHead { help, span });
     }
     let wrong = match (kind, name) {
         (None, _) => Some(first),
@@ -356,8 +480,15 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
     let second = rest.first();
     // `sphere Ball`, and then fields: the `{` is missing. `radius 2`: a field that stands outside.
     let alone = second.is_none_or(|token| !same_line(place.end, token.span(odd).start));
+    // `sphere center (0, 1, 0)`, `sphere color red`: the second word is a field.
+    let field = rest.len() == 2 || rest.get(1).is_some_and(|third| third.kind != Kind::Word);
+    let in_parentheses = matches!(rest, [name, open, ..] if name.kind == Kind::Word && open.is("("))
+        && matches!(rest.get(2..4), Some([a, b]) if a.kind == Kind::Word && b.starts_value());
+    let opened = close.is_some() || (alone && rest.len() > 1) || in_parentheses;
+    let head_only = !field || in_parentheses;
     let named = second.filter(|token| token.kind == Kind::Word && !alone);
-    if close.is_some() && (alone || named.is_some()) {
+    if opened && (alone || named.is_some()) {
+        let named = named.filter(|_| head_only);
         let head = match named {
             Some(token) => format!("{name} {}", token.text),
             None => name,
@@ -375,6 +506,12 @@ pub fn lines(text: &str, odd: Span, close: Option<Span>, previous: Option<Span>)
     }
 }
 
+/// What other languages write for `let`.
+const OTHER_LETS: &[&str] = &[
+    "var", "const", "def", "define", "set", "val", "auto", "local", "int", "float", "double",
+    "number", "vec3", "vector",
+];
+
 /// `x = 3`, and what may have been `let x = 3`.
 fn missing_let(text: &str, odd: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     let (name, label, equals) = match tokens {
@@ -391,7 +528,8 @@ fn missing_let(text: &str, odd: Span, tokens: &[Token<'_>]) -> Option<Problem> {
         [word, name, equals, ..]
             if equals.is("=")
                 && name.kind == Kind::Word
-                && suggest::nearest(word.text, ["let"]).is_some() =>
+                && (OTHER_LETS.contains(&word.text)
+                    || suggest::nearest(word.text, ["let"]).is_some()) =>
         {
             (name.span(odd), word.span(odd), equals)
         }
@@ -412,6 +550,37 @@ fn line_end(text: &str, from: usize) -> usize {
     from + rest.find('\n').unwrap_or(rest.len())
 }
 
+/// Something in a value that fits nowhere.
+pub fn unexpected_value(written: &str, span: Span) -> Problem {
+    let written = match written.get(span.range()) {
+        Some(under) if written.len() > 3 => under,
+        _ => written,
+    };
+    Problem::Unexpected {
+        written: shorten(written),
+        help: "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`".to_owned(),
+        span,
+    }
+}
+
+/// What a character that cannot be seen is called.
+pub fn name_of_space(text: &str) -> String {
+    let character = text.chars().next().unwrap_or_default();
+    let name = match character {
+        '\0' => "a NUL",
+        '\u{A0}' => "a no-break space",
+        '\u{202F}' => "a narrow no-break space",
+        '\u{200B}' => "a zero-width space",
+        '\u{200C}' => "a zero-width non-joiner",
+        '\u{200D}' => "a zero-width joiner",
+        '\u{FEFF}' => "a byte order mark",
+        '\u{3000}' => "an ideographic space",
+        c if c.is_whitespace() => "a space",
+        _ => "a control character",
+    };
+    format!("U+{:04X}, {name},", u32::from(character))
+}
+
 /// Something that fits nowhere.
 pub fn unexpected(written: &str, span: Span) -> Problem {
     let written = match written.get(span.range()) {
@@ -420,7 +589,7 @@ pub fn unexpected(written: &str, span: Span) -> Problem {
     };
     Problem::Unexpected {
         written: shorten(written),
-        help: "a file holds `let NAME = VALUE` and blocks such as `sphere { radius 2 }`",
+        help: "a file holds `let NAME = VALUE` and blocks such as `sphere { radius 2 }`".to_owned(),
         span,
     }
 }
@@ -470,7 +639,11 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             ),
             "`_` stands between two digits".to_owned(),
         ),
-        "m" | "cm" | "mm" | "km" | "px" | "in" | "ft" | "s" => (
+        "px" | "s" => (
+            format!("write `{number}`; only angles have a unit"),
+            format!("`{word}` is no unit"),
+        ),
+        "m" | "cm" | "mm" | "km" | "in" | "ft" => (
             format!("write `{number}`; all lengths are in metres"),
             format!("`{word}` is no unit; only angles have one"),
         ),
@@ -486,6 +659,15 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             format!("write the exponent, such as `{number}e3`"),
             "the digits of the exponent are missing".to_owned(),
         ),
+        _ if lower
+            .strip_prefix('e')
+            .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) =>
+        {
+            (
+                format!("write a whole exponent, such as `{number}e3`"),
+                "the exponent is no whole number".to_owned(),
+            )
+        }
         _ if number == "0" && lower.starts_with(['x', 'b', 'o']) => (
             "write it in decimal digits; a colour is written `#ffaa00`".to_owned(),
             "numbers are decimal".to_owned(),
@@ -592,7 +774,8 @@ impl<'s> Tokens<'s> {
     fn skip_gap(&mut self) {
         loop {
             let rest = self.rest();
-            let trimmed = rest.trim_start_matches([' ', '\t', '\r', '\n']);
+            let gap = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n') || is_odd_space(c);
+            let trimmed = rest.trim_start_matches(gap);
             self.at += rest.len() - trimmed.len();
             let length = if trimmed.starts_with("//") {
                 trimmed.find('\n')

@@ -6,7 +6,7 @@
 //! Spans are taken from tokens: pest's own span of a rule may end after the white space behind it. Only byte offsets are
 //! used (a line and a column from pest would take a walk over the text each).
 
-use std::{borrow::Cow, thread};
+use std::{borrow::Cow, collections::BTreeMap, ops::Range, thread};
 
 use pest::{Parser as _, iterators::Pair};
 
@@ -78,12 +78,14 @@ struct Parser<'s> {
     problems: Vec<Problem>,
     /// Whether the last item was lines without meaning.
     in_odd_lines: bool,
+    /// Blocks without their `}` that another block followed at once.
+    nesting: usize,
 }
 
 type Pairs<'p> = Pair<'p, Rule>;
 
 impl<'s> Parser<'s> {
-    fn new(text: &'s str, id: SourceId, part: std::ops::Range<usize>) -> (Self, Walk) {
+    fn new(text: &'s str, id: SourceId, part: Range<usize>) -> (Self, Walk) {
         let start = match id {
             SourceId::File => Start::Items,
             SourceId::Set(_) => Start::Value,
@@ -93,13 +95,14 @@ impl<'s> Parser<'s> {
         let parser = Self {
             id,
             text,
-            read: without_deep(text, &walk.deep),
+            read: without_odd_spaces(without_deep(text, &walk.deep), &walk.odd_spaces),
             base: part.start,
             end: part.end,
             deep: std::mem::take(&mut walk.deep),
             items: Vec::new(),
             problems: Vec::new(),
             in_odd_lines: false,
+            nesting: 0,
         };
         (parser, walk)
     }
@@ -109,6 +112,7 @@ impl<'s> Parser<'s> {
             let span = Span::new(self.id, deep.at, deep.at + 1);
             self.problems.push(Problem::TooDeep { span });
         }
+        self.odd_spaces(&walk.odd_spaces);
         let cut = walk.comments.last().filter(|_| walk.unclosed);
         let cut = cut.map(|comment| comment.start);
         if let Some(start) = cut {
@@ -126,6 +130,23 @@ impl<'s> Parser<'s> {
                 .collect(),
             problems: self.problems,
             cut,
+        }
+    }
+
+    /// One report for each sort of character, at the first one.
+    fn odd_spaces(&mut self, places: &[Range<usize>]) {
+        let mut sorts: BTreeMap<&str, (Span, usize)> = BTreeMap::new();
+        for place in places {
+            let span = Span::new(self.id, place.start, place.end);
+            let (_, count) = sorts.entry(self.written(span)).or_insert((span, 0));
+            *count += 1;
+        }
+        for (text, (span, count)) in sorts {
+            self.problems.push(Problem::OddSpace {
+                what: junk::name_of_space(text),
+                more: count - 1,
+                span,
+            });
         }
     }
 
@@ -153,6 +174,9 @@ impl<'s> Parser<'s> {
                 Rule::bad_item => self.bad_item(pair),
                 _ => break,
             }
+            if matches!(self.items.last(), Some(Item::Definition(_))) {
+                self.nesting = 0;
+            }
             self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
             if length == 0 {
                 break;
@@ -170,7 +194,12 @@ impl<'s> Parser<'s> {
             return self.value(pair);
         }
         let span = self.trimmed(self.base, self.end);
-        let problem = junk::value(self.text, span);
+        let problem = match span.range().is_empty() {
+            true => Problem::SetWithoutValue {
+                span: Span::new(self.id, self.base.saturating_sub(1), self.base),
+            },
+            false => junk::value(self.text, span),
+        };
         self.problems.push(problem);
         bad(span)
     }
@@ -223,9 +252,14 @@ impl<'s> Parser<'s> {
             close: None,
             span: whole,
         };
+        self.defined_block(&mut block);
         for part in pair.into_inner() {
             let span = self.span(&part);
             match part.as_rule() {
+                Rule::let_word => self.problems.push(Problem::BadName {
+                    written: "let".to_owned(),
+                    span,
+                }),
                 Rule::name if block.kind.is_none() => block.kind = Some(self.name(&part)),
                 Rule::name => block.name = Some(self.name(&part)),
                 _ => self.body(part, span, &mut block),
@@ -234,6 +268,30 @@ impl<'s> Parser<'s> {
         self.close_block(&mut block);
         self.kind_of_the_next_line(&mut block);
         block
+    }
+
+    /// `let Ball = sphere {`: what was meant is a block with a name.
+    fn defined_block(&mut self, block: &mut Block<'s>) {
+        let (Some(Item::Definition(before)), Some(Problem::MissingValue { span, .. })) =
+            (self.items.last(), self.problems.last())
+        else {
+            return;
+        };
+        let between = self.text.get(span.end..block.span.start);
+        let same_line = between.is_some_and(|text| !text.contains('\n'));
+        if let Some(name) = before.name
+            && same_line
+            && self.written(*span).ends_with('=')
+        {
+            let kind = self.word_at(block.span.start);
+            let problem = Problem::BadHead {
+                help: format!("write `{} {} {{`", self.short(kind), self.short(name.span)),
+                span: before.keyword.to(*span),
+            };
+            self.problems.pop();
+            self.problems.push(problem);
+            block.name = Some(name);
+        }
     }
 
     /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
@@ -287,6 +345,8 @@ impl<'s> Parser<'s> {
             // One block after the other that is only begun is one mistake.
             return;
         }
+        let followed = before.is_some_and(|before| !matches!(self.written(before), "let" | "}"));
+        self.nesting += usize::from(followed);
         let kind = block.kind.map_or("this block", |kind| kind.text);
         self.problems.push(Problem::UnclosedBlock {
             kind: kind.to_owned(),
@@ -475,6 +535,13 @@ impl<'s> Parser<'s> {
                 bad(span)
             }
             Rule::quoted => self.quoted(span),
+            Rule::braces => {
+                let span = self.tight(span);
+                let inner = Span::new(self.id, span.start + 1, span.end.saturating_sub(1));
+                let inner = self.short(inner);
+                self.problems.push(Problem::Brackets { inner, span });
+                bad(span)
+            }
             Rule::brackets => self.brackets(pair, span),
             _ => bad(span),
         }
@@ -632,7 +699,16 @@ impl<'s> Parser<'s> {
     fn color_code(&mut self, span: Span) -> Value<'s> {
         let written = self.written(span);
         let digits = written.strip_prefix('#').unwrap_or_default();
+        let tight = digits.trim_start();
+        let help = match tight.len() < digits.len() {
+            true => format!("write `#{tight}`"),
+            false => {
+                "write three or six digits from 0 to 9 and a to f, such as `#fa0` or `#ffaa00`"
+                    .to_owned()
+            }
+        };
         let label = match digits.chars().find(|digit| !digit.is_ascii_hexdigit()) {
+            Some(' ' | '\t') => "no space stands behind the `#`".to_owned(),
             Some(other) => format!("`{other}` is no hexadecimal digit"),
             None if matches!(digits.len(), 3 | 6) => {
                 return Value {
@@ -646,6 +722,7 @@ impl<'s> Parser<'s> {
         };
         self.problems.push(Problem::BadColorCode {
             written: self.short(span),
+            help,
             span,
             label,
         });
@@ -674,8 +751,13 @@ impl<'s> Parser<'s> {
         let span = self.trimmed(whole.start, whole.end);
         let keyword = self.word_at(span.start);
         let (name, problem) = junk::definition(self.text, span);
+        if let Problem::BadName { span, .. } = &problem {
+            self.parts_of_bad_name(*span);
+        }
         let again = match self.items.last() {
-            Some(Item::Definition(last)) => last.value.span.range().is_empty(),
+            Some(Item::Definition(last)) => {
+                last.value.span.range().is_empty() && !last.keyword.range().is_empty()
+            }
             _ => false,
         };
         // One definition after the other that is only begun is one mistake, on one line.
@@ -690,6 +772,29 @@ impl<'s> Parser<'s> {
             value,
             span,
         }));
+    }
+
+    /// `let my-x = 5`: where `my-x` is used, `my` and `x` are names that are known.
+    fn parts_of_bad_name(&mut self, span: Span) {
+        const ENOUGH: usize = 8;
+        let mut at = span.start;
+        for word in self.written(span).split('-').take(ENOUGH) {
+            let place = Span::new(self.id, at, at + word.len());
+            at = place.end + 1;
+            let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
+            if word.starts_with(|c: char| c.is_ascii_alphabetic()) && word.chars().all(letters) {
+                self.items.push(Item::Definition(Definition {
+                    keyword: Span::new(self.id, span.start, span.start),
+                    name: Some(Name {
+                        text: word,
+                        span: place,
+                    }),
+                    equals: None,
+                    value: bad(Span::new(self.id, span.end, span.end)),
+                    span: place,
+                }));
+            }
+        }
     }
 
     fn bad_field(&mut self, pair: Pairs<'_>, block: &mut Block<'s>) {
@@ -716,7 +821,8 @@ impl<'s> Parser<'s> {
                 block.bad.push(span);
             }
             (Some(name), problem) => {
-                let kind = match name.span.end == span.end {
+                let after = self.text.get(name.span.end..span.end).unwrap_or_default();
+                let kind = match matches!(after.trim(), "" | "=" | ":") {
                     true => ValueKind::Missing,
                     false => ValueKind::Bad,
                 };
@@ -724,7 +830,7 @@ impl<'s> Parser<'s> {
                 // Braces that follow are reported themselves.
                 let braces = problem.is_none() && rest.trim_start().starts_with('{');
                 if kind == ValueKind::Bad && !braces {
-                    let unexpected = || junk::unexpected(self.text, span);
+                    let unexpected = || junk::unexpected_value(self.text, span);
                     let problem = problem.unwrap_or_else(unexpected);
                     self.problems.push(problem);
                     block.bad.push(span);
@@ -750,14 +856,45 @@ impl<'s> Parser<'s> {
     }
 
     fn stray_close(&mut self, pair: Pairs<'_>) {
-        let start = self.span(&pair).start;
+        let whole = self.span(&pair);
+        let start = whole.start;
         let span = Span::new(self.id, start, start + 1);
+        let braces = self.written(whole).matches('}').count();
+        let closed = (0..braces).take_while(|_| self.nested()).count();
+        if closed == braces {
+            self.items.push(Item::Bad(span));
+            return;
+        }
         self.problems.push(Problem::StrayClosing {
             sign: "}".to_owned(),
             span,
             help: "take it away, or write the `{` that it is to close".to_owned(),
         });
         self.items.push(Item::Bad(span));
+    }
+
+    /// Whether a `}` closes a block that other blocks stand in: these are the mistake, and the block is closed.
+    fn nested(&mut self) -> bool {
+        if self.nesting == 0 {
+            return false;
+        }
+        self.nesting -= 1;
+        let unclosed = self
+            .problems
+            .iter_mut()
+            .rfind(|problem| matches!(problem, Problem::UnclosedBlock { .. }));
+        if let Some(problem) = unclosed
+            && let Problem::UnclosedBlock {
+                before: Some(before),
+                ..
+            } = problem
+        {
+            let rest = self.text.get(before.start..).unwrap_or_default();
+            let brace = before.start + rest.find('{').unwrap_or(0);
+            let span = Span::new(self.id, brace, brace + 1);
+            *problem = Problem::NestedBraces { span };
+        }
+        true
     }
 
     fn bad_item(&mut self, pair: Pairs<'_>) {
@@ -799,6 +936,10 @@ impl<'s> Parser<'s> {
             block.bad.push(odd);
             self.items.push(Item::Block(block));
         } else {
+            if block.close.is_some() && self.nested() {
+                self.items.push(Item::Bad(odd));
+                return;
+            }
             let problem = junk::lines(self.text, odd, block.close, previous);
             // Lines without meaning, one after the other, are one mistake.
             let vague = matches!(
@@ -933,6 +1074,20 @@ fn without_deep<'s>(text: &'s str, deep: &[Deep]) -> Cow<'s, str> {
         read.push('0');
         let blanks = value.end.saturating_sub(read.len());
         read.extend(std::iter::repeat_n(' ', blanks));
+    }
+    read.push_str(text.get(read.len()..).unwrap_or_default());
+    Cow::Owned(read)
+}
+
+/// The text with plain blanks for characters that cannot be seen.
+fn without_odd_spaces<'s>(text: Cow<'s, str>, places: &[Range<usize>]) -> Cow<'s, str> {
+    if places.is_empty() {
+        return text;
+    }
+    let mut read = String::with_capacity(text.len());
+    for place in places {
+        read.push_str(text.get(read.len()..place.start).unwrap_or_default());
+        read.extend(std::iter::repeat_n(' ', place.len()));
     }
     read.push_str(text.get(read.len()..).unwrap_or_default());
     Cow::Owned(read)

@@ -339,3 +339,21 @@ fn a_long_line_is_cut() {
         "{text}"
     );
 }
+
+#[test]
+fn a_text_in_utf_16_is_one_mistake() {
+    let text = "sphere { center (0, 1, 0) }\n";
+    let little = text.encode_utf16().flat_map(u16::to_le_bytes);
+    let big = text.encode_utf16().flat_map(u16::to_be_bytes);
+    let texts = [
+        [0xFF, 0xFE].into_iter().chain(little).collect::<Vec<u8>>(),
+        [0xFE, 0xFF].into_iter().chain(big).collect(),
+    ];
+    for bytes in texts {
+        let sources = Sources::new(Source::from_bytes("a.scn", bytes));
+        let found = scene::read(&sources).diagnostics;
+        let codes: Vec<&str> = found.iter().map(|d| d.code.as_str()).collect();
+        assert_eq!(codes, ["pinhole::invalid_utf8"]);
+        assert_eq!(found[0].message, "this file is UTF-16, not UTF-8");
+    }
+}

@@ -49,9 +49,12 @@ pub fn read(sources: &Sources) -> Reading {
         first_blocks: HashMap::new(),
         problems: Vec::new(),
         slips: Vec::new(),
+        unknown: Vec::new(),
         in_begun_blocks: false,
     };
     let scene = lowering.scene(&parsed.tree);
+    // How a value is written does not matter where its field is unknown.
+    diagnostics.retain(|diagnostic| !starts_in(diagnostic, &lowering.unknown));
     let problems = lowering.problems.iter();
     diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
     let slips = lowering.slips.iter();
@@ -63,6 +66,18 @@ pub fn read(sources: &Sources) -> Reading {
         scene: scene.filter(|_| !failed),
         diagnostics,
     }
+}
+
+/// Whether a problem stands in one of some places, which are in the order of the text.
+fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
+    let Some(label) = diagnostic.labels.first() else {
+        return false;
+    };
+    let next = places.partition_point(|place| place.end <= label.span.start);
+    let place = places.get(next);
+    label.span.source == SourceId::File
+        && label.span.start < label.span.end
+        && place.is_some_and(|place| place.start <= label.span.start)
 }
 
 /// The names that a file defines, those that it may define.
@@ -91,6 +106,13 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         let next = invalid.partition_point(|&byte| byte < span.start);
         span.source == SourceId::File && invalid.get(next).is_some_and(|&byte| byte < span.end)
     };
+    let start = sources.file.text().as_bytes().get(2..4);
+    if invalid.starts_with(&[0, 1]) && start.is_some_and(|start| start.contains(&0)) {
+        let span = Span::new(SourceId::File, 0, 2);
+        diagnostics.clear();
+        diagnostics.push(Diagnostic::from_problem(&syntax::Problem::Utf16 { span }));
+        return;
+    }
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
     let problem = syntax::Problem::InvalidUtf8 {
         span: Span::new(SourceId::File, first, first + 1),
@@ -113,6 +135,8 @@ struct Lowering<'s> {
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
+    /// The values of unknown fields, in the order of the text.
+    unknown: Vec<Span>,
     /// Whether the last block was only begun.
     in_begun_blocks: bool,
 }
@@ -178,6 +202,11 @@ impl<'s> Lowering<'s> {
         let Some(name) = definition.name else {
             return;
         };
+        // A name without its `let` was reported.
+        let reported = definition.keyword.range().is_empty();
+        if reported && (predefined(name.text).is_some() || self.names.place(name.text).is_some()) {
+            return;
+        }
         if let Some(what) = predefined(name.text) {
             self.problems.push(Problem::PredefinedName {
                 name: name.text.to_owned(),
@@ -278,7 +307,7 @@ impl<'s> Lowering<'s> {
         let begun = block.close.is_none() && block.fields.is_empty();
         let again = self.in_begun_blocks && begun;
         self.in_begun_blocks = begun;
-        if again {
+        if again || (begun && near.is_none()) {
             return near;
         }
         let kinds = suggest::list(schema::block_names());
@@ -327,6 +356,9 @@ impl<'s> Lowering<'s> {
 
     fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
         self.evaluate_loosely(&field.value);
+        if field.value.span.source == SourceId::File {
+            self.unknown.push(field.value.span);
+        }
         let near = block.row.nearest_field(field.name.text);
         let joined = block.row.joined_field(field.name.text);
         block.meant.extend(near.or(joined));
@@ -498,7 +530,12 @@ impl<'s> Lowering<'s> {
     /// Looks for mistakes in the value of something unknown.
     fn evaluate_loosely(&mut self, value: &tree::Value<'s>) {
         if !matches!(value.kind, ValueKind::Name(_)) {
+            let before = self.problems.len();
             self.evaluate(value, None);
+            // What type was meant is not known; only a name is wrong in any.
+            let found = self.problems.split_off(before);
+            self.problems
+                .extend(found.into_iter().filter(Problem::is_of_name));
         }
     }
 
