@@ -34,7 +34,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(&reading.diagnostics, &sources);
     assert_eq!(json.lines().count(), reading.diagnostics.len());
     let time = start.elapsed();
-    let bound = if cfg!(debug_assertions) { 60 } else { 1 };
+    // A second on an idle machine, and a busy one takes twice as long.
+    let bound = if cfg!(debug_assertions) { 60 } else { 2 };
     assert!(
         time < Duration::from_secs(bound),
         "{time:?} for {length} bytes"
