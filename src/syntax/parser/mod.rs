@@ -1,0 +1,524 @@
+//! The parser: from pest's pairs to the tree.
+//!
+//! In: a source. Out: its tree, comments and problems. Items are read here, values in `values`, and what went wrong in
+//! `mistakes`. The functions that build nodes carry the names of the grammar's
+//! rules, one each; what a slip is called and what the junk rules ate is explained in `junk`.
+//!
+//! Spans are taken from tokens: pest's own span of a rule may end after the white space behind it. Only byte offsets are
+//! used (a line and a column from pest would take a walk over the text each).
+
+mod mistakes;
+mod values;
+
+use std::{borrow::Cow, collections::BTreeMap, ops::Range, thread};
+
+use pest::{Parser as _, iterators::Pair};
+
+use super::{
+    Parsed, Problem,
+    comments::{self, Deep, Start, Walk},
+    grammar::{Grammar, Rule},
+    junk,
+    tree::{Block, Definition, Field, Item, Name, Tree, Value, ValueKind},
+};
+use crate::{
+    diagnostic::Diagnostic,
+    source::{Source, SourceId, Span},
+};
+
+/// The stack that pest gets: it takes some ten kilobytes for each level of nesting without optimization.
+const STACK: usize = 64 << 20;
+
+/// Parses a file.
+pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
+    with_stack(|| {
+        let start = source.bom_len();
+        let (mut parser, walk) = Parser::new(source.text(), id, start..source.text().len());
+        parser.file();
+        parser.finish(walk)
+    })
+}
+
+/// Parses the part of a text from an offset on as one value: a `--set` argument's. The tree has one item, a definition
+/// without a name.
+pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Problem>) {
+    with_stack(|| {
+        let (mut parser, walk) = Parser::new(source.text(), id, start..source.text().len());
+        let value = parser.whole_value();
+        (value, parser.finish(walk).problems)
+    })
+}
+
+/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
+fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
+    thread::scope(|scope| {
+        let builder = thread::Builder::new().stack_size(STACK);
+        match builder
+            .spawn_scoped(scope, &work)
+            .map(|handle| handle.join())
+        {
+            Ok(Ok(result)) => result,
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            // No thread to be had: the caller's stack holds the limit in an optimized build.
+            Err(_) => work(),
+        }
+    })
+}
+
+struct Parser<'s> {
+    id: SourceId,
+    /// The text as it was written.
+    text: &'s str,
+    /// The text as pest reads it: values that nest too deep are a 0 and blanks there.
+    read: Cow<'s, str>,
+    /// Where the piece that pest is reading starts: its offsets count from there.
+    base: usize,
+    /// Where the text ends.
+    end: usize,
+    deep: Vec<Deep>,
+    items: Vec<Item<'s>>,
+    problems: Vec<Problem>,
+    /// Whether the last item was lines without meaning.
+    in_odd_lines: bool,
+    /// Blocks without their `}` that another block followed at once.
+    nesting: usize,
+}
+
+type Pairs<'p> = Pair<'p, Rule>;
+
+impl<'s> Parser<'s> {
+    fn new(text: &'s str, id: SourceId, part: Range<usize>) -> (Self, Walk) {
+        let start = match id {
+            SourceId::File => Start::Items,
+            SourceId::Set(_) => Start::Value,
+        };
+        let mut walk = comments::walk(text.get(part.clone()).unwrap_or_default(), start);
+        walk.shift(part.start);
+        let parser = Self {
+            id,
+            text,
+            read: without_odd_spaces(without_deep(text, &walk.deep), &walk.odd_spaces),
+            base: part.start,
+            end: part.end,
+            deep: std::mem::take(&mut walk.deep),
+            items: Vec::new(),
+            problems: Vec::new(),
+            in_odd_lines: false,
+            nesting: 0,
+        };
+        (parser, walk)
+    }
+
+    fn finish(mut self, walk: Walk) -> Parsed<'s> {
+        for deep in &self.deep {
+            let span = Span::new(self.id, deep.at, deep.at + 1);
+            self.problems.push(Problem::TooDeep { span });
+        }
+        self.odd_spaces(&walk.odd_spaces);
+        let cut = walk.comments.last().filter(|_| walk.unclosed);
+        let cut = cut.map(|comment| comment.start);
+        if let Some(start) = cut {
+            // What the comment took is no second mistake.
+            self.problems
+                .retain(|problem| starts_before(problem, start));
+            let span = Span::new(self.id, start, start + 2);
+            self.problems.push(Problem::UnclosedComment { span });
+        }
+        let comments = walk.comments.into_iter();
+        Parsed {
+            tree: Tree { items: self.items },
+            comments: comments
+                .map(|range| Span::new(self.id, range.start, range.end))
+                .collect(),
+            problems: self.problems,
+            cut,
+        }
+    }
+
+    /// One report for each sort of character, at the first one.
+    fn odd_spaces(&mut self, places: &[Range<usize>]) {
+        let mut sorts: BTreeMap<&str, (Span, usize)> = BTreeMap::new();
+        for place in places {
+            let span = Span::new(self.id, place.start, place.end);
+            let (_, count) = sorts.entry(self.written(span)).or_insert((span, 0));
+            *count += 1;
+        }
+        for (text, (span, count)) in sorts {
+            self.problems.push(Problem::OddSpace {
+                what: junk::name_of_space(text),
+                more: count - 1,
+                span,
+            });
+        }
+    }
+
+    fn file(&mut self) {
+        let read = std::mem::take(&mut self.read);
+        while self.base < self.end {
+            let rest = read.get(self.base..).unwrap_or_default();
+            let next = Grammar::parse(Rule::next, rest).ok();
+            let Some(pair) = next.and_then(|mut pairs| pairs.next()) else {
+                // The junk rules take everything but white space; nothing comes here.
+                break;
+            };
+            let length = pair.as_span().end();
+            match pair.as_rule() {
+                Rule::definition => {
+                    let definition = self.definition(pair);
+                    self.items.push(Item::Definition(definition));
+                }
+                Rule::block => {
+                    let block = self.block(pair);
+                    self.items.push(Item::Block(block));
+                }
+                Rule::bad_definition => self.bad_definition(pair),
+                Rule::stray_close => self.stray_close(pair),
+                Rule::bad_item => self.bad_item(pair),
+                _ => break,
+            }
+            if matches!(self.items.last(), Some(Item::Definition(_))) {
+                self.nesting = 0;
+            }
+            self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
+            if length == 0 {
+                break;
+            }
+            self.base += length;
+        }
+    }
+
+    fn whole_value(&mut self) -> Value<'s> {
+        let read = std::mem::take(&mut self.read);
+        let rest = read.get(self.base..).unwrap_or_default();
+        if let Ok(mut pairs) = Grammar::parse(Rule::whole_value, rest)
+            && let Some(pair) = pairs.next()
+        {
+            return self.value(pair);
+        }
+        let span = self.trimmed(self.base, self.end);
+        let problem = match span.range().is_empty() {
+            true => Problem::SetWithoutValue {
+                span: Span::new(self.id, self.base.saturating_sub(1), self.base),
+            },
+            false => junk::value(self.text, span),
+        };
+        self.problems.push(problem);
+        bad(span)
+    }
+
+    fn definition(&mut self, pair: Pairs<'_>) -> Definition<'s> {
+        let mut definition = Definition {
+            keyword: self.span(&pair),
+            name: None,
+            equals: None,
+            value: bad(self.span(&pair)),
+            span: self.span(&pair),
+        };
+        let mut separator = None;
+        for part in pair.into_inner() {
+            let span = self.span(&part);
+            match part.as_rule() {
+                Rule::let_word => definition.keyword = span,
+                Rule::name => definition.name = Some(self.name(&part)),
+                Rule::equals => definition.equals = Some(span),
+                Rule::value => definition.value = self.value(part),
+                Rule::separator => separator = Some(self.tight(span)),
+                _ => {}
+            }
+        }
+        definition.span = definition.keyword.to(definition.value.span);
+        let wrong = match definition.equals {
+            None => Some(definition.value.span),
+            Some(equals) if self.written(equals) == ":" => Some(equals),
+            Some(_) => None,
+        };
+        if let (Some(span), Some(name)) = (wrong, definition.name) {
+            self.problems.push(Problem::MissingEquals {
+                name: name.text.to_owned(),
+                value: self.short(definition.value.span),
+                span,
+            });
+        }
+        self.needless_separator(separator, "items");
+        definition
+    }
+
+    fn block(&mut self, pair: Pairs<'_>) -> Block<'s> {
+        let whole = self.span(&pair);
+        let mut block = Block {
+            kind: None,
+            name: None,
+            open: None,
+            fields: Vec::new(),
+            bad: Vec::new(),
+            close: None,
+            span: whole,
+        };
+        self.defined_block(&mut block);
+        for part in pair.into_inner() {
+            let span = self.span(&part);
+            match part.as_rule() {
+                Rule::let_word => self.problems.push(Problem::BadName {
+                    written: "let".to_owned(),
+                    span,
+                }),
+                Rule::name if block.kind.is_none() => block.kind = Some(self.name(&part)),
+                Rule::name => block.name = Some(self.name(&part)),
+                _ => self.body(part, span, &mut block),
+            }
+        }
+        self.close_block(&mut block);
+        self.kind_of_the_next_line(&mut block);
+        block
+    }
+
+    /// `let Ball = sphere {`: what was meant is a block with a name.
+    fn defined_block(&mut self, block: &mut Block<'s>) {
+        let (Some(Item::Definition(before)), Some(Problem::MissingValue { span, .. })) =
+            (self.items.last(), self.problems.last())
+        else {
+            return;
+        };
+        let between = self.text.get(span.end..block.span.start);
+        let same_line = between.is_some_and(|text| !text.contains('\n'));
+        if let Some(name) = before.name
+            && same_line
+            && self.written(*span).ends_with('=')
+        {
+            let kind = self.word_at(block.span.start);
+            let problem = Problem::BadHead {
+                help: format!("write `{} {} {{`", self.short(kind), self.short(name.span)),
+                span: before.keyword.to(*span),
+            };
+            self.problems.pop();
+            self.problems.push(problem);
+            block.name = Some(name);
+        }
+    }
+
+    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
+    fn kind_of_the_next_line(&mut self, block: &mut Block<'s>) {
+        let (Some(Item::Definition(before)), Some(kind), Some(name)) =
+            (self.items.last(), block.kind, block.name)
+        else {
+            return;
+        };
+        let value = before.value.span;
+        let apart = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
+        if !apart(value.end, kind.span.start) && apart(kind.span.end, name.span.start) {
+            let problem = junk::missing_operator(self.written(value), kind.text, kind.span);
+            self.problems.push(problem);
+            block.kind = Some(name);
+            block.name = None;
+            block.span.start = name.span.start;
+        }
+    }
+
+    /// One part of a body.
+    fn body(&mut self, part: Pairs<'_>, span: Span, block: &mut Block<'s>) {
+        match part.as_rule() {
+            Rule::open => block.open = Some(span),
+            Rule::close => block.close = Some(span),
+            Rule::field => {
+                let field = self.field(part);
+                block.fields.push(field);
+            }
+            Rule::lets_in_block => self.lets_in_block(part),
+            Rule::bad_field => self.bad_field(part, block),
+            _ => {}
+        }
+    }
+
+    fn close_block(&mut self, block: &mut Block<'s>) {
+        let (Some(open), None) = (block.open, block.close) else {
+            if let Some(close) = block.close {
+                block.span = block.span.to(close);
+            }
+            return;
+        };
+        let next = block.span.end;
+        let before = (next < self.end).then(|| self.word_at(next));
+        block.span = self.trimmed(block.span.start, next);
+        let again = match self.items.last() {
+            Some(Item::Block(last)) => last.close.is_none() && last.fields.is_empty(),
+            _ => false,
+        };
+        if again && block.fields.is_empty() {
+            // One block after the other that is only begun is one mistake.
+            return;
+        }
+        let followed = before.is_some_and(|before| !matches!(self.written(before), "let" | "}"));
+        self.nesting += usize::from(followed);
+        let kind = block.kind.map_or("this block", |kind| kind.text);
+        self.problems.push(Problem::UnclosedBlock {
+            kind: kind.to_owned(),
+            open,
+            before,
+        });
+    }
+
+    fn field(&mut self, pair: Pairs<'_>) -> Field<'s> {
+        let whole = self.span(&pair);
+        let (mut name, mut value) = (None, bad(whole));
+        let (mut equals, mut separator) = (None, None);
+        for part in pair.into_inner() {
+            let span = self.span(&part);
+            match part.as_rule() {
+                Rule::name => name = Some(self.name(&part)),
+                Rule::equals => equals = Some(span),
+                Rule::value => value = self.value(part),
+                Rule::separator => separator = Some(self.tight(span)),
+                _ => {}
+            }
+        }
+        let name = name.unwrap_or(Name {
+            text: "",
+            span: whole,
+        });
+        if let Some(span) = equals {
+            self.problems.push(Problem::NeedlessEquals {
+                sign: self.written(span).to_owned(),
+                name: name.text.to_owned(),
+                value: self.short(value.span),
+                span,
+            });
+        }
+        self.needless_separator(separator, "fields");
+        Field {
+            name,
+            span: name.span.to(value.span),
+            value,
+        }
+    }
+
+    fn lets_in_block(&mut self, pair: Pairs<'_>) {
+        let mut first = true;
+        for part in pair.into_inner() {
+            if first {
+                let span = self.word_at(self.span(&part).start);
+                self.problems.push(Problem::MisplacedLet { span });
+                first = false;
+            }
+            match part.as_rule() {
+                Rule::definition => {
+                    let definition = self.definition(part);
+                    self.items.push(Item::Definition(definition));
+                }
+                Rule::bad_definition => self.bad_definition(part),
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether no line ends between the last item and an offset.
+    fn is_on_line_of_last(&self, start: usize) -> bool {
+        let end = self.items.last().map_or(start, |item| item.span().end);
+        let between = self.text.get(end..start).unwrap_or_default();
+        !between.contains('\n')
+    }
+
+    fn needless_separator(&mut self, separator: Option<Span>, between: &'static str) {
+        if let Some(span) = separator {
+            self.problems.push(Problem::NeedlessSeparator {
+                sign: self.short(span),
+                between,
+                span,
+            });
+        }
+    }
+
+    fn name(&self, pair: &Pairs<'_>) -> Name<'s> {
+        let span = self.span(pair);
+        Name {
+            text: self.written(span),
+            span,
+        }
+    }
+
+    fn span(&self, pair: &Pairs<'_>) -> Span {
+        let span = pair.as_span();
+        Span::new(self.id, self.base + span.start(), self.base + span.end())
+    }
+
+    fn written(&self, span: Span) -> &'s str {
+        self.text.get(span.range()).unwrap_or_default()
+    }
+
+    /// What stands under a span, for a message.
+    fn short(&self, span: Span) -> String {
+        junk::shorten(self.written(span))
+    }
+
+    fn rest_of_value(&self, start: usize) -> String {
+        let rest = self.text.get(start..).unwrap_or_default().trim_start();
+        let end = rest.find(|c: char| c.is_whitespace() || "{}(),;".contains(c));
+        junk::shorten(rest.get(..end.unwrap_or(rest.len())).unwrap_or_default())
+    }
+
+    /// The word or sign that stands at an offset.
+    fn word_at(&self, start: usize) -> Span {
+        let rest = self.text.get(start..).unwrap_or_default();
+        let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        let first = rest.chars().next().map_or(0, char::len_utf8);
+        let length = rest.find(other).unwrap_or(rest.len()).max(first);
+        Span::new(self.id, start, start + length)
+    }
+
+    /// The same span without white space and comments at its end.
+    fn trimmed(&self, start: usize, end: usize) -> Span {
+        let text = self.text.get(start..end).unwrap_or_default();
+        Span::new(self.id, start, start + junk::written_length(text))
+    }
+
+    /// The same span without white space at its end.
+    fn tight(&self, span: Span) -> Span {
+        let length = self.written(span).trim_end().len();
+        Span::new(self.id, span.start, span.start + length)
+    }
+}
+
+fn bad<'s>(span: Span) -> Value<'s> {
+    Value {
+        kind: ValueKind::Bad,
+        span,
+    }
+}
+
+/// The text with each value that nests too deep replaced by a 0 and blanks.
+fn without_deep<'s>(text: &'s str, deep: &[Deep]) -> Cow<'s, str> {
+    if deep.is_empty() {
+        return Cow::Borrowed(text);
+    }
+    let mut read = String::with_capacity(text.len());
+    for Deep { value, .. } in deep {
+        read.push_str(text.get(read.len()..value.start).unwrap_or_default());
+        read.push('0');
+        let blanks = value.end.saturating_sub(read.len());
+        read.extend(std::iter::repeat_n(' ', blanks));
+    }
+    read.push_str(text.get(read.len()..).unwrap_or_default());
+    Cow::Owned(read)
+}
+
+/// The text with plain blanks for characters that cannot be seen.
+fn without_odd_spaces<'s>(text: Cow<'s, str>, places: &[Range<usize>]) -> Cow<'s, str> {
+    if places.is_empty() {
+        return text;
+    }
+    let mut read = String::with_capacity(text.len());
+    for place in places {
+        read.push_str(text.get(read.len()..place.start).unwrap_or_default());
+        read.extend(std::iter::repeat_n(' ', place.len()));
+    }
+    read.push_str(text.get(read.len()..).unwrap_or_default());
+    Cow::Owned(read)
+}
+
+fn starts_before(problem: &Problem, offset: usize) -> bool {
+    if matches!(problem, Problem::UnclosedBlock { .. }) {
+        return false;
+    }
+    let diagnostic = Diagnostic::from_problem(problem);
+    let first = diagnostic.labels.first();
+    first.is_none_or(|label| label.span.end < offset)
+}
