@@ -39,17 +39,7 @@ fn main() {
     println!(
         "                    points alone    rendered, 1 thread    rendered, {threads} threads"
     );
-    for method in [
-        Method::Regular,
-        Method::Random,
-        Method::Jittered,
-        Method::NRooks,
-        Method::MultiJittered,
-        Method::Hammersley,
-        Method::Halton,
-        Method::Sobol,
-        Method::Scatter,
-    ] {
+    for method in Method::ALL {
         let scene = figure::figure(WIDTH, HEIGHT, method, Count::PerPixel(PER_PIXEL));
         let points = best(|| points(&scene));
         let [one, all] = [1, threads].map(|threads| best(|| picture(&scene, threads)));

@@ -149,6 +149,19 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them, in the order of the language's table.
+    pub const ALL: [Self; 9] = [
+        Self::Regular,
+        Self::Random,
+        Self::Jittered,
+        Self::NRooks,
+        Self::MultiJittered,
+        Self::Hammersley,
+        Self::Halton,
+        Self::Sobol,
+        Self::Scatter,
+    ];
+
     /// Its word in the language.
     pub fn name(self) -> &'static str {
         match self {

@@ -79,6 +79,19 @@ pub struct Block<'s> {
 }
 
 impl Block<'_> {
+    /// A block of which nothing is known yet but its place.
+    pub fn empty(span: Span) -> Self {
+        Self {
+            kind: None,
+            name: None,
+            open: None,
+            fields: Vec::new(),
+            bad: Vec::new(),
+            close: None,
+            span,
+        }
+    }
+
     /// The place that stands for the block as a whole: its kind, or what comes first.
     pub fn keyword(&self) -> Span {
         match (&self.kind, self.open) {

@@ -7,18 +7,6 @@ use pinhole::{
     scene::{Count, Method, Sampler},
 };
 
-const METHODS: [Method; 9] = [
-    Method::Regular,
-    Method::Random,
-    Method::Jittered,
-    Method::NRooks,
-    Method::MultiJittered,
-    Method::Hammersley,
-    Method::Halton,
-    Method::Sobol,
-    Method::Scatter,
-];
-
 /// The counts that every property is tested on: small ones, primes, powers and their neighbours.
 fn counts() -> impl Iterator<Item = u64> {
     (1..=72).chain([
@@ -277,7 +265,7 @@ fn the_largest_counts_keep_their_strata() {
             columns.dedup();
             assert_eq!(columns.len(), 3001);
         }
-        for method in METHODS {
+        for method in Method::ALL {
             let sampling = Sampling::new(&sampler(method), 1, 1);
             let mut points = Vec::new();
             sampling.points(0, 0, n, n - 10..n, &mut points);
@@ -294,7 +282,7 @@ fn the_largest_counts_keep_their_strata() {
 
 #[test]
 fn points_asked_for_in_parts_are_the_same() {
-    for method in METHODS {
+    for method in Method::ALL {
         for n in [1, 7, 16, 100, 5003] {
             let sampling = sampling(method, n, 11);
             let n = sampling.count(9, 8);
@@ -311,7 +299,7 @@ fn points_asked_for_in_parts_are_the_same() {
 
 #[test]
 fn seeds_and_pixels_have_points_of_their_own() {
-    for method in METHODS {
+    for method in Method::ALL {
         if matches!(method, Method::Regular) {
             continue;
         }
@@ -344,7 +332,7 @@ fn all_but_regular_are_unbiased() {
         (DVec2::new(0.13, -0.5), DVec2::new(0.5, 0.5)),
         (DVec2::new(-0.31, 0.22), DVec2::new(0.17, 0.41)),
     ];
-    for method in METHODS {
+    for method in Method::ALL {
         if matches!(method, Method::Regular | Method::Scatter) {
             continue;
         }
@@ -383,7 +371,7 @@ fn all_but_regular_are_unbiased() {
 fn a_total_is_shared_out_to_the_last_sample() {
     for (width, height) in [(1, 1), (7, 3), (16, 16), (30, 17), (64, 1)] {
         let pixels = u64::from(width) * u64::from(height);
-        for method in METHODS {
+        for method in Method::ALL {
             for total in [
                 1,
                 2,
@@ -631,7 +619,7 @@ fn points_stay_where_they_are() {
         DVec2::new(0.29140786374970445, 0.38167815445024017),
         DVec2::new(0.49924405020095936, -0.3561122876778888),
     ];
-    for (method, point) in METHODS.into_iter().zip(expected) {
+    for (method, point) in Method::ALL.into_iter().zip(expected) {
         let sampler = Sampler {
             method,
             count: Count::Total(64 * 64 * 16 + 1000),

@@ -165,15 +165,7 @@ impl<'s> Parser<'s> {
 
     pub(super) fn bad_item(&mut self, pair: Pairs<'_>) {
         let whole = self.span(&pair);
-        let mut block = Block {
-            kind: None,
-            name: None,
-            open: None,
-            fields: Vec::new(),
-            bad: Vec::new(),
-            close: None,
-            span: whole,
-        };
+        let mut block = Block::empty(whole);
         let mut odd = Span::new(self.id, whole.start, whole.start);
         let at = self.problems.len();
         for part in pair.into_inner() {

@@ -1,8 +1,8 @@
 //! The parser: from pest's pairs to the tree.
 //!
 //! In: a source. Out: its tree, comments and problems. Items are read here, values in `values`, and what went wrong in
-//! `mistakes`. The functions that build nodes carry the names of the grammar's
-//! rules, one each; what a slip is called and what the junk rules ate is explained in `junk`.
+//! `mistakes`. The functions that build nodes carry the names of the grammar's rules, one each; what a slip is called and
+//! what the junk rules ate is explained in `junk`.
 //!
 //! Spans are taken from tokens: pest's own span of a rule may end after the white space behind it. Only byte offsets are
 //! used (a line and a column from pest would take a walk over the text each).
@@ -245,15 +245,7 @@ impl<'s> Parser<'s> {
 
     fn block(&mut self, pair: Pairs<'_>) -> Block<'s> {
         let whole = self.span(&pair);
-        let mut block = Block {
-            kind: None,
-            name: None,
-            open: None,
-            fields: Vec::new(),
-            bad: Vec::new(),
-            close: None,
-            span: whole,
-        };
+        let mut block = Block::empty(whole);
         self.defined_block(&mut block);
         for part in pair.into_inner() {
             let span = self.span(&part);
