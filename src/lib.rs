@@ -43,6 +43,8 @@ pub mod tracer;
 
 pub mod sampling;
 
+pub mod exact;
+
 pub mod render;
 
 pub mod film;

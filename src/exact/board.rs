@@ -1,0 +1,236 @@
+//! The integral of the board's sign over a convex polygon of the picture.
+
+use glam::DVec2;
+
+use super::{cells, edge};
+
+/// The unit roundoff of `f64`.
+pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
+/// Up to about this many squares are cut out one by one.
+const FEW: f64 = 24.0;
+/// The part of the board that is further away than so many squares is summed along its boundary.
+const FAR: f64 = 48.0;
+
+/// A number and a bound on its absolute error, in square pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Sum {
+    pub value: f64,
+    pub bound: f64,
+}
+
+impl Sum {
+    pub(super) fn add(&mut self, other: Sum) {
+        self.value += other.value;
+        self.bound += other.bound;
+    }
+}
+
+/// The infinite board as a pixel sees it.
+///
+/// A point of the picture, (x, y) in pixels from the pixel's centre (at most ½ either way), shows the point
+/// (a, b) = (N_a/L, N_b/L) of the floor, in squares; each of N_a, N_b, L is a linear form c0·x + c1·y + c2, and L > 0 is the
+/// side of the horizon where the floor is. The sign of a square is s(a)·s(b) with s the square wave.
+///
+/// With M the matrix of the three forms, 1/L = m(a, b) = p·a + q·b + r is the third row of M⁻¹: a depth, linear on the
+/// floor. A piece da·db of floor covers J = K/m³ square pixels, K = 1/|det M|.
+#[derive(Clone, Debug)]
+pub(crate) struct Board {
+    pub(super) across: [[f64; 3]; 2],
+    pub(super) below: [f64; 3],
+    /// ∂m/∂a and ∂m/∂b.
+    pub(super) slope: [f64; 2],
+    pub(super) density: f64,
+    /// Whether the floor is seen mirrored: the sign of det M.
+    pub(super) handed: f64,
+    /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
+    pub(super) displacement: f64,
+    /// What may be neglected at the horizon, for an edge that runs into it, in square pixels.
+    pub(super) tail: f64,
+}
+
+/// A corner of a region: where it is in the picture, what floor it shows, and m there.
+///
+/// On the horizon m is infinite, and a and b are the direction (da, db)/dm in which edges leave for it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub at: DVec2,
+    pub floor: [f64; 2],
+    pub depth: f64,
+}
+
+pub(super) fn form(c: &[f64; 3], p: DVec2) -> f64 {
+    c[0] * p.x + c[1] * p.y + c[2]
+}
+
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+impl Board {
+    /// The board of three linear forms, N_a and N_b, and L; they may have any common positive factor, and M must be
+    /// invertible. The nearer the origin of a and b is to the pixel, the smaller the bounds.
+    pub(crate) fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
+        let largest = below.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
+        let scale = libm::ldexp(1.0, -libm::ilogb(largest));
+        let [a, b, l] = [across[0], across[1], below].map(|form| form.map(|c| c * scale));
+        let columns = [cross(&b, &l), cross(&l, &a), cross(&a, &b)];
+        let det = columns[2][0] * l[0] + columns[2][1] * l[1] + columns[2][2] * l[2];
+        // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
+        // fourth is for the quotient; coordinates themselves are rounded, too.
+        let displacement =
+            [a, b, l]
+                .iter()
+                .zip(&columns)
+                .fold(4.0 * UNIT, |sum, (form, column)| {
+                    let error =
+                        4.0 * UNIT * (0.5 * (form[0].abs() + form[1].abs()) + form[2].abs());
+                    sum + error * column.iter().map(|c| c.abs()).sum::<f64>() / det.abs()
+                });
+        Self {
+            across: [a, b],
+            below: l,
+            slope: [columns[0][2] / det, columns[1][2] / det],
+            density: 1.0 / det.abs(),
+            handed: det.signum(),
+            displacement,
+            tail: 2e-10,
+        }
+    }
+
+    /// The integral of s(a)·s(b) over what a convex polygon shows of the floor, in square pixels; positive where the
+    /// squares are, however the polygon is oriented.
+    pub(crate) fn over(&self, polygon: &[DVec2]) -> Sum {
+        let corners = self.visible(polygon);
+        let first = match corners.first() {
+            Some(first) if corners.len() > 2 => first,
+            _ => return Sum::default(),
+        };
+        let endless = corners.iter().any(|c| c.depth.is_infinite());
+        if endless {
+            return self.far_or_both(&corners);
+        }
+        let mut low = first.floor.map(f64::floor);
+        let mut high = low;
+        for corner in &corners[1..] {
+            for i in 0..2 {
+                let t = corner.floor[i].floor();
+                low[i] = low[i].min(t);
+                high[i] = high[i].max(t);
+            }
+        }
+        if low == high {
+            let sign = super::euler::square_wave(low[0]) * super::euler::square_wave(low[1]);
+            let (area, perimeter) = measure(corners.iter().map(|c| c.at));
+            return Sum {
+                value: sign * area.abs(),
+                bound: self.displacement * perimeter,
+            };
+        }
+        let spans = [high[0] - low[0] + 1.0, high[1] - low[1] + 1.0];
+        // Squares touched are at most about area plus half the perimeter; a slanted strip has many fewer than its box.
+        let squares = spans[0] + spans[1] + measure(corners.iter().map(|c| c.floor.into())).0.abs();
+        if squares.min(spans[0] * spans[1]) <= FEW {
+            return cells::sum(self, &corners);
+        }
+        self.far_or_both(&corners)
+    }
+
+    /// Along the boundary where the board is far enough for it, square by square where it is not.
+    fn far_or_both(&self, corners: &[Corner]) -> Sum {
+        let depth = FAR * (self.slope[0].abs() + self.slope[1].abs());
+        let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
+        let furthest = corners.iter().fold(0.0, |m: f64, c| m.max(c.depth));
+        if nearest >= depth {
+            return edge::sum(self, corners);
+        }
+        if furthest <= depth {
+            return cells::sum(self, corners);
+        }
+        let mut line = self.below;
+        line[2] -= 1.0 / depth;
+        let near = self.clip(corners, &line);
+        let far = self.clip(corners, &line.map(|c| -c));
+        let mut sum = cells::sum(self, &near);
+        sum.add(edge::sum(self, &far));
+        sum
+    }
+
+    /// The corners of the part of a convex polygon where L ≥ 0.
+    fn visible(&self, polygon: &[DVec2]) -> Vec<Corner> {
+        let mut corners = Vec::with_capacity(polygon.len() + 2);
+        let Some(&last) = polygon.last() else {
+            return corners;
+        };
+        let mut before = (last, form(&self.below, last));
+        for &at in polygon {
+            let level = form(&self.below, at);
+            if (level > 0.0 && before.1 < 0.0) || (level < 0.0 && before.1 > 0.0) {
+                let t = before.1 / (before.1 - level);
+                corners.push(self.corner(before.0 + (at - before.0) * t, 0.0));
+            }
+            if level >= 0.0 {
+                corners.push(self.corner(at, level));
+            }
+            before = (at, level);
+        }
+        corners
+    }
+
+    fn corner(&self, at: DVec2, level: f64) -> Corner {
+        let floor = [form(&self.across[0], at), form(&self.across[1], at)];
+        let depth = 1.0 / level;
+        // Where even the quotient overflows there is nothing but the horizon.
+        if depth.is_finite() && (floor[0] * depth).is_finite() && (floor[1] * depth).is_finite() {
+            Corner {
+                at,
+                floor: floor.map(|n| n * depth),
+                depth,
+            }
+        } else {
+            Corner {
+                at,
+                floor,
+                depth: f64::INFINITY,
+            }
+        }
+    }
+
+    /// The part where a form of the picture is not negative.
+    fn clip(&self, corners: &[Corner], line: &[f64; 3]) -> Vec<Corner> {
+        let mut kept = Vec::with_capacity(corners.len() + 2);
+        let Some(last) = corners.last() else {
+            return kept;
+        };
+        let mut before = (last, form(line, last.at));
+        for corner in corners {
+            let side = form(line, corner.at);
+            if (side > 0.0 && before.1 < 0.0) || (side < 0.0 && before.1 > 0.0) {
+                let at = before.0.at + (corner.at - before.0.at) * (before.1 / (before.1 - side));
+                kept.push(self.corner(at, form(&self.below, at)));
+            }
+            if side >= 0.0 {
+                kept.push(*corner);
+            }
+            before = (corner, side);
+        }
+        kept
+    }
+}
+
+/// The signed area and the perimeter, in |dx| + |dy|, of a polygon.
+pub(super) fn measure(mut points: impl Iterator<Item = DVec2>) -> (f64, f64) {
+    let Some(origin) = points.next() else {
+        return (0.0, 0.0);
+    };
+    let (mut twice, mut perimeter, mut before) = (0.0, 0.0, DVec2::ZERO);
+    for point in points.map(|p| p - origin) {
+        twice += before.perp_dot(point);
+        perimeter += (point.x - before.x).abs() + (point.y - before.y).abs();
+        before = point;
+    }
+    (0.5 * twice, perimeter + before.x.abs() + before.y.abs())
+}

@@ -1,0 +1,344 @@
+//! The board's integral over a region of many squares, along the region's boundary.
+//!
+//! With the waves A_k of `euler` and J = K/m³, P = Σ_j (−1)^j A_j+1(a) ∂_a^j J, of n terms, has ∂_a P = s(a)·J up to
+//! ±A_n(a) ∂_a^n J. By Green's theorem ∬ s(a) s(b) J da db = ∮ s(b) P db. Likewise Q = Σ_k (−1)^k A_k+1(b) ∂_b^k J, and
+//! Ψ = ΣΣ (−1)^(j+k) A_j+1(a) A_k+1(b) ∂_a^j ∂_b^k J, j + k < n, has dΨ = s(a) Q da + s(b) P db up to terms of order n.
+//! On an edge, where m grows by γ for a unit of b, X = −K Σ_k (k+1)!/2 · S_k A_k+1(b) m^(−2−k), k = 1 … n, with S_1 = 1
+//! and S_k+1 = γ·S_k + (∂m/∂b)^k, has dX/db = −Q up to order n. Hence with ρ = da/db
+//!
+//! ∫ s(b) P db = ΔΨ − ∫ s(a) Q da = ΔΨ + ρ ∫ s(a) dX, and with the roles exchanged = −(db/da) ∫ s(b) dX′(a),
+//!
+//! and ∫ s(a) dX is [s(a)·X] less the jumps of s(a) times X: an edge costs as many terms as it crosses lines of one family,
+//! and the family that it crosses less may be chosen.
+
+use super::board::{Board, Corner, Sum, UNIT, measure};
+use super::euler::{ORDERS, square_wave, waves};
+use super::horizon;
+use std::f64::consts::PI;
+
+/// The most terms of the asymptotic series.
+const MAX_TERMS: usize = 12;
+/// The series is long enough when what it neglects is below this, in square pixels.
+const TRUNCATION: f64 = 1e-14;
+
+/// (k + 1)!/2.
+const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
+    let mut all = [0.5; MAX_TERMS + 2];
+    let mut k = 1;
+    while k < MAX_TERMS + 2 {
+        all[k] = all[k - 1] * (k + 1) as f64;
+        k += 1;
+    }
+    all
+};
+
+/// The integral over a convex polygon of which every square is far away, which may reach to the horizon.
+pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
+    if corners.len() < 3 {
+        return Sum::default();
+    }
+    let (area, perimeter) = measure(corners.iter().map(|c| c.at));
+    let edges: Vec<Option<Edge>> = (0..corners.len())
+        .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
+        .collect();
+    let (terms, truncation) = terms(board, corners, &edges, area.abs());
+    let mut sum = Sum {
+        value: 0.0,
+        bound: truncation + board.displacement * perimeter,
+    };
+    for (i, edge) in edges.iter().enumerate() {
+        let mut ends = 0.0;
+        if let Some(edge) = edge {
+            let part = edge.integral(board, terms);
+            sum.value += part.value;
+            sum.bound += part.bound;
+            ends -= edge.potential;
+        }
+        if let Some(before) = &edges[(i + corners.len() - 1) % corners.len()] {
+            ends += before.potential;
+        }
+        if ends != 0.0 && corners[i].depth.is_finite() {
+            let (psi, size) = potential(board, &corners[i], terms);
+            sum.value += ends * psi;
+            sum.bound += 16.0 * UNIT * size;
+        }
+    }
+    sum.value *= board.handed * area.signum();
+    sum
+}
+
+/// How many terms the series needs, and what it then neglects.
+///
+/// With |A_k| ≤ ½π^(1−k), what P neglects integrates to at most ½π^(1−n)·(n+2)!/2·(|p|/m)^n times the area in the picture,
+/// and what Ψ and X neglect on an edge to n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|, where g is the largest of m's slopes along
+/// the edge and along its parameter t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
+fn terms(board: &Board, corners: &[Corner], edges: &[Option<Edge>], area: f64) -> (usize, f64) {
+    let slope = board.slope[0].abs().max(board.slope[1].abs());
+    let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
+    let (mut ratio, mut weight) = (slope / nearest, 0.0);
+    for edge in edges.iter().flatten() {
+        ratio = ratio.max(edge.climb.abs() / edge.depth);
+        let reach = edge.length.abs().min(0.5 * edge.depth / edge.climb.abs());
+        weight += board.density / (edge.depth * edge.depth * edge.depth) * reach;
+    }
+    let neglected = |n: usize, power: f64| {
+        HALF_FACTORIAL[n + 1] * power * PI * (0.5 * area + n as f64 * weight)
+    };
+    let step = ratio / PI;
+    let mut power = step * step;
+    let mut best = (2, neglected(2, power));
+    for n in 3..=MAX_TERMS {
+        if best.1 <= TRUNCATION {
+            break;
+        }
+        power *= step;
+        let bound = neglected(n, power);
+        if bound < best.1 {
+            best = (n, bound);
+        }
+    }
+    best
+}
+
+/// Ψ at a corner, and its size before anything cancels.
+fn potential(board: &Board, corner: &Corner, terms: usize) -> (f64, f64) {
+    let u = 1.0 / corner.depth;
+    let [a, b] = [0, 1].map(|i| {
+        let mut waves = waves_of(corner.floor[i], terms);
+        let mut power = 1.0;
+        for wave in &mut waves[1..=terms] {
+            *wave *= power;
+            power *= board.slope[i] * u;
+        }
+        waves
+    });
+    let mut sum = 0.0;
+    for degree in 0..terms {
+        let mut row = 0.0;
+        for j in 0..=degree {
+            row += a[j + 1] * b[degree - j + 1];
+        }
+        sum += HALF_FACTORIAL[degree + 1] * row;
+    }
+    let density = board.density * u * u * u;
+    (density * sum, density)
+}
+
+fn waves_of(t: f64, terms: usize) -> [f64; ORDERS] {
+    match terms {
+        0..=2 => waves::<2>(t),
+        3..=4 => waves::<4>(t),
+        5..=7 => waves::<7>(t),
+        _ => waves::<MAX_TERMS>(t),
+    }
+}
+
+/// An edge from its near end to its far one. `c` counts the lines of the family that it crosses less, t those of the other.
+pub(super) struct Edge {
+    /// +1 or −1 where the boundary runs from near to far or back, times the sign before ρ ∫ s dX.
+    sign: f64,
+    /// How Ψ at the edge's end, in the boundary's sense, counts: 1 where t is b, else 0.
+    potential: f64,
+    pub c: f64,
+    pub t: f64,
+    pub depth: f64,
+    /// The far end's c and m, unless it is on the horizon.
+    end: Option<(f64, f64, f64)>,
+    /// t's change to the far end, infinite for the horizon.
+    length: f64,
+    /// dc/dt.
+    pub rho: f64,
+    /// dm/dt, along the edge and on the floor.
+    climb: f64,
+    slope: f64,
+    /// dt and dm for every line crossed, and the sense in which they are crossed.
+    pub stride: f64,
+    pub rise: f64,
+    sense: f64,
+}
+
+impl Edge {
+    fn new(board: &Board, from: &Corner, to: &Corner) -> Option<Self> {
+        let forward = from.depth <= to.depth;
+        let (near, far) = if forward { (from, to) } else { (to, from) };
+        if near.depth.is_infinite() {
+            return None;
+        }
+        let (step, rise) = if far.depth.is_infinite() {
+            (far.floor, 1.0)
+        } else {
+            (
+                [far.floor[0] - near.floor[0], far.floor[1] - near.floor[1]],
+                far.depth - near.depth,
+            )
+        };
+        let by_b = step[0].abs() <= step[1].abs();
+        let (c, t) = if by_b { (0, 1) } else { (1, 0) };
+        if step[t] == 0.0 {
+            return None;
+        }
+        let way = if forward { 1.0 } else { -1.0 };
+        let endless = far.depth.is_infinite();
+        Some(Self {
+            sign: if by_b { way } else { -way },
+            potential: if by_b { 1.0 } else { 0.0 },
+            c: near.floor[c],
+            t: near.floor[t],
+            depth: near.depth,
+            end: (!endless).then(|| (far.floor[c], far.floor[t], far.depth)),
+            length: if endless { f64::INFINITY } else { step[t] },
+            rho: step[c] / step[t],
+            climb: rise / step[t],
+            slope: board.slope[t],
+            stride: step[t] / step[c].abs(),
+            rise: rise / step[c].abs(),
+            sense: step[c].signum(),
+        })
+    }
+
+    /// ± ρ ∫ s(c) dX from near to far, with the sign that the boundary gives it.
+    fn integral(&self, board: &Board, terms: usize) -> Sum {
+        let series = self.series(board, terms);
+        let start = square_wave(self.c);
+        let mut sum = Sum {
+            value: -start * series.at(self.t, self.depth),
+            bound: 0.0,
+        };
+        let mut lines = f64::INFINITY;
+        if let Some((c, t, depth)) = self.end {
+            sum.value += square_wave(c) * series.at(t, depth);
+            lines = (c.floor() - self.c.floor()).abs();
+        }
+        let ends = series.size(1, self.depth);
+        if lines > 0.0 && self.rho != 0.0 {
+            let first = if self.sense > 0.0 {
+                self.c.floor() + 1.0 - self.c
+            } else {
+                self.c - self.c.floor()
+            };
+            let crossings = Crossings {
+                t: self.t + first * self.stride,
+                depth: self.depth + first * self.rise,
+                edge: self,
+                lines,
+            };
+            // s jumps by −2s where the first line is crossed, and by turns from there.
+            let jumps = horizon::crossings(&crossings, &series, 0.5 * board.tail / self.rho.abs());
+            sum.value += 2.0 * start * jumps.value;
+            sum.bound += 2.0 * jumps.bound;
+        }
+        sum.value *= self.sign * self.rho;
+        sum.bound = self.rho.abs() * (sum.bound + 16.0 * UNIT * ends);
+        sum
+    }
+
+    fn series(&self, board: &Board, terms: usize) -> Series {
+        let mut factors = [0.0; MAX_TERMS + 1];
+        let (mut s, mut power) = (1.0, self.slope);
+        for k in 1..=terms {
+            factors[k] = -board.density * HALF_FACTORIAL[k] * s;
+            s = self.climb * s + power;
+            power *= self.slope;
+        }
+        Series { terms, factors }
+    }
+}
+
+/// X on an edge: Σ factors[k]·A_k+1(t)·m^(−2−k), k = 1 … terms.
+pub(super) struct Series {
+    pub terms: usize,
+    pub factors: [f64; MAX_TERMS + 1],
+}
+
+impl Series {
+    fn at(&self, t: f64, depth: f64) -> f64 {
+        let waves = waves_of(t, self.terms);
+        let u = 1.0 / depth;
+        let sum = (1..=self.terms)
+            .rev()
+            .fold(0.0, |sum, k| (sum + self.factors[k] * waves[k + 1]) * u);
+        sum * u * u
+    }
+
+    /// A bound on the k-th term, by |A_k+1| ≤ ½π^(−k).
+    pub(super) fn size(&self, k: usize, depth: f64) -> f64 {
+        let u = 1.0 / depth;
+        let mut size = 0.5 * self.factors[k].abs() * u * u;
+        for _ in 0..k {
+            size *= u / PI;
+        }
+        size
+    }
+
+    /// How many terms a sum over so many crossings needs from some depth on, for what is left to be below `limit`; and
+    /// what is left.
+    fn enough(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
+        let (mut terms, mut left) = (self.terms, 0.0);
+        while terms > 1 {
+            let more = left + lines * self.size(terms, depth);
+            if more > limit {
+                break;
+            }
+            left = more;
+            terms -= 1;
+        }
+        (terms, left)
+    }
+}
+
+/// The lines of one family that an edge crosses: t and m at the first, and how many there are.
+pub(super) struct Crossings<'a> {
+    pub t: f64,
+    pub depth: f64,
+    pub edge: &'a Edge,
+    pub lines: f64,
+}
+
+impl Crossings<'_> {
+    /// Σ (−1)^j X over the first `lines` crossings, one by one.
+    ///
+    /// In blocks over which m grows by half at most, each with as many terms as it needs.
+    pub(super) fn one_by_one(&self, series: &Series, lines: f64) -> Sum {
+        let mut sum = Sum::default();
+        let mut done = 0.0;
+        while done < lines {
+            let depth = self.depth + done * self.edge.rise;
+            let most = (0.5 * depth / self.edge.rise).floor().clamp(16.0, 4096.0);
+            let count = most.min(lines - done);
+            let (terms, left) = series.enough(depth, count, 0.1 * TRUNCATION);
+            let block = match terms {
+                1 => self.block::<1>(series, done, count),
+                2 => self.block::<2>(series, done, count),
+                3 => self.block::<3>(series, done, count),
+                4 => self.block::<4>(series, done, count),
+                5 | 6 => self.block::<6>(series, done, count),
+                7..=9 => self.block::<9>(series, done, count),
+                _ => self.block::<MAX_TERMS>(series, done, count),
+            };
+            sum.value += if done % 2.0 == 0.0 { block } else { -block };
+            // t is off by a few roundings of its size, which X′, at most π X's bound, takes to X; the sum of the block is
+            // off by its length's roundings of the terms.
+            let reach = self.t.abs() + (done + count) * self.edge.stride.abs();
+            let rounding = UNIT * series.size(1, depth) * (count + 16.0 + 4.0 * PI * reach);
+            sum.bound += left + count * rounding;
+            done += count;
+        }
+        sum
+    }
+
+    fn block<const TERMS: usize>(&self, series: &Series, done: f64, count: f64) -> f64 {
+        let mut sums = [0.0; 2];
+        let mut j = done;
+        for i in 0..count as usize {
+            let waves = waves::<TERMS>(self.t + j * self.edge.stride);
+            let u = 1.0 / (self.depth + j * self.edge.rise);
+            let mut x = 0.0;
+            for k in (1..=TERMS).rev() {
+                x = (x + series.factors[k] * waves[k + 1]) * u;
+            }
+            sums[i & 1] += x * u * u;
+            j += 1.0;
+        }
+        sums[0] - sums[1]
+    }
+}

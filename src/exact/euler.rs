@@ -1,0 +1,91 @@
+//! Euler's polynomials made periodic, the repeated antiderivatives of the square wave.
+
+/// One more than the highest order there is.
+pub(super) const ORDERS: usize = 14;
+
+/// The coefficients of 1/cosh(x/2) in even powers of x: Euler's numbers by 4^j·(2j)!.
+const SECH: [f64; 7] = [
+    1.0,
+    -1.0 / 8.0,
+    5.0 / 384.0,
+    -61.0 / 46080.0,
+    1385.0 / 10321920.0,
+    -50521.0 / 3715891200.0,
+    2702765.0 / 1961990553600.0,
+];
+
+const INVERSE_FACTORIAL: [f64; ORDERS] = {
+    let mut all = [1.0; ORDERS];
+    let mut k = 1;
+    while k < ORDERS {
+        all[k] = all[k - 1] / k as f64;
+        k += 1;
+    }
+    all
+};
+
+/// The square wave: +1 where floor(t) is even, −1 where it is odd.
+pub(super) fn square_wave(t: f64) -> f64 {
+    let half = t.floor() * 0.5;
+    if half == half.floor() { 1.0 } else { -1.0 }
+}
+
+/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be read.
+///
+/// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
+/// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
+/// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
+#[inline(always)]
+pub(super) fn waves<const TERMS: usize>(t: f64) -> [f64; ORDERS] {
+    // Adding 1.5·2^52 rounds to an integer and leaves its parity in the last bit; at a tie either neighbour will do, for
+    // the waves are continuous. Half-way to t's last digits nothing is left to be said.
+    const ROUND: f64 = 6755399441055744.0;
+    let middle = t - 0.5;
+    let shifted = middle + ROUND;
+    let eta = middle - (shifted - ROUND);
+    let sign = f64::from_bits(1.0_f64.to_bits() | (shifted.to_bits() << 63));
+    let mut powers = [sign; ORDERS];
+    for i in 1..=TERMS + 1 {
+        powers[i] = powers[i - 1] * eta;
+    }
+    for i in 2..=TERMS + 1 {
+        powers[i] *= INVERSE_FACTORIAL[i];
+    }
+    let mut all = [0.0; ORDERS];
+    for k in 1..=TERMS + 1 {
+        let mut sum = 0.0;
+        for j in (0..=k / 2).rev() {
+            sum += SECH[j] * powers[k - 2 * j];
+        }
+        all[k] = sum;
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn waves_are_the_fourier_series() {
+        for t in [-3.7, -1.0, -0.2, 0.0, 0.31, 0.5, 1.25, 2.0, 7.9] {
+            let waves = waves::<12>(t);
+            for k in 2..ORDERS {
+                let mut sum = 0.0;
+                for n in (1..4001).step_by(2) {
+                    let x = f64::from(n) * PI;
+                    let phase = f64::from(n) * PI * t - k as f64 * PI / 2.0;
+                    sum += 4.0 / f64::from(n) * libm::sin(phase) / libm::pow(x, k as f64);
+                }
+                sum /= PI;
+                assert!(
+                    (sum - waves[k]).abs() < 1e-8 / libm::pow(PI, k as f64),
+                    "A_{k}({t}) = {} or {sum}",
+                    waves[k]
+                );
+                assert!(waves[k].abs() <= 0.5 * libm::pow(PI, 1.0 - k as f64));
+            }
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! Sums over the lines that an edge crosses on its way to the horizon, which never end.
+//!
+//! Crossing j lies at t_j = t + τj, m_j = g(w + j), and s changes its sign at every one. With
+//! A_k = Im (4/π) Σ_n e^(inπt)/(n (inπ)^k) over the odd n, Σ_j (−1)^j A_k+1(t_j) m_j^(−2−k) is the sum of the modes
+//!
+//! g^(−2−k) Im (4/π) e^(inπt)/(n (inπ)^(k+1)) V(θ), V_s(θ) = Σ_j e^(iθj) (w + j)^(−s), s = k + 2, θ = nπ(τ + 1) less turns,
+//!
+//! a Lerch series. (w + j)^(−s) = ∫ x^(s−1) e^(−(w+j)x) dx/Γ(s), so that V = ∫ x^(s−1) e^(−wx)/(1 − e^(iθ−x)) dx/Γ(s); the
+//! pole at x = iθ gives w^(1−s)·e^z E_s(z), z = −iθw, an exponential integral (DLMF 8.19), and Taylor's series of the
+//! regular rest R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ gives w^(−s)·(R − i… ) term by term: R + R′·s/w + ….
+//! It is the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
+
+use super::board::{Sum, UNIT};
+use super::edge::{Crossings, Series};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Below so many crossings one by one is as good as by modes.
+const SHORT: f64 = 20_000.0;
+/// The time that a mode takes, in crossings.
+const MODE_COST: f64 = 2.0;
+/// The modes that are always computed; a later one may be skipped where it is small.
+const FIRST_MODES: f64 = 31.0;
+
+/// Σ (−1)^j X over all crossings, of which as much as `tolerance` may be neglected.
+pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
+    let short = all.lines <= SHORT || all.edge.rise * all.lines < all.depth;
+    if short {
+        return all.one_by_one(series, all.lines);
+    }
+    let direct = ((start(all, series, tolerance) - all.depth) / all.edge.rise)
+        .ceil()
+        .max(0.0);
+    if direct + SHORT >= all.lines {
+        return all.one_by_one(series, all.lines);
+    }
+    let mut sum = all.one_by_one(series, direct);
+    let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];
+    let share = tolerance / rests.iter().flatten().count() as f64;
+    for (end, lines) in rests.iter_mut().enumerate() {
+        let Some(lines) = lines else { continue };
+        let rest = rest(all, *lines, series, share);
+        let odd = (*lines % 2.0 != 0.0) != (end == 1);
+        sum.value += if odd { -rest.value } else { rest.value };
+        sum.bound += rest.bound;
+    }
+    sum
+}
+
+/// A bound on Σ |X| of everything from a depth on, of term k.
+fn absolute(series: &Series, k: usize, depth: f64, rise: f64) -> f64 {
+    series.size(k, depth) * (1.0 + depth / (rise * (k + 1) as f64))
+}
+
+/// The depth from which to sum by modes.
+fn start(all: &Crossings, series: &Series, tolerance: f64) -> f64 {
+    let g = all.edge.rise;
+    let factor = series.factors[1].abs();
+    // The cheapest: (m − m_0)/g crossings and κ/2m modes.
+    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * 0.25 * tolerance)).sqrt();
+    let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
+    // Where so little is left that it may be neglected, the first term's bound being ½/π of its factor.
+    let nothing = (factor * 0.25 / PI / g / (0.125 * tolerance)).sqrt() + g;
+    // What is neglected of a mode is w^−5, of the waves A_5 and on m^−5.
+    let steep = g * libm::pow(factor / (g * g * g) / (0.02 * tolerance), 0.2);
+    let fourth = match series.terms {
+        4.. => libm::pow(
+            series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g) / (0.05 * tolerance),
+            0.2,
+        ),
+        _ => 0.0,
+    };
+    cheapest
+        .max(16.0 * g)
+        .max(steep)
+        .max(fourth)
+        .min(nothing)
+        .max(all.depth)
+}
+
+/// Σ (−1)^j X from crossing `direct` on, with j counted from there.
+fn rest(all: &Crossings, direct: f64, series: &Series, tolerance: f64) -> Sum {
+    let g = all.edge.rise;
+    let depth = all.depth + direct * g;
+    let everything: f64 = (1..=series.terms)
+        .map(|k| absolute(series, k, depth, g))
+        .sum();
+    if everything <= 0.25 * tolerance {
+        return Sum {
+            value: 0.0,
+            bound: everything,
+        };
+    }
+    let w = depth / g;
+    let f = &series.factors;
+    // The amplitudes of the three waves in the mode n = 1, in which w^(−2−k) is still missing.
+    let mut amplitudes = [0.0; 3];
+    let mut amplitude = 4.0 / (PI * PI * PI) / (g * g * g);
+    for k in 1..=3.min(series.terms) {
+        amplitudes[k - 1] = f[k] * amplitude;
+        amplitude /= PI * g;
+    }
+    let first = amplitudes[0].abs();
+    let u = 1.0 / w;
+    let u2 = u * u;
+    let u3 = u2 * u;
+    // The later waves' share in what is neglected.
+    let waves = if first > 0.0 {
+        1.0 + (amplitudes[1].abs() * u + amplitudes[2].abs() * u2) / first
+    } else {
+        1.0
+    };
+    // |V_3| ≤ w^−3 + w^−2/2, and Σ n^−3 over the odd n > Q is at most 1/4(Q)², for odd Q + 1 … .
+    let largest = first * waves * (0.5 * u2 + u3);
+    let last = ((largest / tolerance).sqrt().ceil() + 1.0).max(3.0);
+    let beyond = largest / (4.0 * (last - 1.0) * (last - 1.0));
+    // By Abel |V_3| ≤ 2w^−3/|1 − e^iθ|: a late mode n is skipped where this is below an allowance that falls as n^−2.
+    let allowance = 0.25 * tolerance * 2.0 * (FIRST_MODES - 1.0);
+    let skipped = allowance / (2.0 * (FIRST_MODES - 1.0));
+    let threshold = 2.0 * first * waves * u3 / allowance;
+    let threshold = threshold * threshold;
+
+    let turn = |x: f64| x - 2.0 * (0.5 * x).round_ties_even();
+    let stride = turn(all.edge.stride);
+    let stride = stride - 1.0_f64.copysign(stride);
+    let t = turn(all.t + direct * all.edge.stride);
+    let mut place = phase(t * PI);
+    let mut angle = phase(stride * PI);
+    let (place_step, angle_step) = (square(place), square(angle));
+    let mut value = 0.0;
+    let mut n = 1.0;
+    while n <= last {
+        let gap = 2.0 - 2.0 * angle[0];
+        if n <= FIRST_MODES || gap * n * n < threshold {
+            let theta = turn(n * stride) * PI;
+            let v = lerch(theta, angle, w);
+            let per_mode = 1.0 / n;
+            let n3 = per_mode * per_mode * per_mode;
+            // i^−2, i^−3 and i^−4 are −1, i and 1; the imaginary parts of those times e^(inπt)·V.
+            let e = place;
+            let k1 = -(e[0] * v[0][1] + e[1] * v[0][0]);
+            let k2 = e[0] * v[1][0] - e[1] * v[1][1];
+            let k3 = e[0] * v[2][1] + e[1] * v[2][0];
+            value += n3
+                * (amplitudes[0] * k1
+                    + per_mode * (amplitudes[1] * k2 + per_mode * amplitudes[2] * k3));
+        }
+        place = times(place, place_step);
+        angle = times(angle, angle_step);
+        n += 2.0;
+    }
+    // |R″|/2 ≤ 0.04 for |θ| ≤ π, so that V_s lacks at most 0.04·s(s + 1)·w^(−s−2); Σ n^−3 < 1.06.
+    let curvature = 1.06
+        * 0.04
+        * u2
+        * u3
+        * (12.0 * first + 20.0 * amplitudes[1].abs() * u + 30.0 * amplitudes[2].abs() * u2);
+    let later: f64 = (4..=series.terms)
+        .map(|k| absolute(series, k, depth, g))
+        .sum();
+    // V's are good to some 500 units in the last place of w^−2; rotation adds n of them, to the n-th mode.
+    let rounding = 1000.0 * UNIT * first * waves * u2;
+    Sum {
+        value,
+        bound: beyond + skipped + curvature + later + rounding,
+    }
+}
+
+type Complex = [f64; 2];
+
+fn times(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+fn square(a: Complex) -> Complex {
+    times(a, a)
+}
+
+fn over(a: Complex, b: Complex) -> Complex {
+    let norm = 1.0 / (b[0] * b[0] + b[1] * b[1]);
+    [
+        (a[0] * b[0] + a[1] * b[1]) * norm,
+        (a[1] * b[0] - a[0] * b[1]) * norm,
+    ]
+}
+
+fn phase(x: f64) -> Complex {
+    [libm::cos(x), libm::sin(x)]
+}
+
+/// V_3, V_4 and V_5 at θ, |θ| ≤ π, of which e^iθ is given as well, up to R″.
+fn lerch(theta: f64, turn: Complex, w: f64) -> [Complex; 3] {
+    let (r, slope) = rest_of_pole(theta, turn);
+    let h = exponential_integrals(theta * w);
+    let u = 1.0 / w;
+    let mut power = u * u;
+    [0, 1, 2].map(|i| {
+        let s = (i + 3) as f64;
+        let v = [
+            power * (h[i][0] + u * (0.5 + slope * s * u)),
+            power * (h[i][1] + u * r),
+        ];
+        power *= u;
+        v
+    })
+}
+
+/// R at −iθ is ½ + i(½ cot(θ/2) − 1/θ); this is the bracket, and R′ = 1/4sin²(θ/2) − 1/θ².
+fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
+    let square = theta * theta;
+    if square < 0.04 {
+        let r = -theta
+            * (1.0 / 12.0 + square * (1.0 / 720.0 + square * (1.0 / 30240.0 + square / 1209600.0)));
+        let slope =
+            1.0 / 12.0 + square * (1.0 / 240.0 + square * (1.0 / 6048.0 + square / 172800.0));
+        return (r, slope);
+    }
+    let gap = 1.0 / (1.0 - turn[0]);
+    let inverse = 1.0 / theta;
+    (0.5 * turn[1] * gap - inverse, 0.5 * gap - inverse * inverse)
+}
+
+/// e^z E_s(z) = ∫_0^∞ e^(iyu) (1 + u)^(−s) du for z = −iy and s = 3, 4, 5.
+fn exponential_integrals(y: f64) -> [Complex; 3] {
+    let size = y.abs();
+    let mut third = if size >= 48.0 {
+        asymptotic(size)
+    } else if size >= 3.0 {
+        continued_fraction(size)
+    } else {
+        power_series(size)
+    };
+    if y < 0.0 {
+        third[1] = -third[1];
+    }
+    // E_s+1 = (e^−z − z·E_s)/s (DLMF 8.19.12).
+    let next = |h: Complex, s: f64| [(1.0 - y * h[1]) / s, y * h[0] / s];
+    let fourth = next(third, 3.0);
+    [third, fourth, next(fourth, 4.0)]
+}
+
+/// DLMF 8.20.2: (1/z)·Σ (−1)^k (3)_k z^−k, until the terms vanish; of the k-th the factor is k!/2·(k + 1)(k + 2).
+fn asymptotic(y: f64) -> Complex {
+    let u = 1.0 / y;
+    // −1/z = 1/iy = −i/y, so that with every term the factor is −i(k + 2)/y.
+    let (mut term, mut sum) = (u, [0.0; 2]);
+    for k in 0..20 {
+        match k % 4 {
+            0 => sum[1] += term,
+            1 => sum[0] += term,
+            2 => sum[1] -= term,
+            _ => sum[0] -= term,
+        }
+        term *= (k + 3) as f64 * u;
+        if term < 1e-17 {
+            break;
+        }
+    }
+    sum
+}
+
+/// DLMF 8.19.17 contracted, as Lentz evaluates it: 1/(z+3 − 1·3/(z+5 − 2·4/(z+7 − …))).
+fn continued_fraction(y: f64) -> Complex {
+    const TINY: f64 = 1e-300;
+    let mut b = [3.0, -y];
+    let mut c = [1.0 / TINY, 0.0];
+    let mut d = over([1.0, 0.0], b);
+    let mut h = d;
+    for i in 1..200 {
+        let a = -f64::from(i) * f64::from(i + 2);
+        b[0] += 2.0;
+        d = over([1.0, 0.0], [b[0] + a * d[0], b[1] + a * d[1]]);
+        c = over([a, 0.0], c);
+        c = [c[0] + b[0], c[1] + b[1]];
+        let delta = times(c, d);
+        h = times(h, delta);
+        if (delta[0] - 1.0).abs() + delta[1].abs() < 1e-16 {
+            break;
+        }
+    }
+    h
+}
+
+/// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2), and twice the recurrence to E_3.
+fn power_series(y: f64) -> Complex {
+    const EULER: f64 = 0.577_215_664_901_532_9;
+    if y == 0.0 {
+        return [0.5, 0.0];
+    }
+    let mut first = [-EULER - libm::log(y), FRAC_PI_2];
+    let mut term = [1.0, 0.0];
+    for k in 1..40 {
+        let k = f64::from(k);
+        // −z/k = iy/k.
+        term = [-term[1] * y / k, term[0] * y / k];
+        first = [first[0] - term[0] / k, first[1] - term[1] / k];
+    }
+    let first = times(first, phase(-y));
+    // 1 − z·h with −z = iy.
+    let second = [1.0 - y * first[1], y * first[0]];
+    [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
+}
