@@ -98,6 +98,9 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
         .iter()
         .fold(DVec2::NEG_INFINITY, |m, &p| m.max(p))
         .floor();
+    let nearest = polygon
+        .iter()
+        .fold(f64::INFINITY, |m, &p| m.min(1.0 / value(forms[2], p)));
     let mut sum = 0.0;
     let mut i = low.x;
     while i <= high.x {
@@ -110,12 +113,14 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
             + 1.0;
         let mut j = first;
         while j <= last {
-            let mut square: Vec<DVec2> = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            let seen = |q: DVec2| inverse * q.extend(1.0);
+            // A square may reach behind the eye, where m is negative.
+            let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+                .map(|(x, y)| DVec2::new(i + x, j + y));
+            let before = clip(&corners, |q| seen(q).z - 0.5 * nearest);
+            let mut square: Vec<DVec2> = before
                 .iter()
-                .map(|&(x, y)| {
-                    let p = inverse * glam::DVec3::new(i + x, j + y, 1.0);
-                    DVec2::new(p.x, p.y) / p.z
-                })
+                .map(|&q| seen(q).truncate() / seen(q).z)
                 .collect();
             for (k, &p) in polygon.iter().enumerate() {
                 let along = polygon[(k + 1) % polygon.len()] - p;
@@ -163,5 +168,163 @@ fn pixels_of_many_squares() {
                 view,
             );
         }
+    }
+}
+
+#[test]
+fn the_horizon() {
+    for degrees in [
+        0.0,
+        90.0,
+        44.9,
+        45.0,
+        41.7446,
+        71.565_051_177,
+        18.43,
+        30.0,
+        133.0,
+        225.0,
+    ] {
+        for y in [0.0, 0.2, 0.5, 0.8] {
+            let mut view = view(degrees, 1000.0);
+            view.place = DVec2::new(0.5, y);
+            let quick = view.board();
+            let mut deep = quick.clone();
+            deep.tail = 1e-13;
+            let (found, expected) = (quick.over(&PIXEL), deep.over(&PIXEL));
+            assert!(found.bound < 1e-9, "{view:?}: {found:?}");
+            let error = (found.value - expected.value).abs();
+            assert!(
+                error <= found.bound + expected.bound,
+                "{view:?}: {found:?} {expected:?} {error:e}"
+            );
+        }
+    }
+}
+
+/// The part of a horizon pixel between two depths, once as an end less an end and once by itself.
+#[test]
+fn the_end_is_the_limit() {
+    for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
+        let mut view = view(degrees, 1000.0);
+        view.place = DVec2::new(0.5, 0.5);
+        let board = view.board();
+        let line = -0.5 + 2464.0 / 5000.0;
+        let [a, b, c, d] = PIXEL;
+        let upper = board.over(&[a, b, DVec2::new(0.5, line), DVec2::new(-0.5, line)]);
+        let lower = [DVec2::new(-0.5, line), DVec2::new(0.5, line), c, d];
+        let expected = brute(view.forms(), &lower);
+        let all = board.over(&PIXEL);
+        let difference = Sum {
+            value: all.value - upper.value,
+            bound: all.bound + upper.bound,
+        };
+        agree(difference, expected, 1e-9, view);
+    }
+}
+
+proptest! {
+    #[test]
+    fn pieces_add_up(degrees in 0.0..360.0, depth in 2.0_f64..40_000.0, s in -0.45..0.45, t in -0.45..0.45, w in 0.2..3.0, bend in 0.0..0.4) {
+        let view = view(degrees, depth);
+        let board = view.board();
+        let whole = board.over(&PIXEL);
+        let arc = Arc { start: DVec2::new(s, -0.5), control: DVec2::new(0.5 * (s + t) + bend, 0.1 * bend), end: DVec2::new(t, 0.5), weight: w };
+        let [a, b, c, d] = PIXEL;
+        let left = board.over(&[a, arc.start, arc.end, d]);
+        let right = board.over(&[arc.start, b, c, arc.end]);
+        let pieces = left.value + right.value;
+        let bound = whole.bound + left.bound + right.bound;
+        prop_assert!((pieces - whole.value).abs() <= bound, "{} {} {bound}", whole.value, pieces);
+        // The region between the arc and its chord, by the exact cuts and by many chords.
+        let sliver = board.sliver(&arc);
+        let points: Vec<DVec2> = (0..=400).map(|i| arc.at(f64::from(i) / 400.0)).collect();
+        let chords = board.over(&points);
+        let neglected: f64 = (0..400).map(|i| arc.between(f64::from(i) / 400.0, f64::from(i + 1) / 400.0).area()).sum();
+        prop_assert!((sliver.value - chords.value).abs() <= sliver.bound + chords.bound + neglected, "{sliver:?} {chords:?} {neglected}");
+    }
+
+    #[test]
+    fn any_projection(m in prop::array::uniform6(-3.0..3.0), centre in prop::array::uniform2(-50.0..50.0), tilt in prop::array::uniform2(-0.9..0.9), scale in 0.1..100.0) {
+        let below = [tilt[0], tilt[1], 1.0].map(|c| c / scale);
+        let a = [m[0], m[1], m[2] + centre[0] * below[2]];
+        let b = [m[3], m[4], m[5] + centre[1] * below[2]];
+        let matrix = glam::DMat3::from_cols_array_2d(&[a, b, below]);
+        prop_assume!(matrix.determinant().abs() > 1e-3);
+        let found = Board::new([a, b], below).over(&PIXEL);
+        let expected = brute([a, b, below], &PIXEL);
+        prop_assert!((found.value - expected).abs() <= found.bound + 1e-13, "{found:?} {expected}");
+    }
+}
+
+#[test]
+fn from_straight_above() {
+    // Squares of 1/1000 pixel: the pixel's sides hold 1000 of them and a remainder.
+    let board = Board::new(
+        [[1000.5, 0.0, 500.25], [0.0, 1000.5, 500.25]],
+        [0.0, 0.0, 1.0],
+    );
+    agree(board.over(&PIXEL), 0.25 / (1000.5 * 1000.5), 1e-14, "above");
+}
+
+/// The time of a pixel. Printed by `cargo test --release --lib exact::tests::timing -- --ignored --nocapture`.
+#[test]
+#[ignore]
+fn timing() {
+    use std::time::Instant;
+    let run = |name: &str, boards: &[Board]| {
+        let start = Instant::now();
+        let mut sum = 0.0;
+        let mut bound: f64 = 0.0;
+        let mut slowest = 0.0_f64;
+        for _ in 0..20 {
+            for board in boards {
+                let one = Instant::now();
+                let s = board.over(&PIXEL);
+                slowest = slowest.max(one.elapsed().as_secs_f64());
+                sum += s.value;
+                bound = bound.max(s.bound);
+            }
+        }
+        let each = start.elapsed().as_secs_f64() / (20.0 * boards.len() as f64);
+        eprintln!(
+            "{name}: {:.0} ns each, slowest {:.0} ns, bound {bound:.1e} ({sum:.3})",
+            each * 1e9,
+            slowest * 1e9
+        );
+    };
+    for depth in [5.0, 20.0, 60.0, 120.0, 250.0, 500.0, 1000.0, 2000.0] {
+        for degrees in [0.0, 30.0, 45.0] {
+            let boards: Vec<_> = (0..40)
+                .map(|i| {
+                    View {
+                        place: DVec2::new(f64::from(i) * 9.0 - 180.0, 3.5 * 704.0 / depth),
+                        ..view(degrees, depth)
+                    }
+                    .board()
+                })
+                .collect();
+            run(&format!("depth {depth} at {degrees}"), &boards);
+        }
+    }
+    for degrees in [0.0, 30.0, 45.0] {
+        let boards: Vec<_> = (0..40)
+            .map(|i| {
+                View {
+                    place: DVec2::new(f64::from(i) * 9.0 - 180.0, 0.3),
+                    ..view(degrees, 1.0)
+                }
+                .board()
+            })
+            .collect();
+        run(&format!("horizon at {degrees}"), &boards);
+    }
+    for offset in [0.0, 1e-6, 1e-5, 1e-4, 1e-3] {
+        let boards = [View {
+            place: DVec2::new(0.5 + offset * 704.0, 0.5),
+            ..view(45.0, 1.0)
+        }
+        .board()];
+        run(&format!("horizon, diagonal and {offset}"), &boards);
     }
 }
