@@ -7,8 +7,8 @@
 //!
 //! a Lerch series. (w + j)^(−s) = ∫ x^(s−1) e^(−(w+j)x) dx/Γ(s), so that V = ∫ x^(s−1) e^(−wx)/(1 − e^(iθ−x)) dx/Γ(s); the
 //! pole at x = iθ gives w^(1−s)·e^z E_s(z), z = −iθw, an exponential integral (DLMF 8.19), and Taylor's series of the
-//! regular rest R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ gives w^(−s)·(R − i… ) term by term: R + R′·s/w + ….
-//! It is the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
+//! regular rest R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ about ζ = −iθ gives w^(−s)·(R + R′·s/w + …), term by term. It is
+//! the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
 
 use super::board::{Sum, UNIT};
 use super::edge::{Crossings, Series};
@@ -23,6 +23,16 @@ const FIRST_MODES: f64 = 31.0;
 
 /// Σ (−1)^j X over all crossings, of which as much as `tolerance` may be neglected.
 pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
+    let trivial = all.lines
+        * (1..=series.terms)
+            .map(|k| series.size(k, all.depth))
+            .sum::<f64>();
+    if all.lines > SHORT && trivial <= 0.25 * tolerance {
+        return Sum {
+            value: 0.0,
+            bound: trivial,
+        };
+    }
     let short = all.lines <= SHORT || all.edge.rise * all.lines < all.depth;
     if short {
         return all.one_by_one(series, all.lines);
@@ -241,7 +251,7 @@ fn exponential_integrals(y: f64) -> [Complex; 3] {
 /// DLMF 8.20.2: (1/z)·Σ (−1)^k (3)_k z^−k, until the terms vanish; of the k-th the factor is k!/2·(k + 1)(k + 2).
 fn asymptotic(y: f64) -> Complex {
     let u = 1.0 / y;
-    // −1/z = 1/iy = −i/y, so that with every term the factor is −i(k + 2)/y.
+    // 1/z = i/y, so that with every term the factor is −i(k + 2)/y.
     let (mut term, mut sum) = (u, [0.0; 2]);
     for k in 0..20 {
         match k % 4 {

@@ -6,7 +6,7 @@
 //! [`Board`] is the integral of the board's sign, [`Arc`] an arc of a conic. Few squares are cut out one by one (`cells`);
 //! many are summed along the region's boundary (`edge`), and those that pile up at the horizon by their Fourier series
 //! (`horizon`).
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 mod arc;
 mod board;
