@@ -39,7 +39,7 @@ fn main() {
     println!(
         "                    points alone    rendered, 1 thread    rendered, {threads} threads"
     );
-    for method in Method::ALL {
+    for method in Method::SAMPLED {
         let scene = figure::figure(WIDTH, HEIGHT, method, Count::PerPixel(PER_PIXEL));
         let points = best(|| points(&scene));
         let [one, all] = [1, threads].map(|threads| best(|| picture(&scene, threads)));

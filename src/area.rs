@@ -71,6 +71,30 @@ impl Area {
         })
     }
 
+    /// The same area, counted from the corner of one that it lies in.
+    pub fn within(self, outer: Self) -> Self {
+        Self {
+            x: self.x - outer.x,
+            y: self.y - outer.y,
+            ..self
+        }
+    }
+
+    /// Its four parts of nearly the same size; two, if it has but one row or column, and itself, if it is a pixel.
+    pub fn quarters(self) -> impl Iterator<Item = Self> {
+        let halves = |length: u32| [(0, length / 2), (length / 2, length - length / 2)];
+        let (columns, rows) = (halves(self.width), halves(self.height));
+        let quarters = rows.into_iter().flat_map(move |(y, height)| {
+            columns.into_iter().map(move |(x, width)| Self {
+                x: self.x + x,
+                y: self.y + y,
+                width,
+                height,
+            })
+        });
+        quarters.filter(|quarter| quarter.width > 0 && quarter.height > 0)
+    }
+
     // As u64, so that an area that a user made up cannot overflow.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)

@@ -18,6 +18,7 @@ use thiserror::Error;
 
 use crate::{
     area::Area,
+    exact::Integrator,
     film::{Film, TooLarge, mean},
     sampling::Sampling,
     tracer::World,
@@ -39,7 +40,7 @@ const THREADS: usize = 1024;
 pub struct Control<'a> {
     /// How many threads; as many as there are processors if this is `None`.
     pub threads: Option<NonZero<usize>>,
-    /// Is told, from any thread, how many more samples are done.
+    /// Is told, from any thread, how many more samples are done, or how many more exact pixels.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
@@ -59,7 +60,23 @@ pub enum RenderError {
     Cancelled,
 }
 
-/// Renders a part of the picture, which lies in it.
+/// A computed picture, and how far it may be from the true one.
+#[derive(Clone, Debug)]
+pub struct Exact {
+    /// Its means.
+    pub film: Film,
+    /// For each pixel, row by row, how far each channel may be from the true mean.
+    pub bounds: Vec<f32>,
+}
+
+impl Exact {
+    /// The greatest of the bounds.
+    pub fn bound(&self) -> f64 {
+        f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
+    }
+}
+
+/// Renders a part of the picture, which lies in it, with samples.
 pub fn render(
     world: &World,
     sampling: &Sampling,
@@ -86,20 +103,47 @@ pub fn render(
                 let Some(pixels) = frame.tile(tile, tally) else {
                     return;
                 };
-                let place = Area {
-                    x: tile.x - part.x,
-                    y: tile.y - part.y,
-                    ..tile
-                };
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
-                film.put(place, &pixels);
+                film.put(tile.within(part), &pixels);
             },
         );
     });
+    finished(film, control)
+}
+
+/// Computes a part of the picture, which lies in it, without samples; progress counts pixels.
+pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exact, RenderError> {
+    let film = Film::new(part.width, part.height)?;
+    let bounds = vec![0f32; part.pixels() as usize];
+    let exact = Mutex::new(Exact { film, bounds });
+    let integrator = Integrator::new(world);
+    pool(control.threads)?.install(|| {
+        part.tiles(TILE).par_bridge().for_each(|tile| {
+            let Some(pixels) = integrator.pixels(tile, control.cancel) else {
+                return;
+            };
+            let means: Vec<_> = pixels.iter().map(|pixel| pixel.mean).collect();
+            let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
+            exact.film.put(tile.within(part), &means);
+            for ((x, y), pixel) in tile.iter().zip(&pixels) {
+                exact.bounds[part.index(x, y)] = match pixel.bound {
+                    0.0 => 0.0,
+                    // Rounded up.
+                    bound => (bound as f32).next_up(),
+                };
+            }
+            (control.progress)(tile.pixels());
+        });
+    });
+    finished(exact, control)
+}
+
+/// What was made, if it was wanted to the end.
+fn finished<T>(made: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);
     }
-    Ok(film.into_inner().unwrap_or_else(PoisonError::into_inner))
+    Ok(made.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 fn pool(threads: Option<NonZero<usize>>) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {

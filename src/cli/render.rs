@@ -12,9 +12,9 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, Film, Recipe},
-    render::{self, Control, RenderError},
+    render::{self, Control, Exact, RenderError},
     sampling::Sampling,
-    scene::Scene,
+    scene::{Method, Scene},
     tracer::World,
 };
 
@@ -52,14 +52,14 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     }
     let cancel = interrupt.watch();
     let started = Instant::now();
-    let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
-    let film = match film(&scene, &sampling, part, args.threads, cancel) {
-        Ok(film) => film,
+    let picture = match picture(&scene, part, args.threads, cancel) {
+        Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
         Err(error) => return Err(Trouble(error.to_string())),
     };
     let recipe = input.recipe(crop);
-    if let Err(error) = output.write(&film, &recipe, cancel) {
+    let film = picture.film();
+    if let Err(error) = output.write(film, &recipe, cancel) {
         if interrupt.pressed() {
             return Ok(Status::Interrupted);
         }
@@ -69,6 +69,9 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         output::warning(&format!(
             "the scene and its overrides have more than 1 MiB of text, so {output} does not carry them"
         ));
+    }
+    if let Picture::Exact(exact) = &picture {
+        output::to_people(&certificate(exact));
     }
     if output::is_watched() {
         let (width, height) = (film.width(), film.height());
@@ -80,29 +83,66 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     Ok(Status::Done)
 }
 
-fn film(
+enum Picture {
+    Sampled(Film),
+    Exact(Exact),
+}
+
+impl Picture {
+    fn film(&self) -> &Film {
+        match self {
+            Self::Sampled(film) => film,
+            Self::Exact(exact) => &exact.film,
+        }
+    }
+}
+
+fn picture(
     scene: &Scene,
-    sampling: &Sampling,
     part: Area,
     threads: Option<u64>,
     cancel: &AtomicBool,
-) -> Result<Film, RenderError> {
-    // The samples of the part, but for how the extra ones of a total fall: near enough for a bar.
-    let share =
-        part.pixels() as f64 / Area::whole(scene.image.width, scene.image.height).pixels() as f64;
-    let expected = (sampling.total() as f64 * share) as u64;
+) -> Result<Picture, RenderError> {
     let threads =
         threads.and_then(|threads| NonZero::new(usize::try_from(threads).unwrap_or(usize::MAX)));
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
+    let is_exact = scene.sampler.method == Method::Exact;
+    let expected = match is_exact {
+        true => part.pixels(),
+        // The samples of the part, but for how the extra ones of a total fall: near enough for a bar.
+        false => {
+            let share = part.pixels() as f64 / whole.pixels() as f64;
+            (sampling.total() as f64 * share) as u64
+        }
+    };
     progress::watched(expected, |done| {
         let control = Control {
             threads,
-            progress: &|samples| {
-                done.fetch_add(samples, Ordering::Relaxed);
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
             },
             cancel,
         };
-        render::render(&World::new(scene), sampling, part, &control)
+        let world = World::new(scene);
+        match is_exact {
+            true => render::render_exact(&world, part, &control).map(Picture::Exact),
+            false => render::render(&world, &sampling, part, &control).map(Picture::Sampled),
+        }
     })
+}
+
+/// What is certain of a computed picture.
+fn certificate(exact: &Exact) -> String {
+    let certified = film::certified(&exact.film, &exact.bounds);
+    let pixels = exact.bounds.len() as u64;
+    let bytes = match pixels - certified {
+        0 => "the 8-bit rounding of every pixel is certain".to_owned(),
+        1 => "the 8-bit rounding of all pixels but one is certain".to_owned(),
+        others => format!("the 8-bit rounding of all pixels but {others} is certain"),
+    };
+    let bound = exact.bound();
+    format!("exact: every channel is within {bound:.1e} of its true mean; {bytes}\n")
 }
 
 /// Where a picture goes, and as what.

@@ -1,12 +1,17 @@
-//! A pixel's mean computed rather than sampled: what the infinite board adds up to over a part of a pixel.
+//! A pixel's mean without samples: the area integral itself.
 //!
-//! In come polygons and arcs of conics in the picture, in pixels from the pixel's centre; out goes an integral together with
-//! a bound on its error. Which part of a pixel shows which object, and every colour, is left to the caller.
+//! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in linear light, with a bound on
+//! its error. What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:
 //!
-//! [`Board`] is the integral of the board's sign, [`Arc`] an arc of a conic. Few squares are cut out one by one (`cells`);
-//! many are summed along the region's boundary (`edge`), and those that pile up at the horizon by their Fourier series
-//! (`horizon`).
-#![allow(dead_code, unused_imports)]
+//! 1. The picture is quartered until a part shows one colour for certain, or is a single pixel.
+//! 2. In such a pixel the boundaries of what may be seen there cut it into regions: convex polygons where all are lines
+//!    (`polygon`), slabs between neighbouring curves where some are conics (`sweep`).
+//! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen there. Boundaries that
+//!    are hidden do no harm: both sides of them get the same colour.
+//! 4. Areas have closed forms: `arc` for conics. What a region shows of a checkerboard is a line integral along its boundary
+//!    (`board`), with `horizon` for squares without end.
+//!
+//! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
 mod arc;
 mod board;
@@ -14,9 +19,172 @@ mod cells;
 mod edge;
 mod euler;
 mod horizon;
+mod polygon;
+mod region;
 mod sliver;
+mod sweep;
 #[cfg(test)]
 mod tests;
+mod track;
 
-pub(crate) use arc::Arc;
-pub(crate) use board::{Board, Sum};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::{
+    area::Area,
+    tracer::{Curve, Live, World},
+};
+
+use self::region::{Regions, Shares};
+
+/// A pixel computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    /// Its mean in linear light.
+    pub mean: [f64; 3],
+    /// How far each channel may be from the true mean.
+    pub bound: f64,
+}
+
+/// Computes pixels of one picture.
+#[derive(Debug)]
+pub struct Integrator<'a> {
+    world: &'a World,
+    everything: Vec<Live>,
+    /// Of the palette, in linear light.
+    colors: Vec<[f64; 3]>,
+}
+
+/// Room for what a tile needs, kept from tile to tile.
+#[derive(Debug)]
+struct Scratch<'a> {
+    /// The candidates at each depth of the quartering.
+    live: Vec<Vec<Live>>,
+    curves: Vec<Curve>,
+    cancel: &'a AtomicBool,
+}
+
+impl<'a> Integrator<'a> {
+    /// For the pixels of a prepared scene.
+    pub fn new(world: &'a World) -> Self {
+        Self {
+            world,
+            everything: world.everything(),
+            colors: world
+                .palette()
+                .iter()
+                .map(|color| color.to_linear())
+                .collect(),
+        }
+    }
+
+    /// The pixels of a part of the picture, row by row; none once it is cancelled.
+    pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<Pixel>> {
+        let black = Pixel {
+            mean: [0.0; 3],
+            bound: 0.0,
+        };
+        let mut film = Film {
+            part,
+            pixels: vec![black; part.pixels() as usize],
+        };
+        let mut scratch = Scratch {
+            live: Vec::new(),
+            curves: Vec::new(),
+            cancel,
+        };
+        self.quarter(part, &self.everything, 0, &mut scratch, &mut film);
+        (!cancel.load(Ordering::Relaxed)).then_some(film.pixels)
+    }
+
+    /// Fills a part of the picture, given the objects that may be seen there.
+    fn quarter(
+        &self,
+        part: Area,
+        among: &[Live],
+        depth: usize,
+        scratch: &mut Scratch,
+        film: &mut Film,
+    ) {
+        if scratch.cancel.load(Ordering::Relaxed) {
+            return;
+        }
+        if scratch.live.len() <= depth {
+            scratch.live.push(Vec::new());
+        }
+        let mut live = std::mem::take(&mut scratch.live[depth]);
+        self.world.live(part, among, &mut live);
+        match live.as_slice() {
+            [] => film.fill(part, self.colors[self.colors.len() - 1]),
+            [only] if only.is_whole && self.is_one_color(part, *only) => {
+                let slot = self.world.slot_at(part.x, part.y, glam::DVec2::ZERO);
+                film.fill(part, self.colors[slot]);
+            }
+            _ if part.width == 1 && part.height == 1 => {
+                film.set(part, self.pixel(part.x, part.y, &live, &mut scratch.curves));
+            }
+            _ => {
+                for quarter in part.quarters() {
+                    self.quarter(quarter, &live, depth + 1, scratch, film);
+                }
+            }
+        }
+        scratch.live[depth] = live;
+    }
+
+    fn is_one_color(&self, part: Area, live: Live) -> bool {
+        let [first, second] = self.world.slots(live.object);
+        first == second || self.world.is_one_square(part, live.object)
+    }
+
+    fn pixel(&self, x: u32, y: u32, live: &[Live], curves: &mut Vec<Curve>) -> Pixel {
+        self.world.curves(x, y, live, curves);
+        let regions = Regions::new(self.world, x, y, live);
+        let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
+        let shares = if lines_alone {
+            polygon::shares(curves, regions)
+        } else {
+            sweep::shares(curves, regions)
+        };
+        self.mean(shares)
+    }
+
+    fn mean(&self, shares: Shares) -> Pixel {
+        let mut mean = [0.0; 3];
+        match shares.by_slot.as_slice() {
+            [(slot, _)] => mean = self.colors[*slot],
+            by_slot => {
+                let total: f64 = by_slot.iter().map(|(_, share)| share).sum();
+                for (slot, share) in by_slot {
+                    for (sum, channel) in mean.iter_mut().zip(self.colors[*slot]) {
+                        *sum += share * channel;
+                    }
+                }
+                mean = mean.map(|sum| (sum / total).clamp(0.0, 1.0));
+            }
+        }
+        Pixel {
+            mean,
+            bound: shares.bound,
+        }
+    }
+}
+
+/// The pixels of a part of the picture.
+struct Film {
+    part: Area,
+    pixels: Vec<Pixel>,
+}
+
+impl Film {
+    fn fill(&mut self, part: Area, mean: [f64; 3]) {
+        for y in part.y..part.y + part.height {
+            let start = self.part.index(part.x, y);
+            self.pixels[start..start + part.width as usize].fill(Pixel { mean, bound: 0.0 });
+        }
+    }
+
+    fn set(&mut self, part: Area, pixel: Pixel) {
+        let index = self.part.index(part.x, part.y);
+        self.pixels[index] = pixel;
+    }
+}

@@ -3,7 +3,10 @@
 use glam::DVec2;
 use proptest::prelude::*;
 
-use super::{Arc, Board, Sum};
+use super::{
+    arc::Arc,
+    board::{Board, Sum},
+};
 
 const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, -0.5),

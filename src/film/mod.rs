@@ -9,6 +9,7 @@ mod png;
 mod srgb;
 mod write;
 
+use self::srgb::Encoder;
 pub use self::{
     exr::write_exr,
     memory::TooLarge,
@@ -71,6 +72,18 @@ impl Film {
             self.pixels[start..start + width].copy_from_slice(row);
         }
     }
+}
+
+/// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
+pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
+    let encoder = Encoder::new();
+    let is_certain = |(pixel, bound): &(&[f64; 3], &f32)| {
+        let bound = f64::from(**bound);
+        pixel
+            .iter()
+            .all(|&light| encoder.encode(light - bound) == encoder.encode(light + bound))
+    };
+    film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
 }
 
 /// The mean of a pixel's samples: Σ count · colour / n, n being the sum of the counts, rounded once.

@@ -24,6 +24,8 @@ pub trait Radius:
     fn exponent(self) -> i32;
     /// What is left of it without `other`, which is smaller.
     fn without(self, other: Self) -> Self;
+    /// As an `f64`, or infinite.
+    fn to_f64(self) -> f64;
 
     /// The greater of two.
     fn max(self, other: Self) -> Self {
@@ -48,6 +50,10 @@ impl Radius for f64 {
     #[inline]
     fn without(self, other: Self) -> Self {
         self - other
+    }
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
     }
 }
 
@@ -162,6 +168,9 @@ impl Radius for Wide {
         let shift = (self.exponent - other.exponent).clamp(0, 1000);
         let rest = self.mantissa - libm::ldexp(other.mantissa, -(shift as i32));
         Self::new(rest.max(0.0), self.exponent)
+    }
+    fn to_f64(self) -> f64 {
+        libm::ldexp(self.mantissa, self.exponent.clamp(-1100, 1100) as i32)
     }
 }
 

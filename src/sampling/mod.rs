@@ -94,11 +94,12 @@ enum Pattern {
 }
 
 impl Sampling {
-    /// The samples of a picture of this size; each side is at least 1 and at most 2^20.
+    /// The samples of a picture of this size; each side is at least 1 and at most 2^20. The exact method has none.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
         let key = Key::new(sampler.seed, number(sampler.method));
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
+            _ if sampler.method == Method::Exact => 0,
             Count::PerPixel(n) => n.saturating_mul(pixels),
             Count::Total(total) => total,
         };
@@ -197,6 +198,7 @@ impl Pattern {
         match method {
             Method::Regular => Self::Regular(Bricks::new(n)),
             Method::Random | Method::Scatter => Self::Random,
+            Method::Exact => Self::Empty,
             Method::Jittered => Self::Jittered(Jittered::new(n)),
             Method::NRooks => Self::MultiJittered(MultiJittered::n_rooks(n)),
             Method::MultiJittered => Self::MultiJittered(MultiJittered::new(n)),
@@ -232,5 +234,6 @@ fn number(method: Method) -> u64 {
         Method::Halton => 6,
         Method::Sobol => 7,
         Method::Scatter => 8,
+        Method::Exact => 9,
     }
 }

@@ -146,11 +146,13 @@ pub enum Method {
     Sobol,
     /// Points uniform over the whole picture.
     Scatter,
+    /// No samples: the mean itself.
+    Exact,
 }
 
 impl Method {
-    /// All of them, in the order of the language's table.
-    pub const ALL: [Self; 9] = [
+    /// All that take samples, in the order of the language's table.
+    pub const SAMPLED: [Self; 9] = [
         Self::Regular,
         Self::Random,
         Self::Jittered,
@@ -174,6 +176,7 @@ impl Method {
             Self::Halton => "halton",
             Self::Sobol => "sobol",
             Self::Scatter => "scatter",
+            Self::Exact => "exact",
         }
     }
 }

@@ -627,6 +627,7 @@ pub const METHODS: &[(Method, &str)] = &[
         "Sobol' points with Owen scrambling, per pixel",
     ),
     (Method::Scatter, "points uniform over the whole picture"),
+    (Method::Exact, "no samples: the mean itself, computed"),
 ];
 
 /// A method, found by its name.

@@ -7,6 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
+    area::Area,
     math::{Ball, Ball3, Big, Exact, Real, UP},
     scene::{self, Image, Lens, Scene, Shape, View},
 };
@@ -212,6 +213,15 @@ impl<T: Real> Camera<T> {
             x: (f64::from(x) + 0.5 - self.half.x, offset.x),
             y: (f64::from(y) + 0.5 - self.half.y, offset.y),
         }
+    }
+
+    /// The middle of some pixels.
+    pub fn middle(&self, area: Area) -> Point {
+        let middle = |start: u32, length: u32| f64::from(start) + 0.5 * f64::from(length);
+        self.picture_point(DVec2::new(
+            middle(area.x, area.width),
+            middle(area.y, area.height),
+        ))
     }
 
     /// The point so many pixels to the right of the picture's top left corner, and below it.

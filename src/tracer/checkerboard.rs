@@ -7,6 +7,7 @@ use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
+    cover::{Cover, Patch},
     crossing::{Crossing, Part},
     form::{Form, axis_vector, inverse_depth},
 };
@@ -21,11 +22,11 @@ pub struct Checkerboard<T: Real> {
     /// ℓ, the inverse depth of its plane.
     pub plane: Form<T>,
     /// ℓ in the unit of N, a power of two that is right for the eye's height.
-    below: Form<T>,
+    pub below: Form<T>,
     /// N for x and for z, each measured from the whole square nearest to the eye.
-    across: [Form<T>; 2],
+    pub across: [Form<T>; 2],
     /// Whether those two whole squares' sum is odd.
-    odd: bool,
+    pub odd: bool,
 }
 
 impl<T: Real> Checkerboard<T> {
@@ -85,6 +86,20 @@ impl<T: Real> Checkerboard<T> {
             odd ^= odd_here;
         }
         Ok(odd)
+    }
+}
+
+impl Checkerboard<f64> {
+    /// How it stands to a rectangle; `None` if no ray through it meets the board.
+    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
+        let inverse_depth = self.plane.over(patch);
+        if inverse_depth.high < 0.0 {
+            return None;
+        }
+        Some(Cover {
+            is_whole: inverse_depth.low > 0.0,
+            inverse_depth,
+        })
     }
 }
 

@@ -8,6 +8,7 @@ use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
+    cover::{Cover, Patch, Range},
     crossing::{Crossing, Part},
     form::{Form, axis_vector, inverse_depth},
 };
@@ -141,6 +142,70 @@ fn behind_eye<T: Real>(leave: Option<Crossing<T>>) -> Result<Option<Crossing<T>>
     match leave.inverse_depth.sign()? {
         Ordering::Greater => Ok(Some(leave)),
         _ => Ok(None),
+    }
+}
+
+impl<T: Real> Cuboid<T> {
+    /// Forms that are all ≥ 0 where rays meet the box, and one of them 0 at its outline.
+    pub fn sides(&self) -> impl Iterator<Item = Form<T>> {
+        let pairs = self.fronts.iter().flat_map(move |front| {
+            self.backs
+                .iter()
+                // Between two parallel faces a ray always is for a while.
+                .filter(move |back| back.index / 2 != front.index / 2)
+                .map(move |back| front.inverse_depth.minus(&back.inverse_depth))
+        });
+        let fronts = self.fronts.iter().map(|front| front.inverse_depth.clone());
+        pairs.chain(fronts).chain(self.inward.iter().cloned())
+    }
+
+    /// The inverse depths of the faces where rays meet the box first.
+    pub fn firsts(&self) -> impl Iterator<Item = &Form<T>> {
+        let faces = if self.fronts.is_empty() {
+            &self.backs
+        } else {
+            &self.fronts
+        };
+        faces.iter().map(|face| &face.inverse_depth)
+    }
+
+    /// The inverse depths of the faces where rays from outside leave it.
+    pub fn seconds(&self) -> impl Iterator<Item = &Form<T>> {
+        let faces: &[_] = if self.fronts.is_empty() {
+            &[]
+        } else {
+            &self.backs
+        };
+        faces.iter().map(|face| &face.inverse_depth)
+    }
+}
+
+impl Cuboid<f64> {
+    /// How it stands to a rectangle; `None` if no ray through it meets the box.
+    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
+        let mut is_whole = true;
+        for side in self.sides() {
+            let range = side.over(patch);
+            if range.high < 0.0 {
+                return None;
+            }
+            is_whole &= range.low > 0.0;
+        }
+        let firsts = self.firsts().map(|face| face.over(patch));
+        let which = if self.fronts.is_empty() {
+            f64::max
+        } else {
+            f64::min
+        };
+        Some(Cover {
+            is_whole,
+            inverse_depth: Range::fold(firsts, which)?,
+        })
+    }
+
+    /// The inverse depths where rays leave it that enter it.
+    pub fn behind(&self, patch: &Patch) -> Option<Range> {
+        Range::fold(self.seconds().map(|face| face.over(patch)), f64::max)
     }
 }
 

@@ -43,6 +43,27 @@ impl<T: Real> Form<T> {
         }
     }
 
+    /// The factors of X, Y and 1.
+    pub fn factors(&self) -> &[T; 3] {
+        &self.factors
+    }
+
+    /// How far a computed value may be from the true one.
+    pub fn rad(&self) -> T::Radius {
+        self.rad
+    }
+
+    /// The difference of two forms.
+    pub fn minus(&self, other: &Self) -> Self {
+        let sizes = [0, 1, 2].map(|i| self.factors[i].magnitude() + other.factors[i].magnitude());
+        let sum = sizes[0] + sizes[1] + sizes[2];
+        Self {
+            factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
+            // X and Y are at most 1.
+            rad: (self.rad + other.rad + sum * (ROUNDINGS * T::UNIT)) * UP,
+        }
+    }
+
     /// Whether two forms have the same factors, as the forms of one plane have.
     pub fn equals(&self, other: &Self) -> bool {
         let equal = |(a, b): (&T, &T)| a.minus(b).is_zero();

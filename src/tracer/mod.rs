@@ -10,14 +10,19 @@
 
 mod camera;
 mod checkerboard;
+mod cover;
 mod crossing;
 mod cuboid;
+mod curve;
 mod form;
 mod object;
+mod outlook;
 mod sphere;
 mod triangle;
 mod world;
 
 pub use camera::{Basis, Point};
+pub use curve::{Conic, Curve, Line};
+pub use outlook::{Board, Live};
 pub use triangle::vertices;
 pub use world::{Hit, Precision, World};

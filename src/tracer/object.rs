@@ -3,8 +3,10 @@
 use super::{
     camera::{Camera, Direction, Window},
     checkerboard::Checkerboard,
+    cover::{Cover, Patch, Range},
     crossing::{Crossing, Part},
     cuboid::Cuboid,
+    curve::{Crossings, Curve, Place, Surface},
     form::Form,
     sphere::Sphere,
     triangle::Triangle,
@@ -81,6 +83,64 @@ impl<T: Real> Object<T> {
             (Self::Checkerboard(checkerboard), Part::Plane(_)) => Some(&checkerboard.plane),
             (Self::Cuboid(cuboid), Part::Plane(index)) => cuboid.face(index),
             _ => None,
+        }
+    }
+}
+
+impl Object<f64> {
+    /// How it stands to a rectangle; `None` if no ray through it meets the object.
+    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
+        match self {
+            Self::EdgeOn => None,
+            Self::Sphere(sphere) => sphere.cover(patch),
+            Self::Triangle(triangle) => triangle.cover(patch),
+            Self::Cuboid(cuboid) => cuboid.cover(patch),
+            Self::Checkerboard(checkerboard) => checkerboard.cover(patch),
+        }
+    }
+
+    /// The inverse depths of its second crossings, where it has any.
+    pub fn behind(&self, patch: &Patch) -> Option<Range> {
+        match self {
+            Self::Sphere(sphere) => sphere.behind(patch),
+            Self::Cuboid(cuboid) => cuboid.behind(patch),
+            Self::EdgeOn | Self::Triangle(_) | Self::Checkerboard(_) => None,
+        }
+    }
+}
+
+impl<T: Real> Object<T> {
+    /// Whether the eye is inside, so that of several faces' planes the nearest is the one that is seen.
+    pub fn is_seen_from_inside(&self) -> bool {
+        matches!(self, Self::Cuboid(cuboid) if cuboid.seconds().next().is_none())
+    }
+
+    /// What bounds the rays that meet it.
+    pub fn outline(&self, place: &Place<T>) -> Vec<Curve> {
+        let line = |form: &Form<T>| place.line(form);
+        match self {
+            Self::EdgeOn => Vec::new(),
+            Self::Sphere(sphere) => place.silhouette(sphere),
+            Self::Triangle(triangle) => triangle.edges.iter().map(line).collect(),
+            Self::Cuboid(cuboid) => cuboid.sides().map(|form| place.line(&form)).collect(),
+            Self::Checkerboard(checkerboard) => vec![line(&checkerboard.plane)],
+        }
+    }
+
+    /// The surfaces where rays meet it: those of their first crossings, or of their second ones as well.
+    pub fn surfaces(&self, which: Crossings) -> Vec<Surface<'_, T>> {
+        match self {
+            Self::EdgeOn => Vec::new(),
+            Self::Sphere(sphere) => vec![Surface::Sphere(sphere)],
+            Self::Triangle(triangle) => vec![Surface::Plane(&triangle.plane)],
+            Self::Checkerboard(checkerboard) => vec![Surface::Plane(&checkerboard.plane)],
+            Self::Cuboid(cuboid) => match which {
+                Crossings::First => cuboid.firsts().map(Surface::Plane).collect(),
+                Crossings::Both => {
+                    let faces = cuboid.firsts().chain(cuboid.seconds());
+                    faces.map(Surface::Plane).collect()
+                }
+            },
         }
     }
 }

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
+    cover::{Cover, Patch, Range},
     crossing::{Crossing, Part},
 };
 use crate::{
@@ -22,8 +23,11 @@ use crate::{
 pub struct Sphere<T: Real> {
     /// The centre in the camera's axes.
     center: [T; 3],
-    /// R².
+    /// Error bound of each of its coordinates.
+    rad_c: T::Radius,
+    /// R², and its error bound.
     square: T,
+    rad_square: T::Radius,
     /// C, each bit of it right however close the eye is to the surface.
     power: Ball<T>,
     /// The sign of C: the eye is outside, on the surface, or inside.
@@ -64,15 +68,18 @@ impl<T: Real> Sphere<T> {
             &square,
         );
         let c = camera.turned(&from_eye);
+        let rad_c = c.iter().map(|x| x.rad).fold(T::Radius::ZERO, Radius::max);
         let (rad_q, rad_b) = radii::<T>(
             c.each_ref().map(Ball::size),
-            c.iter().map(|x| x.rad).fold(T::Radius::ZERO, Radius::max),
+            rad_c,
             square.size(),
             square.rad,
             &camera.window,
         );
         Self {
             center: c.map(|x| x.mid),
+            rad_c,
+            rad_square: square.rad,
             square: square.mid,
             power,
             side,
@@ -160,6 +167,151 @@ impl<T: Real> Sphere<T> {
     }
 }
 
+impl Sphere<f64> {
+    /// How it stands to a rectangle; `None` if no ray through it meets the sphere.
+    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
+        let (q, b) = self.ranges(patch);
+        // Not so only after an overflow.
+        if !(q.low <= q.high && b.low <= b.high) {
+            return Some(Cover {
+                is_whole: false,
+                inverse_depth: Range::ALL,
+            });
+        }
+        let (is_whole, inverse_depth) = match self.side {
+            Ordering::Greater => {
+                if q.high < 0.0 || b.high < 0.0 {
+                    return None;
+                }
+                let power = self.power.size();
+                let inverse = |b: f64, q: f64| (b.max(0.0) + q.max(0.0).sqrt()) / power;
+                let range = Range {
+                    low: inverse(b.low, q.low),
+                    high: inverse(b.high, q.high),
+                };
+                (q.low > 0.0 && b.low > 0.0, range)
+            }
+            Ordering::Equal if b.high < 0.0 => return None,
+            Ordering::Equal => (b.low > 0.0, self.exits(q, b, patch)),
+            Ordering::Less => (true, self.exits(q, b, patch)),
+        };
+        Some(Cover {
+            is_whole,
+            inverse_depth: self.widened(inverse_depth),
+        })
+    }
+
+    /// The inverse depths where rays leave it that enter it.
+    pub fn behind(&self, patch: &Patch) -> Option<Range> {
+        if self.side != Ordering::Greater {
+            return None;
+        }
+        let (q, b) = self.ranges(patch);
+        Some(self.widened(self.exits(q, b, patch)))
+    }
+
+    /// The inverse depths of exits. With 1/λ = r·r/(b + √Q), which is (√Q − b)/(−C), it falls as b grows; for an eye inside
+    /// the second way of writing it bounds it where b ≤ 0.
+    fn exits(&self, q: Range, b: Range, patch: &Patch) -> Range {
+        let reach = |i: usize, at: f64| {
+            (
+                at.abs() + patch.half[i],
+                (at.abs() - patch.half[i]).max(0.0),
+            )
+        };
+        let (x, y) = (reach(0, patch.center.x), reach(1, patch.center.y));
+        let z = patch.center.z;
+        let square = Range {
+            low: x.1 * x.1 + y.1 * y.1 + z * z,
+            high: x.0 * x.0 + y.0 * y.0 + z * z,
+        };
+        let q = (q.low.max(0.0).sqrt(), q.high.max(0.0).sqrt());
+        let power = self.power.size();
+        let low = square.low / (b.high + q.1);
+        let high = square.high / (b.low + q.0);
+        Range {
+            low: if b.high + q.1 > 0.0 { low } else { 0.0 },
+            high: if b.low > 0.0 {
+                high
+            } else if self.side == Ordering::Less {
+                (q.1 - b.low) / power
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+
+    /// In the world's unit, and wider than all the roundings on the way.
+    fn widened(&self, range: Range) -> Range {
+        const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
+        let power = self.power.rad / self.power.size();
+        // A power that is not known well is that of an eye on the surface.
+        if power < WIDER - 1.0 || self.side == Ordering::Equal {
+            Range {
+                low: range.low / WIDER / WIDER * self.scale,
+                high: range.high * WIDER * WIDER * self.scale,
+            }
+        } else {
+            Range::ALL
+        }
+    }
+
+    /// The ranges of Q and of c·r over a rectangle: Q's by its gradient at the centre and its second derivatives.
+    fn ranges(&self, patch: &Patch) -> (Range, Range) {
+        let [cx, cy, cz] = self.center;
+        let r = &patch.center;
+        let [hx, hy] = patch.half;
+        let (k, l, m) = (
+            cy * r.z - cz * r.y,
+            cz * r.x - cx * r.z,
+            cx * r.y - cy * r.x,
+        );
+        let q = self.square * r.square - (k * k + l * l + m * m);
+        let along_x = self.square * r.x - (l * cz - m * cy);
+        let along_y = self.square * r.y - (m * cx - k * cz);
+        let (xx, yy) = (
+            self.square - cy * cy - cz * cz,
+            self.square - cx * cx - cz * cz,
+        );
+        let first = 2.0 * (along_x.abs() * hx + along_y.abs() * hy);
+        let mixed = 2.0 * (cx * cy).abs() * hx * hy;
+        let (xx, yy) = (xx * hx * hx, yy * hy * hy);
+        let slack = (first + mixed + 2.0 * self.rad_q) * UP;
+        let q = Range {
+            low: q - slack + (xx.min(0.0) + yy.min(0.0)) * UP,
+            high: q + slack + (xx.max(0.0) + yy.max(0.0)) * UP,
+        };
+        let b = cx * r.x + cy * r.y + cz * r.z;
+        let spread = cx.abs() * hx + cy.abs() * hy;
+        (q, Range::about(b, spread + self.rad_b))
+    }
+}
+
+impl<T: Real> Sphere<T> {
+    /// The centre in the camera's axes, and R², in the sphere's own unit.
+    pub fn parts(&self) -> (Ball3<T>, Ball<T>) {
+        let ball = |mid: &T| Ball {
+            mid: mid.clone(),
+            rad: self.rad_c,
+        };
+        let square = Ball {
+            mid: self.square.clone(),
+            rad: self.rad_square,
+        };
+        (self.center.each_ref().map(ball), square)
+    }
+
+    /// What a number in the sphere's unit of inverse depth is to be multiplied by: a power of two.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Whether the eye lies on the surface, and sees the sphere only where c·r > 0.
+    pub fn is_at_eye(&self) -> bool {
+        self.side == Ordering::Equal
+    }
+}
+
 impl Sphere<Double> {
     /// The same sphere for `f64`.
     pub fn narrowed(&self, window: &Window<f64>) -> Sphere<f64> {
@@ -173,7 +325,9 @@ impl Sphere<Double> {
         );
         Sphere {
             center,
+            rad_c: self.rad_c + f64::UNIT * center.iter().fold(0.0, |a, c| c.abs().max(a)),
             square: self.square.hi,
+            rad_square: self.rad_square + f64::UNIT * self.square.hi,
             power: Ball {
                 mid: self.power.mid.hi,
                 rad: (self.power.rad + f64::UNIT * self.power.size()) * UP,

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
+    cover::{Cover, Patch},
     crossing::{Crossing, Part},
     form::{Form, inverse_depth},
 };
@@ -80,6 +81,24 @@ impl<T: Real> Triangle<T> {
             inverse_depth,
             part: Part::Plane(0),
         }))
+    }
+}
+
+impl Triangle<f64> {
+    /// How it stands to a rectangle; `None` if no ray through it meets the triangle.
+    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
+        let mut is_whole = true;
+        for edge in &self.edges {
+            let range = edge.over(patch);
+            if range.high < 0.0 {
+                return None;
+            }
+            is_whole &= range.low > 0.0;
+        }
+        Some(Cover {
+            is_whole,
+            inverse_depth: self.plane.over(patch),
+        })
     }
 }
 

@@ -21,7 +21,7 @@ use crate::{
 pub struct World {
     basis: Basis,
     shapes: Vec<Shape>,
-    fast: Frame<f64>,
+    pub(super) fast: Frame<f64>,
     double: Frame<Double>,
     big: Frame<Big>,
     /// The distinct colours of the objects, and the background.
@@ -32,12 +32,12 @@ pub struct World {
 
 /// The camera and the objects in one precision.
 #[derive(Debug)]
-struct Frame<T: Real> {
-    camera: Camera<T>,
+pub(super) struct Frame<T: Real> {
+    pub camera: Camera<T>,
     /// Filled in when first asked for; `f64` at once.
     objects: Vec<OnceLock<Box<Object<T>>>>,
-    near: Option<Form<T>>,
-    far: Option<Form<T>>,
+    pub near: Option<Form<T>>,
+    pub far: Option<Form<T>>,
 }
 
 /// The precisions, as what may be asked for by number.
@@ -139,6 +139,21 @@ impl World {
         seen.ok().map(|seen| self.slot(seen))
     }
 
+    /// The slots of the palette that an object's colour has, and a checkerboard's second one.
+    pub fn slots(&self, object: usize) -> [usize; 2] {
+        self.slots[object]
+    }
+
+    /// How many objects there are.
+    pub fn len(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty()
+    }
+
     /// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
     /// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
     /// the reach that the world was made for.
@@ -219,8 +234,26 @@ impl World {
     /// The nearest crossing between the near and the far plane; of equal ones the object's that comes first in the file.
     #[inline]
     fn seen_in_direction<T: Level>(&self, r: &Direction<T>) -> Result<Option<Seen>, Doubt> {
+        let Some((index, second)) = self.nearest(r, 0..self.shapes.len())? else {
+            return Ok(None);
+        };
+        let odd = T::object(self, index).is_odd(r)?;
+        Ok(Some(Seen {
+            object: index,
+            second,
+            odd,
+        }))
+    }
+
+    /// Of some objects, in file order, the one with the nearest crossing, and whether that is its second one.
+    #[inline]
+    pub(super) fn nearest<T: Level>(
+        &self,
+        r: &Direction<T>,
+        among: impl Iterator<Item = usize>,
+    ) -> Result<Option<(usize, bool)>, Doubt> {
         let mut nearest: Option<(usize, bool, Crossing<T>)> = None;
-        for index in 0..self.shapes.len() {
+        for index in among {
             let object = T::object(self, index);
             let Some(first) = object.first(r)? else {
                 continue;
@@ -235,15 +268,7 @@ impl World {
             }
             nearest = Some((index, second, crossing));
         }
-        let Some((index, second, _)) = nearest else {
-            return Ok(None);
-        };
-        let odd = T::object(self, index).is_odd(r)?;
-        Ok(Some(Seen {
-            object: index,
-            second,
-            odd,
-        }))
+        Ok(nearest.map(|(index, second, _)| (index, second)))
     }
 
     /// The first of an object's crossings that lies between the near and the far plane, and whether it is the second one.
@@ -367,7 +392,7 @@ impl<T: Real> Frame<T> {
 }
 
 /// A precision that the world is held in.
-trait Level: Real {
+pub(super) trait Level: Real {
     fn frame(world: &World) -> &Frame<Self>;
 
     /// An object in this precision, prepared when it is first asked for.

@@ -129,9 +129,11 @@ impl<'s> Lowering<'s> {
                 let total = fields.number("total").map(|total| total as u64);
                 // Beside a conflict it is not certain that the total is meant.
                 let conflict = block.is_some_and(|block| block.given("per_pixel").is_some());
+                let is_exact = fields.method("method") == Some(Method::Exact);
                 if let (Some(total), Some(pixels)) = (total, pixels)
                     && total < pixels
                     && !conflict
+                    && !is_exact
                 {
                     self.problems.push(Problem::FewSamples {
                         total,

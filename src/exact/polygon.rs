@@ -1,0 +1,92 @@
+//! Pixels whose boundaries are all straight: each line cuts the convex polygons that the lines before it left.
+
+use glam::DVec2;
+
+use crate::{
+    math::Real,
+    tracer::{Curve, Line},
+};
+
+use super::region::{Region, Regions, Shares};
+
+/// The pixel itself.
+pub const PIXEL: [DVec2; 4] = [
+    DVec2::new(-0.5, -0.5),
+    DVec2::new(0.5, -0.5),
+    DVec2::new(0.5, 0.5),
+    DVec2::new(-0.5, 0.5),
+];
+
+/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it.
+const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
+
+/// How far the roundings of a vertex may move it.
+const ROUNDING: f64 = 8.0 * f64::UNIT;
+
+/// The shares of a pixel that is cut by some lines.
+pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
+    let mut polygons = vec![PIXEL.to_vec()];
+    for curve in curves {
+        let Curve::Line(line) = curve else { continue };
+        // The true line is within 2 rad of the computed one, the greater of whose slopes is at least 1/2, over a length of
+        // at most √2; and on both sides of it vertices are rounded.
+        regions.doubt(3.0 * (line.rad + ROUNDING));
+        polygons = polygons
+            .into_iter()
+            .flat_map(|polygon| cut(polygon, line))
+            .collect();
+    }
+    for polygon in &polygons {
+        let area = area(polygon);
+        if area < SPECK {
+            regions.doubt(area);
+        }
+        if area > 0.0 {
+            regions.add(&Region {
+                polygon,
+                arcs: &[],
+                area,
+                inside: middle(polygon),
+            });
+        }
+    }
+    regions.finish()
+}
+
+/// The parts of a convex polygon on both sides of a line.
+fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
+    let [a, b, c] = line.factors;
+    let heights: Vec<f64> = polygon.iter().map(|p| a * p.x + b * p.y + c).collect();
+    if heights.iter().all(|&h| h >= 0.0) || heights.iter().all(|&h| h <= 0.0) {
+        return vec![polygon];
+    }
+    let side = |sign: f64| {
+        let mut part = Vec::with_capacity(polygon.len() + 1);
+        for i in 0..polygon.len() {
+            let j = (i + 1) % polygon.len();
+            let (here, next) = (heights[i] * sign, heights[j] * sign);
+            if here >= 0.0 {
+                part.push(polygon[i]);
+            }
+            if (here > 0.0 && next < 0.0) || (here < 0.0 && next > 0.0) {
+                let t = here / (here - next);
+                part.push(polygon[i] + (polygon[j] - polygon[i]) * t);
+            }
+        }
+        part
+    };
+    vec![side(1.0), side(-1.0)]
+}
+
+/// The area of a convex polygon.
+pub fn area(polygon: &[DVec2]) -> f64 {
+    let mut twice = 0.0;
+    for i in 1..polygon.len().saturating_sub(1) {
+        twice += (polygon[i] - polygon[0]).perp_dot(polygon[i + 1] - polygon[0]);
+    }
+    0.5 * twice.abs()
+}
+
+fn middle(polygon: &[DVec2]) -> DVec2 {
+    polygon.iter().sum::<DVec2>() / polygon.len() as f64
+}

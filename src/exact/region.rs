@@ -1,0 +1,133 @@
+//! The regions of a pixel, and what is seen in each.
+
+use glam::DVec2;
+
+use crate::{
+    math::Real,
+    tracer::{Live, World},
+};
+
+use super::{arc::Arc, board::Board};
+
+/// How much of a pixel each colour has.
+#[derive(Clone, Debug, Default)]
+pub struct Shares {
+    /// Slots of the palette with the area that shows them, 1 together but for rounding.
+    pub by_slot: Vec<(usize, f64)>,
+    /// How much area may be with the wrong colour.
+    pub bound: f64,
+}
+
+/// Collects the regions of one pixel.
+pub struct Regions<'a> {
+    world: &'a World,
+    x: u32,
+    y: u32,
+    live: &'a [Live],
+    /// The boards that were met so far, by object.
+    boards: Vec<(usize, Checkered)>,
+    shares: Shares,
+}
+
+struct Checkered {
+    board: Board,
+    odd: bool,
+    /// Bound on the error of its forms' factors.
+    rad: f64,
+}
+
+/// A region: a polygon, and arcs over some of its sides that bulge out of it or into it.
+pub struct Region<'a> {
+    /// Convex, its vertices in order.
+    pub polygon: &'a [DVec2],
+    /// Each with 1 if it bulges outwards, −1 if inwards.
+    pub arcs: &'a [(f64, Arc)],
+    /// Its area.
+    pub area: f64,
+    /// A point in it.
+    pub inside: DVec2,
+}
+
+impl<'a> Regions<'a> {
+    /// For the pixel in column `x` and row `y`, in which no other objects are seen than some.
+    pub fn new(world: &'a World, x: u32, y: u32, live: &'a [Live]) -> Self {
+        Self {
+            world,
+            x,
+            y,
+            live,
+            boards: Vec::new(),
+            shares: Shares::default(),
+        }
+    }
+
+    /// Adds a region in which no boundary lies.
+    pub fn add(&mut self, region: &Region) {
+        let seen = self
+            .world
+            .object_at(self.x, self.y, region.inside, self.live);
+        let Some(object) = seen else {
+            let background = self.world.palette().len() - 1;
+            return self.shares.add(background, region.area);
+        };
+        let [first, second] = self.world.slots(object);
+        if first == second {
+            return self.shares.add(first, region.area);
+        }
+        let Some(checkered) = self.board(object) else {
+            return self.shares.add(first, region.area);
+        };
+        let mut sum = checkered.board.over(region.polygon);
+        for (bulge, arc) in region.arcs {
+            let sliver = checkered.board.sliver(arc);
+            sum.value += bulge * sliver.value;
+            sum.bound += sliver.bound;
+        }
+        let half = if checkered.odd { -0.5 } else { 0.5 } * sum.value;
+        let bound = 0.5 * sum.bound + checkered.rad * region.area;
+        self.shares.add(first, 0.5 * region.area + half);
+        self.shares.add(second, 0.5 * region.area - half);
+        self.shares.bound += bound;
+    }
+
+    /// Says that so much of the pixel's area may be with a wrong region, or with none.
+    pub fn doubt(&mut self, area: f64) {
+        self.shares.bound += area;
+    }
+
+    /// The shares of all that was added.
+    pub fn finish(self) -> Shares {
+        let mut shares = self.shares;
+        if let [_, _, ..] = shares.by_slot.as_slice() {
+            // Sums and products of a few numbers below 1.
+            shares.bound += 8.0 * f64::UNIT;
+        }
+        shares
+    }
+
+    fn board(&mut self, object: usize) -> Option<&Checkered> {
+        let at = match self.boards.iter().position(|(known, _)| *known == object) {
+            Some(at) => at,
+            None => {
+                let board = self.world.board(object, self.x, self.y)?;
+                let checkered = Checkered {
+                    board: Board::new(board.across, board.below),
+                    odd: board.odd,
+                    rad: board.rad,
+                };
+                self.boards.push((object, checkered));
+                self.boards.len() - 1
+            }
+        };
+        Some(&self.boards[at].1)
+    }
+}
+
+impl Shares {
+    fn add(&mut self, slot: usize, area: f64) {
+        match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
+            Some((_, share)) => *share += area,
+            None => self.by_slot.push((slot, area)),
+        }
+    }
+}

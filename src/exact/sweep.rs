@@ -1,0 +1,211 @@
+//! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above the other.
+//!
+//! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if by that two neighbours
+//! might cross within a slab, the slab is cut, where they cross if that can be seen, else in the middle. What cannot be told
+//! apart when slabs have become too narrow counts as doubtful area.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+use crate::{math::Real, tracer::Curve};
+
+use super::{
+    arc::Arc,
+    region::{Region, Regions, Shares},
+    track::{Graph, Piece, Track},
+};
+
+/// Curves may be out of order by so much: the rounding of a y.
+const TIE: f64 = 16.0 * f64::UNIT;
+
+/// So much area may be doubtful in a slab.
+const CRUMB: f64 = 1.0 / (1u64 << 54) as f64;
+
+/// Slabs are not cut when they are narrower than this, nor when there are so many.
+const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
+const MANY: usize = 4096;
+
+/// What rounding may do to the area of a region in a slab, for each part of its width: two y of at most 1/2, each off by a few
+/// units of its last place.
+const ROUNDING: f64 = 16.0 * f64::UNIT;
+
+/// The shares of a pixel that is cut by some curves.
+pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
+    let mut tracks = Vec::new();
+    let mut cuts = vec![-0.5, 0.5];
+    for curve in curves {
+        match curve {
+            Curve::Line(line) => {
+                regions.doubt(3.0 * line.rad);
+                match Track::of_line(line) {
+                    Some(track) => tracks.push(track),
+                    None => cuts.push(-line.factors[2] / line.factors[0]),
+                }
+            }
+            Curve::Conic(conic) => {
+                regions.doubt(conic.doubtful_area());
+                let graph = Graph::new(conic);
+                cuts.extend(graph.ends());
+                tracks.extend([-1.0, 1.0].map(|side| Track::Branch { graph, side }));
+            }
+        }
+    }
+    cuts.retain(|x| x.abs() <= 0.5);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    let mut sweep = Sweep {
+        tracks,
+        regions,
+        slabs: 0,
+    };
+    // From right to left on a stack, so that slabs come from left to right.
+    let mut stack: Vec<_> = cuts
+        .windows(2)
+        .rev()
+        .map(|pair| (pair[0], pair[1]))
+        .collect();
+    while let Some((left, right)) = stack.pop() {
+        if let Some(at) = sweep.slab(left, right) {
+            stack.extend([(at, right), (left, at)]);
+        }
+    }
+    sweep.regions.finish()
+}
+
+struct Sweep<'a> {
+    tracks: Vec<Track>,
+    regions: Regions<'a>,
+    slabs: usize,
+}
+
+impl Sweep<'_> {
+    /// Adds the regions of a slab, or says where it has to be cut.
+    fn slab(&mut self, left: f64, right: f64) -> Option<f64> {
+        let (middle, width) = (0.5 * (left + right), right - left);
+        let is_last = width < NARROW || self.slabs >= MANY;
+        let mut doubtful = 0.0;
+        let mut pieces: Vec<(Track, Piece)> = Vec::with_capacity(self.tracks.len());
+        for track in &self.tracks {
+            if !track.is_at(middle) {
+                continue;
+            }
+            match track.piece(left, right) {
+                Some(piece) => pieces.push((track.clone(), piece)),
+                None if is_last => doubtful += width.min(1.0),
+                None => return Some(middle),
+            }
+        }
+        pieces.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
+        let place = |y: f64| pieces.partition_point(|(_, piece)| piece.y[1] < y);
+        let (first, end) = (place(-0.5), place(0.5));
+        // The pixel's sides in order with what lies outside of them, and neighbours inside with each other.
+        let (bottom, top) = (side(-0.5), side(0.5));
+        let below = pieces[..first].iter().map(|below| (below, &bottom));
+        let above = pieces[end..].iter().map(|above| (&top, above));
+        let mut inside = vec![&bottom];
+        inside.extend(&pieces[first..end]);
+        inside.push(&top);
+        let neighbors = inside.windows(2).map(|pair| (pair[0], pair[1]));
+        for ((lower, a), (upper, b)) in below.chain(neighbors).chain(above) {
+            let overlap = a.overlap(b, left, right).clamp(0.0, 1.0);
+            if overlap <= TIE || overlap * width <= CRUMB || is_last {
+                doubtful += overlap * width;
+                continue;
+            }
+            let distance = a.distance(b);
+            if distance <= TIE {
+                doubtful += distance * width;
+                continue;
+            }
+            return Some(crossing(lower, upper, a, b, left, right));
+        }
+        self.slabs += 1;
+        self.regions.doubt(doubtful);
+        for pair in inside.windows(2) {
+            add(&mut self.regions, &pair[0].1, &pair[1].1, left, right);
+        }
+        None
+    }
+}
+
+/// A side of the pixel.
+fn side(y: f64) -> (Track, Piece) {
+    (Track::Level(y), Piece::level(y))
+}
+
+/// Adds the region between two neighbours.
+fn add(regions: &mut Regions, lower: &Piece, upper: &Piece, left: f64, right: f64) {
+    let area = upper.integral(left, right) - lower.integral(left, right);
+    regions.doubt((right - left) * (ROUNDING + lower.slack + upper.slack));
+    if area <= 0.0 {
+        return;
+    }
+    let polygon = [
+        DVec2::new(left, lower.y[0]),
+        DVec2::new(right, lower.y[2]),
+        DVec2::new(right, upper.y[2]),
+        DVec2::new(left, upper.y[0]),
+    ];
+    let mut arcs: Vec<(f64, Arc)> = Vec::with_capacity(2);
+    arcs.extend(upper.arc);
+    arcs.extend(lower.arc.map(|(bulge, arc)| (-bulge, arc)));
+    let middle = 0.5 * (left + right);
+    let inside = DVec2::new(middle, 0.5 * (lower.y[1] + upper.y[1]));
+    if upper.y[1] - lower.y[1] <= TIE {
+        regions.doubt(area);
+    }
+    regions.add(&Region {
+        polygon: &polygon,
+        arcs: &arcs,
+        area,
+        inside,
+    });
+}
+
+/// Where to cut a slab in which two tracks may cross: at their crossing, if the order at one end is not that in the middle.
+fn crossing(lower: &Track, upper: &Track, a: &Piece, b: &Piece, left: f64, right: f64) -> f64 {
+    let middle = 0.5 * (left + right);
+    let gap = |x: f64| upper.y(x) - lower.y(x);
+    let (mut out, mut inside) = if b.y[0] < a.y[0] {
+        (left, middle)
+    } else if b.y[2] < a.y[2] {
+        (right, middle)
+    } else {
+        return middle;
+    };
+    let (mut gap_out, mut gap_in) = (gap(out), gap(inside));
+    let mut last = Ordering::Equal;
+    // The Illinois variant of the false position: an end that stays twice has its value halved.
+    for _ in 0..60 {
+        let mut at = inside - gap_in * (inside - out) / (gap_in - gap_out);
+        if !((at > out.min(inside)) && (at < out.max(inside))) {
+            at = 0.5 * (out + inside);
+        }
+        let gap_at = gap(at);
+        if gap_at.abs() <= f64::UNIT || (inside - out).abs() <= f64::UNIT {
+            inside = at;
+            break;
+        }
+        if gap_at > 0.0 {
+            (inside, gap_in) = (at, gap_at);
+            if last.is_gt() {
+                gap_out *= 0.5;
+            }
+            last = Ordering::Greater;
+        } else {
+            (out, gap_out) = (at, gap_at);
+            if last.is_lt() {
+                gap_in *= 0.5;
+            }
+            last = Ordering::Less;
+        }
+    }
+    // Not so near an end that nothing is gained.
+    let margin = (right - left) / 1024.0;
+    if inside > left + margin.min(NARROW) && inside < right - margin.min(NARROW) {
+        inside
+    } else {
+        middle
+    }
+}

@@ -1,0 +1,265 @@
+//! Curves as graphs of functions: over a range of x, a line is one function y(x) and a conic two.
+
+use glam::DVec2;
+
+use crate::{
+    math::{Double, Real},
+    tracer::{Conic, Line},
+};
+
+use super::arc::Arc;
+
+/// A curve followed from left to right.
+#[derive(Clone, Debug)]
+pub enum Track {
+    /// The line y = const.
+    Level(f64),
+    /// A line that is not vertical: y = slope · x + start.
+    Line {
+        /// dy/dx.
+        slope: f64,
+        /// y at x = 0.
+        start: f64,
+    },
+    /// The upper or the lower one of a conic's two functions.
+    Branch {
+        /// The conic.
+        graph: Graph,
+        /// 1 or −1: the sign of the root.
+        side: f64,
+    },
+}
+
+/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as functions: y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − Cg and
+/// g = Ax² + 2Dx + F.
+#[derive(Clone, Copy, Debug)]
+pub struct Graph {
+    factors: [Double; 6],
+    /// Δ as a polynomial in x: the factors of x², 2x and 1.
+    delta: [Double; 3],
+}
+
+/// A track over a range of x, between its chord and two of its tangents.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// y at the left, in the middle, and at the right.
+    pub y: [f64; 3],
+    /// The arc, where it is not straight; and 1 if it bulges to greater y, −1 if to smaller.
+    pub arc: Option<(f64, Arc)>,
+    /// How far it may be from what this says of it.
+    pub slack: f64,
+}
+
+impl Graph {
+    /// The graph of a conic.
+    pub fn new(conic: &Conic) -> Self {
+        let [a, b, c, d, e, f] = conic.factors;
+        let minor = |p: Double, q: Double, r: Double, s: Double| p.times(&q).minus(&r.times(&s));
+        Self {
+            factors: conic.factors,
+            delta: [minor(b, b, a, c), minor(b, e, c, d), minor(e, e, c, f)],
+        }
+    }
+
+    /// Where its functions begin and end: the x of its vertical tangents.
+    pub fn ends(&self) -> impl Iterator<Item = f64> {
+        let [p, q, r] = self.delta;
+        // px² + 2qx + r = 0 without cancellation.
+        let discriminant = q.times(&q).minus(&p.times(&r));
+        let roots = (discriminant.hi >= 0.0).then(|| {
+            let root = discriminant.sqrt().hi;
+            let sum = -(q.hi + root.copysign(q.hi));
+            [sum / p.hi, r.hi / sum]
+        });
+        roots.into_iter().flatten().filter(|x| x.abs() < 0.5)
+    }
+
+    /// The square root of Δ, if it is not negative but for its rounding.
+    fn root(&self, x: f64) -> f64 {
+        let [p, q, r] = &self.delta;
+        let at = Double::from_f64(x);
+        let twice = q.plus(q);
+        let delta = p.times(&at).plus(&twice).times(&at).plus(r);
+        delta.hi.max(0.0).sqrt()
+    }
+
+    /// Whether it is there at x at all.
+    pub fn is_at(&self, x: f64) -> bool {
+        self.root(x) > 0.0
+    }
+
+    fn y(&self, x: f64, side: f64) -> f64 {
+        let [a, b, c, d, e, f] = &self.factors;
+        let root = self.root(x) * side;
+        let at = Double::from_f64(x);
+        let minus = b.times(&at).plus(e).negated().hi;
+        // Of the two ways to write the root the one that does not cancel.
+        if minus * side >= 0.0 {
+            (minus + root) / c.hi
+        } else {
+            let twice = d.plus(d);
+            let g = a.times(&at).plus(&twice).times(&at).plus(f);
+            g.hi / (minus - root)
+        }
+    }
+
+    /// Half the gradient of the quadratic form at one of its points.
+    fn gradient(&self, x: f64, y: f64, side: f64) -> DVec2 {
+        let [a, b, _, d, ..] = self.factors.map(|factor| factor.hi);
+        DVec2::new(a * x + b * y + d, side * self.root(x))
+    }
+
+    /// The quadratic part at a vector.
+    fn quadratic(&self, v: DVec2) -> f64 {
+        let [a, b, c, ..] = self.factors.map(|factor| factor.hi);
+        a * v.x * v.x + 2.0 * b * v.x * v.y + c * v.y * v.y
+    }
+
+    /// The arc from one of its points to another, if the two tangents meet between them.
+    fn arc(&self, start: DVec2, end: DVec2, side: f64) -> Option<Arc> {
+        let chord = end - start;
+        let (here, there) = (
+            self.gradient(start.x, start.y, side),
+            self.gradient(end.x, end.y, side),
+        );
+        // (control − start) is along the tangent at the start, and (control − end) along that at the end.
+        let along = DVec2::new(-here.y, here.x);
+        let control = along * (there.dot(chord) / there.dot(along));
+        let w2 = self.quadratic(chord) / (4.0 * self.quadratic(control));
+        let arc = Arc {
+            start,
+            control: start + control,
+            end,
+            weight: w2.sqrt(),
+        };
+        // Arcs that turn by more than a right angle or so are better cut.
+        const TURN: f64 = 0.5;
+        (control.x >= 0.0 && control.x <= chord.x && arc.weight > TURN && arc.weight < 1.0 / TURN)
+            .then_some(arc)
+    }
+}
+
+impl Track {
+    /// The tracks of a line; none if it is vertical.
+    pub fn of_line(line: &Line) -> Option<Self> {
+        let [a, b, c] = line.factors;
+        let (slope, start) = (-a / b, -c / b);
+        (slope.is_finite() && start.is_finite()).then_some(Self::Line { slope, start })
+    }
+
+    /// y at an x where the track is.
+    pub fn y(&self, x: f64) -> f64 {
+        match self {
+            Self::Level(y) => *y,
+            Self::Line { slope, start } => slope * x + start,
+            Self::Branch { graph, side } => graph.y(x, *side),
+        }
+    }
+
+    /// Whether the track is there in the middle of a range without an end in it.
+    pub fn is_at(&self, x: f64) -> bool {
+        match self {
+            Self::Branch { graph, .. } => graph.is_at(x) && self.y(x).is_finite(),
+            _ => true,
+        }
+    }
+
+    /// The track from `left` to `right`; `None` if it turns too much to be followed at once.
+    pub fn piece(&self, left: f64, right: f64) -> Option<Piece> {
+        let middle = 0.5 * (left + right);
+        let y = [left, middle, right].map(|x| self.y(x));
+        let straight = Piece {
+            y,
+            arc: None,
+            slack: 0.0,
+        };
+        let Self::Branch { graph, side } = self else {
+            return Some(straight);
+        };
+        let (start, end) = (DVec2::new(left, y[0]), DVec2::new(right, y[2]));
+        let sagitta = y[1] - 0.5 * (y[0] + y[2]);
+        if let Some(arc) = graph.arc(start, end, *side) {
+            let bulge = 1f64.copysign((end - start).perp_dot(arc.control - start));
+            return Some(Piece {
+                arc: Some((bulge, arc)),
+                ..straight
+            });
+        }
+        // Too flat for its tangents to be told apart: a conic's arc over a chord is nowhere farther from it than twice
+        // the sagitta in the middle, unless it has an end there.
+        let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
+        (sagitta.abs() <= flat).then_some(Piece {
+            slack: 2.0 * sagitta.abs() + flat,
+            ..straight
+        })
+    }
+}
+
+impl Piece {
+    /// A piece of the line y = const.
+    pub fn level(y: f64) -> Self {
+        Self {
+            y: [y; 3],
+            arc: None,
+            slack: 0.0,
+        }
+    }
+
+    /// The greatest y it may have at three places: left, where its tangents meet (or anywhere, if it is straight), right.
+    fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
+        let chord = |a: DVec2, b: DVec2| {
+            if b.x > a.x {
+                a.y + (b.y - a.y) * ((x - a.x) / (b.x - a.x)).clamp(0.0, 1.0)
+            } else {
+                up * (up * a.y).max(up * b.y)
+            }
+        };
+        let (start, end) = (DVec2::new(left, self.y[0]), DVec2::new(right, self.y[2]));
+        let at = match &self.arc {
+            Some((bulge, arc)) if *bulge == up => {
+                if x <= arc.control.x {
+                    chord(start, arc.control)
+                } else {
+                    chord(arc.control, end)
+                }
+            }
+            _ => chord(start, end),
+        };
+        at + up * self.slack
+    }
+
+    /// By how much this piece may rise above another one over the same range of x, at most.
+    pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
+        let controls = [self, other].map(|piece| piece.arc.map(|(_, arc)| arc.control.x));
+        let places = [Some(left), controls[0], controls[1], Some(right)];
+        // Both hulls are straight between these places.
+        places
+            .into_iter()
+            .flatten()
+            .map(|x| self.hull(1.0, x, left, right) - other.hull(-1.0, x, left, right))
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The integral of y over its range.
+    pub fn integral(&self, left: f64, right: f64) -> f64 {
+        let chord = 0.5 * (right - left) * (self.y[0] + self.y[2]);
+        chord + self.arc.map_or(0.0, |(bulge, arc)| bulge * arc.area())
+    }
+
+    /// How far apart two pieces are at most, if they are nearly the same curve.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let ends = (self.y[0] - other.y[0])
+            .abs()
+            .max((self.y[2] - other.y[2]).abs());
+        match (&self.arc, &other.arc) {
+            (None, None) => ends,
+            (Some((_, a)), Some((_, b))) => {
+                // A point of the arc is a mean of its control points, with weights that the arc's own weight gives.
+                let controls = (a.control - b.control).length();
+                let size = (a.control - a.start).length() + (a.end - a.control).length();
+                ends + controls + (a.weight - b.weight).abs() * size
+            }
+            _ => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! The curves that bound what is seen in a pixel: lines and conics.
+//!
+//! A pixel's own coordinates are (x, y), in pixels from its centre, x to the right and y down. In them every form of a surface
+//! is prepared anew, in high precision, so that what is left is good to the last bit of an `f64` however far the pixel is from
+//! the picture's centre.
+
+use crate::math::{Ball, Ball3, Double, Radius, Real};
+
+use super::{
+    camera::{Camera, Point},
+    cover::Range,
+    form::Form,
+    sphere::Sphere,
+};
+
+/// A boundary in a pixel.
+#[derive(Clone, Debug)]
+pub enum Curve {
+    /// A line.
+    Line(Line),
+    /// A conic.
+    Conic(Conic),
+}
+
+/// The line ax + by + c = 0, the greater of |a| and |b| being about 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// a, b and c.
+    pub factors: [f64; 3],
+    /// How far a value of the form may be from the true one, in the pixel.
+    pub rad: f64,
+}
+
+/// The conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0, the greatest of its factors being about 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Conic {
+    /// A, B, C, D, E and F.
+    pub factors: [Double; 6],
+    /// How far a value of the form may be from the true one, in the pixel.
+    pub rad: f64,
+}
+
+/// A surface, as far as it matters where it crosses another one.
+#[derive(Debug)]
+pub enum Surface<'a, T: Real> {
+    /// The plane with an inverse depth.
+    Plane(&'a Form<T>),
+    /// A sphere.
+    Sphere(&'a Sphere<T>),
+}
+
+/// Which crossings of a ray with an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crossings {
+    /// The first one.
+    First,
+    /// The second one as well.
+    Both,
+}
+
+/// A linear form of x, y and 1, and a quadratic one of x², 2xy, y², 2x, 2y and 1.
+type Linear<T> = [Ball<T>; 3];
+type Quadratic<T> = [Ball<T>; 6];
+
+/// A pixel, as the place whose curves are wanted.
+#[derive(Clone, Debug)]
+pub struct Place<T: Real> {
+    /// The direction through its centre.
+    center: Ball3<T>,
+    /// The side of a pixel.
+    pitch: Ball<T>,
+}
+
+impl<T: Real> Place<T> {
+    /// The place about a point.
+    pub fn new(camera: &Camera<T>, point: &Point) -> Self {
+        let r = camera.direction(point);
+        // Five roundings in a coordinate, and its pitch.
+        let ball = |mid: T| Ball {
+            rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
+            mid,
+        };
+        Self {
+            center: [ball(r.x), ball(r.y), ball(r.z)],
+            pitch: ball(camera.pitch.clone()),
+        }
+    }
+
+    /// A form's zero line.
+    pub fn line(&self, form: &Form<T>) -> Curve {
+        let (factors, rad) = self.local(form);
+        let size = factors[0].magnitude().max(factors[1].magnitude());
+        // A form without slope has no zero line; any power of two will do.
+        let exponent = -size.exponent();
+        let factors = factors.map(|factor| factor.scaled(exponent).to_f64());
+        let rounding = f64::UNIT * (factors[0].abs() + factors[1].abs() + factors[2].abs());
+        Curve::Line(Line {
+            factors,
+            rad: rad.scaled(exponent).to_f64() + rounding,
+        })
+    }
+
+    /// The factors of several forms in the pixel, all by one power of two smaller or greater so that they are about 1.
+    pub fn together<const N: usize>(&self, forms: [&Form<T>; N]) -> [Line; N] {
+        let local = forms.map(|form| self.local(form));
+        let sizes = local.iter().flat_map(|(factors, _)| factors);
+        let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
+        let exponent = -size.exponent();
+        local.map(|(factors, rad)| {
+            let factors = factors.map(|factor| factor.scaled(exponent).to_f64());
+            Line {
+                rad: rad.scaled(exponent).to_f64(),
+                factors,
+            }
+        })
+    }
+
+    fn local(&self, form: &Form<T>) -> ([T; 3], T::Radius) {
+        let [a, b, c] = form.factors();
+        let [x, y, _] = &self.center;
+        let middle = a.times(&x.mid).plus(&b.times(&y.mid)).plus(c);
+        let slopes = [a, b].map(|factor| factor.times(&self.pitch.mid));
+        let [a, b] = slopes;
+        ([a, b, middle], form.rad())
+    }
+
+    /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r = 0 that bounds it then.
+    pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Curve> {
+        let (c, square) = sphere.parts();
+        if sphere.is_at_eye() {
+            return vec![self.line_of(&self.along(&c))];
+        }
+        let r = self.directions();
+        let cross = [(1, 2), (2, 0), (0, 1)]
+            .map(|(i, j)| [0, 1, 2].map(|k| &c[i] * &r[j][k] - &c[j] * &r[i][k]));
+        let inside = sum(r.each_ref().map(|x| product(x, x)));
+        let outside = sum(cross.each_ref().map(|x| product(x, x)));
+        let q = [0, 1, 2, 3, 4, 5].map(|i| &square * &inside[i] - &outside[i]);
+        vec![conic(&q)]
+    }
+
+    /// Where two surfaces cross, if it is on a curve: rays that meet both at the same depth.
+    pub fn crossing(&self, a: &Surface<T>, b: &Surface<T>) -> Option<Curve> {
+        match (a, b) {
+            (Surface::Plane(a), Surface::Plane(b)) if a.equals(b) => None,
+            (Surface::Plane(a), Surface::Plane(b)) => Some(self.line(&a.minus(b))),
+            (Surface::Plane(plane), Surface::Sphere(sphere))
+            | (Surface::Sphere(sphere), Surface::Plane(plane)) => {
+                let (c, square) = sphere.parts();
+                let (factors, rad) = self.local(plane);
+                // In the sphere's unit of inverse depth. Its scale is within the range of an f64, its inverse need not be.
+                let exponent = -(libm::frexp(sphere.scale()).1 - 1);
+                let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
+                Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
+            }
+            (Surface::Sphere(a), Surface::Sphere(b)) => self.spheres(a, b),
+        }
+    }
+
+    /// Two spheres cross in their radical plane: |q − c|² − R² is the same for both where 2 (c' − c)·q = C' − C.
+    fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Curve> {
+        let ((c, square), (d, other)) = (a.parts(), b.parts());
+        // To one unit.
+        let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
+        let d = d.map(|x| x.scaled(exponent));
+        let other = other.scaled(2 * exponent);
+        let n = [0, 1, 2].map(|i| &d[i] - &c[i]);
+        let sums = [0, 1, 2].map(|i| &d[i] + &c[i]);
+        let twice = crate::math::dot(&n, &sums) - (&other - &square);
+        let h = twice.times_power(0.5);
+        if n.iter().all(|x| x.mid.is_zero()) {
+            return None;
+        }
+        let linear = self.along(&n);
+        if h.mid.is_zero() {
+            return Some(self.line_of(&linear));
+        }
+        Some(self.circle(&c, &square, &linear, &h))
+    }
+
+    /// The circle where the plane n·q = h crosses a sphere: with q = (h/n·r) r, |hr − (n·r)c|² = R² (n·r)².
+    ///
+    /// Written so, it is a sum of squares that are small where the circle is, and does not cancel for a small and far sphere.
+    fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Curve {
+        let r = self.directions();
+        let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
+        let outside = sum(offsets.each_ref().map(|x| product(x, x)));
+        let inside = product(plane, plane);
+        conic(&[0, 1, 2, 3, 4, 5].map(|i| &outside[i] - square * &inside[i]))
+    }
+
+    /// The components of r as linear forms.
+    fn directions(&self) -> [Linear<T>; 3] {
+        let [x, y, z] = self.center.clone();
+        let zero = || Ball::exact(0.0);
+        [
+            [self.pitch.clone(), zero(), x],
+            [zero(), self.pitch.clone(), y],
+            [zero(), zero(), z],
+        ]
+    }
+
+    /// v·r as a linear form.
+    fn along(&self, v: &Ball3<T>) -> Linear<T> {
+        [
+            &v[0] * &self.pitch,
+            &v[1] * &self.pitch,
+            crate::math::dot(v, &self.center),
+        ]
+    }
+
+    fn line_of(&self, linear: &Linear<T>) -> Curve {
+        let size = linear[0].size().max(linear[1].size());
+        let exponent = -size.exponent();
+        let factors = linear.each_ref().map(|x| x.mid.scaled(exponent).to_f64());
+        let rad = linear[0].rad + linear[1].rad + linear[2].rad;
+        let rounding = f64::UNIT * (factors[0].abs() + factors[1].abs() + factors[2].abs());
+        Curve::Line(Line {
+            factors,
+            rad: rad.scaled(exponent).to_f64() + rounding,
+        })
+    }
+}
+
+/// The product of two linear forms.
+fn product<T: Real>(a: &Linear<T>, b: &Linear<T>) -> Quadratic<T> {
+    let half = |i: usize, j: usize| (&a[i] * &b[j] + &a[j] * &b[i]).times_power(0.5);
+    [
+        &a[0] * &b[0],
+        half(0, 1),
+        &a[1] * &b[1],
+        half(0, 2),
+        half(1, 2),
+        &a[2] * &b[2],
+    ]
+}
+
+fn sum<T: Real>([a, b, c]: [Quadratic<T>; 3]) -> Quadratic<T> {
+    [0, 1, 2, 3, 4, 5].map(|i| &a[i] + &b[i] + &c[i])
+}
+
+/// A quadratic form's conic.
+fn conic<T: Real>(factors: &Quadratic<T>) -> Curve {
+    let size = factors
+        .iter()
+        .fold(T::Radius::ZERO, |size, x| size.max(x.size()));
+    let exponent = -size.exponent();
+    // |x| and |y| are at most 1/2.
+    let rad = factors.iter().fold(T::Radius::ZERO, |rad, x| rad + x.rad);
+    Curve::Conic(Conic {
+        factors: factors.each_ref().map(|x| double(&x.mid.scaled(exponent))),
+        rad: rad.scaled(exponent).to_f64() + Double::UNIT,
+    })
+}
+
+fn double<T: Real>(x: &T) -> Double {
+    let hi = x.to_f64();
+    let lo = x.minus(&T::from_f64(hi)).to_f64();
+    Double { hi, lo }
+}
+
+impl Conic {
+    /// How much of the pixel's area may lie between the true conic and the computed one: at most that of the points where
+    /// |F| ≤ ε, the form's error. Three bounds of it hold, and the least counts:
+    ///
+    /// - By the coarea formula 2ε · length / least gradient; a conic is no longer in the pixel than twice the perimeter.
+    /// - About an ellipse 2πε/√(AC − B²), the difference of two ellipses' areas.
+    /// - In any case 4 · 2 · √(ε / greatest |F|), by the inequality of Brudnyi and Ganzburg (1973) for polynomials of degree
+    ///   2 on a convex set of area 1 in the plane. The greatest |F| is at least 1/16, since a factor of at least 1/2 is a
+    ///   combination of values of F: A of three with the weights 2, 4 and 2, the others of fewer.
+    pub fn doubtful_area(&self) -> f64 {
+        let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
+        let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
+        let gradient = 2.0 * (libm::hypot(d, e) - 0.5 * turn);
+        let determinant = a * c - b * b;
+        let mut area = 32.0 * self.rad.sqrt();
+        if gradient > 0.0 {
+            area = area.min(16.0 * self.rad / gradient);
+        }
+        // The difference of products is off by two roundings of them.
+        let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
+        if determinant > 0.0 {
+            area = area.min(7.0 * self.rad / determinant.sqrt());
+        }
+        area
+    }
+
+    /// The range of its form over the pixel.
+    pub fn over_pixel(&self) -> Range {
+        let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
+        let mixed = d.abs() + e.abs() + 0.5 * b.abs();
+        let rad = mixed + self.rad + 4.0 * f64::UNIT;
+        Range {
+            low: f - rad + 0.25 * (a.min(0.0) + c.min(0.0)),
+            high: f + rad + 0.25 * (a.max(0.0) + c.max(0.0)),
+        }
+    }
+}

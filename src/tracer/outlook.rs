@@ -1,0 +1,336 @@
+//! What may be seen in a part of the picture: the objects that are not certain to be missed or hidden there, and in a single
+//! pixel the curves that bound what is seen of them.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+use crate::{
+    area::Area,
+    math::{Big, Double, Doubt},
+};
+
+use super::{
+    cover::{Patch, Range},
+    curve::{Crossings, Curve, Line, Place, Surface},
+    object::Object,
+    world::{Level, World},
+};
+
+/// An object that may be seen in a part of the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Live {
+    /// Its index in the file.
+    pub object: usize,
+    /// Whether every ray through the part meets it, between the near and the far plane.
+    pub is_whole: bool,
+    /// Holds the inverse depths of what may be seen of it.
+    inverse_depth: Range,
+    /// Whether the near plane may cut it there.
+    is_cut: bool,
+}
+
+/// A checkerboard in a pixel: the point (x, y), in pixels from its centre, shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
+/// a corner of squares, where ℓ > 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// The factors of x, y and 1 in N₀ and N₁.
+    pub across: [[f64; 3]; 2],
+    /// Those of ℓ.
+    pub below: [f64; 3],
+    /// How far a value of these forms may be from the true one, but for the rounding of the factors.
+    pub rad: f64,
+    /// Whether the square [0, 1)² has the second colour.
+    pub odd: bool,
+}
+
+/// The error of a line's form, and the doubtful area of a conic, from which on double-double was not enough.
+const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
+const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
+
+impl World {
+    /// All objects, as candidates for any part of the picture.
+    pub fn everything(&self) -> Vec<Live> {
+        let live = |object| Live {
+            object,
+            is_whole: false,
+            inverse_depth: Range::ALL,
+            is_cut: false,
+        };
+        (0..self.len()).map(live).collect()
+    }
+
+    /// Of some candidates, in file order, those that may be seen in a part of the picture.
+    pub fn live(&self, part: Area, among: &[Live], out: &mut Vec<Live>) {
+        out.clear();
+        let patch = Patch::new(&self.fast.camera, part);
+        let near = self.fast.near.as_ref().map(|form| form.over(&patch));
+        let far = self.fast.far.as_ref().map(|form| form.over(&patch));
+        // The nearest of what is met everywhere hides what is farther.
+        let mut hidden = f64::NEG_INFINITY;
+        for candidate in among {
+            let Some(live) = self.cover(candidate.object, &patch, near, far) else {
+                continue;
+            };
+            if live.inverse_depth.high < hidden {
+                continue;
+            }
+            if live.is_whole {
+                hidden = hidden.max(live.inverse_depth.low);
+            }
+            out.push(live);
+        }
+        out.retain(|live| live.inverse_depth.high >= hidden);
+        if out.len() > 1 {
+            self.drop_covered(&patch, out);
+        }
+    }
+
+    /// The object in a part of the picture, if it may be seen there.
+    fn cover(
+        &self,
+        index: usize,
+        patch: &Patch,
+        near: Option<Range>,
+        far: Option<Range>,
+    ) -> Option<Live> {
+        let object = f64::object(self, index);
+        let cover = object.cover(patch)?;
+        let mut live = Live {
+            object: index,
+            is_whole: cover.is_whole,
+            inverse_depth: cover.inverse_depth.or_all(),
+            is_cut: false,
+        };
+        if let Some(near) = near
+            && live.inverse_depth.high >= near.low
+        {
+            let behind = match object.behind(patch) {
+                Some(behind) => behind.or_all(),
+                // It has but one surface, which the near plane takes away as a whole or in part.
+                None if live.inverse_depth.low > near.high => return None,
+                None => live.inverse_depth,
+            };
+            if behind.low > near.high {
+                return None;
+            }
+            live.is_cut = true;
+            live.is_whole = false;
+            live.inverse_depth.low = live.inverse_depth.low.min(behind.low);
+        }
+        if let Some(far) = far {
+            if live.inverse_depth.high < far.low {
+                return None;
+            }
+            live.is_whole &= live.inverse_depth.low > far.high;
+        }
+        Some(live)
+    }
+
+    /// Removes flat objects that lie behind another flat one all over the patch, though their depths there overlap, or in
+    /// the same plane as one that comes before them in the file.
+    fn drop_covered(&self, patch: &Patch, live: &mut Vec<Live>) {
+        // As many as lie above each other in pictures that people make; with more, the curves of the pixels decide.
+        const FEW: usize = 8;
+        if live.len() > FEW {
+            return;
+        }
+        for front in live.clone() {
+            if front.is_whole {
+                live.retain(|back| {
+                    back.object == front.object
+                        || back.is_cut
+                        || !self.covers(front.object, back.object, patch)
+                });
+            }
+        }
+    }
+
+    /// Whether an object that every ray through a patch meets hides another there by the forms of their planes.
+    fn covers(&self, front: usize, back: usize, patch: &Patch) -> bool {
+        let ahead = |a: &Surface<f64>, i: usize, b: &Surface<f64>, j: usize| {
+            let (Surface::Plane(a), Surface::Plane(b)) = (a, b) else {
+                return false;
+            };
+            if a.minus(b).over(patch).low > 0.0 {
+                return true;
+            }
+            let planes = |index: usize, at: usize| {
+                let object = Double::object(self, index);
+                match object.surfaces(Crossings::First).get(at) {
+                    Some(Surface::Plane(form)) => Some(*form),
+                    _ => None,
+                }
+            };
+            front < back
+                && matches!((planes(front, i), planes(back, j)), (Some(a), Some(b)) if a.equals(b))
+        };
+        let (a, b) = (f64::object(self, front), f64::object(self, back));
+        let (planes_a, planes_b) = (a.surfaces(Crossings::First), b.surfaces(Crossings::First));
+        let mut pairs = planes_b.iter().enumerate().map(|(j, b)| {
+            let mut fronts = planes_a.iter().enumerate();
+            match a.is_seen_from_inside() {
+                true => fronts.any(|(i, a)| ahead(a, i, b, j)),
+                false => fronts.all(|(i, a)| ahead(a, i, b, j)),
+            }
+        });
+        match b.is_seen_from_inside() {
+            true => pairs.all(|covered| covered),
+            false => pairs.any(|covered| covered),
+        }
+    }
+
+    /// The curves in a pixel that may bound what is seen there of some objects: outlines, where surfaces cross each other, and
+    /// where the near and the far plane cut them.
+    pub fn curves(&self, x: u32, y: u32, live: &[Live], out: &mut Vec<Curve>) {
+        out.clear();
+        self.curves_in::<Double>(x, y, live, out);
+        let is_tight = |curve: &Curve| match curve {
+            Curve::Line(line) => line.rad < LOOSE_LINE,
+            Curve::Conic(conic) => conic.doubtful_area() < LOOSE_CONIC,
+        };
+        if !out.iter().all(is_tight) {
+            out.clear();
+            self.curves_in::<Big>(x, y, live, out);
+        }
+    }
+
+    fn curves_in<T: Level>(&self, x: u32, y: u32, live: &[Live], out: &mut Vec<Curve>) {
+        let frame = T::frame(self);
+        let place = Place::new(&frame.camera, &frame.camera.sample_point(x, y, DVec2::ZERO));
+        let mut push = |curve: Curve| {
+            if curve.may_pass() {
+                out.push(curve);
+            }
+        };
+        let surfaces = |live: &Live| -> Vec<Surface<T>> {
+            let which = match live.is_cut {
+                true => Crossings::Both,
+                false => Crossings::First,
+            };
+            T::object(self, live.object).surfaces(which)
+        };
+        for (i, a) in live.iter().enumerate() {
+            if !a.is_whole {
+                T::object(self, a.object)
+                    .outline(&place)
+                    .into_iter()
+                    .for_each(&mut push);
+                let clips = [&frame.near, &frame.far];
+                for clip in clips.into_iter().flatten() {
+                    for surface in &surfaces(a) {
+                        place
+                            .crossing(surface, &Surface::Plane(clip))
+                            .into_iter()
+                            .for_each(&mut push);
+                    }
+                }
+            }
+            for b in &live[i + 1..] {
+                let apart = a.inverse_depth.high < b.inverse_depth.low
+                    || b.inverse_depth.high < a.inverse_depth.low;
+                if apart {
+                    continue;
+                }
+                let others = surfaces(b);
+                for surface in &surfaces(a) {
+                    for other in &others {
+                        place
+                            .crossing(surface, other)
+                            .into_iter()
+                            .for_each(&mut push);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The object that is seen at an offset from a pixel's centre, of some that may be.
+    pub fn object_at(&self, x: u32, y: u32, offset: DVec2, live: &[Live]) -> Option<usize> {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        let among = || live.iter().map(|live| live.object);
+        let fast = self.nearest(&f64::frame(self).camera.direction(&point), among());
+        let seen = fast.or_else(|Doubt| {
+            let r = Double::frame(self).camera.direction(&point);
+            self.nearest(&r, among())
+        });
+        let seen = seen.or_else(|Doubt| {
+            let r = Big::frame(self).camera.direction(&point);
+            self.nearest(&r, among())
+        });
+        // The last precision is never in doubt.
+        seen.unwrap_or_default().map(|(object, _)| object)
+    }
+
+    /// An object's squares in a pixel, if it is a checkerboard.
+    pub fn board(&self, object: usize, x: u32, y: u32) -> Option<Board> {
+        let board = self.board_in::<Double>(object, x, y)?;
+        if board.rad < LOOSE_LINE {
+            return Some(board);
+        }
+        self.board_in::<Big>(object, x, y)
+    }
+
+    fn board_in<T: Level>(&self, object: usize, x: u32, y: u32) -> Option<Board> {
+        let Object::Checkerboard(board) = T::object(self, object) else {
+            return None;
+        };
+        let camera = &T::frame(self).camera;
+        let place = Place::new(camera, &camera.sample_point(x, y, DVec2::ZERO));
+        let [a, b] = &board.across;
+        let lines = place.together([a, b, &board.below]);
+        let [a, b, below] = lines.map(|line| line.factors);
+        Some(Board {
+            across: [a, b],
+            below,
+            rad: lines.iter().fold(0.0, |rad, line| line.rad.max(rad)),
+            odd: board.odd,
+        })
+    }
+
+    /// Whether a part of the picture in which a checkerboard is all that may be seen shows but one of its squares.
+    pub fn is_one_square(&self, part: Area, object: usize) -> bool {
+        let Object::Checkerboard(board) = f64::object(self, object) else {
+            return false;
+        };
+        let camera = &self.fast.camera;
+        let corner = |x: u32, y: u32| {
+            let point = camera.picture_point(DVec2::new(f64::from(x), f64::from(y)));
+            let r = camera.direction(&point);
+            let below = board.below.at(&r);
+            board
+                .across
+                .each_ref()
+                .map(|across| (across.at(&r) / &below).floor())
+        };
+        let (right, bottom) = (part.x + part.width, part.y + part.height);
+        let first = corner(part.x, part.y);
+        let others = [(right, part.y), (part.x, bottom), (right, bottom)];
+        // A square is convex and seen as a convex quadrilateral, so four corners speak for the part.
+        others.iter().all(|&(x, y)| {
+            let other = corner(x, y);
+            first.iter().zip(&other).all(|(a, b)| match (a, b) {
+                (Ok((a, _)), Ok((b, _))) => a.compare(b) == Ok(Ordering::Equal),
+                _ => false,
+            })
+        })
+    }
+}
+
+impl Curve {
+    /// Whether it may pass through the pixel.
+    fn may_pass(&self) -> bool {
+        match self {
+            Self::Line(line) => line.over_pixel().holds_zero(),
+            Self::Conic(conic) => conic.over_pixel().holds_zero(),
+        }
+    }
+}
+
+impl Line {
+    /// The range of its form over the pixel.
+    fn over_pixel(&self) -> Range {
+        let [a, b, c] = self.factors;
+        Range::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)
+    }
+}
