@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-use super::{cells, edge};
+use super::{
+    cells,
+    edge::{self, Known},
+};
 
 /// The unit roundoff of `f64`.
 pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
@@ -104,6 +107,11 @@ impl Board {
     /// The integral of s(a)·s(b) over what a convex polygon shows of the floor, in square pixels; positive where the
     /// squares are, however the polygon is oriented.
     pub(crate) fn over(&self, polygon: &[DVec2]) -> Sum {
+        self.over_known(polygon, None)
+    }
+
+    /// The same for a whole pixel, some of whose sides may be known.
+    pub(crate) fn over_known(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
         let corners = self.visible(polygon);
         let first = match corners.first() {
             Some(first) if corners.len() > 2 => first,
@@ -111,7 +119,7 @@ impl Board {
         };
         let endless = corners.iter().any(|c| c.depth.is_infinite());
         if endless {
-            return self.far_or_both(&corners);
+            return self.far_or_both(&corners, known);
         }
         let mut low = first.floor.map(f64::floor);
         let mut high = low;
@@ -136,16 +144,16 @@ impl Board {
         if squares.min(spans[0] * spans[1]) <= FEW {
             return cells::sum(self, &corners);
         }
-        self.far_or_both(&corners)
+        self.far_or_both(&corners, known)
     }
 
     /// Along the boundary where the board is far enough for it, square by square where it is not.
-    fn far_or_both(&self, corners: &[Corner]) -> Sum {
+    fn far_or_both(&self, corners: &[Corner], known: Option<&mut Known>) -> Sum {
         let depth = FAR * (self.slope[0].abs() + self.slope[1].abs());
         let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
         let furthest = corners.iter().fold(0.0, |m: f64, c| m.max(c.depth));
         if nearest >= depth {
-            return edge::sum(self, corners);
+            return edge::sum(self, corners, known);
         }
         if furthest <= depth {
             return cells::sum(self, corners);
@@ -155,7 +163,7 @@ impl Board {
         let near = self.clip(corners, &line);
         let far = self.clip(corners, &line.map(|c| -c));
         let mut sum = cells::sum(self, &near);
-        sum.add(edge::sum(self, &far));
+        sum.add(edge::sum(self, &far, known));
         sum
     }
 

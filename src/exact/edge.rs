@@ -12,9 +12,10 @@
 //! and the family that it crosses less may be chosen.
 
 use super::board::{Board, Corner, Sum, UNIT, measure};
-use super::euler::{ORDERS, square_wave, waves};
+use super::euler::{ORDERS, square_wave, waves, waves_at};
 use super::horizon;
-use std::f64::consts::PI;
+use glam::DVec2;
+use std::{array, collections::HashMap, f64::consts::PI};
 
 /// The most terms of the asymptotic series.
 const MAX_TERMS: usize = 12;
@@ -32,8 +33,39 @@ const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
+/// Sides of pixels that run into the horizon: two pixels share each, and their sums are the longest.
+#[derive(Debug, Default)]
+pub(super) struct Sides(HashMap<Side, Sum>);
+
+/// The board, the corner of the picture's pixels where the side begins, and whether it goes down the picture or up, else along.
+type Side = (usize, u32, u32, bool);
+
+/// A pixel whose sides may be known from another one.
+pub(super) struct Known<'a> {
+    pub sides: &'a mut Sides,
+    pub board: usize,
+    pub x: u32,
+    pub y: u32,
+}
+
+impl Known<'_> {
+    /// The side that an edge of the pixel from a corner into the horizon is a part of.
+    fn side(&self, near: DVec2, far: DVec2) -> Option<Side> {
+        if near.abs() != DVec2::splat(0.5) {
+            return None;
+        }
+        let corner = |at: u32, offset: f64| at + u32::from(offset > 0.0);
+        let (x, y) = (corner(self.x, near.x), corner(self.y, near.y));
+        match (far.x == near.x, far.y == near.y) {
+            (true, false) => Some((self.board, x, y, true)),
+            (false, true) => Some((self.board, x, y, false)),
+            _ => None,
+        }
+    }
+}
+
 /// The integral over a convex polygon of which every square is far away, which may reach to the horizon.
-pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
+pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Known>) -> Sum {
     if corners.len() < 3 {
         return Sum::default();
     }
@@ -49,8 +81,21 @@ pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;
         if let Some(edge) = edge {
-            let part = edge.integral(board, terms);
-            sum.value += part.value;
+            let (a, b) = (&corners[i], &corners[(i + 1) % corners.len()]);
+            let (near, far) = if a.depth <= b.depth { (a, b) } else { (b, a) };
+            let is_endless = far.depth.is_infinite();
+            let part = match known.as_deref_mut().filter(|_| is_endless) {
+                Some(known) => match known.side(near.at, far.at) {
+                    Some(side) => *known
+                        .sides
+                        .0
+                        .entry(side)
+                        .or_insert_with(|| edge.integral(board, terms)),
+                    None => edge.integral(board, terms),
+                },
+                None => edge.integral(board, terms),
+            };
+            sum.value += edge.sign * part.value;
             sum.bound += part.bound;
             ends -= edge.potential;
         }
@@ -196,7 +241,7 @@ impl Edge {
         })
     }
 
-    /// ± ρ ∫ s(c) dX from near to far, with the sign that the boundary gives it.
+    /// ρ ∫ s(c) dX from near to far.
     fn integral(&self, board: &Board, terms: usize) -> Sum {
         let series = self.series(board, terms);
         let start = square_wave(self.c);
@@ -227,7 +272,7 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        sum.value *= self.sign * self.rho;
+        sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + 16.0 * UNIT * ends);
         sum
     }
@@ -327,18 +372,32 @@ impl Crossings<'_> {
     }
 
     fn block<const TERMS: usize>(&self, series: &Series, done: f64, count: f64) -> f64 {
-        let mut sums = [0.0; 2];
+        // In lanes, which the compiler makes vectors of; what is left over is added one by one.
+        const LANES: usize = 4;
+        let mut sums = [0.0; LANES];
+        let count = count as usize;
         let mut j = done;
-        for i in 0..count as usize {
-            let waves = waves::<TERMS>(self.t + j * self.edge.stride);
-            let u = 1.0 / (self.depth + j * self.edge.rise);
-            let mut x = 0.0;
-            for k in (1..=TERMS).rev() {
-                x = (x + series.factors[k] * waves[k + 1]) * u;
-            }
-            sums[i & 1] += x * u * u;
+        for _ in 0..count / LANES {
+            let values = self.at::<TERMS, LANES>(series, array::from_fn(|lane| j + lane as f64));
+            sums = array::from_fn(|lane| sums[lane] + values[lane]);
+            j += LANES as f64;
+        }
+        for sum in &mut sums[..count % LANES] {
+            *sum += self.at::<TERMS, 1>(series, [j])[0];
             j += 1.0;
         }
-        sums[0] - sums[1]
+        (sums[0] - sums[1]) + (sums[2] - sums[3])
+    }
+
+    /// X at some crossings.
+    #[inline(always)]
+    fn at<const TERMS: usize, const N: usize>(&self, series: &Series, j: [f64; N]) -> [f64; N] {
+        let waves = waves_at::<TERMS, N>(j.map(|j| self.t + j * self.edge.stride));
+        let u = j.map(|j| 1.0 / (self.depth + j * self.edge.rise));
+        let mut x = [0.0; N];
+        for k in (1..=TERMS).rev() {
+            x = array::from_fn(|i| (x[i] + series.factors[k] * waves[k + 1][i]) * u[i]);
+        }
+        array::from_fn(|i| x[i] * u[i] * u[i])
     }
 }

@@ -1,5 +1,7 @@
 //! Euler's polynomials made periodic, the repeated antiderivatives of the square wave.
 
+use std::array;
+
 /// One more than the highest order there is.
 pub(super) const ORDERS: usize = 14;
 
@@ -35,29 +37,32 @@ pub(super) fn square_wave(t: f64) -> f64 {
 /// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
 /// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
 /// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
-#[inline(always)]
 pub(super) fn waves<const TERMS: usize>(t: f64) -> [f64; ORDERS] {
+    waves_at::<TERMS, 1>([t]).map(|[wave]| wave)
+}
+
+/// The waves at several places: in each of the answer's rows one order.
+#[inline(always)]
+pub(super) fn waves_at<const TERMS: usize, const N: usize>(t: [f64; N]) -> [[f64; N]; ORDERS] {
     // Adding 1.5·2^52 rounds to an integer and leaves its parity in the last bit; at a tie either neighbour will do, for
     // the waves are continuous. Half-way to t's last digits nothing is left to be said.
     const ROUND: f64 = 6755399441055744.0;
-    let middle = t - 0.5;
-    let shifted = middle + ROUND;
-    let eta = middle - (shifted - ROUND);
-    let sign = f64::from_bits(1.0_f64.to_bits() | (shifted.to_bits() << 63));
+    let middle = t.map(|t| t - 0.5);
+    let shifted = middle.map(|middle| middle + ROUND);
+    let eta: [f64; N] = array::from_fn(|i| middle[i] - (shifted[i] - ROUND));
+    let sign = shifted.map(|s| f64::from_bits(1.0_f64.to_bits() | (s.to_bits() << 63)));
     let mut powers = [sign; ORDERS];
-    for i in 1..=TERMS + 1 {
-        powers[i] = powers[i - 1] * eta;
-    }
-    for i in 2..=TERMS + 1 {
-        powers[i] *= INVERSE_FACTORIAL[i];
-    }
-    let mut all = [0.0; ORDERS];
     for k in 1..=TERMS + 1 {
-        let mut sum = 0.0;
+        powers[k] = array::from_fn(|i| powers[k - 1][i] * eta[i]);
+    }
+    for k in 2..=TERMS + 1 {
+        powers[k] = powers[k].map(|power| power * INVERSE_FACTORIAL[k]);
+    }
+    let mut all = [[0.0; N]; ORDERS];
+    for k in 1..=TERMS + 1 {
         for j in (0..=k / 2).rev() {
-            sum += SECH[j] * powers[k - 2 * j];
+            all[k] = array::from_fn(|i| all[k][i] + SECH[j] * powers[k - 2 * j][i]);
         }
-        all[k] = sum;
     }
     all
 }

@@ -34,7 +34,10 @@ use crate::{
     tracer::{Curve, Live, World},
 };
 
-use self::region::{Regions, Shares};
+use self::{
+    edge::Sides,
+    region::{Regions, Shares},
+};
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +63,7 @@ struct Scratch<'a> {
     /// The candidates at each depth of the quartering.
     live: Vec<Vec<Live>>,
     curves: Vec<Curve>,
+    sides: Sides,
     cancel: &'a AtomicBool,
 }
 
@@ -90,6 +94,7 @@ impl<'a> Integrator<'a> {
         let mut scratch = Scratch {
             live: Vec::new(),
             curves: Vec::new(),
+            sides: Sides::default(),
             cancel,
         };
         self.quarter(part, &self.everything, 0, &mut scratch, &mut film);
@@ -120,7 +125,7 @@ impl<'a> Integrator<'a> {
                 film.fill(part, self.colors[slot]);
             }
             _ if part.width == 1 && part.height == 1 => {
-                film.set(part, self.pixel(part.x, part.y, &live, &mut scratch.curves));
+                film.set(part, self.pixel(part.x, part.y, &live, scratch));
             }
             _ => {
                 for quarter in part.quarters() {
@@ -136,9 +141,10 @@ impl<'a> Integrator<'a> {
         first == second || self.world.is_one_square(part, live.object)
     }
 
-    fn pixel(&self, x: u32, y: u32, live: &[Live], curves: &mut Vec<Curve>) -> Pixel {
+    fn pixel(&self, x: u32, y: u32, live: &[Live], scratch: &mut Scratch) -> Pixel {
+        let Scratch { curves, sides, .. } = scratch;
         self.world.curves(x, y, live, curves);
-        let regions = Regions::new(self.world, x, y, live);
+        let regions = Regions::new(self.world, (x, y), live, sides);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         let shares = if lines_alone {
             polygon::shares(curves, regions)

@@ -7,7 +7,11 @@ use crate::{
     tracer::{Live, World},
 };
 
-use super::{arc::Arc, board::Board};
+use super::{
+    arc::Arc,
+    board::Board,
+    edge::{Known, Sides},
+};
 
 /// How much of a pixel each colour has.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +28,8 @@ pub struct Regions<'a> {
     x: u32,
     y: u32,
     live: &'a [Live],
+    /// Sides of pixels that are known.
+    sides: &'a mut Sides,
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
@@ -50,12 +56,18 @@ pub struct Region<'a> {
 
 impl<'a> Regions<'a> {
     /// For the pixel in column `x` and row `y`, in which no other objects are seen than some.
-    pub fn new(world: &'a World, x: u32, y: u32, live: &'a [Live]) -> Self {
+    pub fn new(
+        world: &'a World,
+        (x, y): (u32, u32),
+        live: &'a [Live],
+        sides: &'a mut Sides,
+    ) -> Self {
         Self {
             world,
             x,
             y,
             live,
+            sides,
             boards: Vec::new(),
             shares: Shares::default(),
         }
@@ -74,10 +86,17 @@ impl<'a> Regions<'a> {
         if first == second {
             return self.shares.add(first, region.area);
         }
-        let Some(checkered) = self.board(object) else {
+        let Some(at) = self.board(object) else {
             return self.shares.add(first, region.area);
         };
-        let mut sum = checkered.board.over(region.polygon);
+        let checkered = &self.boards[at].1;
+        let mut known = Known {
+            sides: self.sides,
+            board: object,
+            x: self.x,
+            y: self.y,
+        };
+        let mut sum = checkered.board.over_known(region.polygon, Some(&mut known));
         for (bulge, arc) in region.arcs {
             let sliver = checkered.board.sliver(arc);
             sum.value += bulge * sliver.value;
@@ -105,7 +124,8 @@ impl<'a> Regions<'a> {
         shares
     }
 
-    fn board(&mut self, object: usize) -> Option<&Checkered> {
+    /// The place of an object's board, if it is a checkerboard.
+    fn board(&mut self, object: usize) -> Option<usize> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
@@ -119,7 +139,7 @@ impl<'a> Regions<'a> {
                 self.boards.len() - 1
             }
         };
-        Some(&self.boards[at].1)
+        Some(at)
     }
 }
 

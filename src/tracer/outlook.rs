@@ -31,7 +31,7 @@ pub struct Live {
 }
 
 /// A checkerboard in a pixel: the point (x, y), in pixels from its centre, shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
-/// a corner of squares, where ℓ > 0.
+/// a corner of squares near to the pixel, where ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Board {
     /// The factors of x, y and 1 in N₀ and N₁.
@@ -278,7 +278,7 @@ impl World {
         let camera = &T::frame(self).camera;
         let place = Place::new(camera, &camera.sample_point(x, y, DVec2::ZERO));
         let [a, b] = &board.across;
-        let lines = place.together([a, b, &board.below]);
+        let lines = place.together([a, b, &board.below], &board.below);
         let [a, b, below] = lines.map(|line| line.factors);
         Some(Board {
             across: [a, b],
