@@ -102,7 +102,10 @@ pub fn render(
     Ok(film.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-fn pool(threads: Option<NonZero<usize>>) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
+/// So many threads, or as many as there are processors.
+pub(crate) fn pool(
+    threads: Option<NonZero<usize>>,
+) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
     // Rayon takes 0 for as many as there are processors.
     let threads = threads.map_or(0, |threads| threads.get().min(THREADS));
     ThreadPoolBuilder::new().num_threads(threads).build()

@@ -8,7 +8,6 @@ mod figure;
 mod film;
 mod images;
 mod language;
-mod oracle;
 mod overrides;
 mod readme;
 mod render;

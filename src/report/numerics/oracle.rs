@@ -1,0 +1,394 @@
+//! What is seen at a sample point by the formulas of a textbook, in arithmetic of hundreds of bits.
+//!
+//! Nothing here is shared with the tracer: world coordinates instead of the view plane, the quadratic formula, signed areas and
+//! slabs with divisions. Decisions closer than a certain power of two count as ties, which is far beyond the 2^−90 where
+//! the language's own ties begin, and far before the last bits of the arithmetic.
+
+use std::cmp::Ordering;
+
+use dashu_float::{FBig, round::mode::HalfEven};
+use dashu_int::IBig;
+use glam::{DVec2, DVec3};
+
+use crate::{
+    math::Angle,
+    scene::{Checkerboard, Cuboid, Lens, Scene, Shape, Sphere, Triangle, View},
+};
+
+/// A binary floating-point number of the oracle's precision.
+pub type N = FBig<HalfEven, 2>;
+
+/// A vector of the world.
+pub type V = [N; 3];
+
+/// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
+pub const ALL_SIZES: usize = 1400;
+
+/// Enough bits for scenes whose numbers differ by some 2^100 in size.
+pub const USUAL_SIZES: usize = 512;
+
+/// A scene, ready to be asked what is seen.
+#[derive(Debug)]
+pub struct Oracle {
+    number: Number,
+    scene: Scene,
+    /// The vertices of the triangles.
+    vertices: Vec<Option<[V; 3]>>,
+    eye: V,
+    /// The picture's right, its top, and against the view direction.
+    axes: [V; 3],
+    /// Distance of the view plane.
+    d: N,
+    /// The side of a pixel in it.
+    pixel: N,
+}
+
+/// A point of a ray on a visible surface.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// The object's index in the scene.
+    pub object: usize,
+    /// Whether a checkerboard shows its second colour.
+    pub odd: bool,
+    /// The point is eye + t · direction.
+    pub t: N,
+}
+
+impl Oracle {
+    /// Prepares a scene. Its up vector must not be parallel to the view direction.
+    pub fn new(scene: &Scene, bits: usize) -> Self {
+        let number = Number { bits };
+        let n = |x| number.exact(x);
+        let camera = &scene.camera;
+        let eye = number.vector(camera.eye);
+        let forward = match camera.view {
+            View::Lookat(at) => sub(&number.vector(at), &eye),
+            View::Direction(direction) => number.vector(direction),
+        };
+        let w = scale(&n(-1.0), &unit(&forward));
+        let u = unit(&cross(&number.vector(camera.up), &w));
+        let top = cross(&w, &u);
+        let (s, c) = number.sin_cos(camera.roll);
+        let rolled_u = axpy(&scale(&c, &u), &-s.clone(), &top);
+        let rolled_v = axpy(&scale(&s, &u), &c, &top);
+        let d = match camera.lens {
+            Lens::Distance(d) => n(d),
+            Lens::Fov(angle) => {
+                let (s, c) = number.sin_cos(angle * 0.5);
+                n(camera.view_height) * c / (n(2.0) * s)
+            }
+        };
+        let corners = |shape: &Shape| match shape {
+            Shape::Triangle(triangle) => Some(number.vertices(triangle)),
+            _ => None,
+        };
+        Self {
+            number,
+            vertices: scene.objects.iter().map(|o| corners(&o.shape)).collect(),
+            eye,
+            axes: [rolled_u, rolled_v, w],
+            d,
+            pixel: n(camera.view_height) / n(f64::from(scene.image.height)),
+            scene: scene.clone(),
+        }
+    }
+
+    /// The picture's right, its top, and against the view direction.
+    pub fn axes(&self) -> &[V; 3] {
+        &self.axes
+    }
+
+    /// The eye.
+    pub fn eye(&self) -> &V {
+        &self.eye
+    }
+
+    /// A number as the oracle's arithmetic has it.
+    pub fn exact(&self, x: f64) -> N {
+        self.number.exact(x)
+    }
+
+    /// The direction of the ray through an offset from the centre of the pixel in column `x` and row `y`.
+    pub fn direction(&self, x: u32, y: u32, offset: DVec2) -> V {
+        let n = |x| self.number.exact(x);
+        let half = n(0.5);
+        self.towards(
+            n(f64::from(x)) + &half + n(offset.x),
+            n(f64::from(y)) + &half + n(offset.y),
+        )
+    }
+
+    /// The direction of the ray through a point so many pixels from the picture's top left corner.
+    pub fn direction_through(&self, pixels: DVec2) -> V {
+        self.towards(self.number.exact(pixels.x), self.number.exact(pixels.y))
+    }
+
+    fn towards(&self, x: N, y: N) -> V {
+        let half = |pixels: u32| self.number.exact(f64::from(pixels) / 2.0);
+        let right = (x - half(self.scene.image.width)) * &self.pixel;
+        let up = (half(self.scene.image.height) - y) * &self.pixel;
+        let [u, v, w] = &self.axes;
+        axpy(&axpy(&scale(&right, u), &up, v), &-self.d.clone(), w)
+    }
+
+    /// What is seen along a direction.
+    pub fn seen(&self, r: &V) -> Option<Seen> {
+        let camera = &self.scene.camera;
+        let (near, far) = (
+            self.number.exact(camera.near),
+            camera.far.map(|far| self.number.exact(far)),
+        );
+        let ahead = -dot(r, &self.axes[2]);
+        let mut best: Option<(usize, N)> = None;
+        for index in 0..self.scene.objects.len() {
+            let visible = self.crossings(index, r).into_iter().find(|t| {
+                let depth = t * &ahead;
+                self.order(&depth, &near) == Ordering::Greater
+                    && (far.as_ref()).is_none_or(|far| self.order(&depth, far) == Ordering::Less)
+            });
+            if let Some(t) = visible
+                && (best.as_ref())
+                    .is_none_or(|(_, nearest)| self.order(&t, nearest) == Ordering::Less)
+            {
+                best = Some((index, t));
+            }
+        }
+        let (object, t) = best?;
+        let odd = match self.scene.objects[object].shape {
+            Shape::Checkerboard(Checkerboard { square, .. }) => {
+                let p = self.point(&t, r);
+                self.is_odd(&p[0], square) != self.is_odd(&p[2], square)
+            }
+            _ => false,
+        };
+        Some(Seen { object, odd, t })
+    }
+
+    /// eye + t · r.
+    pub fn point(&self, t: &N, r: &V) -> V {
+        axpy(&self.eye, t, r)
+    }
+
+    /// Whether a coordinate lies in an odd row of squares.
+    fn is_odd(&self, x: &N, square: f64) -> bool {
+        // What is so close to an integer is that integer: 1/3 + 2/3 is not 0.999….
+        let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
+        let cell = (x / self.number.exact(square) + close).floor();
+        (cell.to_int().value() & IBig::ONE) == IBig::ONE
+    }
+
+    /// All t > 0 at which the ray eye + t · r meets an object, in order.
+    pub fn crossings(&self, index: usize, r: &V) -> Vec<N> {
+        match &self.scene.objects[index].shape {
+            Shape::Sphere(sphere) => self.sphere(sphere, r),
+            Shape::Triangle(triangle) => match &self.vertices[index] {
+                Some(vertices) => self.triangle(triangle, vertices, r),
+                None => Vec::new(),
+            },
+            Shape::Box(cuboid) => self.cuboid(cuboid, r),
+            Shape::Checkerboard(board) => {
+                let height = self.number.exact(board.y) - &self.eye[1];
+                if height == N::ZERO || self.sign(&r[1], &length(r)) == Ordering::Equal {
+                    return Vec::new();
+                }
+                let t = height / &r[1];
+                if t > N::ZERO { vec![t] } else { Vec::new() }
+            }
+        }
+    }
+
+    fn sphere(&self, sphere: &Sphere, r: &V) -> Vec<N> {
+        let radius = self.number.exact(sphere.radius);
+        let f = sub(&self.eye, &self.number.vector(sphere.center));
+        let (a, b) = (dot(r, r), dot(&f, r));
+        let ff = dot(&f, &f);
+        let c = &ff - &radius * &radius;
+        let discriminant = &b * &b - &a * &c;
+        if self.sign(&discriminant, &(&b * &b)) != Ordering::Greater {
+            return Vec::new();
+        }
+        let root = discriminant.sqrt();
+        let inside = self.sign(&c, &ff);
+        [(-&b - &root) / &a, (-&b + &root) / &a]
+            .into_iter()
+            .enumerate()
+            // On the surface itself one root is zero, whatever its rounding.
+            .filter(|(i, t)| match inside {
+                Ordering::Equal => *i == 1 && self.sign(&-&b, &ff.sqrt()) == Ordering::Greater,
+                _ => *t > N::ZERO,
+            })
+            .map(|(_, t)| t)
+            .collect()
+    }
+
+    fn triangle(&self, triangle: &Triangle, [a, b, c]: &[V; 3], r: &V) -> Vec<N> {
+        let normal = self.number.vector(triangle.normal);
+        let to_centroid = sub(&self.number.vector(triangle.centroid), &self.eye);
+        let (height, slope) = (dot(&normal, &to_centroid), dot(&normal, r));
+        let thickness = length(&normal);
+        if self.sign(&height, &(&thickness * length(&to_centroid))) == Ordering::Equal
+            || self.sign(&slope, &(&thickness * length(r))) == Ordering::Equal
+        {
+            return Vec::new();
+        }
+        let t = height / slope;
+        if t <= N::ZERO {
+            return Vec::new();
+        }
+        let p = self.point(&t, r);
+        let size = thickness * (dot(&p, &p) + dot(a, a) + dot(b, b) + dot(c, c));
+        let inside = [(a, b), (b, c), (c, a)].iter().all(|(a, b)| {
+            let area = dot(&normal, &cross(&sub(b, a), &sub(&p, a)));
+            self.sign(&area, &size) != Ordering::Less
+        });
+        if inside { vec![t] } else { Vec::new() }
+    }
+
+    fn cuboid(&self, cuboid: &Cuboid, r: &V) -> Vec<N> {
+        let mut enter: Option<N> = None;
+        let mut leave: Option<N> = None;
+        for axis in 0..3 {
+            let [lo, hi] =
+                [cuboid.min, cuboid.max].map(|at| self.number.exact(at[axis]) - &self.eye[axis]);
+            if self.sign(&r[axis], &length(r)) == Ordering::Equal {
+                if lo > N::ZERO || hi < N::ZERO {
+                    return Vec::new();
+                }
+                continue;
+            }
+            let (mut near, mut far) = (lo / &r[axis], hi / &r[axis]);
+            if near > far {
+                std::mem::swap(&mut near, &mut far);
+            }
+            if enter.as_ref().is_none_or(|enter| near > *enter) {
+                enter = Some(near);
+            }
+            if leave.as_ref().is_none_or(|leave| far < *leave) {
+                leave = Some(far);
+            }
+        }
+        let (Some(enter), Some(leave)) = (enter, leave) else {
+            return Vec::new();
+        };
+        if self.order(&enter, &leave) == Ordering::Greater {
+            return Vec::new();
+        }
+        let mut crossings = vec![enter, leave];
+        crossings.retain(|t| *t > N::ZERO);
+        crossings
+    }
+
+    /// The order of two numbers, which are equal if they are equal up to a certain part of the larger one.
+    fn order(&self, a: &N, b: &N) -> Ordering {
+        let difference = a - b;
+        let size = abs(a) + abs(b);
+        if abs(&difference) <= size >> (self.number.bits as isize * 5 / 14) {
+            Ordering::Equal
+        } else {
+            difference.cmp(&N::ZERO)
+        }
+    }
+
+    /// The sign of the result of operands of a certain size.
+    fn sign(&self, x: &N, size: &N) -> Ordering {
+        self.order(&(x + size), size)
+    }
+}
+
+/// Numbers of so many bits.
+#[derive(Clone, Copy, Debug)]
+struct Number {
+    bits: usize,
+}
+
+impl Number {
+    fn exact(self, x: f64) -> N {
+        debug_assert!(x.is_finite());
+        let x = N::try_from(x).unwrap_or(N::ZERO);
+        x.with_precision(self.bits).value()
+    }
+
+    fn vector(self, v: DVec3) -> V {
+        v.to_array().map(|x| self.exact(x))
+    }
+
+    /// Sine and cosine of an angle that is a number of degrees plus one of radians.
+    fn sin_cos(self, angle: Angle) -> (N, N) {
+        let (s, c) = self.exact(angle.degrees).sin_cos_unit(360);
+        if angle.radians == 0.0 {
+            return (s, c);
+        }
+        let (t, d) = self.exact(angle.radians).sin_cos();
+        (&s * &d + &c * &t, c * d - s * t)
+    }
+
+    /// A triangle's vertices: left base end, right base end, apex.
+    fn vertices(self, triangle: &Triangle) -> [V; 3] {
+        let Triangle {
+            centroid, normal, ..
+        } = *triangle;
+        let n = |x| self.exact(x);
+        let unit_normal = unit(&self.vector(normal));
+        let reference = if normal.x == 0.0 && normal.z == 0.0 {
+            DVec3::NEG_Z
+        } else {
+            DVec3::Y
+        };
+        let right = unit(&cross(&self.vector(reference), &unit_normal));
+        let top = cross(&unit_normal, &right);
+        // The law of cosines at the left end, then a turn of everything about the centroid.
+        let [a, b, c] = triangle.sides.to_array().map(n);
+        let cos = (&a * &a + &c * &c - &b * &b) / (n(2.0) * &a * &c);
+        let sin = (n(1.0) - &cos * &cos).sqrt();
+        let corners = [(n(0.0), n(0.0)), (c, n(0.0)), (&a * cos, &a * sin)];
+        let mean = |pick: fn(&(N, N)) -> &N| {
+            (pick(&corners[0]) + pick(&corners[1]) + pick(&corners[2])) / n(3.0)
+        };
+        let (mean_x, mean_y) = (mean(|p| &p.0), mean(|p| &p.1));
+        let (s, k) = self.sin_cos(triangle.spin);
+        corners.map(|(x, y)| {
+            let (x, y) = (x - &mean_x, y - &mean_y);
+            let turned = (&k * &x - &s * &y, &s * &x + &k * &y);
+            let centroid = self.vector(centroid);
+            axpy(&axpy(&centroid, &turned.0, &right), &turned.1, &top)
+        })
+    }
+}
+
+fn sub(a: &V, b: &V) -> V {
+    [0, 1, 2].map(|i| &a[i] - &b[i])
+}
+
+fn axpy(a: &V, k: &N, b: &V) -> V {
+    [0, 1, 2].map(|i| &a[i] + k * &b[i])
+}
+
+fn scale(k: &N, a: &V) -> V {
+    [0, 1, 2].map(|i| k * &a[i])
+}
+
+fn dot(a: &V, b: &V) -> N {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn cross(a: &V, b: &V) -> V {
+    [
+        &a[1] * &b[2] - &a[2] * &b[1],
+        &a[2] * &b[0] - &a[0] * &b[2],
+        &a[0] * &b[1] - &a[1] * &b[0],
+    ]
+}
+
+/// The length of a vector.
+pub fn length(a: &V) -> N {
+    dot(a, a).sqrt()
+}
+
+fn unit(a: &V) -> V {
+    let length = length(a);
+    [0, 1, 2].map(|i| &a[i] / &length)
+}
+
+fn abs(x: &N) -> N {
+    if *x < N::ZERO { -x.clone() } else { x.clone() }
+}
