@@ -8,6 +8,8 @@ mod figure;
 mod film;
 mod images;
 mod language;
+mod laws;
+mod numerics;
 mod overrides;
 mod readme;
 mod render;

@@ -188,7 +188,7 @@ impl Oracle {
             Shape::Box(cuboid) => self.cuboid(cuboid, r),
             Shape::Checkerboard(board) => {
                 let height = self.number.exact(board.y) - &self.eye[1];
-                if height == N::ZERO || self.sign(&r[1], &length(r)) == Ordering::Equal {
+                if height == N::ZERO || self.sign(&r[1], &size(r)) == Ordering::Equal {
                     return Vec::new();
                 }
                 let t = height / &r[1];
@@ -225,9 +225,9 @@ impl Oracle {
         let normal = self.number.vector(triangle.normal);
         let to_centroid = sub(&self.number.vector(triangle.centroid), &self.eye);
         let (height, slope) = (dot(&normal, &to_centroid), dot(&normal, r));
-        let thickness = length(&normal);
-        if self.sign(&height, &(&thickness * length(&to_centroid))) == Ordering::Equal
-            || self.sign(&slope, &(&thickness * length(r))) == Ordering::Equal
+        let thickness = size(&normal);
+        if self.sign(&height, &(&thickness * size(&to_centroid))) == Ordering::Equal
+            || self.sign(&slope, &(&thickness * size(r))) == Ordering::Equal
         {
             return Vec::new();
         }
@@ -236,10 +236,10 @@ impl Oracle {
             return Vec::new();
         }
         let p = self.point(&t, r);
-        let size = thickness * (dot(&p, &p) + dot(a, a) + dot(b, b) + dot(c, c));
+        let scale = thickness * (dot(&p, &p) + dot(a, a) + dot(b, b) + dot(c, c));
         let inside = [(a, b), (b, c), (c, a)].iter().all(|(a, b)| {
             let area = dot(&normal, &cross(&sub(b, a), &sub(&p, a)));
-            self.sign(&area, &size) != Ordering::Less
+            self.sign(&area, &scale) != Ordering::Less
         });
         if inside { vec![t] } else { Vec::new() }
     }
@@ -250,7 +250,7 @@ impl Oracle {
         for axis in 0..3 {
             let [lo, hi] =
                 [cuboid.min, cuboid.max].map(|at| self.number.exact(at[axis]) - &self.eye[axis]);
-            if self.sign(&r[axis], &length(r)) == Ordering::Equal {
+            if self.sign(&r[axis], &size(r)) == Ordering::Equal {
                 if lo > N::ZERO || hi < N::ZERO {
                     return Vec::new();
                 }
@@ -382,6 +382,11 @@ fn cross(a: &V, b: &V) -> V {
 /// The length of a vector.
 pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
+}
+
+/// What bounds the size of a vector, as the scale that something is small on.
+fn size(a: &V) -> N {
+    abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }
 
 fn unit(a: &V) -> V {
