@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     math::Angle,
-    scene::{Checkerboard, Cuboid, Lens, Scene, Shape, Sphere, Triangle, View},
+    scene::{Lens, Scene, Shape, Triangle, View},
 };
 
 /// A binary floating-point number of the oracle's precision.
@@ -32,8 +32,7 @@ pub const USUAL_SIZES: usize = 512;
 pub struct Oracle {
     number: Number,
     scene: Scene,
-    /// The vertices of the triangles.
-    vertices: Vec<Option<[V; 3]>>,
+    surfaces: Vec<Surface>,
     eye: V,
     /// The picture's right, its top, and against the view direction.
     axes: [V; 3],
@@ -41,6 +40,24 @@ pub struct Oracle {
     d: N,
     /// The side of a pixel in it.
     pixel: N,
+}
+
+/// What a shape's formulas need that is the same for all rays.
+#[derive(Debug)]
+enum Surface {
+    /// f = eye − centre, f·f and f·f − radius².
+    Sphere { f: V, square: N, c: N },
+    /// The vertices, the normal n, n·(centroid − eye), which is zero if the eye is in the plane, and the scale of areas.
+    Triangle {
+        vertices: Box<[V; 3]>,
+        normal: V,
+        height: N,
+        scale: N,
+    },
+    /// min − eye and max − eye.
+    Box { lo: V, hi: V },
+    /// y − eye's y, and the side of a square.
+    Checkerboard { height: N, square: N },
 }
 
 /// A point of a ray on a visible surface.
@@ -78,13 +95,11 @@ impl Oracle {
                 n(camera.view_height) * c / (n(2.0) * s)
             }
         };
-        let corners = |shape: &Shape| match shape {
-            Shape::Triangle(triangle) => Some(number.vertices(triangle)),
-            _ => None,
-        };
+        let surface = |shape: &Shape| Surface::new(number, shape, &eye);
+        let surfaces = scene.objects.iter().map(|o| surface(&o.shape)).collect();
         Self {
             number,
-            vertices: scene.objects.iter().map(|o| corners(&o.shape)).collect(),
+            surfaces,
             eye,
             axes: [rolled_u, rolled_v, w],
             d,
@@ -154,8 +169,8 @@ impl Oracle {
             }
         }
         let (object, t) = best?;
-        let odd = match self.scene.objects[object].shape {
-            Shape::Checkerboard(Checkerboard { square, .. }) => {
+        let odd = match &self.surfaces[object] {
+            Surface::Checkerboard { square, .. } => {
                 let p = self.point(&t, r);
                 self.is_odd(&p[0], square) != self.is_odd(&p[2], square)
             }
@@ -170,93 +185,88 @@ impl Oracle {
     }
 
     /// Whether a coordinate lies in an odd row of squares.
-    fn is_odd(&self, x: &N, square: f64) -> bool {
+    fn is_odd(&self, x: &N, square: &N) -> bool {
         // What is so close to an integer is that integer: 1/3 + 2/3 is not 0.999….
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
-        let cell = (x / self.number.exact(square) + close).floor();
+        let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE
     }
 
     /// All t > 0 at which the ray eye + t · r meets an object, in order.
     pub fn crossings(&self, index: usize, r: &V) -> Vec<N> {
-        match &self.scene.objects[index].shape {
-            Shape::Sphere(sphere) => self.sphere(sphere, r),
-            Shape::Triangle(triangle) => match &self.vertices[index] {
-                Some(vertices) => self.triangle(triangle, vertices, r),
-                None => Vec::new(),
-            },
-            Shape::Box(cuboid) => self.cuboid(cuboid, r),
-            Shape::Checkerboard(board) => {
-                let height = self.number.exact(board.y) - &self.eye[1];
-                if height == N::ZERO || self.sign(&r[1], &size(r)) == Ordering::Equal {
-                    return Vec::new();
-                }
-                let t = height / &r[1];
-                if t > N::ZERO { vec![t] } else { Vec::new() }
+        match &self.surfaces[index] {
+            Surface::Sphere { f, square, c } => self.sphere(f, square, c, r),
+            Surface::Triangle {
+                vertices,
+                normal,
+                height,
+                scale,
+            } => self
+                .plane(normal, height, r)
+                .filter(|t| self.is_in_triangle(vertices, normal, scale, &self.point(t, r)))
+                .into_iter()
+                .collect(),
+            Surface::Box { lo, hi } => self.cuboid(lo, hi, r),
+            Surface::Checkerboard { height, .. } => {
+                let up = [0.0, 1.0, 0.0].map(|x| self.number.exact(x));
+                self.plane(&up, height, r).into_iter().collect()
             }
         }
     }
 
-    fn sphere(&self, sphere: &Sphere, r: &V) -> Vec<N> {
-        let radius = self.number.exact(sphere.radius);
-        let f = sub(&self.eye, &self.number.vector(sphere.center));
-        let (a, b) = (dot(r, r), dot(&f, r));
-        let ff = dot(&f, &f);
-        let c = &ff - &radius * &radius;
-        let discriminant = &b * &b - &a * &c;
-        if self.sign(&discriminant, &(&b * &b)) != Ordering::Greater {
+    /// The roots of a t² + 2 b t + c, of which only those count that are > 0.
+    fn sphere(&self, f: &V, square: &N, c: &N, r: &V) -> Vec<N> {
+        let (a, b) = (dot(r, r), dot(f, r));
+        let bb = &b * &b;
+        let discriminant = &bb - &a * c;
+        if self.sign(&discriminant, &bb) != Ordering::Greater {
             return Vec::new();
         }
         let root = discriminant.sqrt();
-        let inside = self.sign(&c, &ff);
+        let inside = self.sign(c, square);
         [(-&b - &root) / &a, (-&b + &root) / &a]
             .into_iter()
             .enumerate()
             // On the surface itself one root is zero, whatever its rounding.
             .filter(|(i, t)| match inside {
-                Ordering::Equal => *i == 1 && self.sign(&-&b, &ff.sqrt()) == Ordering::Greater,
+                Ordering::Equal => *i == 1 && self.sign(&-&b, &square.sqrt()) == Ordering::Greater,
                 _ => *t > N::ZERO,
             })
             .map(|(_, t)| t)
             .collect()
     }
 
-    fn triangle(&self, triangle: &Triangle, [a, b, c]: &[V; 3], r: &V) -> Vec<N> {
-        let normal = self.number.vector(triangle.normal);
-        let to_centroid = sub(&self.number.vector(triangle.centroid), &self.eye);
-        let (height, slope) = (dot(&normal, &to_centroid), dot(&normal, r));
-        let thickness = size(&normal);
-        if self.sign(&height, &(&thickness * size(&to_centroid))) == Ordering::Equal
-            || self.sign(&slope, &(&thickness * size(r))) == Ordering::Equal
-        {
-            return Vec::new();
+    /// Where the ray meets the plane n·(p − eye) = height.
+    fn plane(&self, n: &V, height: &N, r: &V) -> Option<N> {
+        let slope = dot(n, r);
+        if *height == N::ZERO || self.sign(&slope, &(size(n) * size(r))) == Ordering::Equal {
+            return None;
         }
         let t = height / slope;
-        if t <= N::ZERO {
-            return Vec::new();
-        }
-        let p = self.point(&t, r);
-        let scale = thickness * (dot(&p, &p) + dot(a, a) + dot(b, b) + dot(c, c));
-        let inside = [(a, b), (b, c), (c, a)].iter().all(|(a, b)| {
-            let area = dot(&normal, &cross(&sub(b, a), &sub(&p, a)));
-            self.sign(&area, &scale) != Ordering::Less
-        });
-        if inside { vec![t] } else { Vec::new() }
+        (t > N::ZERO).then_some(t)
     }
 
-    fn cuboid(&self, cuboid: &Cuboid, r: &V) -> Vec<N> {
+    /// Whether a point of a triangle's plane lies on the inner side of each edge, or on it.
+    fn is_in_triangle(&self, [a, b, c]: &[V; 3], normal: &V, scale: &N, p: &V) -> bool {
+        let scale = scale + size(normal) * dot(p, p);
+        [(a, b), (b, c), (c, a)].iter().all(|(a, b)| {
+            let area = dot(normal, &cross(&sub(b, a), &sub(p, a)));
+            self.sign(&area, &scale) != Ordering::Less
+        })
+    }
+
+    /// The greatest t of the slabs' entries to the least of their exits.
+    fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let mut enter: Option<N> = None;
         let mut leave: Option<N> = None;
         for axis in 0..3 {
-            let [lo, hi] =
-                [cuboid.min, cuboid.max].map(|at| self.number.exact(at[axis]) - &self.eye[axis]);
             if self.sign(&r[axis], &size(r)) == Ordering::Equal {
-                if lo > N::ZERO || hi < N::ZERO {
+                if lo[axis] > N::ZERO || hi[axis] < N::ZERO {
                     return Vec::new();
                 }
                 continue;
             }
-            let (mut near, mut far) = (lo / &r[axis], hi / &r[axis]);
+            let (mut near, mut far) = (&lo[axis] / &r[axis], &hi[axis] / &r[axis]);
             if near > far {
                 std::mem::swap(&mut near, &mut far);
             }
@@ -280,18 +290,50 @@ impl Oracle {
 
     /// The order of two numbers, which are equal if they are equal up to a certain part of the larger one.
     fn order(&self, a: &N, b: &N) -> Ordering {
-        let difference = a - b;
-        let size = abs(a) + abs(b);
-        if abs(&difference) <= size >> (self.number.bits as isize * 5 / 14) {
-            Ordering::Equal
-        } else {
-            difference.cmp(&N::ZERO)
-        }
+        self.sign(&(a - b), &(abs(a) + abs(b)))
     }
 
-    /// The sign of the result of operands of a certain size.
     fn sign(&self, x: &N, size: &N) -> Ordering {
-        self.order(&(x + size), size)
+        self.number.sign(x, size)
+    }
+}
+
+impl Surface {
+    fn new(number: Number, shape: &Shape, eye: &V) -> Self {
+        match shape {
+            Shape::Sphere(sphere) => {
+                let radius = number.exact(sphere.radius);
+                let f = sub(eye, &number.vector(sphere.center));
+                let square = dot(&f, &f);
+                let c = &square - &radius * &radius;
+                Self::Sphere { f, square, c }
+            }
+            Shape::Triangle(triangle) => {
+                let vertices = number.vertices(triangle);
+                let normal = number.vector(triangle.normal);
+                let from_eye = sub(&number.vector(triangle.centroid), eye);
+                let height = dot(&normal, &from_eye);
+                let height = match number.sign(&height, &(size(&normal) * size(&from_eye))) {
+                    Ordering::Equal => N::ZERO,
+                    _ => height,
+                };
+                let [a, b, c] = vertices.each_ref().map(|v| dot(v, v));
+                Self::Triangle {
+                    scale: size(&normal) * (a + b + c),
+                    vertices: Box::new(vertices),
+                    normal,
+                    height,
+                }
+            }
+            Shape::Box(cuboid) => Self::Box {
+                lo: sub(&number.vector(cuboid.min), eye),
+                hi: sub(&number.vector(cuboid.max), eye),
+            },
+            Shape::Checkerboard(board) => Self::Checkerboard {
+                height: number.exact(board.y) - &eye[1],
+                square: number.exact(board.square),
+            },
+        }
     }
 }
 
@@ -310,6 +352,15 @@ impl Number {
 
     fn vector(self, v: DVec3) -> V {
         v.to_array().map(|x| self.exact(x))
+    }
+
+    /// The sign of the result of operands of a certain size, which is none up to a certain part of it.
+    fn sign(self, x: &N, size: &N) -> Ordering {
+        if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
+            Ordering::Equal
+        } else {
+            x.cmp(&N::ZERO)
+        }
     }
 
     /// Sine and cosine of an angle that is a number of degrees plus one of radians.
