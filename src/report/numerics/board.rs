@@ -4,10 +4,9 @@ use glam::{DVec3, dvec2, dvec3};
 
 use super::{
     Case, Claim,
+    inputs::{Random, SIZE, along, board, camera, cuboid, scene, sphere, spun, triangle},
     oracle::USUAL_SIZES,
-    trial::{
-        Random, SIZE, Tally, Trial, along, board, camera, cuboid, scene, sphere, spun, triangle,
-    },
+    trial::{Tally, Trial},
 };
 
 /// The cases.

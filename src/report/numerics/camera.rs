@@ -4,9 +4,10 @@ use glam::{DVec3, dvec3};
 
 use super::{
     Case, Claim,
+    inputs::{Random, along, board, camera, cuboid, scene, sphere, triangle},
     oracle::{ALL_SIZES, Oracle, USUAL_SIZES},
     textbook,
-    trial::{Random, Tally, Trial, along, board, camera, cuboid, scene, sphere, triangle},
+    trial::{Tally, Trial},
 };
 use crate::{
     math::{Angle, Real},

@@ -4,8 +4,9 @@ use glam::{DVec3, dvec3};
 
 use super::{
     Case, Claim,
+    inputs::{Random, along, board, camera, cuboid, scene, sphere, triangle},
     oracle::USUAL_SIZES,
-    trial::{Random, Tally, Trial, along, board, camera, cuboid, scene, sphere, triangle},
+    trial::{Tally, Trial},
 };
 
 /// The cases.

@@ -1,17 +1,13 @@
 //! The mean of a pixel.
 
-use super::{
-    Case, Claim,
-    oracle::N,
-    trial::{Random, Tally},
-};
+use super::{Case, Claim, inputs::Random, oracle::N, trial::Tally};
 use crate::{color::Color, film};
 
 /// The cases.
 pub const CASES: &[Case] = &[Case::new(
     "F1",
     "the mean of up to 4096 samples of 4 colours",
-    Claim::Ulps(1.0),
+    Claim::UlpsAlone(1.0),
     means,
 )];
 

@@ -16,6 +16,7 @@ mod camera;
 mod clip;
 mod cuboid;
 mod film;
+mod inputs;
 pub mod oracle;
 mod sphere;
 mod table;
@@ -27,7 +28,7 @@ use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use self::trial::Random;
+use self::inputs::Random;
 pub use self::{
     table::{Claim, Row, Table},
     trial::Tally,
@@ -115,7 +116,6 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, RenderError
         id: case.id,
         title: case.title,
         claim: case.claim,
-        decides: !matches!(case.claim, Claim::Roundings(_)) && case.id != "F1",
         tally,
     });
     Ok(Table {

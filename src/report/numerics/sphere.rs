@@ -4,8 +4,9 @@ use glam::{DVec3, dvec2, dvec3};
 
 use super::{
     Case, Claim,
+    inputs::{Random, SIZE, along, camera, cuboid, scene, sphere},
     oracle::USUAL_SIZES,
-    trial::{Random, SIZE, Tally, Trial, along, camera, cuboid, scene, sphere},
+    trial::{Tally, Trial},
 };
 
 /// The cases.

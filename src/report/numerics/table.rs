@@ -14,16 +14,23 @@ pub enum Claim {
     Decisions,
     /// Numbers are right up to so many units in the last place.
     Ulps(f64),
+    /// The same, and nothing is decided.
+    UlpsAlone(f64),
     /// Components of unit vectors are right up to so many times 2^−53, and nothing is decided.
     Roundings(f64),
 }
 
 impl Claim {
+    /// Whether something is decided, and not only computed.
+    pub fn decides(self) -> bool {
+        matches!(self, Self::Decisions | Self::Ulps(_))
+    }
+
     /// The greatest error that is claimed, if numbers are.
     pub fn bound(self) -> Option<f64> {
         match self {
             Self::Decisions => None,
-            Self::Ulps(bound) | Self::Roundings(bound) => Some(bound),
+            Self::Ulps(bound) | Self::UlpsAlone(bound) | Self::Roundings(bound) => Some(bound),
         }
     }
 
@@ -31,7 +38,7 @@ impl Claim {
     pub fn unit(self) -> Option<&'static str> {
         match self {
             Self::Decisions => None,
-            Self::Ulps(_) => Some("ulp"),
+            Self::Ulps(_) | Self::UlpsAlone(_) => Some("ulp"),
             Self::Roundings(_) => Some("u"),
         }
     }
@@ -46,8 +53,6 @@ pub struct Row {
     pub title: &'static str,
     /// What is claimed.
     pub claim: Claim,
-    /// Whether something is decided, and not only computed.
-    pub decides: bool,
     /// What was counted and measured.
     pub tally: Tally,
 }
@@ -81,7 +86,7 @@ impl Table {
             } = row.tally;
             let side = |i: usize| {
                 json!({
-                    "wrong": row.decides.then_some(wrong[i]),
+                    "wrong": row.claim.decides().then_some(wrong[i]),
                     "error": row.claim.bound().map(|_| error[i]),
                 })
             };
@@ -119,7 +124,7 @@ impl fmt::Display for Table {
                 wrong,
                 error,
             } = row.tally;
-            let wrong = match row.decides {
+            let wrong = match row.claim.decides() {
                 true => [share(wrong[0], inputs), grouped(wrong[1])],
                 false => [String::new(), String::new()],
             };
@@ -136,7 +141,7 @@ impl fmt::Display for Table {
         writeln!(f)?;
         writeln!(
             f,
-            "{inputs} inputs, {wrong} wrong decisions of Pinhole's. Against them the textbook's formulas in f64."
+            "{inputs} inputs, {wrong} wrong decisions of Pinhole's; beside them the textbook's formulas in f64."
         )?;
         writeln!(
             f,

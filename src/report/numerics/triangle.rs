@@ -4,8 +4,9 @@ use glam::{DVec3, dvec2, dvec3};
 
 use super::{
     Case, Claim,
+    inputs::{Random, SIZE, along, camera, scene, spun, triangle},
     oracle::USUAL_SIZES,
-    trial::{Random, SIZE, Tally, Trial, along, camera, scene, spun, triangle},
+    trial::{Tally, Trial},
 };
 use crate::scene::Lens;
 

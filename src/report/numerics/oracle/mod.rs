@@ -1,25 +1,19 @@
 //! What is seen at a sample point by the formulas of a textbook, in arithmetic of hundreds of bits.
 //!
 //! Nothing here is shared with the tracer: world coordinates instead of the view plane, the quadratic formula, signed areas and
-//! slabs with divisions. Decisions closer than a certain power of two count as ties, which is far beyond the 2^−90 where
-//! the language's own ties begin, and far before the last bits of the arithmetic.
+//! slabs with divisions. What is smaller than its terms by 5/14 of the bits counts as zero (2^−500 with 1400 bits, 2^−182 with
+//! 512): far beyond the 2^−90 where the language's ties begin, and far before the last bits.
+
+mod number;
 
 use std::cmp::Ordering;
 
-use dashu_float::{FBig, round::mode::HalfEven};
 use dashu_int::IBig;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use crate::{
-    math::Angle,
-    scene::{Lens, Scene, Shape, Triangle, View},
-};
-
-/// A binary floating-point number of the oracle's precision.
-pub type N = FBig<HalfEven, 2>;
-
-/// A vector of the world.
-pub type V = [N; 3];
+pub use self::number::{N, V, length};
+use self::number::{Number, abs, axpy, cross, dot, scale, size, sub, unit};
+use crate::scene::{Lens, Scene, Shape, View};
 
 /// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
 pub const ALL_SIZES: usize = 1400;
@@ -335,116 +329,4 @@ impl Surface {
             },
         }
     }
-}
-
-/// Numbers of so many bits.
-#[derive(Clone, Copy, Debug)]
-struct Number {
-    bits: usize,
-}
-
-impl Number {
-    fn exact(self, x: f64) -> N {
-        debug_assert!(x.is_finite());
-        let x = N::try_from(x).unwrap_or(N::ZERO);
-        x.with_precision(self.bits).value()
-    }
-
-    fn vector(self, v: DVec3) -> V {
-        v.to_array().map(|x| self.exact(x))
-    }
-
-    /// The sign of the result of operands of a certain size, which is none up to a certain part of it.
-    fn sign(self, x: &N, size: &N) -> Ordering {
-        if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
-            Ordering::Equal
-        } else {
-            x.cmp(&N::ZERO)
-        }
-    }
-
-    /// Sine and cosine of an angle that is a number of degrees plus one of radians.
-    fn sin_cos(self, angle: Angle) -> (N, N) {
-        let (s, c) = self.exact(angle.degrees).sin_cos_unit(360);
-        if angle.radians == 0.0 {
-            return (s, c);
-        }
-        let (t, d) = self.exact(angle.radians).sin_cos();
-        (&s * &d + &c * &t, c * d - s * t)
-    }
-
-    /// A triangle's vertices: left base end, right base end, apex.
-    fn vertices(self, triangle: &Triangle) -> [V; 3] {
-        let Triangle {
-            centroid, normal, ..
-        } = *triangle;
-        let n = |x| self.exact(x);
-        let unit_normal = unit(&self.vector(normal));
-        let reference = if normal.x == 0.0 && normal.z == 0.0 {
-            DVec3::NEG_Z
-        } else {
-            DVec3::Y
-        };
-        let right = unit(&cross(&self.vector(reference), &unit_normal));
-        let top = cross(&unit_normal, &right);
-        // The law of cosines at the left end, then a turn of everything about the centroid.
-        let [a, b, c] = triangle.sides.to_array().map(n);
-        let cos = (&a * &a + &c * &c - &b * &b) / (n(2.0) * &a * &c);
-        let sin = (n(1.0) - &cos * &cos).sqrt();
-        let corners = [(n(0.0), n(0.0)), (c, n(0.0)), (&a * cos, &a * sin)];
-        let mean = |pick: fn(&(N, N)) -> &N| {
-            (pick(&corners[0]) + pick(&corners[1]) + pick(&corners[2])) / n(3.0)
-        };
-        let (mean_x, mean_y) = (mean(|p| &p.0), mean(|p| &p.1));
-        let (s, k) = self.sin_cos(triangle.spin);
-        corners.map(|(x, y)| {
-            let (x, y) = (x - &mean_x, y - &mean_y);
-            let turned = (&k * &x - &s * &y, &s * &x + &k * &y);
-            let centroid = self.vector(centroid);
-            axpy(&axpy(&centroid, &turned.0, &right), &turned.1, &top)
-        })
-    }
-}
-
-fn sub(a: &V, b: &V) -> V {
-    [0, 1, 2].map(|i| &a[i] - &b[i])
-}
-
-fn axpy(a: &V, k: &N, b: &V) -> V {
-    [0, 1, 2].map(|i| &a[i] + k * &b[i])
-}
-
-fn scale(k: &N, a: &V) -> V {
-    [0, 1, 2].map(|i| k * &a[i])
-}
-
-fn dot(a: &V, b: &V) -> N {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn cross(a: &V, b: &V) -> V {
-    [
-        &a[1] * &b[2] - &a[2] * &b[1],
-        &a[2] * &b[0] - &a[0] * &b[2],
-        &a[0] * &b[1] - &a[1] * &b[0],
-    ]
-}
-
-/// The length of a vector.
-pub fn length(a: &V) -> N {
-    dot(a, a).sqrt()
-}
-
-/// What bounds the size of a vector, as the scale that something is small on.
-fn size(a: &V) -> N {
-    abs(&a[0]) + abs(&a[1]) + abs(&a[2])
-}
-
-fn unit(a: &V) -> V {
-    let length = length(a);
-    [0, 1, 2].map(|i| &a[i] / &length)
-}
-
-fn abs(x: &N) -> N {
-    if *x < N::ZERO { -x.clone() } else { x.clone() }
 }
