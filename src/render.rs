@@ -146,7 +146,10 @@ fn finished<T>(made: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     Ok(made.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-fn pool(threads: Option<NonZero<usize>>) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
+/// So many threads, or as many as there are processors.
+pub(crate) fn pool(
+    threads: Option<NonZero<usize>>,
+) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
     // Rayon takes 0 for as many as there are processors.
     let threads = threads.map_or(0, |threads| threads.get().min(THREADS));
     ThreadPoolBuilder::new().num_threads(threads).build()

@@ -41,6 +41,9 @@ pub enum Command {
     /// Follow one ray, surface by surface
     #[command(after_help = PROBE_EXAMPLES)]
     Probe(ProbeArgs),
+    /// Report how right the arithmetic is, hard case by hard case
+    #[command(after_help = REPORT_EXAMPLES)]
+    Report(ReportArgs),
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -74,6 +77,12 @@ const PROBE_EXAMPLES: &str = "\
 Examples:
   pinhole probe figure.scn 640 360               the middle of a picture of 1280 × 720 pixels
   pinhole probe figure.scn -10 0.5               left of the picture";
+
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  pinhole report --numerics
+  pinhole report --numerics --inputs 1000000     the full count, which takes minutes
+  pinhole report --numerics --format json";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -152,6 +161,26 @@ pub struct ProbeArgs {
     pub overrides: Overrides,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `report`.
+#[derive(Debug, clap::Args)]
+pub struct ReportArgs {
+    /// The scenes
+    #[arg(value_name = "SCENE", conflicts_with = "numerics")]
+    pub scenes: Vec<PathBuf>,
+    /// Count the wrong decisions in a catalogue of hard cases, against arithmetic of hundreds of bits and beside the
+    /// formulas of a textbook
+    #[arg(long)]
+    pub numerics: bool,
+    /// How many inputs to ask of each case
+    #[arg(long, value_name = "N", default_value_t = 10_000, requires = "numerics", value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
+    pub inputs: u64,
+    #[command(flatten)]
+    pub format: FormatArgs,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
 }
 
 /// For whom the answer is.

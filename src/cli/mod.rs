@@ -13,6 +13,7 @@ mod output;
 mod probe;
 mod progress;
 mod render;
+mod report;
 
 use std::{fmt, process::ExitCode};
 
@@ -32,6 +33,7 @@ pub fn run() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
+        Command::Report(args) => report::run(&args, &interrupt),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });

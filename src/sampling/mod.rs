@@ -22,7 +22,7 @@ mod binomial;
 mod bricks;
 mod halton;
 mod hammersley;
-mod hash;
+pub(crate) mod hash;
 mod jittered;
 mod lattice;
 mod multi_jittered;

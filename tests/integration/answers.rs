@@ -4,14 +4,12 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
     inspect::{Inspection, inspect},
     probe::{Probe, probe},
+    report::numerics::oracle::{ALL_SIZES, Oracle, length},
     scene::{self, Scene, View},
     source::{Source, Sources},
 };
 
-use crate::{
-    oracle,
-    tracer::{Random, camera, cuboid, floor, sphere, triangle},
-};
+use crate::tracer::{Random, camera, cuboid, floor, sphere, triangle};
 
 fn read(text: &str) -> (Scene, Sources) {
     let sources = Sources::new(Source::from_text("test.scn", text));
@@ -194,14 +192,15 @@ fn distances_and_points_are_right_to_the_last_bit() {
         );
         let (x, y) = (random.bits() as u32 % 64, random.bits() as u32 % 64);
         let offset = dvec2(0.25, -0.375);
-        let (e, r) = oracle::ray(&scene, x, y, offset);
+        let oracle = Oracle::new(&scene, ALL_SIZES);
+        let r = oracle.direction(x, y, offset);
         let pixels = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) + offset;
         let probe = probe(&scene, pixels);
         let mut expected = Vec::new();
-        for (index, object) in scene.objects.iter().enumerate() {
-            for t in oracle::crossings(&object.shape, &e, &r) {
-                let point = [0, 1, 2].map(|i| (&e[i] + &t * &r[i]).to_f64().value());
-                let t = (t * oracle::length(&r)).to_f64().value();
+        for index in 0..scene.objects.len() {
+            for t in oracle.crossings(index, &r) {
+                let point = oracle.point(&t, &r).map(|x| x.to_f64().value());
+                let t = (t * length(&r)).to_f64().value();
                 expected.push((t, index, DVec3::from(point)));
             }
         }

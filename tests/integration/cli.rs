@@ -487,7 +487,11 @@ fn wrong_usage_is_status_2() {
         &["probe", "a.scn", "1"],
         &["probe", "a.scn", "1", "nan"],
         &["probe", "a.scn", "1", "inf"],
+        &["report"],
         &["report", "a.scn"],
+        &["report", "a.scn", "--numerics"],
+        &["report", "--inputs", "5"],
+        &["report", "--numerics", "--inputs", "0"],
     ] {
         let errors = fails(&folder, arguments, 2);
         assert!(!errors.is_empty());
@@ -497,7 +501,15 @@ fn wrong_usage_is_status_2() {
 #[test]
 fn help_has_examples_and_the_manual_all_commands() {
     let folder = folder();
-    for command in ["render", "check", "inspect", "probe", "completions", "man"] {
+    for command in [
+        "render",
+        "check",
+        "inspect",
+        "probe",
+        "report",
+        "completions",
+        "man",
+    ] {
         let help = String::from_utf8(done(&folder, &[command, "--help"])).unwrap();
         assert!(
             help.contains(&format!("Examples:\n  pinhole {command}")),
@@ -512,7 +524,7 @@ fn help_has_examples_and_the_manual_all_commands() {
         concat!("pinhole ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()
     );
     let manual = String::from_utf8(done(&folder, &["man"])).unwrap();
-    for command in ["RENDER", "CHECK", "INSPECT", "PROBE"] {
+    for command in ["RENDER", "CHECK", "INSPECT", "PROBE", "REPORT"] {
         assert!(manual.contains(&format!(".SH \"PINHOLE {command}\"")));
     }
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
@@ -542,6 +554,39 @@ fn a_reader_that_goes_away_is_no_panic() {
         assert!(!errors(&output).contains("panicked"), "{arguments:?}");
         assert!(output.status.code().is_some(), "{arguments:?} was killed");
     }
+}
+
+#[test]
+fn report_counts_wrong_decisions_for_people_and_programs() {
+    let folder = folder();
+    let arguments = ["report", "--numerics", "--inputs", "20"];
+    let output = pinhole(&folder, &arguments);
+    assert!(output.status.success() && output.stdout.is_empty());
+    let people = errors(&output);
+    assert!(people.contains("S1a  rays that nearly touch a sphere"));
+    assert!(people.contains(" 0 wrong decisions of Pinhole's;"));
+    let arguments = [&arguments[..], &["--format", "json", "--threads", "1"]].concat();
+    let table = json(&folder, &arguments);
+    assert_eq!(table["numerics"][0]["inputs"], 20);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_report() {
+    let folder = folder();
+    let arguments = ["report", "--numerics", "--inputs", "1000000000"];
+    let mut child = command(folder.path(), &arguments)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    thread::sleep(Duration::from_millis(700));
+    assert!(child.try_wait().unwrap().is_none());
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
 #[cfg(unix)]

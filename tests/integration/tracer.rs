@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
     color::Color,
     math::Angle,
+    report::numerics::oracle::{ALL_SIZES, Oracle},
     scene::{
         Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
         Sphere, Triangle, View,
@@ -11,8 +12,6 @@ use pinhole::{
     source::{SourceId, Span},
     tracer::{Precision, World},
 };
-
-use crate::oracle;
 
 const SIZE: u32 = 64;
 
@@ -134,10 +133,10 @@ impl Random {
 }
 
 /// The colour that the oracle sees, in the numbering of [`scene`].
-fn expected(scene: &Scene, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
-    match oracle::seen(scene, x, y, offset) {
+fn expected(oracle: &Oracle, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
+    match oracle.seen(&oracle.direction(x, y, offset)) {
         None => [0.0; 3],
-        Some((index, odd)) => [index as f64 + 1.0, f64::from(u8::from(odd)), 0.0],
+        Some(seen) => [seen.object as f64 + 1.0, f64::from(u8::from(seen.odd)), 0.0],
     }
 }
 
@@ -145,12 +144,13 @@ fn expected(scene: &Scene, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
 /// random segments within pixels cross. Returns how many boundaries it found, so that a test can say that there were some.
 fn agrees(scene: &Scene, points: usize) -> usize {
     let world = World::new(scene);
+    let oracle = Oracle::new(scene, ALL_SIZES);
     let mut random = Random(points as u64);
     let color = |x, y, offset| world.palette()[world.slot_at(x, y, offset)].srgb;
     let check = |x, y, offset: DVec2| {
         assert_eq!(
             color(x, y, offset),
-            expected(scene, x, y, offset),
+            expected(&oracle, x, y, offset),
             "pixel {x}, {y} at {offset:?} of {scene:?}"
         );
     };
@@ -352,13 +352,14 @@ fn the_floor_far_away_agrees_with_the_oracle() {
         camera.view = View::Direction(dvec3(0.2, 0.0, -1.0));
         let scene = scene(camera, &[floor()]);
         let world = World::new(&scene);
+        let oracle = Oracle::new(&scene, ALL_SIZES);
         let mut random = Random(1);
         for exponent in 1..16 {
             let below = libm::pow(10.0, -f64::from(exponent));
             let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
             let (x, y) = (random.bits() as u32 % SIZE, SIZE / 2);
             let color = world.palette()[world.slot_at(x, y, offset)].srgb;
-            assert_eq!(color, expected(&scene, x, y, offset));
+            assert_eq!(color, expected(&oracle, x, y, offset));
         }
     }
 }
@@ -436,6 +437,7 @@ fn scenes_full_of_ties_agree_with_the_oracle() {
         let mut scene = scene(camera, &shapes);
         (scene.image.width, scene.image.height) = (8, 8);
         let world = World::new(&scene);
+        let oracle = Oracle::new(&scene, ALL_SIZES);
         for _ in 0..30 {
             let (x, y) = (random.bits() as u32 % 8, random.bits() as u32 % 8);
             let eighth = |bits: u64| (bits % 8) as f64 / 8.0 - 0.5;
@@ -443,7 +445,7 @@ fn scenes_full_of_ties_agree_with_the_oracle() {
             let color = world.palette()[world.slot_at(x, y, offset)].srgb;
             assert_eq!(
                 color,
-                expected(&scene, x, y, offset),
+                expected(&oracle, x, y, offset),
                 "pixel {x}, {y} at {offset} of {scene:?}"
             );
         }
@@ -460,10 +462,11 @@ fn just_outside_the_edge_of_a_box_the_floor_that_it_stands_on_is_seen() {
     ];
     let scene = scene(camera, &shapes);
     let world = World::new(&scene);
+    let oracle = Oracle::new(&scene, ALL_SIZES);
     let offset = dvec2(-0.253_993_261_381_526_67, 0.204_492_435_315_224_93);
     let color = world.palette()[world.slot_at(48, 31, offset)].srgb;
     assert_eq!(color, [2.0, 1.0, 0.0]);
-    assert_eq!(color, expected(&scene, 48, 31, offset));
+    assert_eq!(color, expected(&oracle, 48, 31, offset));
 }
 
 #[test]
@@ -483,12 +486,13 @@ fn rays_in_the_planes_of_faces_agree_with_the_oracle() {
         let mut scene = scene(camera, &[shape, floor()]);
         (scene.image.width, scene.image.height) = (33, 33);
         let world = World::new(&scene);
+        let oracle = Oracle::new(&scene, ALL_SIZES);
         for i in 0..33 {
             for (x, y) in [(16, i), (i, 16), (i, i)] {
                 let color = world.palette()[world.slot_at(x, y, DVec2::ZERO)].srgb;
                 assert_eq!(
                     color,
-                    expected(&scene, x, y, DVec2::ZERO),
+                    expected(&oracle, x, y, DVec2::ZERO),
                     "eye {eye}, pixel {x}, {y}"
                 );
             }

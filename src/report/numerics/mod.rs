@@ -1,0 +1,124 @@
+//! How right the arithmetic is: a catalogue of hard cases, each asked many times.
+//!
+//! A case makes inputs around a singularity: tangents, horizons, shared edges, eyes on surfaces, numbers of all sizes. What is
+//! seen there is decided three times: by the [`oracle`] in hundreds of bits, by the formulas of a [`textbook`] in `f64`, and by
+//! the tracer that renders pictures. Decisions that differ from the oracle's are counted, distances and points measured at one
+//! input of 16. Inputs lie at the neighbouring `f64`s on both sides of a boundary and at distances from it that are spread evenly on a
+//! logarithmic scale, or where the case says.
+//!
+//! Inputs are a function of the case and their number alone, so the same ones come out of any number of threads.
+//!
+//! Not here: sampling (M), whose stratification and slopes the tests of the samplers measure, and what the language rejects
+//! before it could become a picture (negative sizes, empty clip ranges, numbers that are not finite).
+
+mod board;
+mod camera;
+mod clip;
+mod cuboid;
+mod film;
+mod inputs;
+pub mod oracle;
+mod sphere;
+mod table;
+pub mod textbook;
+mod trial;
+mod triangle;
+
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use self::inputs::Random;
+pub use self::{
+    table::{Claim, Row, Table},
+    trial::Tally,
+};
+use crate::render::{Control, RenderError, pool};
+
+/// A hard case.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name in the catalogue.
+    pub id: &'static str,
+    /// What is hard about it.
+    pub title: &'static str,
+    /// What is claimed of it.
+    pub claim: Claim,
+    /// Asks so many questions.
+    ask: fn(&mut Random, u64, &mut Tally),
+}
+
+impl Case {
+    const fn new(
+        id: &'static str,
+        title: &'static str,
+        claim: Claim,
+        ask: fn(&mut Random, u64, &mut Tally),
+    ) -> Self {
+        Self {
+            id,
+            title,
+            claim,
+            ask,
+        }
+    }
+}
+
+/// The catalogue.
+pub fn cases() -> impl Iterator<Item = &'static Case> {
+    [
+        sphere::CASES,
+        board::CASES,
+        cuboid::CASES,
+        triangle::CASES,
+        camera::CASES,
+        clip::CASES,
+        film::CASES,
+    ]
+    .into_iter()
+    .flatten()
+}
+
+/// So many inputs of a case share a scene.
+const BLOCK: u64 = 100;
+
+/// Asks so many inputs of every case. The progress is told in inputs.
+pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, RenderError> {
+    let cases: Vec<_> = cases().collect();
+    let blocks = inputs_per_case.div_ceil(BLOCK);
+    let tallies = pool(control.threads)?.install(|| {
+        (0..cases.len() as u64 * blocks)
+            .into_par_iter()
+            .fold(
+                || vec![Tally::default(); cases.len()],
+                |mut tallies, index| {
+                    // Block by block of all cases, so that the progress is even.
+                    let (block, at) = (index / cases.len() as u64, index as usize % cases.len());
+                    if !control.cancel.load(Ordering::Relaxed) {
+                        let count = BLOCK.min(inputs_per_case - block * BLOCK);
+                        let mut tally = Tally::default();
+                        (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);
+                        tallies[at] = tallies[at].plus(tally);
+                        (control.progress)(count);
+                    }
+                    tallies
+                },
+            )
+            .reduce(
+                || vec![Tally::default(); cases.len()],
+                |a, b| a.into_iter().zip(b).map(|(a, b)| a.plus(b)).collect(),
+            )
+    });
+    if control.cancel.load(Ordering::Relaxed) {
+        return Err(RenderError::Cancelled);
+    }
+    let rows = cases.iter().zip(tallies).map(|(case, tally)| Row {
+        id: case.id,
+        title: case.title,
+        claim: case.claim,
+        tally,
+    });
+    Ok(Table {
+        rows: rows.collect(),
+    })
+}

@@ -1,0 +1,136 @@
+//! The oracle's numbers, vectors, angles and triangles.
+
+use std::cmp::Ordering;
+
+use dashu_float::{FBig, round::mode::HalfEven};
+use glam::DVec3;
+
+use crate::{math::Angle, scene::Triangle};
+
+/// A binary floating-point number of the oracle's precision.
+pub type N = FBig<HalfEven, 2>;
+
+/// A vector of the world.
+pub type V = [N; 3];
+
+/// Numbers of so many bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Number {
+    /// How many.
+    pub bits: usize,
+}
+
+impl Number {
+    /// A number of a scene.
+    pub fn exact(self, x: f64) -> N {
+        debug_assert!(x.is_finite());
+        let x = N::try_from(x).unwrap_or(N::ZERO);
+        x.with_precision(self.bits).value()
+    }
+
+    /// A vector of a scene.
+    pub fn vector(self, v: DVec3) -> V {
+        v.to_array().map(|x| self.exact(x))
+    }
+
+    /// The sign of the result of operands of a certain size, which is none up to a certain part of it.
+    pub fn sign(self, x: &N, size: &N) -> Ordering {
+        if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
+            Ordering::Equal
+        } else {
+            x.cmp(&N::ZERO)
+        }
+    }
+
+    /// Sine and cosine of an angle that is a number of degrees plus one of radians.
+    pub fn sin_cos(self, angle: Angle) -> (N, N) {
+        let (s, c) = self.exact(angle.degrees).sin_cos_unit(360);
+        if angle.radians == 0.0 {
+            return (s, c);
+        }
+        let (t, d) = self.exact(angle.radians).sin_cos();
+        (&s * &d + &c * &t, c * d - s * t)
+    }
+
+    /// A triangle's vertices: left base end, right base end, apex.
+    pub fn vertices(self, triangle: &Triangle) -> [V; 3] {
+        let Triangle {
+            centroid, normal, ..
+        } = *triangle;
+        let n = |x| self.exact(x);
+        let unit_normal = unit(&self.vector(normal));
+        let reference = if normal.x == 0.0 && normal.z == 0.0 {
+            DVec3::NEG_Z
+        } else {
+            DVec3::Y
+        };
+        let right = unit(&cross(&self.vector(reference), &unit_normal));
+        let top = cross(&unit_normal, &right);
+        // The law of cosines at the left end, then a turn of everything about the centroid.
+        let [a, b, c] = triangle.sides.to_array().map(n);
+        let cos = (&a * &a + &c * &c - &b * &b) / (n(2.0) * &a * &c);
+        let sin = (n(1.0) - &cos * &cos).sqrt();
+        let corners = [(n(0.0), n(0.0)), (c, n(0.0)), (&a * cos, &a * sin)];
+        let mean = |pick: fn(&(N, N)) -> &N| {
+            (pick(&corners[0]) + pick(&corners[1]) + pick(&corners[2])) / n(3.0)
+        };
+        let (mean_x, mean_y) = (mean(|p| &p.0), mean(|p| &p.1));
+        let (s, k) = self.sin_cos(triangle.spin);
+        corners.map(|(x, y)| {
+            let (x, y) = (x - &mean_x, y - &mean_y);
+            let turned = (&k * &x - &s * &y, &s * &x + &k * &y);
+            let centroid = self.vector(centroid);
+            axpy(&axpy(&centroid, &turned.0, &right), &turned.1, &top)
+        })
+    }
+}
+
+/// a − b.
+pub fn sub(a: &V, b: &V) -> V {
+    [0, 1, 2].map(|i| &a[i] - &b[i])
+}
+
+/// a + k b.
+pub fn axpy(a: &V, k: &N, b: &V) -> V {
+    [0, 1, 2].map(|i| &a[i] + k * &b[i])
+}
+
+/// k a.
+pub fn scale(k: &N, a: &V) -> V {
+    [0, 1, 2].map(|i| k * &a[i])
+}
+
+/// The scalar product.
+pub fn dot(a: &V, b: &V) -> N {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+/// The vector product.
+pub fn cross(a: &V, b: &V) -> V {
+    [
+        &a[1] * &b[2] - &a[2] * &b[1],
+        &a[2] * &b[0] - &a[0] * &b[2],
+        &a[0] * &b[1] - &a[1] * &b[0],
+    ]
+}
+
+/// The length of a vector.
+pub fn length(a: &V) -> N {
+    dot(a, a).sqrt()
+}
+
+/// What bounds the size of a vector, as the scale that something is small on.
+pub fn size(a: &V) -> N {
+    abs(&a[0]) + abs(&a[1]) + abs(&a[2])
+}
+
+/// a/|a|.
+pub fn unit(a: &V) -> V {
+    let length = length(a);
+    [0, 1, 2].map(|i| &a[i] / &length)
+}
+
+/// |x|.
+pub fn abs(x: &N) -> N {
+    if *x < N::ZERO { -x.clone() } else { x.clone() }
+}

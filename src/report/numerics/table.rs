@@ -1,0 +1,171 @@
+//! The table of the cases, for people and for programs.
+
+use std::fmt;
+
+use serde_json::{Value, json};
+
+use super::trial::Tally;
+use crate::numbers::grouped;
+
+/// What is claimed of a case besides that no decision is wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Claim {
+    /// Nothing.
+    Decisions,
+    /// Numbers are right up to so many units in the last place.
+    Ulps(f64),
+    /// The same, and nothing is decided.
+    UlpsAlone(f64),
+    /// Components of unit vectors are right up to so many times 2^−53, and nothing is decided.
+    Roundings(f64),
+}
+
+impl Claim {
+    /// Whether something is decided, and not only computed.
+    pub fn decides(self) -> bool {
+        matches!(self, Self::Decisions | Self::Ulps(_))
+    }
+
+    /// The greatest error that is claimed, if numbers are.
+    pub fn bound(self) -> Option<f64> {
+        match self {
+            Self::Decisions => None,
+            Self::Ulps(bound) | Self::UlpsAlone(bound) | Self::Roundings(bound) => Some(bound),
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> Option<&'static str> {
+        match self {
+            Self::Decisions => None,
+            Self::Ulps(_) | Self::UlpsAlone(_) => Some("ulp"),
+            Self::Roundings(_) => Some("u"),
+        }
+    }
+}
+
+/// What came out of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The case's name in the catalogue.
+    pub id: &'static str,
+    /// What is hard about it.
+    pub title: &'static str,
+    /// What is claimed.
+    pub claim: Claim,
+    /// What was counted and measured.
+    pub tally: Tally,
+}
+
+/// What came out of all cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The cases in the order of the catalogue.
+    pub rows: Vec<Row>,
+}
+
+impl Table {
+    /// How many decisions of ours were wrong.
+    pub fn wrong(&self) -> u64 {
+        self.rows.iter().map(|row| row.tally.wrong[1]).sum()
+    }
+
+    /// How many questions were asked.
+    pub fn inputs(&self) -> u64 {
+        self.rows.iter().map(|row| row.tally.inputs).sum()
+    }
+
+    /// The same for programs. An error that is no number, as of a distance that is not found at all, is null, as is what a
+    /// case does not ask.
+    pub fn to_json(&self) -> Value {
+        let rows = self.rows.iter().map(|row| {
+            let Tally {
+                inputs,
+                wrong,
+                error,
+            } = row.tally;
+            let side = |i: usize| {
+                json!({
+                    "wrong": row.claim.decides().then_some(wrong[i]),
+                    "error": row.claim.bound().map(|_| error[i]),
+                })
+            };
+            json!({
+                "case": row.id,
+                "about": row.title,
+                "inputs": inputs,
+                "textbook": side(0),
+                "pinhole": side(1),
+                "bound": row.claim.bound(),
+                "unit": row.claim.unit(),
+            })
+        });
+        json!({ "numerics": rows.collect::<Vec<_>>() })
+    }
+}
+
+/// The same for people.
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = |f: &mut fmt::Formatter<'_>, cells: [&str; 7]| {
+            let [case, title, one, two, three, four, five] = cells;
+            let line =
+                format!("{case:<4} {title:<46} {one:>8} {two:>7}  {three:>8} {four:>7} {five:>6}");
+            writeln!(f, "{}", line.trim_end())
+        };
+        columns(f, ["", "", "wrong", "wrong", "error", "error", "bound"])?;
+        columns(
+            f,
+            ["case", "", "textbook", "pinhole", "textbook", "pinhole", ""],
+        )?;
+        for row in &self.rows {
+            let Tally {
+                inputs,
+                wrong,
+                error,
+            } = row.tally;
+            let wrong = match row.claim.decides() {
+                true => [share(wrong[0], inputs), grouped(wrong[1])],
+                false => [String::new(), String::new()],
+            };
+            let (errors, bound) = match (row.claim.bound(), row.claim.unit()) {
+                (Some(bound), Some(unit)) => (error.map(size), format!("{bound} {unit}")),
+                _ => ([String::new(), String::new()], String::new()),
+            };
+            let cells = [
+                row.id, row.title, &wrong[0], &wrong[1], &errors[0], &errors[1], &bound,
+            ];
+            columns(f, cells)?;
+        }
+        let (inputs, wrong) = (grouped(self.inputs()), grouped(self.wrong()));
+        writeln!(f)?;
+        writeln!(
+            f,
+            "{inputs} inputs, {wrong} wrong decisions of Pinhole's; beside them the textbook's formulas in f64."
+        )?;
+        writeln!(
+            f,
+            "Errors are of the distance and the point seen in ulp, of unit vectors in u = 2^-53."
+        )
+    }
+}
+
+/// A share of the inputs in per cent, or how many they are if they are few.
+fn share(count: u64, inputs: u64) -> String {
+    let percent = 100.0 * count as f64 / inputs.max(1) as f64;
+    match count {
+        0 => "0".to_owned(),
+        _ if percent < 0.1 => format!("{percent:.0e} %"),
+        _ => format!("{percent:.1} %"),
+    }
+}
+
+/// An error with two digits.
+fn size(error: f64) -> String {
+    match error {
+        0.0 => "0".to_owned(),
+        _ if error.is_infinite() => "inf".to_owned(),
+        0.01..1000.0 => format!("{error:.2}"),
+        _ => format!("{error:.0e}"),
+    }
+}

@@ -1,0 +1,276 @@
+//! How inputs are judged: what the oracle, the textbook and we see at a sample point.
+
+use dashu_float::ops::Abs;
+use glam::{DVec2, DVec3, dvec2};
+
+use super::{
+    inputs::Random,
+    oracle::{N, Oracle, V, length},
+    textbook::Textbook,
+};
+use crate::{
+    scene::{Scene, Shape},
+    tracer::World,
+};
+
+/// What was counted and measured, of the textbook's formulas and of ours.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// How many questions were asked.
+    pub inputs: u64,
+    /// Decisions that exact arithmetic makes otherwise.
+    pub wrong: [u64; 2],
+    /// The greatest error of a number.
+    pub error: [f64; 2],
+}
+
+impl Tally {
+    /// Both together.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            inputs: self.inputs + other.inputs,
+            wrong: [0, 1].map(|i| self.wrong[i] + other.wrong[i]),
+            error: [0, 1].map(|i| self.error[i].max(other.error[i])),
+        }
+    }
+
+    /// Counts the errors of the two; what is no number is as wrong as can be.
+    pub fn errors(&mut self, errors: [f64; 2]) {
+        let number = |error: f64| if error.is_nan() { f64::INFINITY } else { error };
+        self.error = [0, 1].map(|i| self.error[i].max(number(errors[i])));
+    }
+}
+
+/// What is seen: an object, and whether in its second colour.
+type Answer = Option<(usize, bool)>;
+
+/// A scene as the oracle, the textbook and we see it.
+#[derive(Debug)]
+pub struct Trial {
+    scene: Scene,
+    world: World,
+    textbook: Textbook,
+    oracle: Oracle,
+    /// By slot of the palette.
+    answers: Vec<Answer>,
+}
+
+/// Numbers are measured at one of so many inputs: a distance takes longer than a decision.
+const MEASURED: u64 = 16;
+
+impl Trial {
+    /// Prepares a scene; the oracle computes with so many bits.
+    pub fn new(scene: Scene, bits: usize) -> Self {
+        let mut answers = Vec::new();
+        for (index, object) in scene.objects.iter().enumerate() {
+            answers.push(Some((index, false)));
+            if matches!(object.shape, Shape::Checkerboard(_)) {
+                answers.push(Some((index, true)));
+            }
+        }
+        answers.push(None);
+        Self {
+            world: World::new(&scene),
+            textbook: Textbook::new(&scene),
+            oracle: Oracle::new(&scene, bits),
+            scene,
+            answers,
+        }
+    }
+
+    /// Asks all three what is seen at a sample point.
+    pub fn decide(&self, x: u32, y: u32, offset: DVec2, tally: &mut Tally) {
+        let truth = self.oracle.seen(&self.oracle.direction(x, y, offset));
+        let truth = truth.map(|seen| (seen.object, seen.odd));
+        let textbook = self.textbook.seen(x, y, offset);
+        let textbook = textbook.map(|seen| (seen.object, seen.odd));
+        let ours = self.ours(x, y, offset);
+        self.judge(tally, truth, [textbook, ours]);
+        if tally.inputs.is_multiple_of(MEASURED) {
+            self.measure(x, y, offset, tally);
+        }
+    }
+
+    fn judge(&self, tally: &mut Tally, truth: Answer, answers: [Answer; 2]) {
+        tally.inputs += 1;
+        for (wrong, answer) in tally.wrong.iter_mut().zip(answers) {
+            *wrong += u64::from(answer != truth);
+        }
+    }
+
+    fn ours(&self, x: u32, y: u32, offset: DVec2) -> Answer {
+        self.answers[self.world.slot_at(x, y, offset)]
+    }
+
+    /// Measures the distance and the point that are seen near a sample point, in units of the last place: of the distance,
+    /// and of the greatest coordinate.
+    fn measure(&self, x: u32, y: u32, offset: DVec2, tally: &mut Tally) {
+        let pixels = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) + offset;
+        let r = self.oracle.direction_through(pixels);
+        let Some(seen) = self.oracle.seen(&r) else {
+            return;
+        };
+        let t = &seen.t * length(&r);
+        let point = self.oracle.point(&seen.t, &r);
+        if let Some(theirs) = self.textbook.seen_through(pixels)
+            && theirs.object == seen.object
+        {
+            let error = self.distance(theirs.t, theirs.point, &t, &point);
+            tally.errors([error, 0.0]);
+        }
+        let (_, hits) = self.world.ray(pixels);
+        let error = match hits.iter().find(|hit| hit.visible) {
+            Some(hit) if hit.object == seen.object => self.distance(hit.t, hit.point, &t, &point),
+            _ => f64::INFINITY,
+        };
+        tally.errors([0.0, error]);
+    }
+
+    /// How far a distance and a point are from the true ones.
+    fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
+        let greatest = true_point
+            .iter()
+            .map(|x| x.to_f64().value().abs())
+            .fold(0.0, f64::max);
+        let of_t = self.ulps(t, true_t, true_t.to_f64().value());
+        let of_point = [0, 1, 2].map(|i| self.ulps(point[i], &true_point[i], greatest));
+        of_point.into_iter().fold(of_t, f64::max)
+    }
+
+    /// The error of a number in units in the last place of another.
+    fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
+        if !x.is_finite() {
+            return f64::INFINITY;
+        }
+        let unit = of.abs().next_up() - of.abs();
+        let error = (self.oracle.exact(x) - truth).abs() / self.oracle.exact(unit);
+        error.to_f64().value()
+    }
+
+    /// Asks at some points anywhere in the picture.
+    pub fn anywhere(&self, random: &mut Random, count: u64, tally: &mut Tally) {
+        let size = self.scene.image;
+        for _ in 0..count {
+            let (x, y) = (
+                random.below(size.width.into()),
+                random.below(size.height.into()),
+            );
+            self.decide(x as u32, y as u32, random.offset(), tally);
+        }
+    }
+
+    /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s on both sides of each, and
+    /// at distances from it that are spread evenly on a logarithmic scale.
+    pub fn boundaries(&self, random: &mut Random, count: u64, tally: &mut Tally) {
+        let end = tally.inputs + count;
+        // A picture without a boundary is asked anywhere.
+        let mut patience = 4 * count;
+        while tally.inputs < end && patience > 0 {
+            patience -= 1;
+            let axis = random.below(2) as usize;
+            if let Some(boundary) = self.boundary(random, axis) {
+                self.beside(random, boundary, end - tally.inputs, tally);
+            }
+        }
+        self.anywhere(random, end - tally.inputs, tally);
+    }
+
+    /// A place where the colour changes along a row (axis 0) or column (axis 1): a pixel, and the last offset before.
+    fn boundary(&self, random: &mut Random, axis: usize) -> Option<(usize, [u32; 2], DVec2)> {
+        let size = [self.scene.image.width, self.scene.image.height];
+        let mut pixel = size.map(|size| random.below(size.into()) as u32);
+        let mut offset = random.offset();
+        let color = |pixel: [u32; 2], at: f64| {
+            let mut offset = offset;
+            offset[axis] = at;
+            self.ours(pixel[0], pixel[1], offset)
+        };
+        let mut ends = [0, 0].map(|_: u32| random.below(size[axis].into()) as u32);
+        ends.sort_unstable();
+        let moved = |at: u32| {
+            let mut pixel = pixel;
+            pixel[axis] = at;
+            pixel
+        };
+        let first = color(moved(ends[0]), -0.5);
+        if first == color(moved(ends[1]), -0.5) {
+            return None;
+        }
+        while ends[1] - ends[0] > 1 {
+            let middle = ends[0] + (ends[1] - ends[0]) / 2;
+            ends[usize::from(color(moved(middle), -0.5) != first)] = middle;
+        }
+        pixel = moved(ends[0]);
+        let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
+        if color(pixel, high) == first {
+            offset[axis] = high;
+            return Some((axis, pixel, offset));
+        }
+        // Down to neighbours; near 0 these are closer than anything that matters.
+        for _ in 0..130 {
+            let middle = low + (high - low) / 2.0;
+            if middle == low || middle == high {
+                break;
+            }
+            if color(pixel, middle) == first {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        offset[axis] = low;
+        Some((axis, pixel, offset))
+    }
+
+    /// Asks on both sides of a boundary.
+    fn beside(
+        &self,
+        random: &mut Random,
+        (axis, [x, y], offset): (usize, [u32; 2], DVec2),
+        count: u64,
+        tally: &mut Tally,
+    ) {
+        let at = offset[axis];
+        let unit = at.abs().next_up() - at.abs();
+        for i in 0..count.min(12) {
+            let step = match i {
+                0 => 0.0,
+                1 => 1.0,
+                2 => -1.0,
+                3 => 2.0,
+                _ => random.sign() * libm::exp2(random.within(1.0, 48.0)).floor(),
+            };
+            let mut near = offset;
+            near[axis] = (at + step * unit).clamp(-0.5, 0.5_f64.next_down());
+            self.decide(x, y, near, tally);
+        }
+    }
+
+    /// Asks the textbook and us what is seen at points close to boundaries and at their mirror images. `mirror` has for each
+    /// object the one that it becomes.
+    pub fn symmetry(&self, random: &mut Random, mirror: &[usize], count: u64, tally: &mut Tally) {
+        let end = tally.inputs + count;
+        while tally.inputs < end {
+            let axis = random.below(2) as usize;
+            let Some((axis, [x, y], offset)) = self.boundary(random, axis) else {
+                continue;
+            };
+            for step in [0.0, 1.0, -1.0, 1e3, -1e3] {
+                let mut near = offset;
+                near[axis] += step * (offset[axis].abs().next_up() - offset[axis].abs());
+                if near.abs().max_element() >= 0.5 || tally.inputs == end {
+                    continue;
+                }
+                let (other_x, other) = (self.scene.image.width - 1 - x, dvec2(-near.x, near.y));
+                let textbook = |x, offset| self.textbook.seen(x, y, offset).map(|s| s.object);
+                let ours = |x, offset| self.ours(x, y, offset).map(|(object, _)| object);
+                let differs = |a: Option<usize>, b: Option<usize>| {
+                    u64::from(a.map(|object| mirror[object]) != b)
+                };
+                tally.inputs += 1;
+                tally.wrong[0] += differs(textbook(x, near), textbook(other_x, other));
+                tally.wrong[1] += differs(ours(x, near), ours(other_x, other));
+            }
+        }
+    }
+}

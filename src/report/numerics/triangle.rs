@@ -1,0 +1,215 @@
+//! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the eye.
+
+use glam::{DVec3, dvec2, dvec3};
+
+use super::{
+    Case, Claim,
+    inputs::{Random, SIZE, along, camera, scene, spun, triangle},
+    oracle::USUAL_SIZES,
+    trial::{Tally, Trial},
+};
+use crate::scene::Lens;
+
+/// The cases.
+pub const CASES: &[Case] = &[
+    Case::new("T1", "triangles of 1e-3 … 1e-9 m", Claim::Ulps(2.0), tiny),
+    Case::new(
+        "T2",
+        "the eye 1e-3 … 1e-15 m off the plane",
+        Claim::Ulps(2.0),
+        slivers,
+    ),
+    Case::new(
+        "T3a",
+        "close to an edge that two triangles share",
+        Claim::Ulps(2.0),
+        shared_edges,
+    ),
+    Case::new(
+        "T3b",
+        "exactly on such an edge",
+        Claim::Ulps(2.0),
+        lattice_points,
+    ),
+    Case::new(
+        "T4",
+        "needles of 1 to 1e3 … 1e12, and flat ones",
+        Claim::Ulps(2.0),
+        needles,
+    ),
+    Case::new(
+        "T5",
+        "normals of 1e±307, nearly or wholly vertical",
+        Claim::Ulps(2.0),
+        normals,
+    ),
+    Case::new(
+        "T6",
+        "1e6 … 1e15 m from the origin",
+        Claim::Ulps(2.0),
+        displaced,
+    ),
+    Case::new("T7", "vertices behind the eye", Claim::Ulps(2.0), around),
+];
+
+/// The sides of the assignment's triangle.
+const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
+
+fn tiny(random: &mut Random, count: u64, tally: &mut Tally) {
+    let size = random.power(-9.0, -3.0);
+    let normal = random.unit();
+    let eye = (normal + random.unit() * 0.5) * 3.0;
+    let mut camera = camera(eye, DVec3::ZERO);
+    camera.lens = Lens::Distance(5.0 / size);
+    let shape = spun(DVec3::ZERO, normal, SIDES * size, random.within(0.0, 360.0));
+    let trial = Trial::new(scene(camera, &[shape]), USUAL_SIZES);
+    trial.anywhere(random, count / 2, tally);
+    trial.boundaries(random, count - count / 2, tally);
+}
+
+fn slivers(random: &mut Random, count: u64, tally: &mut Tally) {
+    let height = random.power(-15.0, -3.0);
+    let (centroid, normal) = (random.vector(2.0), random.unit());
+    let aside = normal.cross(random.unit()).normalize();
+    let eye = centroid + aside * 3.0 + normal * height;
+    let mut camera = camera(eye, centroid);
+    camera.up = normal;
+    camera.lens = Lens::Distance(3.0 / height);
+    let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
+    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+}
+
+/// Two triangles, the second one the first turned by 180° about the middle of one of its edges. With these sides the vertices
+/// lie at (∓9, −4) and (0, 8) from the centroid, so the edges are shared exactly where the plane is one of the world's.
+const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
+
+/// Centroids of the turned triangle for each edge, and points of that edge, as seen from the first centroid.
+const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
+    (
+        [0.0, -8.0],
+        &[
+            [-9.0, -4.0],
+            [-4.0, -4.0],
+            [0.0, -4.0],
+            [7.0, -4.0],
+            [9.0, -4.0],
+        ],
+    ),
+    (
+        [9.0, 4.0],
+        &[[9.0, -4.0], [6.0, 0.0], [3.0, 4.0], [0.0, 8.0]],
+    ),
+    (
+        [-9.0, 4.0],
+        &[[-9.0, -4.0], [-6.0, 0.0], [-3.0, 4.0], [0.0, 8.0]],
+    ),
+];
+
+fn shared_edges(random: &mut Random, count: u64, tally: &mut Tally) {
+    let normal = random.pick(&[DVec3::X, DVec3::Y, DVec3::Z]) * random.sign();
+    let size = libm::exp2(random.whole(-8, 8));
+    let (right, top) = match normal.y {
+        0.0 => (DVec3::Y.cross(normal), DVec3::Y),
+        _ => (DVec3::X * normal.y, DVec3::NEG_Z),
+    };
+    let ([x, y], _) = random.pick(&SHARED);
+    let centroid = (right * random.whole(-20, 20) + top * random.whole(-20, 20)) * size;
+    let other = centroid + (right * x + top * y) * size;
+    let mut shapes = [
+        spun(centroid, normal, LATTICE * size, 0.0),
+        spun(other, normal, LATTICE * size, 180.0),
+    ];
+    shapes.rotate_left(random.below(2) as usize);
+    let middle = (centroid + other) / 2.0;
+    let eye = middle + (normal * random.sign() + random.unit() * 0.7) * (30.0 * size);
+    let trial = Trial::new(scene(camera(eye, middle), &shapes), USUAL_SIZES);
+    trial.boundaries(random, count, tally);
+}
+
+/// Seen from a distance of 64 the corners of pixels are the points of the lattice.
+fn lattice_points(random: &mut Random, count: u64, tally: &mut Tally) {
+    let size = libm::exp2(random.whole(-8, 8));
+    let (other, points) = random.pick(&SHARED);
+    let place = [random.whole(-8, 8), random.whole(-8, 8)];
+    let at = |x: f64, y: f64| dvec3(x, y, -64.0) * size;
+    let normal = DVec3::Z * random.power(-3.0, 3.0);
+    let mut shapes = [
+        spun(at(place[0], place[1]), normal, LATTICE * size, 0.0),
+        spun(
+            at(place[0] + other[0], place[1] + other[1]),
+            normal,
+            LATTICE * size,
+            180.0,
+        ),
+    ];
+    shapes.rotate_left(random.below(2) as usize);
+    let trial = Trial::new(
+        scene(along(DVec3::ZERO, DVec3::NEG_Z), &shapes),
+        USUAL_SIZES,
+    );
+    let half = f64::from(SIZE) / 2.0;
+    for _ in 0..count {
+        let [x, y] = random.pick(points);
+        let (column, row) = (half + place[0] + x, half - place[1] - y);
+        let beside = |random: &mut Random| match random.below(3) {
+            0 => -0.5 + random.pick(&[1.0, 2.0, 1e4]) * f64::EPSILON / 4.0,
+            _ => -0.5,
+        };
+        let offset = dvec2(beside(random), beside(random));
+        trial.decide(column as u32, row as u32, offset, tally);
+    }
+}
+
+fn needles(random: &mut Random, count: u64, tally: &mut Tally) {
+    let width = random.power(-12.0, -3.0);
+    let normal = random.unit();
+    let eye = (normal + random.unit() * 0.3) * 3.0;
+    let mut camera = camera(eye, DVec3::ZERO);
+    let (sides, height) = match random.below(3) {
+        0 => (dvec3(1.0, 1.0, 2.0 - width), libm::sqrt(width)),
+        _ => (dvec3(1.0, 1.0, width), width),
+    };
+    camera.lens = Lens::Distance(3.0 / height);
+    let shape = spun(DVec3::ZERO, normal, sides, random.within(0.0, 360.0));
+    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+}
+
+fn normals(random: &mut Random, count: u64, tally: &mut Tally) {
+    let tilt = random.pick(&[0.0, 1.0, 1.0]) * random.power(-300.0, -1.0);
+    let nearly_vertical = dvec3(tilt * random.within(-1.0, 1.0), random.sign(), tilt);
+    let exponent = random.pick(&[1.0, -1.0]) * random.within(150.0, 307.0);
+    let normal = match random.below(2) {
+        0 => nearly_vertical,
+        _ => random.unit() * random.power(exponent, exponent),
+    };
+    let centroid = random.vector(2.0);
+    let eye = centroid + dvec3(random.within(-2.0, 2.0), 3.0, random.within(-2.0, 2.0));
+    let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
+    Trial::new(scene(camera(eye, centroid), &[shape]), USUAL_SIZES)
+        .boundaries(random, count, tally);
+}
+
+fn displaced(random: &mut Random, count: u64, tally: &mut Tally) {
+    let distance = random.power(6.0, 15.0);
+    let centroid = random.unit() * distance;
+    let size = (distance * 1e-14).max(1.0);
+    let normal = random.unit();
+    let eye = centroid + (normal + random.unit() * 0.4) * (4.0 * size);
+    let shape = triangle(centroid, normal, SIDES * size);
+    Trial::new(scene(camera(eye, centroid), &[shape]), USUAL_SIZES)
+        .boundaries(random, count, tally);
+}
+
+fn around(random: &mut Random, count: u64, tally: &mut Tally) {
+    let (centroid, normal) = (random.vector(2.0), random.unit());
+    let aside = normal.cross(random.unit()).normalize();
+    let eye = centroid + aside * random.within(0.0, 9.0) + normal * random.power(-6.0, 0.5);
+    let mut camera = along(
+        eye,
+        normal.cross(random.unit()) - normal * random.within(-0.1, 0.3),
+    );
+    camera.up = normal;
+    let sides = dvec3(70.0, 60.0, random.within(15.0, 90.0));
+    let shape = spun(centroid, normal, sides, random.within(0.0, 360.0));
+    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+}
