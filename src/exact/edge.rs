@@ -33,12 +33,15 @@ const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// Sides of pixels that run into the horizon: two pixels share each, and their sums are the longest.
+/// Sides of pixels that cross many lines: two pixels share each. With what the pixel that summed it neglects.
 #[derive(Debug, Default)]
 pub(super) struct Sides(HashMap<Side, Sum>);
 
-/// The board, the corner of the picture's pixels where the side begins, and whether it goes down the picture or up, else along.
-type Side = (usize, u32, u32, bool);
+/// The board, the corner of the picture's pixels where the side begins at its near end, and the way that it goes from there.
+type Side = (usize, [u32; 2], [i8; 2]);
+
+/// A side that crosses fewer lines is sooner summed than found.
+const LONG: f64 = 24.0;
 
 /// A pixel whose sides may be known from another one.
 pub(super) struct Known<'a> {
@@ -49,17 +52,28 @@ pub(super) struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// The side that an edge of the pixel from a corner into the horizon is a part of.
-    fn side(&self, near: DVec2, far: DVec2) -> Option<Side> {
-        if near.abs() != DVec2::splat(0.5) {
+    /// The side that an edge is: from a corner of the pixel along a side of it, to the next corner or into the horizon.
+    fn side(&self, near: &Corner, far: &Corner) -> Option<Side> {
+        let is_corner = |corner: &Corner| corner.at.abs() == DVec2::splat(0.5);
+        let way = far.at - near.at;
+        let is_whole = is_corner(near) && (is_corner(far) || far.depth.is_infinite());
+        if !is_whole || (way.x != 0.0 && way.y != 0.0) {
             return None;
         }
         let corner = |at: u32, offset: f64| at + u32::from(offset > 0.0);
-        let (x, y) = (corner(self.x, near.x), corner(self.y, near.y));
-        match (far.x == near.x, far.y == near.y) {
-            (true, false) => Some((self.board, x, y, true)),
-            (false, true) => Some((self.board, x, y, false)),
-            _ => None,
+        let sign = |step: f64| i8::from(step > 0.0) - i8::from(step < 0.0);
+        Some((
+            self.board,
+            [corner(self.x, near.at.x), corner(self.y, near.at.y)],
+            [sign(way.x), sign(way.y)],
+        ))
+    }
+
+    /// What an edge sums up to, from near to far.
+    fn sum(&mut self, near: &Corner, far: &Corner, summed: impl FnOnce() -> Sum) -> Sum {
+        match self.side(near, far) {
+            Some(side) => *self.sides.0.entry(side).or_insert_with(summed),
+            None => summed(),
         }
     }
 }
@@ -76,24 +90,21 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
     let (terms, truncation) = terms(board, corners, &edges, area.abs());
     let mut sum = Sum {
         value: 0.0,
-        bound: truncation + board.displacement * perimeter,
+        bound: board.displacement * perimeter,
     };
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;
         if let Some(edge) = edge {
             let (a, b) = (&corners[i], &corners[(i + 1) % corners.len()]);
             let (near, far) = if a.depth <= b.depth { (a, b) } else { (b, a) };
-            let is_endless = far.depth.is_infinite();
-            let part = match known.as_deref_mut().filter(|_| is_endless) {
-                Some(known) => match known.side(near.at, far.at) {
-                    Some(side) => *known
-                        .sides
-                        .0
-                        .entry(side)
-                        .or_insert_with(|| edge.integral(board, terms)),
-                    None => edge.integral(board, terms),
-                },
-                None => edge.integral(board, terms),
+            let summed = || {
+                let mut part = edge.integral(board, terms);
+                part.bound += truncation;
+                part
+            };
+            let part = match &mut known {
+                Some(known) if edge.lines() > LONG => known.sum(near, far, summed),
+                _ => summed(),
             };
             sum.value += edge.sign * part.value;
             sum.bound += part.bound;
@@ -249,10 +260,9 @@ impl Edge {
             value: -start * series.at(self.t, self.depth),
             bound: 0.0,
         };
-        let mut lines = f64::INFINITY;
+        let lines = self.lines();
         if let Some((c, t, depth)) = self.end {
             sum.value += square_wave(c) * series.at(t, depth);
-            lines = (c.floor() - self.c.floor()).abs();
         }
         let ends = series.size(1, self.depth);
         if lines > 0.0 && self.rho != 0.0 {
@@ -275,6 +285,12 @@ impl Edge {
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + 16.0 * UNIT * ends);
         sum
+    }
+
+    /// How many lines it crosses of the family that it crosses less.
+    fn lines(&self) -> f64 {
+        let beyond = |(c, ..): (f64, f64, f64)| (c.floor() - self.c.floor()).abs();
+        self.end.map_or(f64::INFINITY, beyond)
     }
 
     fn series(&self, board: &Board, terms: usize) -> Series {
@@ -346,17 +362,20 @@ impl Crossings<'_> {
     pub(super) fn one_by_one(&self, series: &Series, lines: f64) -> Sum {
         let mut sum = Sum::default();
         let mut done = 0.0;
+        // Towards the horizon much more than that is neglected in the end.
+        let limit = TRUNCATION * if self.lines.is_finite() { 1.0 } else { 100.0 };
         while done < lines {
             let depth = self.depth + done * self.edge.rise;
             let most = (0.5 * depth / self.edge.rise).floor().clamp(16.0, 4096.0);
             let count = most.min(lines - done);
-            let (terms, left) = series.enough(depth, count, 0.1 * TRUNCATION);
+            let (terms, left) = series.enough(depth, count, limit);
             let block = match terms {
                 1 => self.block::<1>(series, done, count),
                 2 => self.block::<2>(series, done, count),
                 3 => self.block::<3>(series, done, count),
                 4 => self.block::<4>(series, done, count),
-                5 | 6 => self.block::<6>(series, done, count),
+                5 => self.block::<5>(series, done, count),
+                6 => self.block::<6>(series, done, count),
                 7..=9 => self.block::<9>(series, done, count),
                 _ => self.block::<MAX_TERMS>(series, done, count),
             };

@@ -16,11 +16,23 @@ const SECH: [f64; 7] = [
     2702765.0 / 1961990553600.0,
 ];
 
-const INVERSE_FACTORIAL: [f64; ORDERS] = {
-    let mut all = [1.0; ORDERS];
+/// The factors of η^i, i even or odd as k is, in A_k on a square: in the row k the factor of η^2j, or η^(2j+1), at j.
+const FACTORS: [[f64; 7]; ORDERS] = {
+    let mut factorials = [1.0; ORDERS];
     let mut k = 1;
     while k < ORDERS {
-        all[k] = all[k - 1] / k as f64;
+        factorials[k] = factorials[k - 1] * k as f64;
+        k += 1;
+    }
+    let mut all = [[0.0; 7]; ORDERS];
+    let mut k = 1;
+    while k < ORDERS {
+        let mut j = 0;
+        while 2 * j + k % 2 <= k {
+            let power = 2 * j + k % 2;
+            all[k][j] = SECH[(k - power) / 2] / factorials[power];
+            j += 1;
+        }
         k += 1;
     }
     all
@@ -51,19 +63,34 @@ pub(super) fn waves_at<const TERMS: usize, const N: usize>(t: [f64; N]) -> [[f64
     let shifted = middle.map(|middle| middle + ROUND);
     let eta: [f64; N] = array::from_fn(|i| middle[i] - (shifted[i] - ROUND));
     let sign = shifted.map(|s| f64::from_bits(1.0_f64.to_bits() | (s.to_bits() << 63)));
-    let mut powers = [sign; ORDERS];
-    for k in 1..=TERMS + 1 {
-        powers[k] = array::from_fn(|i| powers[k - 1][i] * eta[i]);
-    }
-    for k in 2..=TERMS + 1 {
-        powers[k] = powers[k].map(|power| power * INVERSE_FACTORIAL[k]);
-    }
+    let square: [f64; N] = array::from_fn(|i| eta[i] * eta[i]);
+    let odd: [f64; N] = array::from_fn(|i| sign[i] * eta[i]);
     let mut all = [[0.0; N]; ORDERS];
-    for k in 1..=TERMS + 1 {
-        for j in (0..=k / 2).rev() {
-            all[k] = array::from_fn(|i| all[k][i] + SECH[j] * powers[k - 2 * j][i]);
-        }
+    // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them would not become vectors.
+    macro_rules! order {
+        ($k:literal, $first:expr, $($factor:literal)*) => {
+            if TERMS + 1 >= $k {
+                all[$k] = array::from_fn(|i| {
+                    let mut sum = 0.0;
+                    $(sum = sum * square[i] + FACTORS[$k][$factor];)*
+                    $first[i] * sum
+                });
+            }
+        };
     }
+    order!(1, odd, 0);
+    order!(2, sign, 1 0);
+    order!(3, odd, 1 0);
+    order!(4, sign, 2 1 0);
+    order!(5, odd, 2 1 0);
+    order!(6, sign, 3 2 1 0);
+    order!(7, odd, 3 2 1 0);
+    order!(8, sign, 4 3 2 1 0);
+    order!(9, odd, 4 3 2 1 0);
+    order!(10, sign, 5 4 3 2 1 0);
+    order!(11, odd, 5 4 3 2 1 0);
+    order!(12, sign, 6 5 4 3 2 1 0);
+    order!(13, odd, 6 5 4 3 2 1 0);
     all
 }
 
