@@ -2,10 +2,7 @@
 
 use glam::DVec2;
 
-use super::{
-    cells,
-    edge::{self, Known},
-};
+use super::{cells, edge, sides::Known};
 
 /// The unit roundoff of `f64`.
 pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
@@ -188,7 +185,8 @@ impl Board {
         corners
     }
 
-    fn corner(&self, at: DVec2, level: f64) -> Corner {
+    /// The corner at a point where L has a value; on the horizon, where it is 0.
+    pub(super) fn corner(&self, at: DVec2, level: f64) -> Corner {
         let floor = [form(&self.across[0], at), form(&self.across[1], at)];
         let depth = 1.0 / level;
         // Where even the quotient overflows there is nothing but the horizon.

@@ -14,8 +14,8 @@
 use super::board::{Board, Corner, Sum, UNIT, measure};
 use super::euler::{ORDERS, square_wave, waves, waves_at};
 use super::horizon;
-use glam::DVec2;
-use std::{array, collections::HashMap, f64::consts::PI};
+use super::sides::Known;
+use std::{array, f64::consts::PI};
 
 /// The most terms of the asymptotic series.
 const MAX_TERMS: usize = 12;
@@ -33,51 +33,6 @@ const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// Sides of pixels that cross many lines: two pixels share each. With what the pixel that summed it neglects.
-#[derive(Debug, Default)]
-pub(super) struct Sides(HashMap<Side, Sum>);
-
-/// The board, the corner of the picture's pixels where the side begins at its near end, and the way that it goes from there.
-type Side = (usize, [u32; 2], [i8; 2]);
-
-/// A side that crosses fewer lines is sooner summed than found.
-const LONG: f64 = 24.0;
-
-/// A pixel whose sides may be known from another one.
-pub(super) struct Known<'a> {
-    pub sides: &'a mut Sides,
-    pub board: usize,
-    pub x: u32,
-    pub y: u32,
-}
-
-impl Known<'_> {
-    /// The side that an edge is: from a corner of the pixel along a side of it, to the next corner or into the horizon.
-    fn side(&self, near: &Corner, far: &Corner) -> Option<Side> {
-        let is_corner = |corner: &Corner| corner.at.abs() == DVec2::splat(0.5);
-        let way = far.at - near.at;
-        let is_whole = is_corner(near) && (is_corner(far) || far.depth.is_infinite());
-        if !is_whole || (way.x != 0.0 && way.y != 0.0) {
-            return None;
-        }
-        let corner = |at: u32, offset: f64| at + u32::from(offset > 0.0);
-        let sign = |step: f64| i8::from(step > 0.0) - i8::from(step < 0.0);
-        Some((
-            self.board,
-            [corner(self.x, near.at.x), corner(self.y, near.at.y)],
-            [sign(way.x), sign(way.y)],
-        ))
-    }
-
-    /// What an edge sums up to, from near to far.
-    fn sum(&mut self, near: &Corner, far: &Corner, summed: impl FnOnce() -> Sum) -> Sum {
-        match self.side(near, far) {
-            Some(side) => *self.sides.0.entry(side).or_insert_with(summed),
-            None => summed(),
-        }
-    }
-}
-
 /// The integral over a convex polygon of which every square is far away, which may reach to the horizon.
 pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Known>) -> Sum {
     if corners.len() < 3 {
@@ -87,25 +42,21 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
         .collect();
-    let (terms, truncation) = terms(board, corners, &edges, area.abs());
+    let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
+    let (terms, truncation) = terms(board, nearest, &edges, area.abs());
     let mut sum = Sum {
         value: 0.0,
-        bound: board.displacement * perimeter,
+        bound: truncation + board.displacement * perimeter,
     };
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;
         if let Some(edge) = edge {
             let (a, b) = (&corners[i], &corners[(i + 1) % corners.len()]);
             let (near, far) = if a.depth <= b.depth { (a, b) } else { (b, a) };
-            let summed = || {
-                let mut part = edge.integral(board, terms);
-                part.bound += truncation;
-                part
-            };
-            let part = match &mut known {
-                Some(known) if edge.lines() > LONG => known.sum(near, far, summed),
-                _ => summed(),
-            };
+            let part = known
+                .as_mut()
+                .and_then(|known| known.sum(edge, near, far))
+                .unwrap_or_else(|| edge.integral(board, terms));
             sum.value += edge.sign * part.value;
             sum.bound += part.bound;
             ends -= edge.potential;
@@ -128,9 +79,8 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
 /// With |A_k| ≤ ½π^(1−k), what P neglects integrates to at most ½π^(1−n)·(n+2)!/2·(|p|/m)^n times the area in the picture,
 /// and what Ψ and X neglect on an edge to n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|, where g is the largest of m's slopes along
 /// the edge and along its parameter t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
-fn terms(board: &Board, corners: &[Corner], edges: &[Option<Edge>], area: f64) -> (usize, f64) {
+fn terms(board: &Board, nearest: f64, edges: &[Option<Edge>], area: f64) -> (usize, f64) {
     let slope = board.slope[0].abs().max(board.slope[1].abs());
-    let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
     let (mut ratio, mut weight) = (slope / nearest, 0.0);
     for edge in edges.iter().flatten() {
         ratio = ratio.max(edge.climb.abs() / edge.depth);
@@ -214,12 +164,26 @@ pub(super) struct Edge {
 }
 
 impl Edge {
+    /// An edge of the boundary, summed along the axis of the board that it follows more; `None` if there is nothing to sum.
     fn new(board: &Board, from: &Corner, to: &Corner) -> Option<Self> {
         let forward = from.depth <= to.depth;
         let (near, far) = if forward { (from, to) } else { (to, from) };
         if near.depth.is_infinite() {
             return None;
         }
+        let step = |i: usize| match far.depth.is_infinite() {
+            true => far.floor[i].abs(),
+            false => (far.floor[i] - near.floor[i]).abs(),
+        };
+        let mut edge = Self::along(board, near, far, step(0) <= step(1))?;
+        if !forward {
+            edge.sign = -edge.sign;
+        }
+        Some(edge)
+    }
+
+    /// An edge from its near end to its far one, summed along b or along a.
+    pub(super) fn along(board: &Board, near: &Corner, far: &Corner, by_b: bool) -> Option<Self> {
         let (step, rise) = if far.depth.is_infinite() {
             (far.floor, 1.0)
         } else {
@@ -228,15 +192,13 @@ impl Edge {
                 far.depth - near.depth,
             )
         };
-        let by_b = step[0].abs() <= step[1].abs();
         let (c, t) = if by_b { (0, 1) } else { (1, 0) };
         if step[t] == 0.0 {
             return None;
         }
-        let way = if forward { 1.0 } else { -1.0 };
         let endless = far.depth.is_infinite();
         Some(Self {
-            sign: if by_b { way } else { -way },
+            sign: if by_b { 1.0 } else { -1.0 },
             potential: if by_b { 1.0 } else { 0.0 },
             c: near.floor[c],
             t: near.floor[t],
@@ -250,6 +212,24 @@ impl Edge {
             rise: rise / step[c].abs(),
             sense: step[c].signum(),
         })
+    }
+
+    /// Whether it is summed along b.
+    pub(super) fn is_by_b(&self) -> bool {
+        self.potential != 0.0
+    }
+
+    /// Its integral with as many terms as it needs by itself, and what they neglect in the bound.
+    pub(super) fn alone(self, board: &Board) -> Sum {
+        let nearest = self.depth;
+        let edge = [Some(self)];
+        let (terms, truncation) = terms(board, nearest, &edge, 1.0);
+        let mut sum = match &edge {
+            [Some(edge)] => edge.integral(board, terms),
+            _ => Sum::default(),
+        };
+        sum.bound += truncation;
+        sum
     }
 
     /// ρ ∫ s(c) dX from near to far.
@@ -288,7 +268,7 @@ impl Edge {
     }
 
     /// How many lines it crosses of the family that it crosses less.
-    fn lines(&self) -> f64 {
+    pub(super) fn lines(&self) -> f64 {
         let beyond = |(c, ..): (f64, f64, f64)| (c.floor() - self.c.floor()).abs();
         self.end.map_or(f64::INFINITY, beyond)
     }

@@ -21,6 +21,7 @@ mod euler;
 mod horizon;
 mod polygon;
 mod region;
+mod sides;
 mod sliver;
 mod sweep;
 #[cfg(test)]
@@ -35,8 +36,8 @@ use crate::{
 };
 
 use self::{
-    edge::Sides,
     region::{Regions, Shares},
+    sides::Sides,
 };
 
 /// A pixel computed.

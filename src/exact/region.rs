@@ -10,7 +10,7 @@ use crate::{
 use super::{
     arc::Arc,
     board::Board,
-    edge::{Known, Sides},
+    sides::{Known, Sides},
 };
 
 /// How much of a pixel each colour has.
@@ -90,11 +90,16 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         };
         let checkered = &self.boards[at].1;
+        let world = self.world;
         let mut known = Known {
             sides: self.sides,
             board: object,
             x: self.x,
             y: self.y,
+            elsewhere: &|x, y| {
+                let board = world.board(object, x, y)?;
+                Some(Board::new(board.across, board.below))
+            },
         };
         let mut sum = checkered.board.over_known(region.polygon, Some(&mut known));
         for (bulge, arc) in region.arcs {
@@ -103,7 +108,8 @@ impl<'a> Regions<'a> {
             sum.bound += sliver.bound;
         }
         let half = if checkered.odd { -0.5 } else { 0.5 } * sum.value;
-        let bound = 0.5 * sum.bound + checkered.rad * region.area;
+        // The board's own bound is for forms with a rounding in each factor.
+        let bound = 0.5 * sum.bound * (1.0 + checkered.rad / f64::UNIT);
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;

@@ -102,20 +102,22 @@ impl<T: Real> Place<T> {
 
     /// The factors of some forms and a last one in the pixel, all by one power of two smaller or greater so that they are about
     /// 1; from each of the first the last is taken off as often, an even number of times, as makes it small in the middle.
-    pub fn together<const N: usize>(&self, forms: [&Form<T>; N], last: &Form<T>) -> [Line; N] {
+    pub fn together(&self, forms: [&Form<T>; 2], last: &Form<T>) -> [Line; 3] {
         let (below, rad) = self.local(last);
         let steep = below[2].to_f64();
         let local = forms.map(|form| {
             let (factors, own_rad) = self.local(form);
             let times = 2.0 * (0.5 * factors[2].to_f64() / steep).round();
             // From 2^52 on every number is even, and a rounded one of the right parity may not be near.
-            if !(times.abs() < 4e15 && steep > 0.0) || std::ptr::eq(form, last) {
+            if !(times.abs() < 4e15 && steep > 0.0) {
                 return (factors, own_rad);
             }
             let often = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
             (factors, own_rad + rad * (2.0 * times.abs() + 1.0))
         });
+        let [a, b] = local;
+        let local = [a, b, (below, rad)];
         let sizes = local.iter().flat_map(|(factors, _)| factors);
         let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
         let exponent = -size.exponent();

@@ -278,7 +278,7 @@ impl World {
         let camera = &T::frame(self).camera;
         let place = Place::new(camera, &camera.sample_point(x, y, DVec2::ZERO));
         let [a, b] = &board.across;
-        let lines = place.together([a, b, &board.below], &board.below);
+        let lines = place.together([a, b], &board.below);
         let [a, b, below] = lines.map(|line| line.factors);
         Some(Board {
             across: [a, b],
