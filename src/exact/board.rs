@@ -8,6 +8,8 @@ use super::{cells, edge, sides::Known};
 pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
 /// Up to about this many squares are cut out one by one.
 const FEW: f64 = 24.0;
+/// More than this many take too long, which only the widest of views have in a pixel.
+const MANY: f64 = 200_000.0;
 /// The part of the board that is further away than so many squares is summed along its boundary.
 const FAR: f64 = 48.0;
 
@@ -144,6 +146,11 @@ impl Board {
         self.far_or_both(&corners, known)
     }
 
+    /// Whether a polygon shows the horizon.
+    pub(crate) fn is_endless(&self, polygon: &[DVec2]) -> bool {
+        polygon.iter().any(|&at| form(&self.below, at) <= 0.0)
+    }
+
     /// Along the boundary where the board is far enough for it, square by square where it is not.
     fn far_or_both(&self, corners: &[Corner], known: Option<&mut Known>) -> Sum {
         let depth = FAR * (self.slope[0].abs() + self.slope[1].abs());
@@ -153,15 +160,27 @@ impl Board {
             return edge::sum(self, corners, known);
         }
         if furthest <= depth {
-            return cells::sum(self, corners);
+            return self.square_by_square(corners);
         }
         let mut line = self.below;
         line[2] -= 1.0 / depth;
         let near = self.clip(corners, &line);
         let far = self.clip(corners, &line.map(|c| -c));
-        let mut sum = cells::sum(self, &near);
+        let mut sum = self.square_by_square(&near);
         sum.add(edge::sum(self, &far, known));
         sum
+    }
+
+    /// Near squares, if they are not too many: then nothing is said of them.
+    fn square_by_square(&self, corners: &[Corner]) -> Sum {
+        let squares = measure(corners.iter().map(|c| c.floor.into())).0.abs();
+        if squares <= MANY {
+            return cells::sum(self, corners);
+        }
+        Sum {
+            value: 0.0,
+            bound: measure(corners.iter().map(|c| c.at)).0.abs(),
+        }
     }
 
     /// The corners of the part of a convex polygon where L ≥ 0.

@@ -33,16 +33,23 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
             bound: trivial,
         };
     }
-    let short = all.lines <= SHORT || all.edge.rise * all.lines < all.depth;
+    let is_slow = all.lines > 2.0 * SHORT;
+    let short = all.lines <= SHORT || (all.edge.rise * all.lines < all.depth && !is_slow);
     if short {
         return all.one_by_one(series, all.lines);
     }
     let direct = ((start(all, series, tolerance) - all.depth) / all.edge.rise)
         .ceil()
         .max(0.0);
-    if direct + SHORT >= all.lines {
+    if direct + SHORT >= all.lines && !is_slow {
         return all.one_by_one(series, all.lines);
     }
+    // From where so many cross that even a few would take long, more modes do it.
+    let direct = if all.lines.is_finite() {
+        direct.min(SHORT)
+    } else {
+        direct
+    };
     let mut sum = all.one_by_one(series, direct);
     let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];
     let share = tolerance / rests.iter().flatten().count() as f64;

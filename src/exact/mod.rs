@@ -32,13 +32,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::{
     area::Area,
-    tracer::{Curve, Live, World},
+    tracer::{Curve, Live, Spot, World},
 };
 
 use self::{
     region::{Regions, Shares},
     sides::Sides,
 };
+
+/// A spot whose bound is no greater than this is not cut into quarters; nor one with the horizon, where squares never end.
+const ENOUGH: f64 = 1e-12;
+const ENOUGH_ENDLESS: f64 = 1e-9;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +130,8 @@ impl<'a> Integrator<'a> {
                 film.fill(part, self.colors[slot]);
             }
             _ if part.width == 1 && part.height == 1 => {
-                film.set(part, self.pixel(part.x, part.y, &live, scratch));
+                let spot = Spot::pixel(part.x, part.y);
+                film.set(part, self.mean(self.shares(spot, &live, scratch)));
             }
             _ => {
                 for quarter in part.quarters() {
@@ -142,17 +147,42 @@ impl<'a> Integrator<'a> {
         first == second || self.world.is_one_square(part, live.object)
     }
 
-    fn pixel(&self, x: u32, y: u32, live: &[Live], scratch: &mut Scratch) -> Pixel {
+    /// The shares of a spot; of its quarters together where the whole is not computed well enough.
+    ///
+    /// A part has coordinates of its own, in which roundings are smaller: the widest views need that, in which a pixel sees
+    /// squares both near and far.
+    fn shares(&self, spot: Spot, live: &[Live], scratch: &mut Scratch) -> Shares {
+        const FINEST: f64 = 1.0 / 4.0;
+        let shares = self.shares_at_once(spot, live, scratch);
+        let enough = if shares.is_endless {
+            ENOUGH_ENDLESS
+        } else {
+            ENOUGH
+        };
+        if shares.bound <= enough || spot.side <= FINEST {
+            return shares;
+        }
+        let mut together = Shares::default();
+        for quarter in spot.quarters() {
+            together.add_quarter(&self.shares(quarter, live, scratch));
+        }
+        if together.bound < shares.bound {
+            together
+        } else {
+            shares
+        }
+    }
+
+    fn shares_at_once(&self, spot: Spot, live: &[Live], scratch: &mut Scratch) -> Shares {
         let Scratch { curves, sides, .. } = scratch;
-        self.world.curves(x, y, live, curves);
-        let regions = Regions::new(self.world, (x, y), live, sides);
+        self.world.curves(spot, live, curves);
+        let regions = Regions::new(self.world, spot, live, sides);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
-        let shares = if lines_alone {
+        if lines_alone {
             polygon::shares(curves, regions)
         } else {
             sweep::shares(curves, regions)
-        };
-        self.mean(shares)
+        }
     }
 
     fn mean(&self, shares: Shares) -> Pixel {

@@ -1,10 +1,10 @@
-//! The regions of a pixel, and what is seen in each.
+//! The regions of a spot, and what is seen in each.
 
 use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{Live, World},
+    tracer::{Live, Spot, World},
 };
 
 use super::{
@@ -13,20 +13,21 @@ use super::{
     sides::{Known, Sides},
 };
 
-/// How much of a pixel each colour has.
+/// How much of a spot each colour has.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
     /// Slots of the palette with the area that shows them, 1 together but for rounding.
     pub by_slot: Vec<(usize, f64)>,
     /// How much area may be with the wrong colour.
     pub bound: f64,
+    /// Whether squares without end are among it.
+    pub is_endless: bool,
 }
 
-/// Collects the regions of one pixel.
+/// Collects the regions of one spot.
 pub struct Regions<'a> {
     world: &'a World,
-    x: u32,
-    y: u32,
+    spot: Spot,
     live: &'a [Live],
     /// Sides of pixels that are known.
     sides: &'a mut Sides,
@@ -55,17 +56,11 @@ pub struct Region<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// For the pixel in column `x` and row `y`, in which no other objects are seen than some.
-    pub fn new(
-        world: &'a World,
-        (x, y): (u32, u32),
-        live: &'a [Live],
-        sides: &'a mut Sides,
-    ) -> Self {
+    /// For a spot in which no other objects are seen than some.
+    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], sides: &'a mut Sides) -> Self {
         Self {
             world,
-            x,
-            y,
+            spot,
             live,
             sides,
             boards: Vec::new(),
@@ -75,9 +70,7 @@ impl<'a> Regions<'a> {
 
     /// Adds a region in which no boundary lies.
     pub fn add(&mut self, region: &Region) {
-        let seen = self
-            .world
-            .object_at(self.x, self.y, region.inside, self.live);
+        let seen = self.world.object_at(self.spot, region.inside, self.live);
         let Some(object) = seen else {
             let background = self.world.palette().len() - 1;
             return self.shares.add(background, region.area);
@@ -94,14 +87,16 @@ impl<'a> Regions<'a> {
         let mut known = Known {
             sides: self.sides,
             board: object,
-            x: self.x,
-            y: self.y,
+            x: self.spot.x,
+            y: self.spot.y,
             elsewhere: &|x, y| {
-                let board = world.board(object, x, y)?;
+                let board = world.board(object, Spot::pixel(x, y))?;
                 Some(Board::new(board.across, board.below))
             },
         };
-        let mut sum = checkered.board.over_known(region.polygon, Some(&mut known));
+        let is_pixel = self.spot.side == 1.0;
+        let known = is_pixel.then_some(&mut known);
+        let mut sum = checkered.board.over_known(region.polygon, known);
         for (bulge, arc) in region.arcs {
             let sliver = checkered.board.sliver(arc);
             sum.value += bulge * sliver.value;
@@ -113,6 +108,7 @@ impl<'a> Regions<'a> {
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;
+        self.shares.is_endless |= checkered.board.is_endless(region.polygon);
     }
 
     /// Says that so much of the pixel's area may be with a wrong region, or with none.
@@ -135,7 +131,7 @@ impl<'a> Regions<'a> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
-                let board = self.world.board(object, self.x, self.y)?;
+                let board = self.world.board(object, self.spot)?;
                 let checkered = Checkered {
                     board: Board::new(board.across, board.below),
                     odd: board.odd,
@@ -150,6 +146,15 @@ impl<'a> Regions<'a> {
 }
 
 impl Shares {
+    /// Adds those of a quarter.
+    pub fn add_quarter(&mut self, quarter: &Self) {
+        for &(slot, area) in &quarter.by_slot {
+            self.add(slot, 0.25 * area);
+        }
+        self.bound += 0.25 * quarter.bound;
+        self.is_endless |= quarter.is_endless;
+    }
+
     fn add(&mut self, slot: usize, area: f64) {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
             Some((_, share)) => *share += area,

@@ -40,7 +40,7 @@ pub(super) struct Known<'a> {
     pub board: usize,
     pub x: u32,
     pub y: u32,
-    /// The same checkerboard in another pixel.
+    /// The same checkerboard in the pixel of another column and row.
     pub elsewhere: &'a dyn Fn(u32, u32) -> Option<Board>,
 }
 

@@ -1,17 +1,11 @@
-//! The curves that bound what is seen in a pixel: lines and conics.
+//! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! A pixel's own coordinates are (x, y), in pixels from its centre, x to the right and y down. In them every form of a surface
-//! is prepared anew, in high precision, so that what is left is good to the last bit of an `f64` however far the pixel is from
-//! the picture's centre.
+//! In the coordinates of that [`Spot`] every form of a surface is prepared anew, in high precision, so that what is left is good
+//! to the last bit of an `f64` however far the spot is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real};
 
-use super::{
-    camera::{Camera, Point},
-    cover::Range,
-    form::Form,
-    sphere::Sphere,
-};
+use super::{camera::Camera, cover::Range, form::Form, outlook::Spot, sphere::Sphere};
 
 /// A boundary in a pixel.
 #[derive(Clone, Debug)]
@@ -62,19 +56,20 @@ pub enum Crossings {
 type Linear<T> = [Ball<T>; 3];
 type Quadratic<T> = [Ball<T>; 6];
 
-/// A pixel, as the place whose curves are wanted.
+/// A spot in one precision.
 #[derive(Clone, Debug)]
 pub struct Place<T: Real> {
     /// The direction through its centre.
     center: Ball3<T>,
-    /// The side of a pixel.
+    /// Its side.
     pitch: Ball<T>,
 }
 
 impl<T: Real> Place<T> {
-    /// The place about a point.
-    pub fn new(camera: &Camera<T>, point: &Point) -> Self {
-        let r = camera.direction(point);
+    /// The place of a spot.
+    pub fn new(camera: &Camera<T>, spot: Spot) -> Self {
+        let offset = spot.offset(glam::DVec2::ZERO);
+        let r = camera.direction(&camera.sample_point(spot.x, spot.y, offset));
         // Five roundings in a coordinate, and its pitch.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
@@ -82,7 +77,7 @@ impl<T: Real> Place<T> {
         };
         Self {
             center: [ball(r.x), ball(r.y), ball(r.z)],
-            pitch: ball(camera.pitch.clone()),
+            pitch: ball(camera.pitch.times(&T::from_f64(spot.side))),
         }
     }
 

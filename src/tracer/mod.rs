@@ -23,6 +23,6 @@ mod world;
 
 pub use camera::{Basis, Point};
 pub use curve::{Conic, Curve, Line};
-pub use outlook::{Board, Live};
+pub use outlook::{Board, Live, Spot};
 pub use triangle::vertices;
 pub use world::{Hit, Precision, World};

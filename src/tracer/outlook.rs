@@ -30,8 +30,48 @@ pub struct Live {
     is_cut: bool,
 }
 
-/// A checkerboard in a pixel: the point (x, y), in pixels from its centre, shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
-/// a corner of squares near to the pixel, where ℓ > 0.
+/// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
+/// down.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// The pixel's column.
+    pub x: u32,
+    /// The pixel's row.
+    pub y: u32,
+    /// Its centre, as an offset from the pixel's.
+    center: DVec2,
+    /// Its side, in pixels: a power of two.
+    pub side: f64,
+}
+
+impl Spot {
+    /// A whole pixel.
+    pub fn pixel(x: u32, y: u32) -> Self {
+        Self {
+            x,
+            y,
+            center: DVec2::ZERO,
+            side: 1.0,
+        }
+    }
+
+    /// Its four quarters.
+    pub fn quarters(self) -> [Self; 4] {
+        [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)].map(|(x, y)| Self {
+            center: self.offset(DVec2::new(x, y)),
+            side: 0.5 * self.side,
+            ..self
+        })
+    }
+
+    /// A point of it as an offset from the pixel's centre.
+    pub(super) fn offset(&self, at: DVec2) -> DVec2 {
+        self.center + at * self.side
+    }
+}
+
+/// A checkerboard in a spot: the point (x, y) shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
+/// a corner of squares near to the spot, where ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Board {
     /// The factors of x, y and 1 in N₀ and N₁.
@@ -180,24 +220,24 @@ impl World {
         }
     }
 
-    /// The curves in a pixel that may bound what is seen there of some objects: outlines, where surfaces cross each other, and
+    /// The curves in a spot that may bound what is seen there of some objects: outlines, where surfaces cross each other, and
     /// where the near and the far plane cut them.
-    pub fn curves(&self, x: u32, y: u32, live: &[Live], out: &mut Vec<Curve>) {
+    pub fn curves(&self, spot: Spot, live: &[Live], out: &mut Vec<Curve>) {
         out.clear();
-        self.curves_in::<Double>(x, y, live, out);
+        self.curves_in::<Double>(spot, live, out);
         let is_tight = |curve: &Curve| match curve {
             Curve::Line(line) => line.rad < LOOSE_LINE,
             Curve::Conic(conic) => conic.doubtful_area() < LOOSE_CONIC,
         };
         if !out.iter().all(is_tight) {
             out.clear();
-            self.curves_in::<Big>(x, y, live, out);
+            self.curves_in::<Big>(spot, live, out);
         }
     }
 
-    fn curves_in<T: Level>(&self, x: u32, y: u32, live: &[Live], out: &mut Vec<Curve>) {
+    fn curves_in<T: Level>(&self, spot: Spot, live: &[Live], out: &mut Vec<Curve>) {
         let frame = T::frame(self);
-        let place = Place::new(&frame.camera, &frame.camera.sample_point(x, y, DVec2::ZERO));
+        let place = Place::new(&frame.camera, spot);
         let mut push = |curve: Curve| {
             if curve.may_pass() {
                 out.push(curve);
@@ -245,9 +285,10 @@ impl World {
         }
     }
 
-    /// The object that is seen at an offset from a pixel's centre, of some that may be.
-    pub fn object_at(&self, x: u32, y: u32, offset: DVec2, live: &[Live]) -> Option<usize> {
-        let point = self.fast.camera.sample_point(x, y, offset);
+    /// The object that is seen at a point of a spot, of some that may be.
+    pub fn object_at(&self, spot: Spot, at: DVec2, live: &[Live]) -> Option<usize> {
+        let offset = spot.offset(at);
+        let point = self.fast.camera.sample_point(spot.x, spot.y, offset);
         let among = || live.iter().map(|live| live.object);
         let fast = self.nearest(&f64::frame(self).camera.direction(&point), among());
         let seen = fast.or_else(|Doubt| {
@@ -262,21 +303,20 @@ impl World {
         seen.unwrap_or_default().map(|(object, _)| object)
     }
 
-    /// An object's squares in a pixel, if it is a checkerboard.
-    pub fn board(&self, object: usize, x: u32, y: u32) -> Option<Board> {
-        let board = self.board_in::<Double>(object, x, y)?;
+    /// An object's squares in a spot, if it is a checkerboard.
+    pub fn board(&self, object: usize, spot: Spot) -> Option<Board> {
+        let board = self.board_in::<Double>(object, spot)?;
         if board.rad < LOOSE_LINE {
             return Some(board);
         }
-        self.board_in::<Big>(object, x, y)
+        self.board_in::<Big>(object, spot)
     }
 
-    fn board_in<T: Level>(&self, object: usize, x: u32, y: u32) -> Option<Board> {
+    fn board_in<T: Level>(&self, object: usize, spot: Spot) -> Option<Board> {
         let Object::Checkerboard(board) = T::object(self, object) else {
             return None;
         };
-        let camera = &T::frame(self).camera;
-        let place = Place::new(camera, &camera.sample_point(x, y, DVec2::ZERO));
+        let place = Place::new(&T::frame(self).camera, spot);
         let [a, b] = &board.across;
         let lines = place.together([a, b], &board.below);
         let [a, b, below] = lines.map(|line| line.factors);
@@ -318,7 +358,7 @@ impl World {
 }
 
 impl Curve {
-    /// Whether it may pass through the pixel.
+    /// Whether it may pass through the spot.
     fn may_pass(&self) -> bool {
         match self {
             Self::Line(line) => line.over_pixel().holds_zero(),
