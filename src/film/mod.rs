@@ -1,19 +1,27 @@
 //! Pixels, and the files they go to.
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, and a picture file: `png` with the scene that made
-//! it, or `exr`. A file format is a file here; `write` sees to it that a file is written whole or not at all.
+//! it, or `exr`. A file format is a file here; `write` sees to it that a file is written whole or not at all. `read` makes films of
+//! picture files, also of other programs', and `compare` says how far two films are apart.
 
+mod compare;
 mod exr;
 mod memory;
 mod png;
+mod read;
 mod srgb;
 mod write;
 
 use self::srgb::Encoder;
 pub use self::{
+    compare::{
+        CHANNELS, Comparison, HEAT_LEGEND, HeatError, Largest, SizesDiffer, Tolerance, compare,
+        heat_map, rmse,
+    },
     exr::write_exr,
     memory::TooLarge,
-    png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
+    png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png, write_png},
+    read::{Picture, Rounding, Unreadable, is_picture, read_picture},
     write::{Sink, check_writable, write_stream, write_whole},
 };
 use crate::{
