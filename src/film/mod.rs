@@ -51,6 +51,25 @@ impl Film {
         })
     }
 
+    /// A picture of which each pixel, named by column and row, is given.
+    pub fn from_fn(
+        width: u32,
+        height: u32,
+        pixel: impl Fn(u32, u32) -> [f64; 3],
+    ) -> Result<Self, TooLarge> {
+        let mut pixels = Vec::new();
+        memory::reserve(&mut pixels, width, height)?;
+        pixels.extend((0..height).flat_map(|y| {
+            let pixel = &pixel;
+            (0..width).map(move |x| pixel(x, y))
+        }));
+        Ok(Self {
+            width,
+            height,
+            pixels,
+        })
+    }
+
     /// How many columns it has.
     pub fn width(&self) -> u32 {
         self.width
@@ -70,6 +89,11 @@ impl Film {
     pub fn row(&self, y: u32) -> &[[f64; 3]] {
         let width = self.width as usize;
         &self.pixels[y as usize * width..][..width]
+    }
+
+    /// All pixels, row by row.
+    pub fn pixels(&self) -> &[[f64; 3]] {
+        &self.pixels
     }
 
     /// Sets the pixels of a part of the picture, row by row.
