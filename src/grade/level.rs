@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Make, exact, sampled};
 use crate::{
-    film::{Film, TooLarge, rmse},
+    film::{Film, TooLarge},
     math::{Big, Real},
     render::{Control, RenderError},
     scene::{Image, Lens, Scene},
@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// A picture for searches has about so many columns and rows at most.
-const SMALL: [u32; 2] = [144, 96];
+const SMALL: [u32; 2] = [112, 72];
 
 /// A picture, its scene and the scene's exact picture, of one size.
 pub struct Level<'a> {
@@ -80,11 +80,6 @@ impl<'a> Level<'a> {
         })
     }
 
-    /// The root mean square of the difference.
-    pub fn difference(&self) -> f64 {
-        rmse(&self.a, &self.exact)
-    }
-
     /// The picture that a mistake makes.
     pub fn made(&self, make: &Make, control: &Control) -> Result<Film, RenderError> {
         match make {
@@ -103,6 +98,7 @@ impl<'a> Level<'a> {
                 };
                 Ok(Film::from_fn(self.a.width(), self.a.height(), pixel)?)
             }
+            Make::Is(film) => Ok(film.clone()),
             Make::Sample(offset) => Ok(sampled(&self.scene, *offset)?),
             Make::Squeezed => squeezed(&self.scene, control),
         }

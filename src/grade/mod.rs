@@ -32,8 +32,12 @@ use self::level::Level;
 /// A mistake explains a difference if it leaves less than this share of its root mean square.
 const LEFT: f64 = 0.2;
 
-/// On a small picture, a mistake is looked at further if it leaves less than this share.
+/// A mistake that leaves less than this share is looked at further: the rest may be noise.
 const HOPE: f64 = 0.9;
+
+/// The same in a picture that is smaller by [`FEW`] or more, in whose pixels noise is averaged away.
+const SMALL_HOPE: f64 = 0.5;
+const FEW: u32 = 3;
 
 /// Of several explanations, those that leave more than so many times what the best one leaves are not named.
 const RIVAL: f64 = 1.5;
@@ -74,6 +78,8 @@ enum Make {
     Curve(Box<Scene>, fn(f64) -> f64),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor for which this holds.
     Floor(Box<Scene>, fn(DVec2) -> bool),
+    /// This picture.
+    Is(Film),
     /// One sample in each pixel, at this offset from its centre.
     Sample(DVec2),
     /// The whole square window squeezed into the picture.
@@ -110,11 +116,14 @@ pub fn scene(
     if !found.is_empty() {
         return Ok(found);
     }
-    // What has to be searched for takes longer.
-    let mut ideas = shift::ideas(&case)?;
-    ideas.extend(camera::search(&case)?);
-    ideas.extend(objects::search(&case)?);
-    case.named(ideas)
+    // What has to be searched for takes longer, what comes last longest.
+    for search in [objects::search, camera::search, shift::search] {
+        let found = case.named(search(&case)?)?;
+        if !found.is_empty() {
+            return Ok(found);
+        }
+    }
+    Ok(Vec::new())
 }
 
 /// Names the mistakes that explain why one picture is not another, of which no scene is known.
@@ -166,6 +175,8 @@ struct Case<'a> {
     small: Level<'a>,
     /// Of the whole picture, root mean square.
     difference: f64,
+    /// Of the small one.
+    small_difference: f64,
     control: Control<'a>,
 }
 
@@ -181,9 +192,11 @@ impl<'a> Case<'a> {
             progress: &|_| {},
             cancel: control.cancel,
         };
+        let small = Level::small(a, scene, &control)?;
         Ok(Self {
             full: Level::full(a, scene, exact),
-            small: Level::small(a, scene, &control)?,
+            small_difference: rmse(&small.a, &small.exact),
+            small,
             difference: rmse(a, exact),
             control,
         })
@@ -202,9 +215,14 @@ impl<'a> Case<'a> {
 
     /// What a mistake leaves of the difference, if it explains it.
     fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
-        if let Make::Scene(_) | Make::Floor(..) = make {
+        // Neither single samples nor curves mean the same in a small picture; and what is known need not be guessed.
+        if !matches!(make, Make::Sample(_) | Make::Curve(..) | Make::Is(_)) {
             let small = self.small.made(make, &self.control)?;
-            if rmse(&self.small.a, &small) > HOPE * self.small.difference() {
+            let hope = match self.small.factor {
+                FEW.. => SMALL_HOPE,
+                _ => HOPE,
+            };
+            if rmse(&self.small.a, &small) > hope * self.small_difference {
                 return Ok(None);
             }
         }

@@ -84,6 +84,9 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
                 p[i] != q[i] && 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() > FLAT
             };
             strays += u64::from((0..3).any(is_off));
+            if strays as f64 > STRAYS * a.pixels().len() as f64 {
+                return None;
+            }
             continue;
         }
         mixed += 1;

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Case, Idea, Make, fit::fit, level::axes};
 use crate::{
-    color::{Color, linear_to_srgb},
+    color::{Color, linear_to_srgb, srgb_to_linear},
     film::Film,
     math::Angle,
     numbers::{short, short_vector},
@@ -18,6 +18,9 @@ const OBJECTS: usize = 24;
 
 /// A colour is another one if it is off by more than this, in steps of 8-bit sRGB; nearer is the same.
 const NEAR: f64 = 2.5;
+
+/// A search for an object's place is worth its time if the pixels of its colour have this share of the squared difference.
+const OWN: f64 = 0.4;
 
 /// So many pixels of an object show where it is.
 const ENOUGH: u64 = 6;
@@ -244,15 +247,31 @@ fn shown(a: &Film, exact: &Film, wanted: Color) -> Option<Color> {
         found.select_nth_unstable_by(middle, |p, q| p[i].total_cmp(&q[i]));
         found[middle][i]
     });
-    let near = found.iter().filter(|p| is_near(p, &median)).count();
+    let near = Near::to(&median);
+    let near = found.iter().filter(|p| near.holds(p)).count();
     let is_one = near * 10 >= found.len() * 8;
     let srgb = median.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0));
-    (is_one && !is_near(&median, &light)).then_some(Color { srgb })
+    (is_one && !Near::to(&light).holds(&median)).then_some(Color { srgb })
 }
 
-fn is_near(p: &[f64; 3], q: &[f64; 3]) -> bool {
-    (0..3)
-        .all(|i| p[i] == q[i] || 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() < NEAR)
+/// The light of each channel that is near some colour.
+struct Near([[f64; 2]; 3]);
+
+impl Near {
+    fn to(light: &[f64; 3]) -> Self {
+        let steps = NEAR / 255.0;
+        Self(light.map(|light| {
+            let encoded = linear_to_srgb(light);
+            [encoded - steps, encoded + steps].map(srgb_to_linear)
+        }))
+    }
+
+    fn holds(&self, pixel: &[f64; 3]) -> bool {
+        let pairs = self.0.iter().zip(pixel);
+        pairs
+            .into_iter()
+            .all(|([low, high], light)| low < light && light < high)
+    }
 }
 
 /// Where and how large a colour is in a picture, in pixels.
@@ -262,12 +281,11 @@ struct Blob {
 }
 
 impl Blob {
-    fn of(film: &Film, color: Color) -> Self {
-        let light = color.to_linear();
+    fn of(film: &Film, near: &Near) -> Self {
         let (mut sum, mut pixels) = (DVec2::ZERO, 0);
         for y in 0..film.height() {
             for (x, pixel) in film.row(y).iter().enumerate() {
-                if is_near(pixel, &light) {
+                if near.holds(pixel) {
                     sum += DVec2::new(x as f64, f64::from(y));
                     pixels += 1;
                 }
@@ -282,14 +300,18 @@ impl Blob {
 
 /// Objects in a wrong place or of a wrong size, found by their colours.
 pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
-    let (a, scene) = (&case.full.a, &case.full.scene);
+    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
     let mut ideas = Vec::new();
     for (index, object) in scene.objects.iter().enumerate().take(OBJECTS) {
         let mut shape = object.shape;
         let colors = color(&mut shape);
         let [color] = colors.as_slice() else { continue };
-        let (is, should) = (Blob::of(a, **color), Blob::of(&case.full.exact, **color));
+        let near = Near::to(&color.to_linear());
+        let (is, should) = (Blob::of(a, &near), Blob::of(exact, &near));
         if is.pixels < ENOUGH || should.pixels < ENOUGH {
+            continue;
+        }
+        if share(a, exact, &near) < OWN {
             continue;
         }
         let by = is.middle - should.middle;
@@ -300,6 +322,21 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
         ideas.extend(placed(case, index, by, factor)?);
     }
     Ok(ideas)
+}
+
+/// The share of the squared difference in pixels that have a colour in either picture.
+fn share(a: &Film, exact: &Film, near: &Near) -> f64 {
+    let (mut own, mut all) = (0.0, 0.0);
+    for (p, q) in a.pixels().iter().zip(exact.pixels()) {
+        if p != q {
+            let square = (DVec3::from(*p) - DVec3::from(*q)).length_squared();
+            all += square;
+            if near.holds(p) || near.holds(q) {
+                own += square;
+            }
+        }
+    }
+    own / all
 }
 
 /// An object that is displaced by about so many pixels, and about so many times as large as it should be.

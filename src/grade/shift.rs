@@ -15,7 +15,7 @@ use crate::{
 const REACH: i32 = 8;
 
 /// The displacement that explains most, if any explains something.
-pub fn ideas(case: &Case) -> Result<Vec<Idea>, RenderError> {
+pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     let level = &case.full;
     let [width, height] = super::size(&level.a);
     // A picture larger than this takes too long for a guess.
@@ -69,7 +69,7 @@ pub fn ideas(case: &Case) -> Result<Vec<Idea>, RenderError> {
         help: "the window's middle is between the pixels, at (width/2, height/2), and pixel (x, y) goes from x to x + 1 and y to y + 1: \
                its centre is at (x + 0.5, y + 0.5)"
             .to_owned(),
-        make: Make::Film(Box::new(move |_| Ok(film.clone()))),
+        make: Make::Is(film),
     }])
 }
 

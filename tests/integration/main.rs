@@ -4,6 +4,7 @@ mod answers;
 mod camera;
 mod cli;
 mod diagnostics;
+mod diff;
 mod figure;
 mod film;
 mod images;
