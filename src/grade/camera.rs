@@ -224,23 +224,28 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
             scene.camera.roll = scene.camera.roll + Angle::from_degrees(p[0]);
         }))
     };
-    // The nearest of a few, from which on the way is downhill.
-    let start = |points: Vec<f64>, make: &dyn Fn(&[f64]) -> Option<Scene>| {
+    // The nearest of a few, and then of some closer around it, from which on the way is downhill.
+    let start = |points: Vec<f64>, step: f64, make: &dyn Fn(&[f64]) -> Option<Scene>| {
         let mut nearest = (f64::INFINITY, 0.0);
-        for point in points {
-            let Some(scene) = make(&[point]) else {
-                continue;
-            };
-            let left = rmse(&level.a, &level.exact_of(&scene, &case.control)?);
-            if left < nearest.0 {
-                nearest = (left, point);
+        let mut look = |points: Vec<f64>| {
+            for point in points {
+                let Some(scene) = make(&[point]) else {
+                    continue;
+                };
+                let left = rmse(&level.a, &level.exact_of(&scene, &case.control)?);
+                if left < nearest.0 {
+                    nearest = (left, point);
+                }
             }
-        }
-        Ok::<_, RenderError>(nearest.1)
+            Ok::<_, RenderError>(nearest.1)
+        };
+        let middle = look(points)?;
+        let middle = look(vec![middle - step / 2.0, middle + step / 2.0])?;
+        look(vec![middle - step / 4.0, middle + step / 4.0])
     };
     let mut ideas = Vec::new();
     let octaves = (-8..=8).map(|k| f64::from(k) / 4.0).collect();
-    let first = start(octaves, &at_distance)?;
+    let first = start(octaves, 0.25, &at_distance)?;
     if let Some(found) = fit(level, &case.control, &[first], &[0.01], &at_distance)? {
         let other = d * libm::exp2(found[0]);
         let fov = |d: f64| {
@@ -260,8 +265,8 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
             with_distance(scene, other),
         ));
     }
-    let turns = (-11..=12).map(|k| 15.0 * f64::from(k)).collect();
-    let first = start(turns, &turned)?;
+    let turns = (-17..=18).map(|k| 10.0 * f64::from(k)).collect();
+    let first = start(turns, 10.0, &turned)?;
     if let Some(found) = fit(level, &case.control, &[first], &[0.5], &turned)?
         && let Some(other) = turned(&found)
     {

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Make, exact, sampled};
 use crate::{
+    color::srgb_to_linear,
     film::{Film, TooLarge},
     math::{Big, Real},
     render::{Control, RenderError},
@@ -85,9 +86,9 @@ impl<'a> Level<'a> {
         match make {
             Make::Film(make) => Ok(make(&self.exact)?),
             Make::Scene(scene) => exact(&self.sized(scene), control),
-            Make::Curve(scene, curve) => {
+            Make::Decoded(scene) => {
                 let film = exact(&self.sized(scene), control)?;
-                Ok(map(&film, curve)?)
+                Ok(map(&film, srgb_to_linear)?)
             }
             Make::Floor(scene, holds) => {
                 let other = exact(&self.sized(scene), control)?;

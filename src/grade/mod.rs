@@ -21,7 +21,8 @@ use rayon::prelude::*;
 
 use crate::{
     area::Area,
-    film::{Film, TooLarge, rmse},
+    color::linear_to_srgb,
+    film::{Film, Tolerance, TooLarge, compare, rmse},
     render::{self, Control, RenderError},
     scene::Scene,
     tracer::World,
@@ -74,8 +75,8 @@ enum Make {
     Film(Box<dyn Fn(&Film) -> Result<Film, TooLarge>>),
     /// The exact picture of another scene.
     Scene(Box<Scene>),
-    /// That, and each number of it through a curve.
-    Curve(Box<Scene>, fn(f64) -> f64),
+    /// That, decoded as if its numbers were sRGB.
+    Decoded(Box<Scene>),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor for which this holds.
     Floor(Box<Scene>, fn(DVec2) -> bool),
     /// This picture.
@@ -215,8 +216,8 @@ impl<'a> Case<'a> {
 
     /// What a mistake leaves of the difference, if it explains it.
     fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
-        // Neither single samples nor curves mean the same in a small picture; and what is known need not be guessed.
-        if !matches!(make, Make::Sample(_) | Make::Curve(..) | Make::Is(_)) {
+        // Neither single samples nor decoding mean the same in a small picture; and what is known need not be guessed.
+        if !matches!(make, Make::Sample(_) | Make::Decoded(_) | Make::Is(_)) {
             let small = self.small.made(make, &self.control)?;
             let hope = match self.small.factor {
                 FEW.. => SMALL_HOPE,
@@ -234,6 +235,14 @@ impl<'a> Case<'a> {
         if left > HOPE * self.difference {
             return Ok(None);
         }
+        // The mistake may be small, and the rest rounding.
+        let rounding = Tolerance {
+            steps: 0.501,
+            bounds: None,
+        };
+        if compare(&self.full.a, &made, rounding).is_ok_and(|found| found.is_equal()) {
+            return Ok(Some(left));
+        }
         // The picture may have the mistake and noise.
         let (full, control) = (&self.full, &self.control);
         let variance = match make {
@@ -242,6 +251,13 @@ impl<'a> Case<'a> {
                 make(&right)?
             }
             Make::Scene(scene) => noise::variance(scene, &made, control)?,
+            Make::Decoded(scene) => {
+                // Noise was averaged before decoding, so it is looked at there.
+                let means = exact(scene, control)?;
+                let variance = noise::variance(scene, &means, control)?;
+                let encoded = level::map(&full.a, linear_to_srgb)?;
+                return Ok(noise::judge(&encoded, &means, &variance).map(|_| left));
+            }
             _ => return Ok(None),
         };
         let noise = noise::judge(&full.a, &made, &variance);

@@ -124,7 +124,7 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
         mistake: "averaged_encoded",
         message: "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark".to_owned(),
         help: "decode a scene's colours to linear light, average there, and encode once".to_owned(),
-        make: Make::Curve(Box::new(encoded), srgb_to_linear),
+        make: Make::Decoded(Box::new(encoded)),
     });
     if scene.image.width != scene.image.height {
         ideas.push(Idea {

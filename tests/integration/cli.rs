@@ -497,7 +497,15 @@ fn wrong_usage_is_status_2() {
 #[test]
 fn help_has_examples_and_the_manual_all_commands() {
     let folder = folder();
-    for command in ["render", "check", "inspect", "probe", "completions", "man"] {
+    for command in [
+        "render",
+        "check",
+        "inspect",
+        "probe",
+        "diff",
+        "completions",
+        "man",
+    ] {
         let help = String::from_utf8(done(&folder, &[command, "--help"])).unwrap();
         assert!(
             help.contains(&format!("Examples:\n  pinhole {command}")),
@@ -512,7 +520,7 @@ fn help_has_examples_and_the_manual_all_commands() {
         concat!("pinhole ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()
     );
     let manual = String::from_utf8(done(&folder, &["man"])).unwrap();
-    for command in ["RENDER", "CHECK", "INSPECT", "PROBE"] {
+    for command in ["RENDER", "CHECK", "INSPECT", "PROBE", "DIFF"] {
         assert!(manual.contains(&format!(".SH \"PINHOLE {command}\"")));
     }
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
