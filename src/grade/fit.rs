@@ -100,12 +100,12 @@ fn solve(a: &Film, current: &Film, slopes: &[Film]) -> Option<Vec<f64>> {
         if pivot <= 1e-12 {
             return None;
         }
-        for j in 0..n {
+        let above = matrix[i].clone();
+        for (j, row) in matrix.iter_mut().enumerate() {
             if i != j {
-                let factor = matrix[j][i] / pivot;
-                for k in i..=n {
-                    let above = matrix[i][k];
-                    matrix[j][k] -= factor * above;
+                let factor = row[i] / pivot;
+                for (x, above) in row.iter_mut().zip(&above) {
+                    *x -= factor * above;
                 }
             }
         }

@@ -69,10 +69,13 @@ struct Idea {
     make: Make,
 }
 
+/// What a mistake makes of the exact picture.
+type Change = dyn Fn(&Film) -> Result<Film, TooLarge>;
+
 /// From the right picture to the one that a mistake makes.
 enum Make {
     /// From the exact picture.
-    Film(Box<dyn Fn(&Film) -> Result<Film, TooLarge>>),
+    Film(Box<Change>),
     /// The exact picture of another scene.
     Scene(Box<Scene>),
     /// That, decoded as if its numbers were sRGB.
