@@ -48,3 +48,13 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
         libm::pow((encoded + 0.055) / 1.055, 2.4)
     }
 }
+
+/// Encodes one channel of linear light, 0 to 1, as sRGB, 0 to 1: the inverse of [`srgb_to_linear`]. Negative light goes on with the straight
+/// piece and light above 1 with the curve.
+pub fn linear_to_srgb(light: f64) -> f64 {
+    if light <= 0.04045 / 12.92 {
+        12.92 * light
+    } else {
+        1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+    }
+}

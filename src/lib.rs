@@ -26,8 +26,8 @@
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see.
 //! - [`film`] makes bytes of the means and files of the bytes.
-//! - [`inspect`] and [`probe`] answer questions about a scene, [`report`] about Pinhole itself. The command line reads, calls
-//!   these and prints.
+//! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
+//!   [`report`] about Pinhole itself. The command line reads, calls these and prints.
 
 pub mod area;
 pub mod color;
@@ -50,6 +50,7 @@ pub mod render;
 
 pub mod film;
 
+pub mod grade;
 pub mod inspect;
 pub mod probe;
 pub mod report;

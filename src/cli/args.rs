@@ -22,9 +22,10 @@ Examples:
   pinhole check *.scn
   pinhole inspect figure.scn --format json
   pinhole probe figure.scn 640.5 360.5
+  pinhole diff mine.png figure.scn               is it the right picture, and if not, why?
 
-Exit status: 0 done, warnings or not; 1 the scene has errors; 2 usage, a file that cannot be read or
-written, a picture too large for memory; 130 after Ctrl-C.";
+Exit status: 0 done, warnings or not; 1 the scene has errors, or diff found more than its tolerance;
+2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -41,6 +42,9 @@ pub enum Command {
     /// Follow one ray, surface by surface
     #[command(after_help = PROBE_EXAMPLES)]
     Probe(ProbeArgs),
+    /// Compare two pictures, or a picture with a scene's exact one
+    #[command(after_help = DIFF_EXAMPLES)]
+    Diff(DiffArgs),
     /// Report how right the arithmetic is, hard case by hard case
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
@@ -77,6 +81,24 @@ const PROBE_EXAMPLES: &str = "\
 Examples:
   pinhole probe figure.scn 640 360               the middle of a picture of 1280 × 720 pixels
   pinhole probe figure.scn -10 0.5               left of the picture";
+
+const DIFF_EXAMPLES: &str = "\
+Examples:
+  pinhole diff a.png b.exr                       two pictures
+  pinhole diff mine.png figure.scn               a picture with what the scene means, without noise
+  pinhole diff mine.png figure.scn -o where.png  also a heat map of the differences
+  pinhole diff mine.png figure.scn --tolerance 8 --format json
+
+Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white. Where B is a
+scene, simple mistakes that explain the difference are named: a mirrored picture, a wrong distance or
+roll, colours averaged without decoding them, an object in the wrong place, too few samples.
+
+JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel,
+a, b} (in steps), beyond {pixels, share}, tolerance (in steps), equal, likely [{mistake, message, help,
+rmse, explains}] with the best explanation first; rmse is what it leaves, explains its share of the
+squared difference, 0 to 1. Of pictures of different sizes rmse, largest and beyond are null.
+
+Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 
 const REPORT_EXAMPLES: &str = "\
 Examples:
@@ -183,6 +205,32 @@ pub struct ReportArgs {
     pub threads: Option<u64>,
 }
 
+/// Arguments of `diff`.
+#[derive(Debug, clap::Args)]
+pub struct DiffArgs {
+    /// A picture, PNG or EXR, or `-` for standard input; its numbers count as sRGB in a PNG and as linear
+    /// light in an EXR, and what is transparent is seen on black
+    pub a: PathBuf,
+    /// Another picture, or a scene whose exact picture A is compared with
+    pub b: PathBuf,
+    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, logarithmic
+    #[arg(short, long = "output", value_name = "HEATMAP")]
+    pub output: Option<PathBuf>,
+    /// How much a pixel may differ, in steps of 8-bit sRGB
+    /// [default: what rounding explains, 0.5 for each picture of 8 bits, 0.002 for one of 16, 0.06 for an
+    /// EXR of half floats and next to nothing for one of floats; the exact picture's own bound, as good as
+    /// nothing, always comes on top]
+    #[arg(long, value_name = "STEPS", value_parser = not_negative)]
+    pub tolerance: Option<f64>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
 /// For whom the answer is.
 #[derive(Debug, clap::Args)]
 pub struct FormatArgs {
@@ -205,6 +253,13 @@ fn finite(text: &str) -> Result<f64, String> {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err("not a finite number".to_owned()),
         Err(_) => Err("not a number".to_owned()),
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number >= 0.0 => Ok(number),
+        _ => Err("a tolerance is not negative".to_owned()),
     }
 }
 

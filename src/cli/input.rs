@@ -1,7 +1,7 @@
 //! Scenes from files, from standard input and from pictures.
 
 use std::{
-    fs::File,
+    fs::{self, File},
     io::{self, Read},
     path::Path,
 };
@@ -21,6 +21,9 @@ const SCENE_LIMIT: u64 = 256 << 20;
 
 /// So much of a picture is read: more than enough for what may stand before its pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
+
+/// No picture that is compared has more bytes.
+const FILE_LIMIT: u64 = 4 << 30;
 
 /// What a scene is read from.
 pub struct Input {
@@ -48,17 +51,32 @@ impl Input {
                 .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(path))))?;
             Self::from_picture(name, recipe)
         } else {
-            Self {
-                sources: Sources::new(Source::from_bytes(name, bytes)),
-                is_picture: false,
-                crop: None,
-            }
+            Self::from_text(name, bytes)
         };
+        input.add(overrides);
+        Ok(input)
+    }
+
+    /// What the bytes of a scene's file say.
+    pub fn of(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Self {
+        let mut input = Self::from_text(path.display().to_string(), bytes);
+        input.add(overrides);
+        input
+    }
+
+    fn from_text(name: String, bytes: Vec<u8>) -> Self {
+        Self {
+            sources: Sources::new(Source::from_bytes(name, bytes)),
+            is_picture: false,
+            crop: None,
+        }
+    }
+
+    fn add(&mut self, overrides: &Overrides) {
         // Numbered as on the command line, whatever a picture carries.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
-        input.sources.sets.extend(sets);
-        Ok(input)
+        self.sources.sets.extend(sets);
     }
 
     fn from_picture(name: String, recipe: Recipe) -> Self {
@@ -96,6 +114,29 @@ impl Input {
 /// What SCENE or FILE is called in a message.
 pub fn shown(path: &Path) -> String {
     path.display().to_string()
+}
+
+/// Whether two paths lead to one file.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// The whole of a picture's file, or a scene's.
+pub fn whole(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let from: Box<dyn Read> = match is_standard(path) {
+        true => Box::new(io::stdin().lock()),
+        false => Box::new(File::open(path)?),
+    };
+    let mut from = from.take(FILE_LIMIT);
+    from.read_to_end(&mut bytes)?;
+    if bytes.len() as u64 >= FILE_LIMIT {
+        return Err(io::Error::other("it has more than 4 GiB"));
+    }
+    Ok(bytes)
 }
 
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {

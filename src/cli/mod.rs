@@ -1,10 +1,11 @@
 //! The command line: reads, calls, prints. A command is a file.
 //!
 //! Pictures and JSON go to standard output, everything for people to standard error. The exit status is 0 when it is done, warnings
-//! or not, 1 when the scene has errors, 2 on any other trouble and 130 after Ctrl-C.
+//! or not, 1 when the scene has errors or pictures differ, 2 on any other trouble and 130 after Ctrl-C.
 
 mod args;
 mod check;
+mod diff;
 mod input;
 mod inspect;
 mod interrupt;
@@ -33,6 +34,7 @@ pub fn run() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
+        Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
@@ -51,7 +53,7 @@ pub fn run() -> ExitCode {
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors.
+    /// The scene has errors, or the pictures differ: it ran, and the answer is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,

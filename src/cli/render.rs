@@ -1,7 +1,6 @@
 //! `render`: a scene becomes a picture file.
 
 use std::{
-    fs,
     io::{self, IsTerminal},
     num::NonZero,
     path::{Path, PathBuf},
@@ -185,7 +184,7 @@ impl Output {
             )),
             Self::Standard => Ok(()),
             Self::File(path, _) => {
-                if !input.is_picture && is_same_file(path, &args.scene) {
+                if !input.is_picture && input::is_same_file(path, &args.scene) {
                     return Err(Trouble(format!(
                         "{} is the scene itself: say with `-o FILE` where the picture goes",
                         shown(path)
@@ -235,12 +234,5 @@ fn format(path: &Path) -> Result<Format, Trouble> {
             "the ending of {} stands for no format: a picture's file ends in .png or .exr",
             shown(path)
         )))
-    }
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
     }
 }

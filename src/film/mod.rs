@@ -1,19 +1,27 @@
 //! Pixels, and the files they go to.
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, and a picture file: `png` with the scene that made
-//! it, or `exr`. A file format is a file here; `write` sees to it that a file is written whole or not at all.
+//! it, or `exr`. A file format is a file here; `write` sees to it that a file is written whole or not at all. `read` makes films of
+//! picture files, also of other programs', and `compare` says how far two films are apart.
 
+mod compare;
 mod exr;
 mod memory;
 mod png;
+mod read;
 mod srgb;
 mod write;
 
 use self::srgb::Encoder;
 pub use self::{
+    compare::{
+        CHANNELS, Comparison, HEAT_LEGEND, HeatError, Largest, SizesDiffer, Tolerance, compare,
+        heat_map, rmse,
+    },
     exr::write_exr,
     memory::TooLarge,
-    png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
+    png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png, write_png},
+    read::{Picture, Rounding, Unreadable, is_picture, read_picture},
     write::{Sink, check_writable, write_stream, write_whole},
 };
 use crate::{
@@ -43,6 +51,25 @@ impl Film {
         })
     }
 
+    /// A picture of which each pixel, named by column and row, is given.
+    pub fn from_fn(
+        width: u32,
+        height: u32,
+        pixel: impl Fn(u32, u32) -> [f64; 3],
+    ) -> Result<Self, TooLarge> {
+        let mut pixels = Vec::new();
+        memory::reserve(&mut pixels, width, height)?;
+        pixels.extend((0..height).flat_map(|y| {
+            let pixel = &pixel;
+            (0..width).map(move |x| pixel(x, y))
+        }));
+        Ok(Self {
+            width,
+            height,
+            pixels,
+        })
+    }
+
     /// How many columns it has.
     pub fn width(&self) -> u32 {
         self.width
@@ -62,6 +89,11 @@ impl Film {
     pub fn row(&self, y: u32) -> &[[f64; 3]] {
         let width = self.width as usize;
         &self.pixels[y as usize * width..][..width]
+    }
+
+    /// All pixels, row by row.
+    pub fn pixels(&self) -> &[[f64; 3]] {
+        &self.pixels
     }
 
     /// Sets the pixels of a part of the picture, row by row.

@@ -75,6 +75,20 @@ impl Recipe {
 
 /// Writes a picture, with what it was made from if that [`fits`](Recipe::fits).
 pub fn write_png(film: &Film, recipe: &Recipe, out: impl Write) -> io::Result<()> {
+    let recipe = recipe.fits().then_some(recipe);
+    write(film, recipe.into_iter().flat_map(Recipe::chunks), out)
+}
+
+/// Writes a picture that no scene makes.
+pub fn write_plain_png(film: &Film, out: impl Write) -> io::Result<()> {
+    write(film, [].into_iter(), out)
+}
+
+fn write(
+    film: &Film,
+    chunks: impl Iterator<Item = (&'static str, String)>,
+    out: impl Write,
+) -> io::Result<()> {
     let mut encoder = Encoder::new(out, film.width(), film.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
@@ -83,8 +97,6 @@ pub fn write_png(film: &Film, recipe: &Recipe, out: impl Write) -> io::Result<()
     let mut writer = encoder.write_header()?;
 
     let software = concat!("pinhole ", env!("CARGO_PKG_VERSION"));
-    let recipe = recipe.fits().then_some(recipe);
-    let chunks = recipe.into_iter().flat_map(Recipe::chunks);
     for (keyword, text) in [(SOFTWARE, software.to_owned())].into_iter().chain(chunks) {
         let mut chunk = png::text_metadata::ITXtChunk::new(keyword, text);
         chunk.compressed = true;

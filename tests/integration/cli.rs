@@ -506,6 +506,7 @@ fn help_has_examples_and_the_manual_all_commands() {
         "check",
         "inspect",
         "probe",
+        "diff",
         "report",
         "completions",
         "man",
@@ -524,7 +525,7 @@ fn help_has_examples_and_the_manual_all_commands() {
         concat!("pinhole ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()
     );
     let manual = String::from_utf8(done(&folder, &["man"])).unwrap();
-    for command in ["RENDER", "CHECK", "INSPECT", "PROBE", "REPORT"] {
+    for command in ["RENDER", "CHECK", "INSPECT", "PROBE", "DIFF", "REPORT"] {
         assert!(manual.contains(&format!(".SH \"PINHOLE {command}\"")));
     }
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {

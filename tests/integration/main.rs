@@ -4,6 +4,7 @@ mod answers;
 mod camera;
 mod cli;
 mod diagnostics;
+mod diff;
 mod exact;
 mod figure;
 mod film;

@@ -1,0 +1,276 @@
+//! How far two pictures are apart, and where.
+//!
+//! In: two films. Out: the root mean square of their differences in linear light, in which means are taken; the largest difference
+//! and the number of pixels beyond a tolerance in steps of 8-bit sRGB, in which differences are seen. A step is 1/255 of the way from
+//! black to white.
+
+use thiserror::Error;
+
+use super::Film;
+use crate::color::linear_to_srgb;
+
+/// Steps between black and white.
+const STEPS: f64 = 255.0;
+
+/// What decoding and encoding may cost, in steps: a few roundings of numbers up to 255, and the curve's two pieces, which meet within
+/// 3e-8 of the whole.
+const SLACK: f64 = 1e-5;
+
+/// The steps of a unit of light where the curve is steepest, in the dark.
+const STEEPEST: f64 = 12.92 * STEPS;
+
+/// The names of a pixel's channels.
+pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
+
+/// What counts as no difference.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance<'a> {
+    /// In steps of 8-bit sRGB, for every channel.
+    pub steps: f64,
+    /// How far each pixel of a picture may be from its true mean, in linear light, if that is known; comes on top.
+    pub bounds: Option<&'a [f32]>,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The root of the mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
+    pub rmse: f64,
+    /// The largest difference; the first one, row by row, of equal ones.
+    pub largest: Largest,
+    /// How many pixels differ by more than the tolerance.
+    pub beyond: u64,
+}
+
+/// The largest difference.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Largest {
+    /// In steps.
+    pub steps: f64,
+    /// The column.
+    pub x: u32,
+    /// The row.
+    pub y: u32,
+    /// Red, green or blue: 0, 1 or 2.
+    pub channel: usize,
+    /// What the first picture has there, in steps: 0 to 255.
+    pub a: f64,
+    /// What the second one has.
+    pub b: f64,
+}
+
+/// Two pictures that cannot be laid on each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("the sizes differ: {} × {} pixels and {} × {}", .0[0], .0[1], .1[0], .1[1])]
+pub struct SizesDiffer(
+    /// Width and height of the first.
+    pub [u32; 2],
+    /// Those of the second.
+    pub [u32; 2],
+);
+
+impl Comparison {
+    /// Whether no pixel differs by more than the tolerance.
+    pub fn is_equal(&self) -> bool {
+        self.beyond == 0
+    }
+
+    /// The share of pixels that do, 0 to 1.
+    pub fn share(&self) -> f64 {
+        self.beyond as f64 / (f64::from(self.width) * f64::from(self.height))
+    }
+}
+
+/// Compares two pictures.
+pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, SizesDiffer> {
+    check_sizes(a, b)?;
+    let mut largest = Largest::default();
+    let mut beyond = 0;
+    for (at, (p, q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+        if p == q {
+            continue;
+        }
+        let (x, y) = (
+            (at % a.width as usize) as u32,
+            (at / a.width as usize) as u32,
+        );
+        let mut most = 0.0;
+        for channel in 0..3 {
+            let (a, b) = (steps(p[channel]), steps(q[channel]));
+            let difference = (a - b).abs();
+            most = f64::max(most, difference);
+            if difference > largest.steps {
+                largest = Largest {
+                    steps: difference,
+                    x,
+                    y,
+                    channel,
+                    a,
+                    b,
+                };
+            }
+        }
+        let bound = tolerance.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
+        beyond += u64::from(most > tolerance.steps + SLACK + bound * STEEPEST);
+    }
+    Ok(Comparison {
+        width: a.width,
+        height: a.height,
+        rmse: rmse(a, b),
+        largest,
+        beyond,
+    })
+}
+
+/// The root of the mean square of the differences of two pictures of one size, in linear light.
+pub fn rmse(a: &Film, b: &Film) -> f64 {
+    let squares = a.pixels.iter().zip(&b.pixels);
+    let sum: f64 = squares
+        .map(|(p, q)| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>())
+        .sum();
+    (sum / (3.0 * a.pixels.len() as f64)).sqrt()
+}
+
+/// A picture of the differences: a pixel's is that of its channel that differs most. What lies within the tolerance is black; from there
+/// on the colour goes through red and yellow to white at 255 steps, on a logarithmic scale, ever brighter.
+pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, HeatError> {
+    check_sizes(a, b)?;
+    let mut map = Film::new(a.width, a.height)?;
+    for (at, (p, q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+        let most = (0..3)
+            .map(|channel| (steps(p[channel]) - steps(q[channel])).abs())
+            .fold(0.0, f64::max);
+        let bound = tolerance.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
+        if most > tolerance.steps + SLACK + bound * STEEPEST {
+            map.pixels[at] = heat(most);
+        }
+    }
+    Ok(map)
+}
+
+/// What the colours of a heat map stand for.
+pub const HEAT_LEGEND: &str = "black: within the tolerance; dark red: 1 step; red: 5; orange: 16; yellow: 39; white: 255 (logarithmic)";
+
+/// Why there is no heat map.
+#[derive(Debug, Error)]
+pub enum HeatError {
+    /// The pictures cannot be laid on each other.
+    #[error(transparent)]
+    Sizes(#[from] SizesDiffer),
+    /// There is no memory for it.
+    #[error(transparent)]
+    TooLarge(#[from] super::TooLarge),
+}
+
+/// The light of a colour for a difference in steps.
+fn heat(steps: f64) -> [f64; 3] {
+    // log2(1 + 255) is 8.
+    let t = 3.0 * libm::log2(1.0 + steps) / 8.0;
+    [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
+}
+
+fn check_sizes(a: &Film, b: &Film) -> Result<(), SizesDiffer> {
+    let sizes = [a, b].map(|film| [film.width, film.height]);
+    match sizes[0] == sizes[1] {
+        true => Ok(()),
+        false => Err(SizesDiffer(sizes[0], sizes[1])),
+    }
+}
+
+/// Light in steps of 8-bit sRGB, 0 to 255 for what a screen shows.
+fn steps(light: f64) -> f64 {
+    STEPS * linear_to_srgb(light)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{area::Area, color::srgb_to_linear};
+
+    const HALF: Tolerance = Tolerance {
+        steps: 0.5,
+        bounds: None,
+    };
+
+    fn film(pixels: &[[f64; 3]]) -> Film {
+        let mut film = Film::new(pixels.len() as u32, 1).unwrap();
+        film.put(Area::whole(pixels.len() as u32, 1), pixels);
+        film
+    }
+
+    #[test]
+    fn the_largest_difference_has_a_place() {
+        let a = film(&[[0.0; 3], [0.5, 0.25, srgb_to_linear(10.0 / 255.0)]]);
+        let b = film(&[[0.0; 3], [0.5, 0.25, srgb_to_linear(13.0 / 255.0)]]);
+        let found = compare(&a, &b, HALF).unwrap();
+        let Largest {
+            steps,
+            x,
+            y,
+            channel,
+            a,
+            b,
+        } = found.largest;
+        assert_eq!((x, y, channel), (1, 0, 2));
+        assert!((steps - 3.0).abs() < 1e-9 && (a - 10.0).abs() < 1e-9 && (b - 13.0).abs() < 1e-9);
+        assert_eq!((found.beyond, found.share()), (1, 0.5));
+        assert!(!found.is_equal());
+    }
+
+    #[test]
+    fn the_root_mean_square_is_of_all_channels() {
+        let found = compare(
+            &film(&[[0.0; 3], [0.6, 0.0, 0.0]]),
+            &film(&[[0.0; 3]; 2]),
+            HALF,
+        );
+        assert!((found.unwrap().rmse - (0.36f64 / 6.0).sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_tolerance_takes_its_own_steps_and_the_bound() {
+        let at = |k: f64| film(&[[srgb_to_linear(k / 255.0); 3]]);
+        for k in 0..255 {
+            let k = f64::from(k);
+            assert!(
+                compare(&at(k), &at(k + 0.5), HALF).unwrap().is_equal(),
+                "{k}"
+            );
+            assert!(
+                !compare(&at(k), &at(k + 0.501), HALF).unwrap().is_equal(),
+                "{k}"
+            );
+        }
+        let bounded = Tolerance {
+            bounds: Some(&[1e-3]),
+            ..HALF
+        };
+        let (dark, light) = (film(&[[0.0; 3]]), film(&[[1e-3 + 0.4 / STEEPEST; 3]]));
+        assert!(!compare(&dark, &light, HALF).unwrap().is_equal());
+        assert!(compare(&dark, &light, bounded).unwrap().is_equal());
+    }
+
+    #[test]
+    fn sizes_that_differ_are_told() {
+        let told = compare(&film(&[[0.0; 3]]), &film(&[[0.0; 3]; 2]), HALF).unwrap_err();
+        assert_eq!(told.to_string(), "the sizes differ: 1 × 1 pixels and 2 × 1");
+    }
+
+    #[test]
+    fn heat_grows_ever_brighter() {
+        let brightness = |steps: f64| {
+            let [r, g, b] = heat(steps);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        for step in 0..255 {
+            assert!(brightness(f64::from(step)) < brightness(f64::from(step + 1)));
+        }
+        assert_eq!(heat(255.0), [1.0; 3]);
+        let same = heat_map(&film(&[[0.5; 3]]), &film(&[[0.5; 3]]), HALF).unwrap();
+        assert_eq!(same.pixel(0, 0), [0.0; 3]);
+    }
+}

@@ -1,0 +1,290 @@
+//! Mistakes of the camera.
+
+use glam::DVec3;
+
+use super::{
+    Case, Idea, Make,
+    fit::fit,
+    level::{distance, with_distance},
+};
+use crate::{
+    film::rmse,
+    math::{Angle, trig},
+    numbers::short,
+    render::RenderError,
+    scene::{Lens, Scene, View},
+};
+
+fn idea(mistake: &'static str, message: String, help: &str, scene: Scene) -> Idea {
+    Idea {
+        mistake,
+        message,
+        help: help.to_owned(),
+        make: Make::Scene(Box::new(scene)),
+    }
+}
+
+fn changed(scene: &Scene, change: impl FnOnce(&mut Scene)) -> Scene {
+    let mut scene = scene.clone();
+    change(&mut scene);
+    scene
+}
+
+/// The view direction, of any length.
+fn direction(scene: &Scene) -> DVec3 {
+    match scene.camera.view {
+        View::Lookat(lookat) => lookat - scene.camera.eye,
+        View::Direction(direction) => direction,
+    }
+}
+
+fn in_degrees(angle: Angle) -> f64 {
+    angle.degrees + angle.radians.to_degrees()
+}
+
+/// Those that can be named at once.
+pub fn ideas(scene: &Scene) -> Vec<Idea> {
+    let mut ideas = rolls(scene);
+    ideas.extend(views(scene));
+    ideas.extend(distances(scene));
+    if scene.camera.near > 0.0 || scene.camera.far.is_some() {
+        ideas.push(idea(
+            "not_clipped",
+            "the near and the far plane were not minded".to_owned(),
+            "what counts is the depth along the view direction, (p − eye) · (−w): more than near and less than far",
+            changed(scene, |scene| {
+                scene.camera.near = 0.0;
+                scene.camera.far = None;
+            }),
+        ));
+    }
+    ideas
+}
+
+fn rolls(scene: &Scene) -> Vec<Idea> {
+    let roll = scene.camera.roll;
+    let degrees = in_degrees(roll);
+    if degrees == 0.0 {
+        return Vec::new();
+    }
+    let rolled = |roll| changed(scene, |scene| scene.camera.roll = roll);
+    let help = "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v: a positive roll dips the camera's right side";
+    vec![
+        idea(
+            "roll_sign",
+            format!(
+                "the roll has the wrong sign: {} degrees instead of {}",
+                short(-degrees),
+                short(degrees)
+            ),
+            help,
+            rolled(-roll),
+        ),
+        idea(
+            "roll_ignored",
+            format!("the roll of {} degrees was not minded", short(degrees)),
+            help,
+            rolled(Angle::default()),
+        ),
+        idea(
+            "roll_unit",
+            "the roll's degrees were taken as radians".to_owned(),
+            "sine and cosine take radians: multiply degrees by π/180",
+            rolled(Angle::from_radians(degrees)),
+        ),
+        idea(
+            "roll_unit",
+            "the roll's radians were taken as degrees".to_owned(),
+            "sine and cosine take radians: multiply degrees by π/180 once",
+            rolled(Angle::from_degrees(degrees.to_radians())),
+        ),
+    ]
+}
+
+fn views(scene: &Scene) -> Vec<Idea> {
+    let forward = direction(scene);
+    let looking = |view| changed(scene, |scene| scene.camera.view = view);
+    let mut ideas = vec![
+        idea(
+            "up_negated",
+            "the up vector has the wrong sign".to_owned(),
+            "u = (up × w)/|up × w| and v = w × u, so that v is on the side of up",
+            changed(scene, |scene| scene.camera.up = -scene.camera.up),
+        ),
+        idea(
+            "looks_back",
+            "the camera looks the other way".to_owned(),
+            "w = −f/|f| points against the view direction f = lookat − eye, and rays go along −d w",
+            looking(View::Direction(-forward)),
+        ),
+    ];
+    match scene.camera.view {
+        View::Lookat(lookat) if lookat != DVec3::ZERO => ideas.push(idea(
+            "lookat_as_direction",
+            "lookat was taken as the direction of view".to_owned(),
+            "lookat is a point: the direction is lookat − eye",
+            looking(View::Direction(lookat)),
+        )),
+        View::Direction(direction) if direction != scene.camera.eye => ideas.push(idea(
+            "direction_as_lookat",
+            "the direction was taken as a point to look at".to_owned(),
+            "direction is a vector: nothing is subtracted from it",
+            looking(View::Lookat(direction)),
+        )),
+        _ => {}
+    }
+    if scene.camera.up != DVec3::Y {
+        ideas.push(idea(
+            "up_ignored",
+            "the up vector was not minded: (0, 1, 0) was taken".to_owned(),
+            "u = (up × w)/|up × w| and v = w × u",
+            changed(scene, |scene| scene.camera.up = DVec3::Y),
+        ));
+    }
+    ideas
+}
+
+fn distances(scene: &Scene) -> Vec<Idea> {
+    let d = distance(scene);
+    let camera = &scene.camera;
+    let aspect = f64::from(scene.image.width) / f64::from(scene.image.height);
+    let mut wrong = vec![
+        (
+            d * aspect,
+            "field_of_view",
+            "the window's height was taken for its width (a vertical field of view for a horizontal one)",
+            "view_height and fov are of the window's height; its width is view_height · width/height",
+        ),
+        (
+            2.0 * d,
+            "field_of_view",
+            "the window is half as high and wide as it should be, or d twice as large",
+            "y_v goes from −view_height/2 to view_height/2",
+        ),
+        (
+            d / 2.0,
+            "field_of_view",
+            "the window is twice as high and wide as it should be, or d half as large",
+            "y_v goes from −view_height/2 to view_height/2, not from −view_height to view_height",
+        ),
+        (
+            d * 2.0 / camera.view_height,
+            "view_height_ignored",
+            "view_height was not minded: 2 was taken",
+            "s = view_height/height is the side of a pixel in the view plane",
+        ),
+        (
+            1.0,
+            "distance_ignored",
+            "the distance was not minded: 1 was taken",
+            "a ray goes along x_v u + y_v v − d w",
+        ),
+    ];
+    if let Lens::Fov(fov) = camera.lens {
+        let degrees = in_degrees(fov);
+        let by = |half: Angle| camera.view_height / (2.0 * trig::tan(half));
+        wrong.extend([
+            (
+                by(Angle::from_degrees(degrees)),
+                "field_of_view",
+                "the field of view was not halved",
+                "d = view_height/(2 tan(fov/2))",
+            ),
+            (
+                by(Angle::from_radians(degrees / 2.0)),
+                "field_of_view",
+                "the field of view's degrees were taken as radians",
+                "the tangent takes radians: multiply degrees by π/180",
+            ),
+        ]);
+    }
+    let is_new = |other: f64| other.is_finite() && other > 0.0 && (other / d - 1.0).abs() > 1e-3;
+    wrong
+        .into_iter()
+        .filter(|(other, ..)| is_new(*other))
+        .map(|(other, mistake, message, help)| {
+            let message = format!(
+                "{message}: as if d were {} instead of {}",
+                short(other),
+                short(d)
+            );
+            idea(mistake, message, help, with_distance(scene, other))
+        })
+        .collect()
+}
+
+/// Another distance or roll, whichever it is.
+pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
+    let scene = &case.full.scene;
+    let level = &case.small;
+    let d = distance(scene);
+    let at_distance = |p: &[f64]| Some(with_distance(scene, d * libm::exp2(p[0])));
+    let turned = |p: &[f64]| {
+        Some(changed(scene, |scene| {
+            scene.camera.roll = scene.camera.roll + Angle::from_degrees(p[0]);
+        }))
+    };
+    // The nearest of a few, and then of some closer around it, from which on the way is downhill.
+    let start = |points: Vec<f64>, step: f64, make: &dyn Fn(&[f64]) -> Option<Scene>| {
+        let mut nearest = (f64::INFINITY, 0.0);
+        let mut look = |points: Vec<f64>| {
+            for point in points {
+                let Some(scene) = make(&[point]) else {
+                    continue;
+                };
+                let left = rmse(&level.a, &level.exact_of(&scene, &case.control)?);
+                if left < nearest.0 {
+                    nearest = (left, point);
+                }
+            }
+            Ok::<_, RenderError>(nearest.1)
+        };
+        let middle = look(points)?;
+        let middle = look(vec![middle - step / 2.0, middle + step / 2.0])?;
+        look(vec![middle - step / 4.0, middle + step / 4.0])
+    };
+    let mut ideas = Vec::new();
+    let octaves = (-8..=8).map(|k| f64::from(k) / 4.0).collect();
+    let first = start(octaves, 0.25, &at_distance)?;
+    if let Some(found) = fit(level, &case.control, &[first], &[0.01], &at_distance)? {
+        let other = d * libm::exp2(found[0]);
+        let fov = |d: f64| {
+            let half = trig::atan(scene.camera.view_height / (2.0 * d));
+            short((2000.0 * in_degrees(half)).round() / 1000.0)
+        };
+        ideas.push(idea(
+            "distance",
+            format!(
+                "the view plane is at the wrong distance: as if d were {} instead of {} (a field of view of {} degrees instead of {})",
+                rounded(other),
+                short(d),
+                fov(other),
+                fov(d)
+            ),
+            "look at d, view_height and fov: d = view_height/(2 tan(fov/2)), s = view_height/height",
+            with_distance(scene, other),
+        ));
+    }
+    let turns = (-17..=18).map(|k| 10.0 * f64::from(k)).collect();
+    let first = start(turns, 10.0, &turned)?;
+    if let Some(found) = fit(level, &case.control, &[first], &[0.5], &turned)?
+        && let Some(other) = turned(&found)
+    {
+        ideas.push(idea(
+            "roll",
+            format!(
+                "the camera is rolled wrongly: as if roll were {} degrees instead of {}",
+                rounded(in_degrees(other.camera.roll)),
+                short(in_degrees(scene.camera.roll))
+            ),
+            "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v, with u and v made from up",
+            other,
+        ));
+    }
+    Ok(ideas)
+}
+
+/// What was found by a search has few right digits.
+fn rounded(x: f64) -> String {
+    short(format!("{x:.2e}").parse().unwrap_or(x))
+}

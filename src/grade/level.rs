@@ -1,0 +1,232 @@
+//! A picture and its scene at some size.
+
+use std::borrow::Cow;
+
+use glam::{DVec2, DVec3};
+
+use super::{Make, exact, sampled};
+use crate::{
+    color::srgb_to_linear,
+    film::{Film, TooLarge},
+    math::{Big, Real},
+    render::{Control, RenderError},
+    scene::{Image, Lens, Scene},
+    tracer::Basis,
+};
+
+/// A picture for searches has about so many columns and rows at most.
+const SMALL: [u32; 2] = [112, 72];
+
+/// A picture, its scene and the scene's exact picture, of one size.
+pub struct Level<'a> {
+    /// The picture.
+    pub a: Cow<'a, Film>,
+    /// The scene, of which `a` should be the picture.
+    pub scene: Cow<'a, Scene>,
+    /// What `a` should be.
+    pub exact: Cow<'a, Film>,
+    /// The side of one of its pixels, in pixels of the whole picture.
+    pub factor: u32,
+}
+
+impl<'a> Level<'a> {
+    /// The whole picture.
+    pub fn full(a: &'a Film, scene: &'a Scene, exact: &'a Film) -> Self {
+        Self {
+            a: Cow::Borrowed(a),
+            scene: Cow::Borrowed(scene),
+            exact: Cow::Borrowed(exact),
+            factor: 1,
+        }
+    }
+
+    /// A small one: each pixel is the mean of a square of pixels. What of the whole is left at its edges is as much on the left as on the
+    /// right, and as much at the top as at the bottom, so that the camera still looks at the middle.
+    pub fn small(a: &Film, scene: &'a Scene, control: &Control) -> Result<Self, RenderError> {
+        let whole = [a.width(), a.height()];
+        let mut factor = (whole[0].div_ceil(SMALL[0]))
+            .max(whole[1].div_ceil(SMALL[1]))
+            .min(whole[0].min(whole[1]));
+        if factor.is_multiple_of(2) && whole.iter().any(|side| !side.is_multiple_of(2)) {
+            factor -= 1;
+        }
+        let size = whole.map(|side| {
+            let pixels = side / factor;
+            match (side - pixels * factor).is_multiple_of(2) {
+                true => pixels,
+                false => (pixels - 1).max(1),
+            }
+        });
+        let scene = resized(scene, size, factor);
+        let margin = [0, 1].map(|i| (whole[i] - size[i] * factor) / 2);
+        let weight = 1.0 / (f64::from(factor) * f64::from(factor));
+        let mean = |x: u32, y: u32| {
+            let mut sum = DVec3::ZERO;
+            for row in 0..factor {
+                let row = a.row(margin[1] + y * factor + row);
+                let start = (margin[0] + x * factor) as usize;
+                for pixel in &row[start..start + factor as usize] {
+                    sum += DVec3::from(*pixel);
+                }
+            }
+            (sum * weight).to_array()
+        };
+        let a = Film::from_fn(size[0], size[1], mean)?;
+        let exact = exact(&scene, control)?;
+        Ok(Self {
+            a: Cow::Owned(a),
+            scene: Cow::Owned(scene),
+            exact: Cow::Owned(exact),
+            factor,
+        })
+    }
+
+    /// The picture that a mistake makes.
+    pub fn made(&self, make: &Make, control: &Control) -> Result<Film, RenderError> {
+        match make {
+            Make::Film(make) => Ok(make(&self.exact)?),
+            Make::Scene(scene) => exact(&self.sized(scene), control),
+            Make::Decoded(scene) => {
+                let film = exact(&self.sized(scene), control)?;
+                Ok(map(&film, srgb_to_linear)?)
+            }
+            Make::Floor(scene, holds) => {
+                let other = exact(&self.sized(scene), control)?;
+                let floor = Floor::new(&self.scene);
+                let pixel = |x, y| match floor.point(x, y) {
+                    Some(point) if holds(point) => other.pixel(x, y),
+                    _ => self.exact.pixel(x, y),
+                };
+                Ok(Film::from_fn(self.a.width(), self.a.height(), pixel)?)
+            }
+            Make::Is(film) => Ok(film.clone()),
+            Make::Sample(offset) => Ok(sampled(&self.scene, *offset)?),
+            Make::Squeezed => squeezed(&self.scene, control),
+        }
+    }
+
+    /// A scene of the whole picture's size in this one's.
+    fn sized(&self, scene: &Scene) -> Scene {
+        match self.factor {
+            1 => scene.clone(),
+            factor => resized(scene, [self.a.width(), self.a.height()], factor),
+        }
+    }
+
+    /// The exact picture of a scene of the whole picture's size, in this one's.
+    pub fn exact_of(&self, scene: &Scene, control: &Control) -> Result<Film, RenderError> {
+        exact(&self.sized(scene), control)
+    }
+}
+
+/// Each number of a picture through a curve.
+pub fn map(film: &Film, curve: impl Fn(f64) -> f64) -> Result<Film, TooLarge> {
+    Film::from_fn(film.width(), film.height(), |x, y| {
+        film.pixel(x, y).map(&curve)
+    })
+}
+
+/// The middle of a scene's picture in pixels `factor` times as large.
+fn resized(scene: &Scene, [width, height]: [u32; 2], factor: u32) -> Scene {
+    let mut scene = with_distance(scene, distance(scene));
+    let rows = f64::from(height) * f64::from(factor);
+    scene.camera.view_height *= rows / f64::from(scene.image.height);
+    scene.image = Image {
+        width,
+        height,
+        ..scene.image
+    };
+    scene
+}
+
+/// The distance of the view plane, in metres.
+pub fn distance(scene: &Scene) -> f64 {
+    match scene.camera.lens {
+        Lens::Distance(d) => d,
+        Lens::Fov(_) => Basis::new(&scene.camera, &scene.image).d.to_finite(),
+    }
+}
+
+/// A scene with the view plane at another distance.
+pub fn with_distance(scene: &Scene, d: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.camera.lens = Lens::Distance(d);
+    scene
+}
+
+/// The camera's axes u, v and w, rounded, and the side of a pixel at depth 1.
+pub fn axes(scene: &Scene) -> ([DVec3; 3], f64) {
+    let basis = Basis::new(&scene.camera, &scene.image);
+    let rounded = |v: &[Big; 3]| DVec3::from(v.each_ref().map(Big::to_finite));
+    (
+        [&basis.u, &basis.v, &basis.w].map(rounded),
+        basis.pitch.to_f64(),
+    )
+}
+
+/// Where pixels see the floor, the plane of the first checkerboard.
+struct Floor {
+    axes: [DVec3; 3],
+    pitch: f64,
+    eye: DVec3,
+    y: f64,
+    half: DVec2,
+}
+
+impl Floor {
+    fn new(scene: &Scene) -> Self {
+        let (axes, pitch) = axes(scene);
+        Self {
+            axes,
+            pitch,
+            eye: scene.camera.eye,
+            y: super::board::boards(scene)
+                .next()
+                .map_or(0.0, |(_, board)| board.y),
+            half: DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0,
+        }
+    }
+
+    /// The point (x, z) that a pixel's centre sees, if the floor is in front of it.
+    fn point(&self, x: u32, y: u32) -> Option<DVec2> {
+        let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) - self.half;
+        let [u, v, w] = self.axes;
+        let ray = (u * at.x - v * at.y) * self.pitch - w;
+        let t = (self.y - self.eye.y) / ray.y;
+        let point = self.eye + t * ray;
+        (t > 0.0 && t.is_finite()).then_some(DVec2::new(point.x, point.z))
+    }
+}
+
+/// The picture of a program that spreads a square window over the whole picture: it is squeezed, or stretched.
+fn squeezed(scene: &Scene, control: &Control) -> Result<Film, RenderError> {
+    let (width, height) = (scene.image.width, scene.image.height);
+    let side = width.max(height);
+    let mut square = scene.clone();
+    square.image = Image {
+        width: side,
+        height: side,
+        ..scene.image
+    };
+    let fine = exact(&square, control)?;
+    // The shares of the fine rows (or columns) in one of the picture.
+    let parts = |at: u32, of: u32| {
+        let scale = f64::from(side) / f64::from(of);
+        let (start, end) = (f64::from(at) * scale, f64::from(at + 1) * scale);
+        let last = (end.ceil() as u32).min(side);
+        (start.floor() as u32..last).map(move |fine| {
+            let overlap = end.min(f64::from(fine) + 1.0) - start.max(f64::from(fine));
+            (fine, overlap / scale)
+        })
+    };
+    let pixel = |x, y| {
+        let mut sum = DVec3::ZERO;
+        for (row, share) in parts(y, height) {
+            for (column, other) in parts(x, width) {
+                sum += DVec3::from(fine.pixel(column, row)) * (share * other);
+            }
+        }
+        sum.to_array()
+    };
+    Ok(Film::from_fn(width, height, pixel)?)
+}

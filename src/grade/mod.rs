@@ -1,0 +1,313 @@
+//! What is likely wrong with a picture of a scene.
+//!
+//! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: the simple mistakes that explain the difference,
+//! best first; none, if none does. A mistake is a function: of the exact picture, or of the scene, whose exact picture is then made. It is
+//! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
+//!
+//! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of samples in `noise` and
+//! `shift`. `level` makes pictures smaller, so that `fit` can afford to search.
+
+mod board;
+mod camera;
+mod fit;
+mod level;
+mod noise;
+mod objects;
+mod shift;
+mod whole;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::{
+    area::Area,
+    color::linear_to_srgb,
+    film::{Film, Tolerance, TooLarge, compare, rmse},
+    render::{self, Control, RenderError},
+    scene::Scene,
+    tracer::World,
+};
+
+use self::level::Level;
+
+/// A mistake explains a difference if it leaves less than this share of its root mean square.
+const LEFT: f64 = 0.2;
+
+/// A mistake that leaves less than this share is looked at further: the rest may be noise.
+const HOPE: f64 = 0.9;
+
+/// The same in a picture that is smaller by [`FEW`] or more, in whose pixels noise is averaged away.
+const SMALL_HOPE: f64 = 0.5;
+const FEW: u32 = 3;
+
+/// Of several explanations, those that leave more than so many times what the best one leaves are not named.
+const RIVAL: f64 = 1.5;
+
+/// So many explanations are named at most.
+const NAMED: usize = 3;
+
+/// A simple mistake that explains a difference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// A word for programs.
+    pub mistake: &'static str,
+    /// What is likely wrong, for people.
+    pub message: String,
+    /// The way out.
+    pub help: String,
+    /// The root mean square of the differences that it leaves, in linear light; none where pictures differ in size.
+    pub rmse: Option<f64>,
+    /// The share of the squared difference that it explains, 0 to 1.
+    pub explains: Option<f64>,
+}
+
+/// A mistake that somebody may have made.
+struct Idea {
+    mistake: &'static str,
+    message: String,
+    help: String,
+    make: Make,
+}
+
+/// What a mistake makes of the exact picture.
+type Change = dyn Fn(&Film) -> Result<Film, TooLarge>;
+
+/// From the right picture to the one that a mistake makes.
+enum Make {
+    /// From the exact picture.
+    Film(Box<Change>),
+    /// The exact picture of another scene.
+    Scene(Box<Scene>),
+    /// That, decoded as if its numbers were sRGB.
+    Decoded(Box<Scene>),
+    /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor for which this holds.
+    Floor(Box<Scene>, fn(DVec2) -> bool),
+    /// This picture.
+    Is(Film),
+    /// One sample in each pixel, at this offset from its centre.
+    Sample(DVec2),
+    /// The whole square window squeezed into the picture.
+    Squeezed,
+}
+
+/// Names the mistakes that explain why `a` is not the exact picture of a scene.
+pub fn scene(
+    a: &Film,
+    scene: &Scene,
+    exact: &Film,
+    control: &Control,
+) -> Result<Vec<Verdict>, RenderError> {
+    if size(a) != size(exact) {
+        return Ok(whole::sizes(a, exact));
+    }
+    let case = Case::new(a, scene, exact, control)?;
+    // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer.
+    let found = case.named(noise::ideas())?;
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    let variance = noise::variance(scene, exact, control)?;
+    if let Some(noise) = noise::judge(a, exact, &variance) {
+        return Ok(vec![noise.verdict(case.difference)]);
+    }
+    let ideas = whole::ideas(scene)
+        .into_iter()
+        .chain(camera::ideas(scene))
+        .chain(board::ideas(scene))
+        .chain(objects::ideas(scene))
+        .chain(objects::colors(a, exact, scene));
+    let found = case.named(ideas.collect())?;
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    // What has to be searched for takes longer, what comes last longest.
+    for search in [objects::search, camera::search, shift::search] {
+        let found = case.named(search(&case)?)?;
+        if !found.is_empty() {
+            return Ok(found);
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// Names the mistakes that explain why one picture is not another, of which no scene is known.
+pub fn pictures(a: &Film, b: &Film) -> Vec<Verdict> {
+    if size(a) != size(b) {
+        return whole::sizes(a, b);
+    }
+    let difference = rmse(a, b);
+    let found = whole::films().into_iter().filter_map(|idea| {
+        let Make::Film(make) = &idea.make else {
+            return None;
+        };
+        let left = rmse(a, &make(b).ok()?);
+        (left < LEFT * difference).then(|| idea.verdict(left, difference))
+    });
+    best(found.collect())
+}
+
+fn size(film: &Film) -> [u32; 2] {
+    [film.width(), film.height()]
+}
+
+/// The exact picture of a scene.
+fn exact(scene: &Scene, control: &Control) -> Result<Film, RenderError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    Ok(render::render_exact(&World::new(scene), whole, control)?.film)
+}
+
+/// The best of some verdicts, best first. Of those that leave the same, the one thought of first is the simplest.
+fn best(mut found: Vec<Verdict>) -> Vec<Verdict> {
+    let left = |verdict: &Verdict| verdict.rmse.unwrap_or(0.0);
+    let Some(least) = found.iter().map(left).reduce(f64::min) else {
+        return found;
+    };
+    // What rounding to bytes leaves is no difference between explanations.
+    found.retain(|verdict| left(verdict) <= RIVAL * least.max(1e-3));
+    let is_level = |verdict: &Verdict| left(verdict) <= (1.05 * least).max(1e-3);
+    found.sort_by(|p, q| match (is_level(p), is_level(q)) {
+        (true, true) => std::cmp::Ordering::Equal,
+        _ => left(p).total_cmp(&left(q)),
+    });
+    found.truncate(NAMED);
+    found
+}
+
+/// A picture and what it should be.
+struct Case<'a> {
+    full: Level<'a>,
+    small: Level<'a>,
+    /// Of the whole picture, root mean square.
+    difference: f64,
+    /// Of the small one.
+    small_difference: f64,
+    control: Control<'a>,
+}
+
+impl<'a> Case<'a> {
+    fn new(
+        a: &'a Film,
+        scene: &'a Scene,
+        exact: &'a Film,
+        control: &'a Control,
+    ) -> Result<Self, RenderError> {
+        let control = Control {
+            threads: control.threads,
+            progress: &|_| {},
+            cancel: control.cancel,
+        };
+        let small = Level::small(a, scene, &control)?;
+        Ok(Self {
+            full: Level::full(a, scene, exact),
+            small_difference: rmse(&small.a, &small.exact),
+            small,
+            difference: rmse(a, exact),
+            control,
+        })
+    }
+
+    /// Those that explain the difference, best first.
+    fn named(&self, ideas: Vec<Idea>) -> Result<Vec<Verdict>, RenderError> {
+        let mut found = Vec::new();
+        for idea in ideas {
+            if let Some(left) = self.tried(&idea.make)? {
+                found.push(idea.verdict(left, self.difference));
+            }
+        }
+        Ok(best(found))
+    }
+
+    /// What a mistake leaves of the difference, if it explains it.
+    fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
+        // Neither single samples nor decoding mean the same in a small picture; and what is known need not be guessed.
+        if !matches!(make, Make::Sample(_) | Make::Decoded(_) | Make::Is(_)) {
+            let small = self.small.made(make, &self.control)?;
+            let hope = match self.small.factor {
+                FEW.. => SMALL_HOPE,
+                _ => HOPE,
+            };
+            if rmse(&self.small.a, &small) > hope * self.small_difference {
+                return Ok(None);
+            }
+        }
+        let made = self.full.made(make, &self.control)?;
+        let left = rmse(&self.full.a, &made);
+        if left < LEFT * self.difference {
+            return Ok(Some(left));
+        }
+        if left > HOPE * self.difference {
+            return Ok(None);
+        }
+        // The mistake may be small, and the rest rounding.
+        let rounding = Tolerance {
+            steps: 0.501,
+            bounds: None,
+        };
+        if compare(&self.full.a, &made, rounding).is_ok_and(|found| found.is_equal()) {
+            return Ok(Some(left));
+        }
+        // The picture may have the mistake and noise.
+        let (full, control) = (&self.full, &self.control);
+        let variance = match make {
+            Make::Film(make) => {
+                let right = noise::variance(&full.scene, &full.exact, control)?;
+                make(&right)?
+            }
+            Make::Scene(scene) => noise::variance(scene, &made, control)?,
+            Make::Decoded(scene) => {
+                // Noise was averaged before decoding, so it is looked at there.
+                let means = exact(scene, control)?;
+                let variance = noise::variance(scene, &means, control)?;
+                let encoded = level::map(&full.a, linear_to_srgb)?;
+                return Ok(noise::judge(&encoded, &means, &variance).map(|_| left));
+            }
+            _ => return Ok(None),
+        };
+        let noise = noise::judge(&full.a, &made, &variance);
+        Ok(noise.map(|_| left))
+    }
+}
+
+impl Idea {
+    fn verdict(&self, left: f64, difference: f64) -> Verdict {
+        let share = left / difference;
+        Verdict {
+            mistake: self.mistake,
+            message: self.message.clone(),
+            help: self.help.clone(),
+            rmse: Some(left),
+            explains: Some((1.0 - share * share).max(0.0)),
+        }
+    }
+}
+
+/// One sample in each pixel, at an offset from its centre.
+fn sampled(scene: &Scene, offset: DVec2) -> Result<Film, TooLarge> {
+    let world = World::new(scene);
+    let colors: Vec<_> = world
+        .palette()
+        .iter()
+        .map(|color| color.to_linear())
+        .collect();
+    let (width, height) = (scene.image.width, scene.image.height);
+    let mut film = Film::new(width, height)?;
+    let rows: Vec<Vec<_>> = (0..height)
+        .into_par_iter()
+        .map(|y| {
+            let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
+            row.collect()
+        })
+        .collect();
+    for (y, row) in (0..).zip(rows) {
+        film.put(
+            Area {
+                x: 0,
+                y,
+                width,
+                height: 1,
+            },
+            &row,
+        );
+    }
+    Ok(film)
+}

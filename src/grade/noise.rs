@@ -1,0 +1,167 @@
+//! Too few samples, or a single one at a fixed place.
+//!
+//! A mean of n independent samples has the n-th part of a sample's variance, and the exact variance within a pixel is known: the mean of
+//! the squares, which is the exact picture of the same scene with squared colours, less the square of the mean. So noise shows itself by
+//! three signs: it is where that variance is not 0 and nowhere else; it is as often too bright as too dark; and its size gives n.
+
+use glam::DVec2;
+
+use super::{Idea, Make, Verdict, exact};
+use crate::{
+    color::{Color, linear_to_srgb},
+    film::Film,
+    numbers::short,
+    render::{Control, RenderError},
+    scene::{Scene, Shape},
+};
+
+/// A variance below this is none: it is less than that of a pixel with a millionth of another colour.
+const NO_VARIANCE: f64 = 1e-9;
+
+/// How far a pixel of one colour may be off, in steps of 8-bit sRGB: rounded, and a little.
+const FLAT: f64 = 0.75;
+
+/// So large a share of wrong pixels of one colour is passed over, measured by the number of pixels of several.
+const STRAYS: f64 = 0.005;
+
+/// A noisy mean is 0 within this many standard deviations, or this share of the mean absolute error.
+const SIGMAS: f64 = 5.0;
+const BIAS: f64 = 0.12;
+
+/// Noise that looks as if there were so many independent samples in a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Noise {
+    samples: f64,
+}
+
+/// The variance of one sample in each pixel and channel.
+pub fn variance(scene: &Scene, exact_film: &Film, control: &Control) -> Result<Film, RenderError> {
+    let squares = exact(&squared(scene), control)?;
+    let pixel = |x, y| {
+        let (squares, means) = (squares.pixel(x, y), exact_film.pixel(x, y));
+        [0, 1, 2].map(|i| squares[i] - means[i] * means[i])
+    };
+    Ok(Film::from_fn(
+        exact_film.width(),
+        exact_film.height(),
+        pixel,
+    )?)
+}
+
+/// A scene whose colours are the squares of another's, in linear light.
+fn squared(scene: &Scene) -> Scene {
+    with_colors(scene, |color| Color {
+        srgb: color
+            .to_linear()
+            .map(|light| 255.0 * linear_to_srgb(light * light)),
+    })
+}
+
+/// A scene with all its colours changed.
+pub fn with_colors(scene: &Scene, change: impl Fn(Color) -> Color) -> Scene {
+    let mut scene = scene.clone();
+    scene.image.background = change(scene.image.background);
+    for object in &mut scene.objects {
+        match &mut object.shape {
+            Shape::Sphere(sphere) => sphere.color = change(sphere.color),
+            Shape::Triangle(triangle) => triangle.color = change(triangle.color),
+            Shape::Box(cuboid) => cuboid.color = change(cuboid.color),
+            Shape::Checkerboard(board) => board.colors = board.colors.map(&change),
+        }
+    }
+    scene
+}
+
+/// Whether a picture differs from its exact one as noise does.
+pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
+    let (mut mixed, mut strays) = (0u64, 0u64);
+    let (mut variances, mut squares) = (0.0, 0.0);
+    let mut sums = [[0.0f64; 3]; 3];
+    let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
+    for ((p, q), variance) in pixels {
+        if variance.iter().all(|&variance| variance < NO_VARIANCE) {
+            let is_off = |i: usize| {
+                p[i] != q[i] && 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() > FLAT
+            };
+            strays += u64::from((0..3).any(is_off));
+            if strays as f64 > STRAYS * a.pixels().len() as f64 {
+                return None;
+            }
+            continue;
+        }
+        mixed += 1;
+        for i in 0..3 {
+            let error = p[i] - q[i];
+            variances += variance[i].max(0.0);
+            squares += error * error;
+            sums[i][0] += error;
+            sums[i][1] += error.abs();
+            sums[i][2] += error * error;
+        }
+    }
+    let is_even = |[sum, absolute, squares]: [f64; 3]| {
+        sum.abs() <= SIGMAS * squares.sqrt() || sum.abs() <= BIAS * absolute
+    };
+    let samples = variances / squares;
+    // A single sample already has the whole variance; more than that is no noise.
+    let is_noise = mixed > 0
+        && strays as f64 <= STRAYS * mixed as f64
+        && sums.into_iter().all(is_even)
+        && samples > 0.75
+        && samples.is_finite();
+    is_noise.then_some(Noise { samples })
+}
+
+impl Noise {
+    /// What is said of it.
+    pub fn verdict(&self, difference: f64) -> Verdict {
+        let samples = match self.samples {
+            few if few < 10.0 => (2.0 * few).round() / 2.0,
+            many => format!("{many:.1e}").parse().unwrap_or(many),
+        };
+        Verdict {
+            mistake: "noise",
+            message: format!(
+                "sampling noise: the picture is wrong only where colours meet, as often too bright as too dark, as with about {} random \
+                 sample{} per pixel",
+                short(samples),
+                if samples == 1.0 { "" } else { "s" }
+            ),
+            help: "nothing is wrong with the scene or the camera; more samples, or better placed ones (jittered, sobol), come closer; a \
+                   `--tolerance` in steps lets noise pass"
+                .to_owned(),
+            rmse: Some(difference),
+            explains: None,
+        }
+    }
+}
+
+/// One sample in each pixel, always at the same place.
+pub fn ideas() -> Vec<Idea> {
+    let places = [
+        (DVec2::ZERO, "sample_at_center", "centre"),
+        (
+            DVec2::new(-0.5, -0.5),
+            "sample_at_corner",
+            "top left corner",
+        ),
+        // As far down as a sample may be: the corner itself is the next pixel's.
+        (
+            DVec2::new(-0.5, 0.5f64.next_down()),
+            "sample_at_corner",
+            "bottom left corner",
+        ),
+    ];
+    let idea = |(offset, mistake, place): (DVec2, &'static str, &str)| {
+        Idea {
+        mistake,
+        message: format!("one sample in each pixel, at its {place}: edges are jagged"),
+        help: match mistake {
+            "sample_at_center" => "the rays are right; take the mean of several samples in each pixel".to_owned(),
+            _ => "a pixel's centre is at (x + 0.5, y + 0.5); take the mean of several samples in each pixel".to_owned(),
+        },
+        make: Make::Sample(offset),
+    }
+    };
+    places.into_iter().map(idea).collect()
+}

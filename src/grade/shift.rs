@@ -1,0 +1,118 @@
+//! Pictures that are displaced as a whole, by halves of a pixel up to a few.
+//!
+//! A pixel of the exact picture with twice the columns and rows is a quarter of a pixel, so that four of them make each pixel of the
+//! picture displaced by any number of halves.
+
+use super::{Case, Idea, Make, exact};
+use crate::{
+    film::{Film, rmse},
+    numbers::short,
+    render::RenderError,
+    scene::Image,
+};
+
+/// The farthest displacement, in halves of a pixel.
+const REACH: i32 = 8;
+
+/// The displacement that explains most, if any explains something.
+pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
+    let level = &case.full;
+    let [width, height] = super::size(&level.a);
+    // A picture larger than this takes too long for a guess.
+    if u64::from(width) * u64::from(height) > 1 << 22 {
+        return Ok(Vec::new());
+    }
+    let fine = fine(case)?;
+    let moved = |[x, y]: [i32; 2]| {
+        // A fine pixel's column is as many halves from the left, and the margin is REACH of them.
+        let first = |pixel: u32, by: i32| (2 * pixel as i32 + REACH - by) as u32;
+        Film::from_fn(width, height, |column, row| {
+            let (left, top) = (first(column, x), first(row, y));
+            let [p, q, r, s] =
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| fine.pixel(left + i, top + j));
+            [0, 1, 2].map(|i| 0.25 * (p[i] + q[i] + r[i] + s[i]))
+        })
+    };
+    let mut at = [0, 0];
+    let mut left = case.difference;
+    // Downhill in the grid of displacements: the differences' slopes say where to go.
+    for _ in 0..6 {
+        let here = moved(at)?;
+        let [x, y] = slope(&level.a, &here);
+        let step = |by: f64| (2.0 * by).round().clamp(-4.0, 4.0) as i32;
+        let next = [at[0] + step(x), at[1] + step(y)].map(|by| by.clamp(-REACH, REACH));
+        if next == at {
+            break;
+        }
+        let left_there = rmse(&level.a, &moved(next)?);
+        if left_there >= left {
+            break;
+        }
+        (at, left) = (next, left_there);
+    }
+    if at == [0, 0] {
+        return Ok(Vec::new());
+    }
+    let [x, y] = at.map(|by| f64::from(by) / 2.0);
+    let mut way = Vec::new();
+    for (by, positive, negative) in [(x, "to the right", "to the left"), (y, "down", "up")] {
+        if by != 0.0 {
+            let pixels = if by.abs() == 1.0 { "pixel" } else { "pixels" };
+            let side = if by > 0.0 { positive } else { negative };
+            way.push(format!("{} {pixels} {side}", short(by.abs())));
+        }
+    }
+    let film = moved(at)?;
+    Ok(vec![Idea {
+        mistake: "shifted",
+        message: format!("the whole picture is displaced by {}", way.join(" and ")),
+        help: "the window's middle is between the pixels, at (width/2, height/2), and pixel (x, y) goes from x to x + 1 and y to y + 1: \
+               its centre is at (x + 0.5, y + 0.5)"
+            .to_owned(),
+        make: Make::Is(film),
+    }])
+}
+
+/// Twice the columns and rows, and a margin of [`REACH`] of them on all sides.
+fn fine(case: &Case) -> Result<Film, RenderError> {
+    let scene = &case.full.scene;
+    let mut fine = super::level::with_distance(scene, super::level::distance(scene));
+    let sides = [scene.image.width, scene.image.height].map(|side| 2 * side + 2 * REACH as u32);
+    fine.camera.view_height *= f64::from(sides[1]) / (2.0 * f64::from(scene.image.height));
+    fine.image = Image {
+        width: sides[0],
+        height: sides[1],
+        ..scene.image
+    };
+    exact(&fine, &case.control)
+}
+
+/// How far `a` is displaced against `b`, in pixels to the right and down: the least-squares solution of a − b ≈ −x ∂b/∂x − y ∂b/∂y.
+fn slope(a: &Film, b: &Film) -> [f64; 2] {
+    let [width, height] = super::size(b);
+    let mut m = [0.0; 5];
+    for y in 1..height.saturating_sub(1) {
+        for x in 1..width.saturating_sub(1) {
+            let [left, right] = [b.pixel(x - 1, y), b.pixel(x + 1, y)];
+            let [above, below] = [b.pixel(x, y - 1), b.pixel(x, y + 1)];
+            let (p, q) = (a.pixel(x, y), b.pixel(x, y));
+            for i in 0..3 {
+                let (gx, gy) = ((right[i] - left[i]) / 2.0, (below[i] - above[i]) / 2.0);
+                let error = q[i] - p[i];
+                m[0] += gx * gx;
+                m[1] += gx * gy;
+                m[2] += gy * gy;
+                m[3] += gx * error;
+                m[4] += gy * error;
+            }
+        }
+    }
+    let determinant = m[0] * m[2] - m[1] * m[1];
+    if determinant <= 1e-12 * m[0] * m[2] || determinant == 0.0 {
+        return [0.0; 2];
+    }
+    [
+        (m[3] * m[2] - m[4] * m[1]) / determinant,
+        (m[0] * m[4] - m[1] * m[3]) / determinant,
+    ]
+}

@@ -1,0 +1,190 @@
+//! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
+
+use super::{Idea, Make, Verdict, level::map, noise::with_colors, size};
+use crate::{
+    color::{Color, linear_to_srgb, srgb_to_linear},
+    film::{Film, TooLarge, rmse},
+    scene::Scene,
+};
+
+fn film(
+    mistake: &'static str,
+    message: &str,
+    help: &str,
+    make: impl Fn(&Film) -> Result<Film, TooLarge> + 'static,
+) -> Idea {
+    Idea {
+        mistake,
+        message: message.to_owned(),
+        help: help.to_owned(),
+        make: Make::Film(Box::new(make)),
+    }
+}
+
+/// What can be seen of two pictures alone.
+pub fn films() -> Vec<Idea> {
+    let mut ideas = vec![
+        film(
+            "mirrored",
+            "the picture is mirrored: left and right are exchanged",
+            "u = (up × w)/|up × w| points to the right; (w × up) points to the left, as in a left-handed world",
+            |film| {
+                Film::from_fn(film.width(), film.height(), |x, y| {
+                    film.pixel(film.width() - 1 - x, y)
+                })
+            },
+        ),
+        film(
+            "upside_down",
+            "the picture is upside down: top and bottom are exchanged",
+            "rows are counted from the top, and y_v = s (height/2 − py) falls as they grow",
+            |film| {
+                Film::from_fn(film.width(), film.height(), |x, y| {
+                    film.pixel(x, film.height() - 1 - y)
+                })
+            },
+        ),
+        film(
+            "turned_180",
+            "the picture is turned by 180 degrees",
+            "as behind a real pinhole: the view plane lies before the eye, at −d w, so the picture stands upright",
+            |film| {
+                Film::from_fn(film.width(), film.height(), |x, y| {
+                    film.pixel(film.width() - 1 - x, film.height() - 1 - y)
+                })
+            },
+        ),
+        film(
+            "transposed",
+            "rows and columns are exchanged",
+            "a pixel's place in a row-by-row array is y · width + x",
+            |film| match film.width() == film.height() {
+                true => transposed(film),
+                false => Ok(film.clone()),
+            },
+        ),
+        film(
+            "not_encoded",
+            "the colours are too dark: linear light was written where sRGB is expected",
+            "encode each channel before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
+            |film| map(film, srgb_to_linear),
+        ),
+        film(
+            "encoded_twice",
+            "the colours are too bright: they were encoded as sRGB twice, or a scene's sRGB colours were not decoded",
+            "decode a scene's colours to linear light, average there, and encode once",
+            |film| map(film, linear_to_srgb),
+        ),
+        film(
+            "gamma_22",
+            "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
+            "use the curve of sRGB: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
+            |film| {
+                map(film, |light| {
+                    srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2))
+                })
+            },
+        ),
+    ];
+    let orders = [
+        ([2, 1, 0], "blue, green, red"),
+        ([0, 2, 1], "red, blue, green"),
+        ([1, 0, 2], "green, red, blue"),
+        ([1, 2, 0], "green, blue, red"),
+        ([2, 0, 1], "blue, red, green"),
+    ];
+    for (order, name) in orders {
+        ideas.push(film(
+            "channels",
+            &format!("the colour channels are in the order {name}"),
+            "a picture's channels are in the order red, green, blue",
+            move |film| {
+                Film::from_fn(film.width(), film.height(), |x, y| {
+                    order.map(|i| film.pixel(x, y)[i])
+                })
+            },
+        ));
+    }
+    ideas
+}
+
+fn transposed(film: &Film) -> Result<Film, TooLarge> {
+    Film::from_fn(film.height(), film.width(), |x, y| film.pixel(y, x))
+}
+
+/// Those, and what takes the scene.
+pub fn ideas(scene: &Scene) -> Vec<Idea> {
+    let encoded = with_colors(scene, |color| Color {
+        srgb: color
+            .srgb
+            .map(|channel| 255.0 * linear_to_srgb(channel / 255.0)),
+    });
+    let mut ideas = films();
+    ideas.push(Idea {
+        mistake: "averaged_encoded",
+        message: "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark".to_owned(),
+        help: "decode a scene's colours to linear light, average there, and encode once".to_owned(),
+        make: Make::Decoded(Box::new(encoded)),
+    });
+    if scene.image.width != scene.image.height {
+        ideas.push(Idea {
+            mistake: "squeezed",
+            message: "the picture is stretched: its window is as wide as it is high, though the picture is not".to_owned(),
+            help: "pixels are square: one scale s = view_height/height for both x and y".to_owned(),
+            make: Make::Squeezed,
+        });
+    }
+    ideas
+}
+
+/// What can be said of pictures of different sizes.
+pub fn sizes(a: &Film, b: &Film) -> Vec<Verdict> {
+    let ([width, height], [b_width, b_height]) = (size(a), size(b));
+    let verdict = |mistake, message: String, help: &str| Verdict {
+        mistake,
+        message,
+        help: help.to_owned(),
+        rmse: None,
+        explains: None,
+    };
+    if (width, height) == (b_height, b_width) {
+        let turned = [
+            ("rows and columns are exchanged", transposed(b)),
+            (
+                "the picture is turned by a quarter, clockwise",
+                Film::from_fn(width, height, |x, y| b.pixel(y, b_height - 1 - x)),
+            ),
+            (
+                "the picture is turned by a quarter, counter-clockwise",
+                Film::from_fn(width, height, |x, y| b.pixel(b_width - 1 - y, x)),
+            ),
+        ];
+        let black = rmse(
+            a,
+            &Film::from_fn(width, height, |_, _| [0.0; 3]).unwrap_or_else(|_| a.clone()),
+        );
+        let nearest = turned
+            .into_iter()
+            .filter_map(|(message, film)| Some((message, rmse(a, &film.ok()?))))
+            .min_by(|p, q| p.1.total_cmp(&q.1));
+        let message = match nearest {
+            Some((message, left)) if left < super::LEFT * black => message.to_owned(),
+            _ => "width and height are exchanged".to_owned(),
+        };
+        return vec![verdict(
+            "transposed",
+            message,
+            "the picture is width columns by height rows; a pixel's place in a row-by-row array is y · width + x",
+        )];
+    }
+    if u64::from(width) * u64::from(b_height) == u64::from(height) * u64::from(b_width) {
+        return vec![verdict(
+            "resolution",
+            format!(
+                "the same shape in another resolution: {width} × {height} pixels where {b_width} × {b_height} are wanted"
+            ),
+            "render it in the size that the scene says, or set the scene's: `--set image.width=…` and `--set image.height=…`",
+        )];
+    }
+    Vec::new()
+}
