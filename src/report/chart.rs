@@ -29,8 +29,10 @@ pub(super) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBacken
 /// The size of a chart in pixels.
 const SIZE: (u32, u32) = (860, 540);
 
-/// Room at the right for the labels.
-const LABELS: i32 = 190;
+/// Room at the right for a label of so many characters.
+fn label_room(characters: usize) -> i32 {
+    44 + 8 * characters as i32
+}
 
 /// Labels are at least so far apart.
 const LABEL_HEIGHT: i32 = 18;
@@ -95,7 +97,10 @@ pub fn against_time(measured: &Measurement) -> String {
         x_name: "time of a render (median)",
         x_ticks,
         y_ticks: y_ticks(measured, &lines),
-        write_x: seconds,
+        write_x: |time| match time < 0.9995 {
+            true => format!("{} ms", tick(time * 1e3)),
+            false => format!("{} s", tick(time)),
+        },
         lines,
         wanted: measured.errors.clone(),
         exact,
@@ -249,9 +254,11 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
             .with_key_points(ticks.major.clone())
             .with_light_points(ticks.minor.clone())
     };
+    let labels = chart.lines.iter().map(|line| line.label.chars().count());
+    let longest = labels.max().unwrap_or(0);
     let mut plot = ChartBuilder::on(&area)
         .margin_top(TOP)
-        .margin_right(LABELS)
+        .margin_right(label_room(longest))
         .margin_left(4)
         .margin_bottom(4)
         .x_label_area_size(48)
@@ -259,7 +266,7 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
         .build_cartesian_2d(axis(&chart.x_ticks), axis(&chart.y_ticks))?;
     plot.configure_mesh()
         .x_label_formatter(&|x| (chart.write_x)(*x))
-        .y_label_formatter(&|y| error(*y))
+        .y_label_formatter(&|y| tick(*y))
         .label_style(text(SMALL))
         .axis_desc_style(text(SMALL))
         .x_desc(chart.x_name)
@@ -363,6 +370,15 @@ fn dashed(ends: &[Place; 2]) -> DashedPathElement<std::vec::IntoIter<Place>, i32
 
 fn text(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
+}
+
+/// The number of a tick: one digit, and zeros.
+fn tick(value: f64) -> String {
+    match (1e-4..1e6).contains(&value) {
+        // The shortest way to write it, without what the powers of ten were rounded by.
+        true => format!("{}", (value * 1e9).round() / 1e9),
+        false => format!("{value:.0e}"),
+    }
 }
 
 /// Heights for labels near the ends of their lines, in the order of the ends, none upon another.

@@ -125,11 +125,11 @@ fn errors(measured: &Measurement) -> String {
         (series.method.name(), row)
     });
     let bound = error(measured.reference.bound());
-    let exact = measured.exact.as_ref().map(|_| {
-        let mut row = vec![String::new(); measured.rungs.len()];
-        row.extend([format!("≤ {bound}"), String::new()]);
-        row
-    });
+    let rungs = measured.rungs.len();
+    let exact = measured
+        .exact
+        .as_ref()
+        .map(|_| format!("<td colspan=\"{rungs}\"></td><td>≤ {bound}</td><td></td>"));
     let mut names = rung_names(measured);
     names.extend(["largest".to_owned(), "slope".to_owned()]);
     table(
@@ -155,17 +155,10 @@ fn times(measured: &Measurement) -> String {
         row.push(format!("{:.1}", rate / 1e6));
         (series.method.name(), row)
     });
+    let rungs = measured.rungs.len();
     let exact = measured.exact.as_ref().map(|exact| {
-        let mut row = vec![String::new(); measured.rungs.len()];
-        if let Some(last) = row.last_mut() {
-            *last = format!(
-                "{} ± {:.0} %",
-                seconds(median(&exact.times)),
-                spread(&exact.times) * 50.0
-            );
-        }
-        row.push(String::new());
-        row
+        let time = ranged(&exact.times);
+        format!("<td class=\"any\" colspan=\"{rungs}\">{time}</td><td></td>")
     });
     let mut names = rung_names(measured);
     names.push("million rays/s".to_owned());
@@ -176,6 +169,15 @@ fn times(measured: &Measurement) -> String {
         rows,
         exact,
     )
+}
+
+/// A median time with half its spread, if there are several.
+fn ranged(times: &[f64]) -> String {
+    let time = seconds(median(times));
+    match times.len() {
+        0 | 1 => time,
+        _ => format!("{time} ± {:.0} %", spread(times) * 50.0),
+    }
 }
 
 fn needs(measured: &Measurement) -> String {
@@ -198,11 +200,7 @@ fn needs(measured: &Measurement) -> String {
     });
     let exact = measured.exact.as_ref().map(|exact| {
         let time = seconds(median(&exact.times));
-        measured
-            .errors
-            .iter()
-            .flat_map(|_| ["–".to_owned(), time.clone()])
-            .collect()
+        format!("<td>–</td><td>{time}</td>").repeat(measured.errors.len())
     });
     let names: Vec<_> = measured
         .errors
@@ -234,7 +232,7 @@ fn table(
     caption: &str,
     names: &[String],
     rows: impl Iterator<Item = (&'static str, Vec<String>)>,
-    exact: Option<Vec<String>>,
+    exact: Option<String>,
 ) -> String {
     let mut html = format!(
         "<div class=\"wide\"><table>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">method</th>"
@@ -243,18 +241,18 @@ fn table(
         let _ = write!(html, "<th scope=\"col\">{name}</th>");
     }
     html += "</tr></thead>\n<tbody>\n";
-    let exact = exact.map(|row| (Method::Exact.name(), row));
-    for (name, row) in rows.chain(exact) {
-        let class = if name == Method::Exact.name() {
-            " class=\"exact\""
-        } else {
-            ""
-        };
-        let _ = write!(html, "<tr{class}><th scope=\"row\">{name}</th>");
+    for (name, row) in rows {
+        let _ = write!(html, "<tr><th scope=\"row\">{name}</th>");
         for cell in row {
             let _ = write!(html, "<td>{cell}</td>");
         }
         html += "</tr>\n";
+    }
+    if let Some(cells) = exact {
+        let _ = writeln!(
+            html,
+            "<tr class=\"exact\"><th scope=\"row\">exact</th>{cells}</tr>"
+        );
     }
     html + "</tbody>\n</table></div>\n"
 }
@@ -336,7 +334,7 @@ fn method(measurements: &[Measurement]) -> String {
     let noisy = NOISY * 100.0;
     format!(
         "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\
-         <li><b>Warm-up.</b> The exact picture is computed and every method renders once before anything counts. What that took decides how \
+         <li><b>Warm-up.</b> The exact picture is computed and every method renders twice, with few samples, before anything counts. What that took decides how \
          many samples and runs fit into the time.</li>\n\
          <li><b>Runs are interleaved.</b> A round runs every method with every number of samples once, in an order that is shuffled anew in \
          each round by a fixed rule, so that what else the machine does falls on all alike. A run has a seed of its own: that of the scene \

@@ -22,7 +22,7 @@ pub fn table(measured: &Measurement) -> String {
     }
     text += "\n";
     for verdict in verdicts(measured) {
-        text += &format!("{verdict}\n");
+        text += &wrapped(&verdict);
     }
     for note in notes(measured) {
         text += &wrapped(&format!("note: {note}"));
@@ -89,7 +89,7 @@ fn times(measured: &Measurement) -> String {
         let _ = writeln!(
             text,
             "{:>10}{:>16.1}",
-            percent(widest.fold(0.0, f64::max)),
+            percent(widest.fold(0.0, f64::max), measured.rounds()),
             rate / 1e6
         );
     }
@@ -98,9 +98,9 @@ fn times(measured: &Measurement) -> String {
         let time = seconds(median(&exact.times));
         let _ = writeln!(
             text,
-            "{:16}{time:>width$}{:>10}",
+            "{:16}{time:^width$}{:>10}",
             "exact",
-            percent(spread(&exact.times))
+            percent(spread(&exact.times), exact.times.len())
         );
     }
     text
@@ -161,8 +161,8 @@ pub(super) fn slope(fit: Option<Fit>) -> String {
     match fit {
         None => "-".to_owned(),
         Some(fit) => match fit.slope_error {
-            None => format!("{:.2}", fit.slope),
-            Some(error) => format!("{:.2} ± {error:.2}", fit.slope),
+            None => format!("{:.3}", fit.slope),
+            Some(error) => format!("{:.3} ± {error:.3}", fit.slope),
         },
     }
 }
@@ -200,7 +200,11 @@ pub(super) fn count(samples: f64) -> String {
     }
 }
 
-pub(super) fn percent(share: f64) -> String {
+/// How far times spread, marked where they are noisy; nothing is known of a single one.
+pub(super) fn percent(share: f64, runs: usize) -> String {
+    if runs < 2 {
+        return "-".to_owned();
+    }
     let mark = if share > NOISY { "!" } else { "" };
     format!("{mark}{:.0} %", share * 100.0)
 }
