@@ -26,7 +26,7 @@
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see.
 //! - [`film`] makes bytes of the means and files of the bytes.
-//! - [`inspect`] and [`probe`] answer questions about a scene, [`report`] about Pinhole itself. The command line reads, calls
+//! - [`inspect`] and [`probe`] answer questions about a scene, [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls
 //!   these and prints.
 
 pub mod area;

@@ -21,6 +21,7 @@ use super::{
     marker::{Look, Place},
     measure::{Measurement, Point},
     table::{error, seconds, slope},
+    ticks::{Ticks, ends, tick},
 };
 
 /// What drawing yields.
@@ -62,13 +63,6 @@ struct Line {
     look: Look,
     label: String,
     points: Vec<(f64, f64)>,
-}
-
-/// An axis: its ends, and where numbers stand.
-struct Ticks {
-    ends: (f64, f64),
-    major: Vec<f64>,
-    minor: Vec<f64>,
 }
 
 /// The chart of error against time. The exact method, whose error is off the scale, is a vertical line.
@@ -165,54 +159,6 @@ fn y_ticks(measured: &Measurement, lines: &[Line]) -> Ticks {
     let near = |&&wanted: &&f64| wanted > low / 30.0 && wanted < high * 30.0;
     let wanted = measured.errors.iter().filter(near);
     Ticks::round(errors.iter().chain(wanted).copied())
-}
-
-fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, 0.0), |(low, high), value| {
-        (value.min(low), value.max(high))
-    })
-}
-
-impl Ticks {
-    /// An axis for these values, with numbers at 1, 2 and 5 times powers of ten, or at the powers alone where those are many.
-    fn round(values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = ends(values);
-        // Nothing to show: any axis will do.
-        let (low, high) = if low <= high { (low, high) } else { (0.1, 1.0) };
-        let ends = (low / 1.5, high * 1.5);
-        let decades = libm::log10(ends.1 / ends.0);
-        let steps: &[f64] = match decades > 3.5 {
-            true => &[1.0],
-            false => &[1.0, 2.0, 5.0],
-        };
-        let first = libm::floor(libm::log10(ends.0)) as i32;
-        let last = libm::ceil(libm::log10(ends.1)) as i32;
-        let within = |steps: &[f64]| -> Vec<f64> {
-            (first..=last)
-                .flat_map(|power| {
-                    steps
-                        .iter()
-                        .map(move |step| step * libm::exp10(f64::from(power)))
-                })
-                .filter(|tick| (ends.0..=ends.1).contains(tick))
-                .collect()
-        };
-        Self {
-            ends,
-            major: within(steps),
-            minor: within(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]),
-        }
-    }
-
-    /// An axis with numbers at these values.
-    fn at(values: &[f64]) -> Self {
-        let (low, high) = ends(values.iter().copied());
-        Self {
-            ends: (low / 1.25, high * 1.25),
-            major: values.to_vec(),
-            minor: Vec::new(),
-        }
-    }
 }
 
 fn draw(chart: &Chart) -> String {
@@ -370,15 +316,6 @@ fn dashed(ends: &[Place; 2]) -> DashedPathElement<std::vec::IntoIter<Place>, i32
 
 fn text(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
-}
-
-/// The number of a tick: one digit, and zeros.
-fn tick(value: f64) -> String {
-    match (1e-4..1e6).contains(&value) {
-        // The shortest way to write it, without what the powers of ten were rounded by.
-        true => format!("{}", (value * 1e9).round() / 1e9),
-        false => format!("{value:.0e}"),
-    }
 }
 
 /// Heights for labels near the ends of their lines, in the order of the ends, none upon another.

@@ -187,7 +187,7 @@ impl Measurement {
             .min_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds))
     }
 
-    /// Whether every planned run of everything was made.
+    /// How many runs were begun.
     pub fn rounds(&self) -> usize {
         let runs = self.series.iter().flat_map(|series| &series.points);
         let most = runs.map(|point| point.times.len()).max().unwrap_or(0);

@@ -28,6 +28,8 @@ mod picture;
 mod plan;
 #[cfg(feature = "report")]
 mod table;
+#[cfg(feature = "report")]
+mod ticks;
 
 #[cfg(feature = "report")]
 pub use self::{

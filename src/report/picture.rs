@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The largest crop: several stand beside each other on a page, and a sample's noise is to be seen.
-const CROP: (u32, u32) = (320, 180);
+const CROP: (u32, u32) = (240, 135);
 
 /// The colours of an error's logarithm: ColorBrewer's YlOrBr, whose lightness falls, so that it prints in grey and serves the colour-blind.
 const COLORS: [[f64; 3]; 6] = [
