@@ -233,7 +233,7 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
         if (low..=high).contains(&wanted) {
             let (_, y) = place(chart.x_ticks.ends.0, wanted);
             let ends = [(columns.start, y), (columns.end, y)];
-            area.draw(&dashed(&ends))?;
+            area.draw(&dashed(ends))?;
             let label = text(SMALL).pos(Pos::new(HPos::Left, VPos::Bottom));
             area.draw(&Text::new(error(wanted), (columns.start + 6, y), label))?;
         }
@@ -310,8 +310,8 @@ fn draw_exact<DB: DrawingBackend>(
     area.draw(&Text::new(label.to_owned(), (x + dx, y), style))
 }
 
-fn dashed(ends: &[Place; 2]) -> DashedPathElement<std::vec::IntoIter<Place>, i32> {
-    DashedPathElement::new(ends.to_vec().into_iter(), 4, 4, BLACK.mix(0.6))
+fn dashed(ends: [Place; 2]) -> DashedPathElement<std::array::IntoIter<Place, 2>, i32> {
+    DashedPathElement::new(ends, 4, 4, BLACK.mix(0.6))
 }
 
 fn text(size: f64) -> TextStyle<'static> {

@@ -67,7 +67,7 @@ impl Look {
         match self.dash {
             None => area.draw(&PathElement::new(places.to_vec(), style)),
             Some((dash, gap)) => area.draw(&DashedPathElement::new(
-                places.to_vec().into_iter(),
+                places.iter().copied(),
                 dash,
                 gap,
                 style,

@@ -170,7 +170,10 @@ pub(super) fn slope(fit: Option<Fit>) -> String {
 /// An error: whole fractions that somebody asks for as such, others with two digits.
 pub(super) fn error(error: f64) -> String {
     let inverse = 1.0 / error;
-    if (2.0..=65536.0).contains(&inverse) && inverse.fract() == 0.0 && inverse as u64 % 64 == 0 {
+    if (2.0..=65536.0).contains(&inverse)
+        && inverse.fract() == 0.0
+        && (inverse as u64).is_multiple_of(64)
+    {
         format!("1/{inverse}")
     } else if error == 0.0 {
         "0".to_owned()
