@@ -1,7 +1,7 @@
 //! What Pinhole says about itself: how right its decisions and numbers are, and how fast its methods come how near the truth.
 //!
 //! [`numerics`] asks the arithmetic. The rest is speed against error, and needs the feature `report`. In: a scene, the methods, how
-//! many samples and runs. A [`Plan`] decides what fits into the time there is, [`measure`] times the renders and compares them with
+//! many samples and runs. A [`Plan`] decides what fits into the time there is, [`measure()`] times the renders and compares them with
 //! the exact picture. Out: a [`Measurement`], plain data, of which `table` makes text for a terminal, `export` CSV and JSON, `chart`
 //! SVG and `page` HTML, which shows the crops of `picture`.
 

@@ -117,7 +117,7 @@ fn cropped(film: &Film, part: Area) -> io::Result<Film> {
     Ok(cropped)
 }
 
-/// Where a crop is wrong, and how much: the largest difference of a pixel's channels to the exact picture, on the scale of [`colors`].
+/// Where a crop is wrong, and how much: the largest difference of a pixel's channels to the exact picture, in [`COLORS`].
 pub fn heat(film: &Film, reference: &Film, part: Area) -> io::Result<String> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, part.width, part.height);
