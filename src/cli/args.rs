@@ -190,7 +190,7 @@ pub struct ReportArgs {
     /// Samples per pixel [default: 1,4,16 and so on up to 1024, as far as the time goes]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
-    /// Runs of each method with each number of samples [default: 9, 7, 5 or 3, as the time goes]
+    /// Runs of each method with each number of samples [default: up to 9, as the time goes]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub runs: Option<u64>,
     /// Tell the samples and the time that this error takes, in linear light, such as 1/256 or 0.001; may be given

@@ -73,6 +73,9 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
             measured.runs
         ));
     }
+    if measured.rounds() == 1 {
+        notes.push("Each time is that of a single run: nothing is known of its spread.".to_owned());
+    }
     notes.extend(noise(measured));
     notes.extend(drift(measured));
     let bound = measured.reference.bound();

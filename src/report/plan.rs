@@ -129,9 +129,12 @@ impl<'a> Plan<'a> {
         self.rungs.dedup();
         self.is_limited = self.request.runs.is_none();
         if self.is_limited {
-            // Of an odd number of runs the median is one of them.
             let fit = (left / self.round_seconds(&self.rungs).max(1e-9)) as u64;
-            self.runs = (fit.clamp(1, most) - 1) / 2 * 2 + 1;
+            self.runs = match fit.clamp(1, most) {
+                few @ 1..=2 => few,
+                // Of an odd number of runs the median is one of them.
+                many => (many - 1) / 2 * 2 + 1,
+            };
         }
     }
 
