@@ -27,7 +27,7 @@
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see.
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
-//!   [`report`] about Pinhole itself. The command line reads, calls these and prints.
+//!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
 
 pub mod area;
 pub mod color;

@@ -61,7 +61,7 @@ pub enum RenderError {
 }
 
 /// A computed picture, and how far it may be from the true one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Exact {
     /// Its means.
     pub film: Film,

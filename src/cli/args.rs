@@ -2,9 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand, ValueEnum, value_parser};
+use clap::{
+    Parser, Subcommand, ValueEnum,
+    builder::{PossibleValuesParser, TypedValueParser},
+    value_parser,
+};
 use clap_complete::Shell;
-use pinhole::area::Area;
+use pinhole::{area::Area, scene::Method};
 
 /// Renders small declarative scene files through a virtual pinhole camera
 #[derive(Debug, Parser)]
@@ -45,7 +49,7 @@ pub enum Command {
     /// Compare two pictures, or a picture with a scene's exact one
     #[command(after_help = DIFF_EXAMPLES)]
     Diff(DiffArgs),
-    /// Report how right the arithmetic is, hard case by hard case
+    /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
     /// Print a completion script for a shell
@@ -101,10 +105,17 @@ squared difference, 0 to 1. Of pictures of different sizes rmse, largest and bey
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 
 const REPORT_EXAMPLES: &str = "\
+Renders the scenes by every method with more and more samples, several times and in mixed order, compares
+the pictures with the exact one, and tells times, errors, and what an error takes. How many samples and
+runs there are follows from the time that --budget gives, unless --samples and --runs say it.
+
 Examples:
+  pinhole report figure.scn
+  pinhole report figure.scn -o speed             writes speed/index.html, charts, CSV and JSON
+  pinhole report figure.scn --set image.width=640 --set image.height=360 --methods sobol,halton,exact
+  pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
-  pinhole report --numerics --inputs 1000000     the full count, which takes minutes
-  pinhole report --numerics --format json";
+  pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -188,12 +199,34 @@ pub struct ProbeArgs {
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct ReportArgs {
-    /// The scenes
-    #[arg(value_name = "SCENE", conflicts_with = "numerics")]
+    /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
+    #[arg(value_name = "SCENE", required_unless_present = "numerics")]
     pub scenes: Vec<PathBuf>,
-    /// Count the wrong decisions in a catalogue of hard cases, against arithmetic of hundreds of bits and beside the
-    /// formulas of a textbook
-    #[arg(long)]
+    /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG, report.csv and
+    /// report.json; of several scenes each has a folder in it. It is made if it is missing
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// The methods [default: all]
+    #[arg(long, value_delimiter = ',', value_parser = method())]
+    pub methods: Vec<Method>,
+    /// Samples per pixel [default: 1,4,16 and so on up to 1024, as far as the time goes]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
+    pub samples: Vec<u64>,
+    /// Runs of each method with each number of samples [default: up to 9, as the time goes]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..=1_000_000))]
+    pub runs: Option<u64>,
+    /// Tell the samples and the time that this error takes, in linear light, such as 1/256 or 0.001; may be given
+    /// any number of times
+    #[arg(long = "error", value_name = "E", default_value = "1/256", value_parser = error)]
+    pub errors: Vec<f64>,
+    /// About how long a scene may take, where --samples and --runs leave a choice
+    #[arg(long, value_name = "SECONDS", default_value_t = 45, value_parser = value_parser!(u64).range(1..=1_000_000))]
+    pub budget: u64,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// Count the wrong decisions in a catalogue of hard cases instead, against arithmetic of hundreds of bits and beside
+    /// the formulas of a textbook
+    #[arg(long, conflicts_with_all = ["scenes", "output", "methods", "samples", "runs", "errors", "budget", "sets"])]
     pub numerics: bool,
     /// How many inputs to ask of each case
     #[arg(long, value_name = "N", default_value_t = 10_000, requires = "numerics", value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
@@ -260,6 +293,32 @@ fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number >= 0.0 => Ok(number),
         _ => Err("a tolerance is not negative".to_owned()),
+    }
+}
+
+/// A method's word.
+fn method() -> impl TypedValueParser<Value = Method> {
+    PossibleValuesParser::new(methods().map(Method::name)).map(|name| {
+        methods()
+            .find(|method| method.name() == name)
+            .unwrap_or(Method::Exact)
+    })
+}
+
+/// All methods.
+pub fn methods() -> impl Iterator<Item = Method> {
+    Method::SAMPLED.into_iter().chain([Method::Exact])
+}
+
+/// An error as a number or a fraction.
+fn error(text: &str) -> Result<f64, String> {
+    let error = match text.split_once('/') {
+        None => finite(text)?,
+        Some((above, below)) => finite(above)? / finite(below)?,
+    };
+    match error > 0.0 && error <= 1.0 {
+        true => Ok(error),
+        false => Err("an error is above 0 and at most 1, as linear light is".to_owned()),
     }
 }
 

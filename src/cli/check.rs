@@ -5,17 +5,13 @@ use pinhole::{diagnostic, scene};
 use super::{
     Status, Trouble,
     args::{CheckArgs, Format},
-    input::{Input, is_standard},
+    input::{Input, check_standard},
     output,
 };
 
 /// Reports the problems of each scene in turn. The status is the gravest one.
 pub fn run(args: &CheckArgs) -> Result<Status, Trouble> {
-    let standard = args.scenes.iter().filter(|path| is_standard(path));
-    if standard.count() > 1 {
-        let message = "standard input can be read once only, and `-` is given twice";
-        return Err(Trouble(message.to_owned()));
-    }
+    check_standard(&args.scenes)?;
     let mut status = Status::Done;
     for path in &args.scenes {
         let found = match Input::read(path, &args.overrides) {

@@ -3,7 +3,7 @@
 use std::{
     fs::{self, File},
     io::{self, Read},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use pinhole::{
@@ -38,6 +38,16 @@ pub struct Input {
 /// Whether SCENE or FILE is `-`.
 pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
+}
+
+/// Refuses to read standard input twice.
+pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
+    match paths.iter().filter(|path| is_standard(path)).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Trouble(
+            "standard input can be read once only, and `-` is given twice".to_owned(),
+        )),
+    }
 }
 
 impl Input {

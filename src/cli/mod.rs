@@ -15,6 +15,8 @@ mod probe;
 mod progress;
 mod render;
 mod report;
+#[cfg(feature = "report")]
+mod speed;
 
 use std::{fmt, process::ExitCode};
 

@@ -1,4 +1,4 @@
-//! `report`: how right Pinhole is.
+//! `report`: how right Pinhole is, and how fast.
 
 use std::{num::NonZero, sync::atomic::Ordering};
 
@@ -19,12 +19,12 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if args.numerics {
         return numerics(args, interrupt);
     }
+    #[cfg(feature = "report")]
+    return super::speed::run(args, interrupt);
+    #[cfg(not(feature = "report"))]
     Err(Trouble(
-        match args.scenes.is_empty() {
-            true => "say which SCENE to report on, or ask with `--numerics` about the arithmetic",
-            false => "there is no report on scenes yet: ask with `--numerics` about the arithmetic",
-        }
-        .to_owned(),
+        "this pinhole was built without the feature `report`: it can report on the arithmetic only, with `--numerics`"
+            .to_owned(),
     ))
 }
 
@@ -32,9 +32,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
     let total = args.inputs.saturating_mul(numerics::cases().count() as u64);
-    let threads = args.threads;
-    let threads =
-        threads.and_then(|threads| NonZero::new(usize::try_from(threads).unwrap_or(usize::MAX)));
+    let threads = threads(args);
     let table = progress::watched(total, |done| {
         let control = Control {
             threads,
@@ -55,4 +53,10 @@ fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble>
         Format::Json => output::to_programs(format!("{}\n", table.to_json()).as_bytes())?,
     }
     Ok(Status::Done)
+}
+
+/// How many threads are asked for.
+pub fn threads(args: &ReportArgs) -> Option<NonZero<usize>> {
+    let threads = usize::try_from(args.threads?).unwrap_or(usize::MAX);
+    NonZero::new(threads)
 }

@@ -285,7 +285,7 @@ impl Edge {
     }
 }
 
-/// X on an edge: Σ factors[k]·A_k+1(t)·m^(−2−k), k = 1 … terms.
+/// X on an edge: Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … terms.
 pub(super) struct Series {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],

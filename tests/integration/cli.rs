@@ -488,7 +488,6 @@ fn wrong_usage_is_status_2() {
         &["probe", "a.scn", "1", "nan"],
         &["probe", "a.scn", "1", "inf"],
         &["report"],
-        &["report", "a.scn"],
         &["report", "a.scn", "--numerics"],
         &["report", "--inputs", "5"],
         &["report", "--numerics", "--inputs", "0"],

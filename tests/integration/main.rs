@@ -15,6 +15,8 @@ mod numerics;
 mod overrides;
 mod readme;
 mod render;
+#[cfg(feature = "report")]
+mod report;
 mod robustness;
 mod sampling;
 mod syntax;

@@ -1,0 +1,221 @@
+//! `report SCENE…`: speed against error, for a terminal, for programs, and as files.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
+
+use pinhole::{
+    film,
+    render::{Control, RenderError},
+    report::{
+        self, Measurement, Plan, Request, Subject, against_samples, against_time, to_csv, to_json,
+    },
+    scene::Scene,
+};
+use serde_json::json;
+
+use super::{
+    Status, Trouble,
+    args::{Format, ReportArgs, methods},
+    input::{Input, check_standard, is_standard, shown},
+    interrupt::Interrupt,
+    output, progress,
+    report::threads,
+};
+
+/// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
+pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    check_standard(&args.scenes)?;
+    if let Some(folder) = &args.output {
+        make_folder(folder)?;
+        let index = folder.join("index.html");
+        film::check_writable(&index).map_err(|error| cannot_write(&index, &error))?;
+    }
+    let request = request(args);
+    let mut subjects = Vec::new();
+    let mut status = Status::Done;
+    for path in &args.scenes {
+        let input = Input::read(path, &args.overrides)?;
+        match input.scene().scene {
+            Some(scene) => {
+                check_samples(&scene, &request)?;
+                let subject = Subject {
+                    name: shown(path),
+                    recipe: input.recipe(None),
+                };
+                subjects.push((subject, scene));
+            }
+            None => status = Status::SceneErrors,
+        }
+    }
+    if status != Status::Done {
+        return Ok(status);
+    }
+    let mut measured = Vec::new();
+    for (subject, scene) in &subjects {
+        let Some(found) = measure(subject, scene, &request, interrupt)? else {
+            break;
+        };
+        if args.format.format == Format::Human {
+            let gap = if measured.is_empty() { "" } else { "\n" };
+            output::to_people(&format!("{gap}{}", report::table(&found)));
+        }
+        measured.push(found);
+        if interrupt.pressed() {
+            break;
+        }
+    }
+    // What was measured is kept, so Ctrl-C does not end the writing of it.
+    if let (Some(folder), false) = (&args.output, measured.is_empty()) {
+        write(folder, &args.scenes, &measured)?;
+    }
+    let is_interrupted = interrupt.pressed();
+    if args.format.format == Format::Json && !measured.is_empty() {
+        let all = measured.iter().all(|measured| !measured.interrupted);
+        let is_complete = all && measured.len() == subjects.len();
+        let reports: Vec<_> = measured.iter().map(to_json).collect();
+        let answer = json!({"complete": is_complete, "reports": reports});
+        output::to_programs(format!("{answer}\n").as_bytes())?;
+    }
+    if is_interrupted && measured.is_empty() {
+        output::warning(&"interrupted before anything was measured");
+    }
+    Ok(if is_interrupted {
+        Status::Interrupted
+    } else {
+        Status::Done
+    })
+}
+
+fn request(args: &ReportArgs) -> Request {
+    Request {
+        methods: match args.methods.is_empty() {
+            true => methods().collect(),
+            false => args.methods.clone(),
+        },
+        samples: args.samples.clone(),
+        runs: args.runs,
+        errors: args.errors.clone(),
+        budget: Duration::from_secs(args.budget),
+        threads: threads(args),
+    }
+}
+
+/// The language's limit on samples holds here too.
+fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
+    let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
+    let most = request.samples.iter().copied().max().unwrap_or(0);
+    match most.checked_mul(pixels) {
+        Some(total) if total <= 1 << 53 => Ok(()),
+        _ => Err(Trouble(format!(
+            "{most} samples in each of {pixels} pixels are more than 2^53"
+        ))),
+    }
+}
+
+/// What is measured of a scene; nothing if Ctrl-C comes before the first run.
+fn measure(
+    subject: &Subject,
+    scene: &Scene,
+    request: &Request,
+    interrupt: &Interrupt,
+) -> Result<Option<Measurement>, Trouble> {
+    let cancel = interrupt.watch();
+    let control = Control {
+        threads: request.threads,
+        progress: &|_| {},
+        cancel,
+    };
+    let plan = progress::waiting("warming up", || {
+        Plan::new(subject, scene, request, &control)
+    });
+    let measured = plan.and_then(|plan| {
+        progress::watched(plan.total(), |done| {
+            let progress = |more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            };
+            let control = Control {
+                progress: &progress,
+                ..control
+            };
+            report::measure(&plan, &control)
+        })
+    });
+    match measured {
+        Ok(measured) if measured.rounds() == 0 => Ok(None),
+        Ok(measured) => Ok(Some(measured)),
+        Err(RenderError::Cancelled) => Ok(None),
+        Err(error) => Err(Trouble(error.to_string())),
+    }
+}
+
+/// Writes everything: of one scene into the folder itself, of several each into a folder there, under a page on all.
+fn write(folder: &Path, scenes: &[PathBuf], measured: &[Measurement]) -> Result<(), Trouble> {
+    if let [one] = measured
+        && scenes.len() == 1
+    {
+        return write_one(folder, one);
+    }
+    let mut names: Vec<String> = Vec::new();
+    for (scene, measured) in scenes.iter().zip(measured) {
+        let name = name(scene, &names);
+        let folder = folder.join(&name);
+        make_folder(&folder)?;
+        write_one(&folder, measured)?;
+        names.push(name);
+    }
+    write_page(folder, measured)
+}
+
+fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
+    let files = [
+        ("report.csv", to_csv(measured)),
+        ("report.json", format!("{:#}\n", to_json(measured))),
+        ("error-against-time.svg", against_time(measured)),
+        ("error-against-samples.svg", against_samples(measured)),
+    ];
+    for (name, text) in files {
+        write_file(&folder.join(name), &text)?;
+    }
+    write_page(folder, std::slice::from_ref(measured))
+}
+
+fn write_page(folder: &Path, measured: &[Measurement]) -> Result<(), Trouble> {
+    let path = folder.join("index.html");
+    let page = report::page(measured).map_err(|error| cannot_write(&path, &error))?;
+    write_file(&path, &page)
+}
+
+fn write_file(path: &Path, text: &str) -> Result<(), Trouble> {
+    let go_on = AtomicBool::new(false);
+    film::write_whole(path, &go_on, |out| out.write_all(text.as_bytes()))
+        .map_err(|error| cannot_write(path, &error))
+}
+
+fn make_folder(folder: &Path) -> Result<(), Trouble> {
+    if folder.is_file() {
+        return Err(Trouble(format!(
+            "{} is a file, and the report is a folder of files",
+            shown(folder)
+        )));
+    }
+    fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Trouble {
+    Trouble(format!("cannot write to {}: {error}", shown(path)))
+}
+
+/// A scene's folder: its file's name without the ending, with a number if another one has that.
+fn name(scene: &Path, taken: &[String]) -> String {
+    let stem = match scene.file_stem() {
+        Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
+        _ => "scene".to_owned(),
+    };
+    let numbered = (2..).map(|number| format!("{stem}-{number}"));
+    let mut names = [stem.clone()].into_iter().chain(numbered);
+    names.find(|name| !taken.contains(name)).unwrap_or(stem)
+}

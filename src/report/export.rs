@@ -1,0 +1,141 @@
+//! The measurement for programs: CSV, a row for each method and number of samples, and JSON.
+
+use std::fmt::Write;
+
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use super::{
+    fit::median,
+    measure::{Measurement, Point, Series},
+    notes::{notes, spread, verdicts},
+};
+
+/// A row for each method and number of samples, after a row of names. Times are in seconds, errors in linear light. The exact
+/// method has a row without samples, and its bound as its errors.
+pub fn to_csv(measured: &Measurement) -> String {
+    let mut text = "method,per_pixel,samples,runs,seconds_median,seconds_min,seconds_max,spread,rays_per_second,rmse,rmse_min,\
+                    rmse_max,largest_error,slope,slope_error\n"
+        .to_owned();
+    for series in &measured.series {
+        let fit = series.fit();
+        let slope = fit.map_or(String::new(), |fit| fit.slope.to_string());
+        let slope_error = fit.and_then(|fit| fit.slope_error);
+        let slope_error = slope_error.map_or(String::new(), |error| error.to_string());
+        for point in &series.points {
+            let [fast, slow] = ends(&point.times);
+            let [good, bad] = ends(&point.rmse);
+            let _ = writeln!(
+                text,
+                "{},{},{},{},{},{fast},{slow},{},{},{},{good},{bad},{},{slope},{slope_error}",
+                series.method.name(),
+                point.per_pixel,
+                point.samples,
+                point.times.len(),
+                point.seconds(),
+                point.spread(),
+                point.rays_per_second(),
+                point.error(),
+                point.largest
+            );
+        }
+    }
+    if let Some(exact) = &measured.exact {
+        let [fast, slow] = ends(&exact.times);
+        let bound = measured.reference.bound();
+        let _ = writeln!(
+            text,
+            "exact,,,{},{},{fast},{slow},{},,{bound},{bound},{bound},{bound},,",
+            exact.times.len(),
+            median(&exact.times),
+            spread(&exact.times)
+        );
+    }
+    text
+}
+
+/// All that was measured. A number that is not finite is null.
+pub fn to_json(measured: &Measurement) -> Value {
+    let whole = measured.whole();
+    let reference = &measured.reference;
+    let exact = measured.exact.as_ref().map(|exact| {
+        json!({
+            "time": times(&exact.times),
+            "bound": reference.bound(),
+        })
+    });
+    json!({
+        "scene": measured.subject.name,
+        "sha256": sha256(&measured.subject.recipe.scene),
+        "overrides": measured.subject.recipe.overrides,
+        "version": env!("CARGO_PKG_VERSION"),
+        "machine": {"processor": measured.machine.processor, "processors": measured.machine.processors},
+        "threads": measured.threads,
+        "image": {"width": whole.width, "height": whole.height},
+        "seed": measured.seed,
+        "complete": !measured.interrupted,
+        "planned_runs": measured.runs,
+        "runs": measured.rounds(),
+        "per_pixel": measured.rungs,
+        "seconds": measured.seconds,
+        "reference": {"method": "exact", "bound": reference.bound()},
+        "exact": exact,
+        "methods": measured.series.iter().map(|series| of_series(series, &measured.errors)).collect::<Vec<_>>(),
+        "verdicts": verdicts(measured),
+        "notes": notes(measured),
+    })
+}
+
+fn of_series(series: &Series, errors: &[f64]) -> Value {
+    let fit = series.fit().map(
+        |fit| json!({"slope": fit.slope, "slope_error": fit.slope_error, "points": fit.points}),
+    );
+    let needed = errors.iter().map(|&error| match series.needed(error) {
+        None => json!({"error": error, "per_pixel": null, "time": null, "extrapolated": null}),
+        Some(needed) => json!({
+            "error": error,
+            "per_pixel": needed.per_pixel,
+            "time": needed.seconds,
+            "extrapolated": needed.is_extrapolated,
+        }),
+    });
+    json!({
+        "method": series.method.name(),
+        "measured": series.points.iter().map(of_point).collect::<Vec<_>>(),
+        "fit": fit,
+        "needed": needed.collect::<Vec<_>>(),
+    })
+}
+
+fn of_point(point: &Point) -> Value {
+    json!({
+        "per_pixel": point.per_pixel,
+        "samples": point.samples,
+        "time": times(&point.times),
+        "rays_per_second": point.rays_per_second(),
+        "rmse": point.error(),
+        "rmse_runs": point.rmse,
+        "largest_error": point.largest,
+    })
+}
+
+fn times(times: &[f64]) -> Value {
+    let [min, max] = ends(times);
+    json!({"median": median(times), "min": min, "max": max, "spread": spread(times), "runs": times})
+}
+
+fn ends(values: &[f64]) -> [f64; 2] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+/// The SHA-256 (FIPS 180-4) of a text's bytes, as `sha256sum` prints it.
+pub(super) fn sha256(text: &str) -> String {
+    let mut digits = String::new();
+    for byte in Sha256::digest(text.as_bytes()) {
+        let _ = write!(digits, "{byte:02x}");
+    }
+    digits
+}

@@ -1,0 +1,101 @@
+//! Numbers about numbers: quantiles, and the straight line through logarithms.
+
+/// The quantile of values in any order, `share` from 0 to 1: 0.5 is the median. Between two values it is interpolated linearly
+/// (definition 7 of Hyndman and Fan 1996, "Sample quantiles in statistical packages", the one of R and NumPy). NaN of no values.
+pub fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let Some(last) = sorted.len().checked_sub(1) else {
+        return f64::NAN;
+    };
+    let place = share.clamp(0.0, 1.0) * last as f64;
+    let below = place.floor();
+    let (low, high) = (sorted[below as usize], sorted[last.min(below as usize + 1)]);
+    low + (high - low) * (place - below)
+}
+
+/// The median of values in any order; NaN of no values.
+pub fn median(values: &[f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The root of the mean of the squares; NaN of no values.
+pub fn root_mean_square(values: &[f64]) -> f64 {
+    let squares: f64 = values.iter().map(|value| value * value).sum();
+    (squares / values.len() as f64).sqrt()
+}
+
+/// The line ln y = ln c + b · ln x of least squares.
+///
+/// With k points, x̄ and ȳ their means (of the logarithms) and S = Σ(x − x̄)², the slope is b = Σ(x − x̄)(y − ȳ) / S and its standard
+/// error √(Σr² / (k − 2) / S), r being the residuals: Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
+/// That takes the residuals for independent and alike; where the true curve bends, they are not, and the error says how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// The exponent b of y ∝ x^b.
+    pub slope: f64,
+    /// Its standard error, if there are more points than two.
+    pub slope_error: Option<f64>,
+    /// How many points it goes through.
+    pub points: usize,
+    /// The means of the logarithms: the line goes through them.
+    center: (f64, f64),
+}
+
+impl Fit {
+    /// The line through these points, all of whose numbers are positive; none if fewer than two have different x, or a number
+    /// has no logarithm.
+    pub fn of(points: &[(f64, f64)]) -> Option<Self> {
+        let has_logarithm = |number: f64| number > 0.0 && number.is_finite();
+        if !points
+            .iter()
+            .all(|&(x, y)| has_logarithm(x) && has_logarithm(y))
+        {
+            return None;
+        }
+        let logs: Vec<_> = points
+            .iter()
+            .map(|&(x, y)| (libm::log(x), libm::log(y)))
+            .collect();
+        let k = logs.len() as f64;
+        let (x_sum, y_sum) = logs
+            .iter()
+            .fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
+        let center = (x_sum / k, y_sum / k);
+        let spread: f64 = logs.iter().map(|(x, _)| square(x - center.0)).sum();
+        if logs.len() < 2 || spread == 0.0 {
+            return None;
+        }
+        let both: f64 = logs
+            .iter()
+            .map(|(x, y)| (x - center.0) * (y - center.1))
+            .sum();
+        let slope = both / spread;
+        let residuals: f64 = logs
+            .iter()
+            .map(|(x, y)| square(y - center.1 - slope * (x - center.0)))
+            .sum();
+        let slope_error = (logs.len() > 2).then(|| (residuals / (k - 2.0) / spread).sqrt());
+        Some(Self {
+            slope,
+            slope_error,
+            points: logs.len(),
+            center,
+        })
+    }
+
+    /// The y of the line at x.
+    pub fn at(&self, x: f64) -> f64 {
+        libm::exp(self.center.1 + self.slope * (libm::log(x) - self.center.0))
+    }
+
+    /// The x at which the line has come down to y; none if it does not fall.
+    pub fn reaches(&self, y: f64) -> Option<f64> {
+        let x = libm::exp(self.center.0 + (libm::log(y) - self.center.1) / self.slope);
+        (self.slope < 0.0 && x.is_finite()).then_some(x)
+    }
+}
+
+fn square(number: f64) -> f64 {
+    number * number
+}

@@ -1,0 +1,382 @@
+//! Renders are timed and compared with the exact picture.
+//!
+//! A round runs every method with every number of samples once, in an order that is shuffled anew by a fixed rule: what else the
+//! machine does then falls on all of them alike. A run has a seed of its own, the scene's plus the number of the round. What is timed
+//! is the way from the scene in memory to the film in memory: preparing the objects and the samples, starting the threads, rendering.
+//! Neither reading the scene nor comparing nor encoding is.
+
+use std::{num::NonZero, sync::atomic::Ordering, time::Instant};
+
+use super::{
+    Machine,
+    fit::{Fit, median, root_mean_square},
+    plan::Plan,
+};
+use crate::{
+    area::Area,
+    film::{Film, Recipe},
+    render::{Control, Exact, RenderError, render, render_exact},
+    sampling::{Sampling, hash::Key},
+    scene::{Count, Method, Sampler, Scene},
+    tracer::World,
+};
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// What the user calls the scene.
+    pub name: String,
+    /// Its text and the overrides.
+    pub recipe: Recipe,
+}
+
+/// What came out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// What was measured.
+    pub subject: Subject,
+    /// What it was measured on.
+    pub machine: Machine,
+    /// How many threads rendered.
+    pub threads: usize,
+    /// The seed of the first run; each further one has the next.
+    pub seed: u64,
+    /// Samples per pixel, ascending.
+    pub rungs: Vec<u64>,
+    /// How many runs were planned.
+    pub runs: u64,
+    /// The errors that are asked for.
+    pub errors: Vec<f64>,
+    /// The exact picture.
+    pub reference: Exact,
+    /// How long the exact one takes, if that is asked for.
+    pub exact: Option<Computed>,
+    /// The sampled methods, in the order of the language's table.
+    pub series: Vec<Series>,
+    /// The number of samples per pixel of the pictures that are kept.
+    pub shown: u64,
+    /// Whether the user ended it.
+    pub interrupted: bool,
+    /// How long it took in all, in seconds.
+    pub seconds: f64,
+}
+
+/// What was measured of the exact method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Computed {
+    /// Seconds, run by run.
+    pub times: Vec<f64>,
+}
+
+/// What was measured of a sampled method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The method.
+    pub method: Method,
+    /// By samples per pixel, ascending; those without a run are left out.
+    pub points: Vec<Point>,
+    /// The picture of the first run with the number of samples that is shown.
+    pub picture: Option<Film>,
+}
+
+/// What was measured of a method with a number of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Samples per pixel, of `scatter` on average.
+    pub per_pixel: u64,
+    /// Samples of the whole picture.
+    pub samples: u64,
+    /// Seconds, run by run.
+    pub times: Vec<f64>,
+    /// The root of the mean of the squared differences to the exact picture, over all pixels and channels in linear light, run by run.
+    pub rmse: Vec<f64>,
+    /// The largest difference of all runs.
+    pub largest: f64,
+}
+
+/// What an error takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Needed {
+    /// Samples per pixel.
+    pub per_pixel: f64,
+    /// Seconds.
+    pub seconds: f64,
+    /// Whether it lies beyond what was measured.
+    pub is_extrapolated: bool,
+}
+
+impl Point {
+    /// The median time in seconds.
+    pub fn seconds(&self) -> f64 {
+        median(&self.times)
+    }
+
+    /// The error of all runs together.
+    pub fn error(&self) -> f64 {
+        root_mean_square(&self.rmse)
+    }
+
+    /// How many samples are taken a second.
+    pub fn rays_per_second(&self) -> f64 {
+        self.samples as f64 / self.seconds()
+    }
+}
+
+impl Series {
+    /// The line through the logarithms of samples and error, if there are errors.
+    pub fn fit(&self) -> Option<Fit> {
+        let points: Vec<_> = self
+            .points
+            .iter()
+            .map(|point| (point.per_pixel as f64, point.error()))
+            .collect();
+        Fit::of(&points)
+    }
+
+    /// What an error takes by the [`fit`](Self::fit); none if more samples do not help. Fewer samples than were measured are not asked
+    /// for: they would not take less than the pixel's share of the rest.
+    pub fn needed(&self, error: f64) -> Option<Needed> {
+        let (first, last) = (self.points.first()?, self.points.last()?);
+        if first.error() <= error {
+            return Some(Needed {
+                per_pixel: first.per_pixel as f64,
+                seconds: first.seconds(),
+                is_extrapolated: false,
+            });
+        }
+        let per_pixel = self.fit()?.reaches(error)?.ceil();
+        let per_pixel = per_pixel.max(first.per_pixel as f64);
+        Some(Needed {
+            per_pixel,
+            seconds: self.seconds_at(per_pixel)?,
+            is_extrapolated: per_pixel > last.per_pixel as f64,
+        })
+    }
+
+    /// The time of a number of samples: on the straight line between the measured neighbours, beyond the last one in proportion.
+    fn seconds_at(&self, per_pixel: f64) -> Option<f64> {
+        let last = self.points.last()?;
+        let next = self
+            .points
+            .iter()
+            .position(|point| point.per_pixel as f64 >= per_pixel);
+        Some(match next {
+            None => last.seconds() * per_pixel / last.per_pixel as f64,
+            Some(0) => self.points[0].seconds(),
+            Some(next) => {
+                let (low, high) = (&self.points[next - 1], &self.points[next]);
+                let width = (high.per_pixel - low.per_pixel) as f64;
+                let share = (per_pixel - low.per_pixel as f64) / width;
+                low.seconds() + share * (high.seconds() - low.seconds())
+            }
+        })
+    }
+}
+
+impl Measurement {
+    /// The picture's area.
+    pub fn whole(&self) -> Area {
+        Area::whole(self.reference.film.width(), self.reference.film.height())
+    }
+
+    /// The sampled method that needs the least time for an error, and what it needs.
+    pub fn fastest(&self, error: f64) -> Option<(Method, Needed)> {
+        self.series
+            .iter()
+            .filter_map(|series| Some((series.method, series.needed(error)?)))
+            .min_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// How many runs were begun.
+    pub fn rounds(&self) -> usize {
+        let runs = self.series.iter().flat_map(|series| &series.points);
+        let most = runs.map(|point| point.times.len()).max().unwrap_or(0);
+        most.max(self.exact.as_ref().map_or(0, |exact| exact.times.len()))
+    }
+}
+
+/// What a round runs.
+#[derive(Clone, Copy)]
+enum Task {
+    Exact,
+    /// The place of the series and of the point, and the estimated seconds a sample.
+    Sampled(usize, usize, f64),
+}
+
+/// Measures what was planned. When it is cancelled, what was measured until then comes out, marked as interrupted. Progress is told in
+/// estimated nanoseconds.
+pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderError> {
+    let mut measured = empty(plan);
+    let mut tasks = Vec::new();
+    if measured.exact.is_some() {
+        tasks.push(Task::Exact);
+    }
+    for (series, (_, rate)) in plan.rates.iter().enumerate() {
+        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point, *rate)));
+    }
+    'rounds: for round in 0..plan.runs {
+        let round_started = Instant::now();
+        shuffle(&mut tasks, round);
+        for &task in &tasks {
+            match run(task, round, plan, control, &mut measured) {
+                Err(RenderError::Cancelled) => {
+                    measured.interrupted = true;
+                    break 'rounds;
+                }
+                done => done?,
+            }
+        }
+        let next_ends = plan.started.elapsed() + round_started.elapsed();
+        if plan.is_limited && next_ends > plan.request.budget {
+            break;
+        }
+    }
+    for series in &mut measured.series {
+        series.points.retain(|point| !point.times.is_empty());
+    }
+    measured.series.retain(|series| !series.points.is_empty());
+    measured.exact = measured.exact.filter(|exact| !exact.times.is_empty());
+    measured.seconds = plan.started.elapsed().as_secs_f64();
+    Ok(measured)
+}
+
+fn empty(plan: &Plan) -> Measurement {
+    let machine = Machine::here();
+    let pixels = plan.reference.bounds.len() as u64;
+    let point = |&per_pixel: &u64| Point {
+        per_pixel,
+        samples: per_pixel.saturating_mul(pixels),
+        times: Vec::new(),
+        rmse: Vec::new(),
+        largest: 0.0,
+    };
+    let series = plan.rates.iter().map(|&(method, _)| Series {
+        method,
+        points: plan.rungs.iter().map(point).collect(),
+        picture: None,
+    });
+    // Enough samples for the methods to differ, few enough for the eye to see it.
+    let shown = plan.rungs.iter().find(|&&rung| rung >= 16);
+    let shown = shown.or(plan.rungs.last()).copied().unwrap_or(0);
+    let has_exact = plan.request.methods.contains(&Method::Exact);
+    Measurement {
+        subject: plan.subject.clone(),
+        threads: plan
+            .request
+            .threads
+            .map_or(machine.processors, NonZero::get),
+        machine,
+        seed: plan.scene.sampler.seed,
+        rungs: plan.rungs.clone(),
+        runs: plan.runs,
+        errors: plan.request.errors.clone(),
+        reference: plan.reference.clone(),
+        exact: has_exact.then(|| Computed { times: Vec::new() }),
+        series: series.collect(),
+        shown,
+        interrupted: false,
+        seconds: 0.0,
+    }
+}
+
+fn run(
+    task: Task,
+    round: u64,
+    plan: &Plan,
+    control: &Control,
+    measured: &mut Measurement,
+) -> Result<(), RenderError> {
+    let pixels = plan.reference.bounds.len() as f64;
+    let nanoseconds = match task {
+        Task::Exact => plan.exact_seconds * 1e9 / pixels,
+        Task::Sampled(_, _, rate) => rate * 1e9,
+    };
+    let control = Control {
+        threads: plan.request.threads,
+        progress: &|done| (control.progress)((done as f64 * nanoseconds) as u64),
+        cancel: control.cancel,
+    };
+    match task {
+        Task::Exact => {
+            let (_, seconds) = computed(plan.scene, &control)?;
+            if let Some(exact) = &mut measured.exact {
+                exact.times.push(seconds);
+            }
+        }
+        Task::Sampled(series, point, _) => {
+            let series = &mut measured.series[series];
+            let point = &mut series.points[point];
+            // Seeds are below 2^53.
+            let seed = (measured.seed + round) % (1 << 53);
+            let (film, seconds) =
+                rendered(plan.scene, series.method, point.per_pixel, seed, &control)?;
+            let (rmse, largest) = difference(&film, &plan.reference.film);
+            point.times.push(seconds);
+            point.rmse.push(rmse);
+            point.largest = point.largest.max(largest);
+            if round == 0 && point.per_pixel == measured.shown {
+                series.picture = Some(film);
+            }
+        }
+    }
+    // Cancelled between the last tile and here: the run is whole, and the next one ends at once.
+    if control.cancel.load(Ordering::Relaxed) {
+        return Err(RenderError::Cancelled);
+    }
+    Ok(())
+}
+
+/// An order that depends on the number of the round alone (Fisher and Yates).
+fn shuffle(tasks: &mut [Task], round: u64) {
+    let key = Key::new(round, 0);
+    for last in (1..tasks.len()).rev() {
+        tasks.swap(last, key.below(last as u64, last as u64 + 1) as usize);
+    }
+}
+
+/// Renders by a method, and says in how many seconds.
+pub(super) fn rendered(
+    scene: &Scene,
+    method: Method,
+    per_pixel: u64,
+    seed: u64,
+    control: &Control,
+) -> Result<(Film, f64), RenderError> {
+    let sampler = Sampler {
+        method,
+        count: Count::PerPixel(per_pixel),
+        seed,
+    };
+    let (width, height) = (scene.image.width, scene.image.height);
+    let started = Instant::now();
+    let world = World::new(scene);
+    let sampling = Sampling::new(&sampler, width, height);
+    let film = render(&world, &sampling, Area::whole(width, height), control)?;
+    Ok((film, started.elapsed().as_secs_f64()))
+}
+
+/// Computes the exact picture, and says in how many seconds.
+pub(super) fn computed(scene: &Scene, control: &Control) -> Result<(Exact, f64), RenderError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let started = Instant::now();
+    let exact = render_exact(&World::new(scene), whole, control)?;
+    Ok((exact, started.elapsed().as_secs_f64()))
+}
+
+/// The root of the mean squared difference of two films of one size, over all pixels and channels, and the largest difference.
+fn difference(film: &Film, reference: &Film) -> (f64, f64) {
+    let (mut squares, mut largest) = (0.0, 0f64);
+    for y in 0..film.height() {
+        // Row by row: the sums stay short, and their rounding small.
+        let mut row = 0.0;
+        for (a, b) in film.row(y).iter().zip(reference.row(y)) {
+            for (a, b) in a.iter().zip(b) {
+                row += (a - b) * (a - b);
+                largest = largest.max((a - b).abs());
+            }
+        }
+        squares += row;
+    }
+    let channels = f64::from(film.width()) * f64::from(film.height()) * 3.0;
+    ((squares / channels).sqrt(), largest)
+}

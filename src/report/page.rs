@@ -1,0 +1,365 @@
+//! The measurements as one page of HTML: charts, tables, pictures, and how the numbers came about.
+//!
+//! The page stands alone: its charts are inline SVG, its pictures `data:` URIs, and it runs nothing. It is well-formed XML as well.
+
+use std::{fmt::Write, io};
+
+use super::{
+    chart::{against_samples, against_time, escaped},
+    export::sha256,
+    fit::median,
+    measure::{Measurement, Point, Series},
+    notes::{NOISY, notes, spread, verdicts},
+    picture,
+    table::{cells, count, error, plural, seconds, slope},
+};
+use crate::scene::Method;
+
+const STYLE: &str = include_str!("page.css");
+
+/// The page, with a section for each scene.
+pub fn page(measurements: &[Measurement]) -> io::Result<String> {
+    let mut html = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Pinhole: speed against error</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>Speed against error</h1>\n\
+         <p class=\"soft\">How fast the sampling methods of Pinhole {} come how near the exact picture.</p>\n</header>\n<main>\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    for (number, measured) in measurements.iter().enumerate() {
+        let class = if number == 0 { " class=\"first\"" } else { "" };
+        section(&mut html, measured, class)?;
+    }
+    html += &method(measurements);
+    html += "</main>\n</body>\n</html>\n";
+    Ok(html)
+}
+
+fn section(html: &mut String, measured: &Measurement, class: &str) -> io::Result<()> {
+    let name = escaped(&measured.subject.name);
+    *html += &format!("<section>\n<h2{class}>{name}</h2>\n");
+    for verdict in verdicts(measured) {
+        *html += &format!("<p class=\"lead\">{}.</p>\n", escaped(&capital(&verdict)));
+    }
+    let notes = notes(measured);
+    if !notes.is_empty() {
+        let items = notes
+            .iter()
+            .map(|note| format!("<li>{}</li>\n", escaped(note)));
+        *html += &format!("<ul class=\"notes\">\n{}</ul>\n", items.collect::<String>());
+    }
+    *html += &facts(measured);
+    let bound = error(measured.reference.bound());
+    *html += &format!(
+        "<figure>\n{}<figcaption>Error against the time of a render. Lower and further to the left is better. The exact method's error \
+         lies below the chart: it is within {bound}.</figcaption>\n</figure>\n",
+        against_time(measured)
+    );
+    *html += &format!(
+        "<figure>\n{}<figcaption>Error against samples per pixel. The number beside a name is the slope with its standard error: −0.5 \
+         is that of independent samples, about −0.75 the best that a slanted edge allows.</figcaption>\n</figure>\n",
+        against_samples(measured)
+    );
+    *html += "<h3>The numbers</h3>\n";
+    *html += &errors(measured);
+    *html += &times(measured);
+    *html += &needs(measured);
+    pictures(html, measured)?;
+    *html += "</section>\n";
+    Ok(())
+}
+
+fn facts(measured: &Measurement) -> String {
+    let (whole, machine) = (measured.whole(), &measured.machine);
+    let mut facts = vec![
+        (
+            "scene",
+            format!("SHA-256 {}", sha256(&measured.subject.recipe.scene)),
+        ),
+        (
+            "picture",
+            format!("{} × {} pixels", whole.width, whole.height),
+        ),
+        (
+            "runs",
+            format!(
+                "{} of each method and number of samples, with the seeds from {} on",
+                measured.rounds(),
+                measured.seed
+            ),
+        ),
+        (
+            "machine",
+            format!(
+                "{} on {}, of which the program may use {}",
+                plural(measured.threads as u64, "thread"),
+                machine.processor,
+                plural(machine.processors as u64, "processor")
+            ),
+        ),
+        (
+            "reference",
+            format!(
+                "method exact, every channel within {} of the true mean",
+                error(measured.reference.bound())
+            ),
+        ),
+        ("duration", format!("{} in all", seconds(measured.seconds))),
+    ];
+    if !measured.subject.recipe.overrides.is_empty() {
+        facts.insert(1, ("changed", measured.subject.recipe.overrides.join("; ")));
+    }
+    let items = facts
+        .iter()
+        .map(|(name, fact)| format!("<dt>{name}</dt><dd>{}</dd>\n", escaped(fact)));
+    format!("<dl class=\"facts\">\n{}</dl>\n", items.collect::<String>())
+}
+
+fn errors(measured: &Measurement) -> String {
+    let rows = measured.series.iter().map(|series| {
+        let mut row = cells(measured, series, |point| error(point.error()));
+        row.push(error(
+            series.points.last().map_or(0.0, |point| point.largest),
+        ));
+        row.push(slope(series.fit()));
+        (series.method.name(), row)
+    });
+    let bound = error(measured.reference.bound());
+    let rungs = measured.rungs.len();
+    let exact = measured
+        .exact
+        .as_ref()
+        .map(|_| format!("<td colspan=\"{rungs}\"></td><td>≤ {bound}</td><td></td>"));
+    let mut names = rung_names(measured);
+    names.extend(["largest".to_owned(), "slope".to_owned()]);
+    table(
+        "Error: the root of the mean squared difference to the exact picture in linear light (white is 1), by samples per pixel; the \
+         largest difference of any channel with the most samples; the slope of log error against log samples.",
+        &names,
+        rows,
+        exact,
+    )
+}
+
+fn times(measured: &Measurement) -> String {
+    let with_range = |point: &Point| {
+        format!(
+            "{} ± {:.0} %",
+            seconds(point.seconds()),
+            point.spread() * 50.0
+        )
+    };
+    let rows = measured.series.iter().map(|series| {
+        let mut row = cells(measured, series, with_range);
+        let rate = series.points.last().map_or(0.0, Point::rays_per_second);
+        row.push(format!("{:.1}", rate / 1e6));
+        (series.method.name(), row)
+    });
+    let rungs = measured.rungs.len();
+    let exact = measured.exact.as_ref().map(|exact| {
+        let time = ranged(&exact.times);
+        format!("<td class=\"any\" colspan=\"{rungs}\">{time}</td><td></td>")
+    });
+    let mut names = rung_names(measured);
+    names.push("million rays/s".to_owned());
+    table(
+        "Time: the median of the runs, ± half of the distance from the least to the greatest, by samples per pixel; the rate with \
+         the most samples. The exact method takes no samples.",
+        &names,
+        rows,
+        exact,
+    )
+}
+
+/// A median time with half its spread, if there are several.
+fn ranged(times: &[f64]) -> String {
+    let time = seconds(median(times));
+    match times.len() {
+        0 | 1 => time,
+        _ => format!("{time} ± {:.0} %", spread(times) * 50.0),
+    }
+}
+
+fn needs(measured: &Measurement) -> String {
+    let cell = |series: &Series, wanted: f64| match series.needed(wanted) {
+        None => ["–".to_owned(), "–".to_owned()],
+        Some(needed) => {
+            let mark = if needed.is_extrapolated { "*" } else { "" };
+            [
+                format!("{}{mark}", count(needed.per_pixel)),
+                format!("{}{mark}", seconds(needed.seconds)),
+            ]
+        }
+    };
+    let rows = measured.series.iter().map(|series| {
+        let row = measured
+            .errors
+            .iter()
+            .flat_map(|&wanted| cell(series, wanted));
+        (series.method.name(), row.collect())
+    });
+    let exact = measured.exact.as_ref().map(|exact| {
+        let time = seconds(median(&exact.times));
+        format!("<td>–</td><td>{time}</td>").repeat(measured.errors.len())
+    });
+    let names: Vec<_> = measured
+        .errors
+        .iter()
+        .flat_map(|&wanted| {
+            let wanted = error(wanted);
+            [
+                format!("samples for {wanted}"),
+                format!("time for {wanted}"),
+            ]
+        })
+        .collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    table(
+        "What an error takes: samples per pixel by the fitted line, and their time. A star marks what lies beyond the measured range.",
+        &names,
+        rows,
+        exact,
+    )
+}
+
+fn rung_names(measured: &Measurement) -> Vec<String> {
+    measured.rungs.iter().map(u64::to_string).collect()
+}
+
+fn table(
+    caption: &str,
+    names: &[String],
+    rows: impl Iterator<Item = (&'static str, Vec<String>)>,
+    exact: Option<String>,
+) -> String {
+    let mut html = format!(
+        "<div class=\"wide\"><table>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">method</th>"
+    );
+    for name in names {
+        let _ = write!(html, "<th scope=\"col\">{name}</th>");
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for (name, row) in rows {
+        let _ = write!(html, "<tr><th scope=\"row\">{name}</th>");
+        for cell in row {
+            let _ = write!(html, "<td>{cell}</td>");
+        }
+        html += "</tr>\n";
+    }
+    if let Some(cells) = exact {
+        let _ = writeln!(
+            html,
+            "<tr class=\"exact\"><th scope=\"row\">exact</th>{cells}</tr>"
+        );
+    }
+    html + "</tbody>\n</table></div>\n"
+}
+
+/// The crops and their errors; those of an interrupted report are shown as far as there are any.
+fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
+    let part = picture::crop(measured);
+    let whole = measured.whole();
+    *html += "<h3>The pictures</h3>\n";
+    let what = match part == whole {
+        true => "The picture".to_owned(),
+        false => format!(
+            "{} × {} of the {} × {} pixels, {} from the left and {} from the top, where the methods are most wrong,",
+            part.width, part.height, whole.width, whole.height, part.x, part.y
+        ),
+    };
+    *html += &format!(
+        "<p>{what} by each method with {} per pixel (seed {}), and below it where it is wrong: the largest difference of a pixel's \
+         channels to the exact picture, on a logarithmic scale.</p>\n",
+        plural(measured.shown, "sample"),
+        measured.seed
+    );
+    *html += "<ul class=\"scale\">\n";
+    for (name, color) in picture::scale() {
+        *html += &format!(
+            "<li><svg viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" height=\"10\" fill=\"{color}\" stroke=\"#888\"/></svg>\
+             {name}</li>\n"
+        );
+    }
+    *html += "</ul>\n<div class=\"pictures\">\n";
+    let reference = &measured.reference.film;
+    *html += &format!(
+        "<figure>{}<figcaption>exact, within {}</figcaption></figure>\n",
+        image(
+            &picture::shown(measured, reference, Method::Exact, part)?,
+            "the exact picture"
+        ),
+        error(measured.reference.bound())
+    );
+    for series in &measured.series {
+        let Some(film) = &series.picture else {
+            continue;
+        };
+        let name = series.method.name();
+        let point = series
+            .points
+            .iter()
+            .find(|point| point.per_pixel == measured.shown);
+        let of_first_run = point.and_then(|point| point.rmse.first()).copied();
+        *html += &format!(
+            "<figure>{}{}<figcaption>{name}, error {} in this run</figcaption></figure>\n",
+            image(
+                &picture::shown(measured, film, series.method, part)?,
+                &format!("the picture by {name}")
+            ),
+            image(
+                &picture::heat(film, reference, part)?,
+                &format!(
+                    "a map of the errors of {name}: largest along the edges of objects and squares"
+                )
+            ),
+            error(of_first_run.unwrap_or(0.0))
+        );
+    }
+    *html += "</div>\n";
+    Ok(())
+}
+
+fn image(uri: &str, text: &str) -> String {
+    format!("<img src=\"{uri}\" alt=\"{text}\"/>")
+}
+
+/// How the numbers came about.
+fn method(measurements: &[Measurement]) -> String {
+    let bounds = measurements
+        .iter()
+        .map(|measured| measured.reference.bound());
+    let bound = error(bounds.fold(0.0, f64::max));
+    let noisy = NOISY * 100.0;
+    format!(
+        "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\
+         <li><b>Warm-up.</b> The exact picture is computed and every method renders twice, with few samples, before anything counts. What that took decides how \
+         many samples and runs fit into the time.</li>\n\
+         <li><b>Runs are interleaved.</b> A round runs every method with every number of samples once, in an order that is shuffled anew in \
+         each round by a fixed rule, so that what else the machine does falls on all alike. A run has a seed of its own: that of the scene \
+         plus the number of the round.</li>\n\
+         <li><b>What is timed</b> is the way from the scene in memory to the picture in memory: preparing objects and samples, starting the \
+         threads, rendering. Reading the scene, comparing pictures and writing PNG files are not. The time is the median of the runs; \
+         combinations whose times spread by more than {noisy} % of it are called noisy above.</li>\n\
+         <li><b>The error</b> is the root of the mean squared difference to the exact picture, over all pixels and the three channels, in \
+         linear light; that of several runs is the root of the mean of their squares. The reference is not rendered with many samples but \
+         computed from the areas that the objects cover in a pixel, with a bound for each pixel that grows with every operation; the \
+         greatest bound here is {bound}. No error that is smaller means anything.</li>\n\
+         <li><b>The slope</b> b of error ∝ samples<sup>b</sup> is the least-squares line through the logarithms of samples and error, one \
+         point for each number of samples. With residuals r of k points and x = ln samples, its standard error is \
+         √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4).</li>\n\
+         <li><b>What an error takes</b> is where that line comes down to it, rounded up to a whole number of samples; its time lies on the \
+         straight line between the measured neighbours. Beyond the most samples that were measured it is extrapolated, the time in \
+         proportion, and marked.</li>\n\
+         </ul>\n</section>\n"
+    )
+}
+
+fn capital(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,158 @@
+//! What is measured, so that it fits into the time there is.
+//!
+//! The exact picture is computed, and every method renders twice. That warms the machine up and counts for nothing; what it took
+//! decides how far the ladder of samples goes and how many runs there are, where the user leaves that open.
+
+use std::{
+    num::NonZero,
+    time::{Duration, Instant},
+};
+
+use super::measure::{Subject, computed, rendered};
+use crate::{
+    render::{Control, Exact, RenderError},
+    scene::{Method, Scene},
+};
+
+/// The longest ladder that is chosen: powers of 4, which suit every method, so many from 1 on.
+const MOST_RUNGS: u32 = 6;
+
+/// The shortest one: a slope through fewer points has no uncertainty.
+const FEWEST_RUNGS: u32 = 3;
+
+/// The samples per pixel of the warm-up.
+const WARM: u64 = 4;
+
+/// So many runs are wanted, and no more than so many are made.
+const RUNS: (u64, u64) = (3, 9);
+
+/// So much of the time left is planned: the rest is for comparing, drawing and estimates that were too low.
+const PLANNED: f64 = 0.9;
+
+/// What the user asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The methods, `exact` among them or not.
+    pub methods: Vec<Method>,
+    /// Samples per pixel; chosen if there are none.
+    pub samples: Vec<u64>,
+    /// Runs of each method and number of samples; chosen if this is `None`.
+    pub runs: Option<u64>,
+    /// The errors for which the needed samples and time are told, in linear light.
+    pub errors: Vec<f64>,
+    /// How long it may take, as far as there is a choice.
+    pub budget: Duration,
+    /// How many threads render; as many as there are processors if this is `None`.
+    pub threads: Option<NonZero<usize>>,
+}
+
+/// A report that is decided on.
+#[derive(Debug)]
+pub struct Plan<'a> {
+    pub(super) subject: &'a Subject,
+    pub(super) scene: &'a Scene,
+    pub(super) request: &'a Request,
+    pub(super) started: Instant,
+    /// The exact picture.
+    pub(super) reference: Exact,
+    pub(super) is_limited: bool,
+    /// Samples per pixel, ascending.
+    pub(super) rungs: Vec<u64>,
+    pub(super) runs: u64,
+    /// Estimates: seconds for the exact picture, and for each sampled method seconds a sample.
+    pub(super) exact_seconds: f64,
+    pub(super) rates: Vec<(Method, f64)>,
+}
+
+impl<'a> Plan<'a> {
+    /// Warms up, and decides.
+    pub fn new(
+        subject: &'a Subject,
+        scene: &'a Scene,
+        request: &'a Request,
+        control: &Control,
+    ) -> Result<Self, RenderError> {
+        let started = Instant::now();
+        let silent = Control {
+            threads: request.threads,
+            progress: &|_| {},
+            cancel: control.cancel,
+        };
+        let (reference, exact_seconds) = computed(scene, &silent)?;
+        let pixels = reference.bounds.len() as f64;
+        let warm = match request.samples.iter().min() {
+            Some(&least) => least.min(WARM),
+            None => WARM,
+        };
+        let mut rates = Vec::new();
+        for method in sampled(request) {
+            // The first run finds the machine cold: the second one is the estimate, unless something else delays it.
+            let (_, first) = rendered(scene, method, warm, scene.sampler.seed, &silent)?;
+            let (_, second) = rendered(scene, method, warm, scene.sampler.seed, &silent)?;
+            let seconds = first.min(second);
+            rates.push((method, seconds / (warm as f64 * pixels)));
+        }
+        let mut plan = Self {
+            subject,
+            scene,
+            request,
+            started,
+            reference,
+            is_limited: false,
+            rungs: request.samples.clone(),
+            runs: request.runs.unwrap_or(0),
+            exact_seconds,
+            rates,
+        };
+        plan.choose();
+        Ok(plan)
+    }
+
+    /// How long the measuring will take, in nanoseconds: the whole of the progress.
+    pub fn total(&self) -> u64 {
+        (self.round_seconds(&self.rungs) * self.runs as f64 * 1e9) as u64
+    }
+
+    fn choose(&mut self) {
+        let left = self.request.budget.saturating_sub(self.started.elapsed());
+        let left = left.as_secs_f64() * PLANNED;
+        let (wanted, most) = RUNS;
+        if self.rungs.is_empty() {
+            let runs = self.request.runs.unwrap_or(wanted) as f64;
+            let ladder = |rungs| (0..rungs).map(|rung| 1 << (2 * rung)).collect::<Vec<_>>();
+            let rungs = (FEWEST_RUNGS..=MOST_RUNGS)
+                .rev()
+                .find(|&rungs| self.round_seconds(&ladder(rungs)) * runs <= left);
+            self.rungs = ladder(rungs.unwrap_or(FEWEST_RUNGS));
+        }
+        self.rungs.sort_unstable();
+        self.rungs.dedup();
+        self.is_limited = self.request.runs.is_none();
+        if self.is_limited {
+            let fit = (left / self.round_seconds(&self.rungs).max(1e-9)) as u64;
+            self.runs = match fit.clamp(1, most) {
+                few @ 1..=2 => few,
+                // Of an odd number of runs the median is one of them.
+                many => (many - 1) / 2 * 2 + 1,
+            };
+        }
+    }
+
+    /// How long one run of everything takes.
+    fn round_seconds(&self, rungs: &[u64]) -> f64 {
+        let samples = rungs.iter().map(|&rung| rung as f64).sum::<f64>();
+        let pixels = self.reference.bounds.len() as f64;
+        let rates: f64 = self.rates.iter().map(|(_, rate)| rate).sum();
+        let exact = match self.request.methods.contains(&Method::Exact) {
+            true => self.exact_seconds,
+            false => 0.0,
+        };
+        samples * pixels * rates + exact
+    }
+}
+
+/// The methods that take samples, each once, in the order of the language's table.
+fn sampled(request: &Request) -> impl Iterator<Item = Method> {
+    let asked = |method: &Method| request.methods.contains(method);
+    Method::SAMPLED.into_iter().filter(asked)
+}

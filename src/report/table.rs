@@ -1,0 +1,250 @@
+//! The measurement as text for a terminal, and how its numbers are written everywhere.
+
+use std::fmt::Write;
+
+use super::{
+    fit::{Fit, median},
+    measure::{Measurement, Series},
+    notes::{NOISY, notes, spread, verdicts},
+};
+use crate::{scene::Method, suggest};
+
+/// The tables of errors, of times and of what an error takes.
+pub fn table(measured: &Measurement) -> String {
+    let mut text = heading(measured);
+    text += "\n";
+    text += &errors(measured);
+    text += "\n";
+    text += &times(measured);
+    for &wanted in &measured.errors {
+        text += "\n";
+        text += &needs(measured, wanted);
+    }
+    text += "\n";
+    for verdict in verdicts(measured) {
+        text += &wrapped(&verdict);
+    }
+    for note in notes(measured) {
+        text += &wrapped(&format!("note: {note}"));
+    }
+    text
+}
+
+/// What was measured, and on what.
+pub(super) fn heading(measured: &Measurement) -> String {
+    let whole = measured.whole();
+    let machine = &measured.machine;
+    format!(
+        "{}: {} × {} pixels, {} of each, seeds from {}\n{} on {} ({})\nreference: exact, every channel within {}\n",
+        measured.subject.name,
+        whole.width,
+        whole.height,
+        plural(measured.rounds() as u64, "run"),
+        measured.seed,
+        plural(measured.threads as u64, "thread"),
+        machine.processor,
+        plural(machine.processors as u64, "processor"),
+        error(measured.reference.bound()),
+    )
+}
+
+fn errors(measured: &Measurement) -> String {
+    let mut text = format!("{:16}", "error");
+    for rung in &measured.rungs {
+        let _ = write!(text, "{rung:>9}");
+    }
+    text += "   largest  slope\n";
+    for series in &measured.series {
+        let _ = write!(text, "{:16}", series.method.name());
+        for cell in cells(measured, series, |point| error(point.error())) {
+            let _ = write!(text, "{cell:>9}");
+        }
+        let largest = series.points.last().map_or(0.0, |point| point.largest);
+        let _ = writeln!(text, "{:>10}  {}", error(largest), slope(series.fit()));
+    }
+    if measured.exact.is_some() {
+        let width = 9 * measured.rungs.len() + 10;
+        let bound = error(measured.reference.bound());
+        let _ = writeln!(text, "{:16}{bound:>width$}", "exact, within");
+    }
+    text
+}
+
+fn times(measured: &Measurement) -> String {
+    let mut text = format!("{:16}", "time");
+    for rung in &measured.rungs {
+        let _ = write!(text, "{rung:>9}");
+    }
+    text += "    spread  million rays/s\n";
+    for series in &measured.series {
+        let _ = write!(text, "{:16}", series.method.name());
+        for cell in cells(measured, series, |point| seconds(point.seconds())) {
+            let _ = write!(text, "{cell:>9}");
+        }
+        let widest = series.points.iter().map(|point| point.spread());
+        let rate = series
+            .points
+            .last()
+            .map_or(0.0, |point| point.rays_per_second());
+        let _ = writeln!(
+            text,
+            "{:>10}{:>16.1}",
+            percent(widest.fold(0.0, f64::max), measured.rounds()),
+            rate / 1e6
+        );
+    }
+    if let Some(exact) = &measured.exact {
+        let width = 9 * measured.rungs.len();
+        let time = seconds(median(&exact.times));
+        let _ = writeln!(
+            text,
+            "{:16}{time:^width$}{:>10}",
+            "exact",
+            percent(spread(&exact.times), exact.times.len())
+        );
+    }
+    text
+}
+
+fn needs(measured: &Measurement, wanted: f64) -> String {
+    let mut text = format!(
+        "{:16}{:>9}{:>9}\n",
+        format!("for {}", error(wanted)),
+        "samples",
+        "time"
+    );
+    for series in &measured.series {
+        let name = series.method.name();
+        let _ = match series.needed(wanted) {
+            None => writeln!(text, "{name:16}{:>9}{:>9}", "-", "-"),
+            Some(needed) => writeln!(
+                text,
+                "{name:16}{:>9}{:>9}{}",
+                count(needed.per_pixel),
+                seconds(needed.seconds),
+                if needed.is_extrapolated {
+                    "  extrapolated"
+                } else {
+                    ""
+                }
+            ),
+        };
+    }
+    if let Some(exact) = &measured.exact {
+        let _ = writeln!(
+            text,
+            "{:16}{:>9}{:>9}",
+            "exact",
+            "-",
+            seconds(median(&exact.times))
+        );
+    }
+    text
+}
+
+/// A cell for each number of samples; `-` where nothing was measured.
+pub(super) fn cells(
+    measured: &Measurement,
+    series: &Series,
+    cell: impl Fn(&super::Point) -> String,
+) -> Vec<String> {
+    let at = |rung: &u64| series.points.iter().find(|point| point.per_pixel == *rung);
+    measured
+        .rungs
+        .iter()
+        .map(|rung| at(rung).map_or("-".to_owned(), &cell))
+        .collect()
+}
+
+/// A slope with its standard error.
+pub(super) fn slope(fit: Option<Fit>) -> String {
+    match fit {
+        None => "-".to_owned(),
+        Some(fit) => match fit.slope_error {
+            None => format!("{:.3}", fit.slope),
+            Some(error) => format!("{:.3} ± {error:.3}", fit.slope),
+        },
+    }
+}
+
+/// An error: whole fractions that somebody asks for as such, others with two digits.
+pub(super) fn error(error: f64) -> String {
+    let inverse = 1.0 / error;
+    if (2.0..=65536.0).contains(&inverse)
+        && inverse.fract() == 0.0
+        && (inverse as u64).is_multiple_of(64)
+    {
+        format!("1/{inverse}")
+    } else if error == 0.0 {
+        "0".to_owned()
+    } else if error < 1e-4 {
+        format!("{error:.1e}")
+    } else {
+        significant(error, 3)
+    }
+}
+
+/// A time in seconds or milliseconds, with three digits.
+pub(super) fn seconds(seconds: f64) -> String {
+    if seconds < 0.9995 {
+        format!("{} ms", significant(seconds * 1e3, 3))
+    } else if seconds < 1e5 {
+        format!("{} s", significant(seconds, 3))
+    } else {
+        format!("{seconds:.1e} s")
+    }
+}
+
+/// A number of samples.
+pub(super) fn count(samples: f64) -> String {
+    match samples < 1e7 {
+        true => format!("{samples}"),
+        false => format!("{samples:.1e}"),
+    }
+}
+
+/// How far times spread, marked where they are noisy; nothing is known of a single one.
+pub(super) fn percent(share: f64, runs: usize) -> String {
+    if runs < 2 {
+        return "-".to_owned();
+    }
+    let mark = if share > NOISY { "!" } else { "" };
+    format!("{mark}{:.0} %", share * 100.0)
+}
+
+/// Methods in a sentence.
+pub(super) fn method_list(methods: &[Method]) -> String {
+    suggest::list(methods.iter().map(|method| method.name()))
+}
+
+pub(super) fn plural(count: u64, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}
+
+/// So many digits, not counting zeros in front; digits before the point all stay.
+fn significant(number: f64, digits: i32) -> String {
+    let before = libm::floor(libm::log10(number.max(1e-300))) as i32 + 1;
+    let after = (digits - before).max(0) as usize;
+    format!("{number:.after$}")
+}
+
+/// Lines of at most 100 characters.
+fn wrapped(text: &str) -> String {
+    let mut lines = String::new();
+    let mut length = 0;
+    for word in text.split(' ') {
+        let width = word.chars().count() + 1;
+        if length + width > 100 {
+            lines += "\n ";
+            length = 1;
+        } else if length > 0 {
+            lines += " ";
+        }
+        lines += word;
+        length += width;
+    }
+    lines + "\n"
+}

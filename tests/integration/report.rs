@@ -1,0 +1,498 @@
+//! Speed against error: the numbers, and the binary's tables, files and page.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use pinhole::report::fit::{Fit, median, quantile, root_mean_square};
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SCENE: &str =
+    "image { width 48 height 32 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
+sampler { method sobol per_pixel 4 seed 7 } sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
+";
+
+const SLOW: &str = "image { width 400 height 400 } camera { eye (0, 1, 5) lookat (0, 1, 0) } sphere { center (0, 1, 0) }";
+
+/// A fresh folder with the scene in `a.scn`.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
+    folder
+}
+
+fn command(folder: &TempDir, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+    command
+        .arg("report")
+        .args(arguments)
+        .current_dir(folder.path())
+        .env("LC_ALL", "C.UTF-8")
+        .stdin(Stdio::null());
+    command
+}
+
+fn report(folder: &TempDir, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+fn words(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+fn fails(folder: &TempDir, arguments: &[&str], status: i32) -> String {
+    let output = report(folder, arguments);
+    let errors = words(&output.stderr).to_owned();
+    assert_eq!(
+        output.status.code(),
+        Some(status),
+        "{arguments:?}: {errors}"
+    );
+    assert_eq!(output.stdout, b"", "{arguments:?}");
+    errors
+}
+
+fn read(folder: &TempDir, name: &str) -> String {
+    let path = folder.path().join(name);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Parses XML, or HTML that is written as XML.
+fn parsed(text: &str) -> roxmltree::Document<'_> {
+    let options = roxmltree::ParsingOptions {
+        allow_dtd: true,
+        ..Default::default()
+    };
+    roxmltree::Document::parse_with_options(text, options).unwrap()
+}
+
+#[test]
+fn a_power_law_is_fitted_exactly() {
+    let points = [1.0, 4.0, 16.0, 64.0].map(|n: f64| (n, 0.3 / (n * n.sqrt()).sqrt()));
+    let fit = Fit::of(&points).unwrap();
+    assert!((fit.slope + 0.75).abs() < 1e-14, "{}", fit.slope);
+    assert!(fit.slope_error.unwrap() < 1e-14);
+    assert_eq!(fit.points, 4);
+    assert!((fit.at(16.0) - 0.0375).abs() < 1e-14);
+    assert!((fit.reaches(0.0375).unwrap() - 16.0).abs() < 1e-11);
+}
+
+#[test]
+fn the_slopes_uncertainty_is_that_of_the_textbook() {
+    // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 has x̄ = 1.5, ȳ = −1, S = 5, b = −3/5, residuals −0.1, 0.3, −0.3, 0.1
+    // but for signs, Σr² = 0.2, and the standard error √(0.2 / 2 / 5) = √0.02.
+    let fit = Fit::of(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
+    assert!((fit.slope + 0.6).abs() < 1e-14);
+    assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
+}
+
+#[test]
+fn what_has_no_slope_has_no_fit() {
+    assert_eq!(Fit::of(&[]), None);
+    assert_eq!(Fit::of(&[(1.0, 1.0)]), None);
+    assert_eq!(Fit::of(&[(2.0, 1.0), (2.0, 3.0)]), None);
+    assert_eq!(Fit::of(&[(1.0, 1.0), (2.0, 0.0)]), None);
+    let two = Fit::of(&[(1.0, 1.0), (4.0, 0.5)]).unwrap();
+    assert_eq!(two.slope_error, None);
+    let flat = Fit::of(&[(1.0, 1.0), (4.0, 1.0)]).unwrap();
+    assert_eq!(flat.reaches(0.5), None);
+}
+
+#[test]
+fn quantiles_lie_between_values() {
+    let values = [4.0, 1.0, 3.0, 2.0];
+    assert_eq!(median(&values), 2.5);
+    assert_eq!(quantile(&values, 0.0), 1.0);
+    assert_eq!(quantile(&values, 0.25), 1.75);
+    assert_eq!(quantile(&values, 1.0), 4.0);
+    assert_eq!(median(&[7.0]), 7.0);
+    assert!(median(&[]).is_nan());
+    assert_eq!(root_mean_square(&[3.0, 4.0, 0.0, 0.0]), 2.5);
+}
+
+#[test]
+fn people_get_a_table() {
+    let folder = folder();
+    let output = report(&folder, &["a.scn", "--samples", "1,4,16", "--runs", "2"]);
+    let text = words(&output.stderr);
+    assert!(
+        output.status.success() && output.stdout.is_empty(),
+        "{text}"
+    );
+    assert!(text.starts_with("a.scn: 48 × 32 pixels, 2 runs of each, seeds from 7\n"));
+    for word in [
+        "regular",
+        "random",
+        "jittered",
+        "n_rooks",
+        "multi_jittered",
+        "hammersley",
+        "halton",
+        "sobol",
+        "scatter",
+        "exact",
+        "for 1/256",
+        "extrapolated",
+        "note: scatter",
+        "the fastest sampled method",
+    ] {
+        assert!(text.contains(word), "{word}:\n{text}");
+    }
+    for line in text.lines() {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
+}
+
+#[test]
+fn programs_get_json_and_errors_fall() {
+    let folder = folder();
+    let arguments = [
+        "a.scn",
+        "--format",
+        "json",
+        "--samples",
+        "64,1,16,4,16",
+        "--runs",
+        "3",
+        "--error",
+        "1/256",
+        "--error",
+        "0.5",
+        "--error",
+        "1e-6",
+        "--threads",
+        "1",
+    ];
+    let output = report(&folder, &arguments);
+    assert_eq!((output.status.code(), words(&output.stderr)), (Some(0), ""));
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["complete"], true);
+    let report = &answer["reports"][0];
+    assert_eq!(report["scene"], "a.scn");
+    assert_eq!(
+        report["image"],
+        serde_json::json!({"width": 48, "height": 32})
+    );
+    assert_eq!(
+        (&report["seed"], &report["threads"]),
+        (&7.into(), &1.into())
+    );
+    assert_eq!(report["per_pixel"], serde_json::json!([1, 4, 16, 64]));
+    assert_eq!(report["runs"], 3);
+    assert!(report["exact"]["bound"].as_f64().unwrap() < 1e-8);
+    assert!(report["machine"]["processors"].as_u64().unwrap() >= 1);
+    let methods = report["methods"].as_array().unwrap();
+    assert_eq!(methods.len(), 9);
+    for method in methods {
+        let name = method["method"].as_str().unwrap();
+        let measured = method["measured"].as_array().unwrap();
+        assert_eq!(measured.len(), 4);
+        for pair in measured.windows(2) {
+            let [coarse, fine] = [0, 1].map(|at: usize| pair[at]["rmse"].as_f64().unwrap());
+            assert!(fine < 0.75 * coarse, "{name}: {coarse} to {fine}");
+            assert_eq!(pair[0]["rmse_runs"].as_array().unwrap().len(), 3);
+            assert!(pair[1]["time"]["min"].as_f64().unwrap() > 0.0);
+        }
+        let slope = method["fit"]["slope"].as_f64().unwrap();
+        let expected = match name {
+            "random" => -0.53..-0.47,
+            "regular" => -0.8..-0.4,
+            "scatter" => -1.0..-0.5,
+            _ => -0.85..-0.55,
+        };
+        assert!(expected.contains(&slope), "{name}: {slope}");
+        let needed = method["needed"].as_array().unwrap();
+        assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
+        assert_eq!(needed[1]["extrapolated"], false);
+        assert_eq!(needed[2]["extrapolated"], true, "{name}");
+    }
+    // Independent samples: each run draws its own seed's, and the errors of the seeds differ.
+    let random = methods
+        .iter()
+        .find(|method| method["method"] == "random")
+        .unwrap();
+    let runs = random["measured"][3]["rmse_runs"].as_array().unwrap();
+    assert!(runs[0] != runs[1] && runs[1] != runs[2]);
+}
+
+/// What `sha256sum` says of a file, where there is one.
+fn sha256sum(path: &Path) -> Option<String> {
+    let output = Command::new("sha256sum").arg(path).output().ok()?;
+    words(&output.stdout).split(' ').next().map(str::to_owned)
+}
+
+#[test]
+fn a_folder_gets_whole_files() {
+    let folder = folder();
+    let arguments = [
+        "a.scn",
+        "-o",
+        "new/speed",
+        "--samples",
+        "1,4,16",
+        "--runs",
+        "2",
+        "--methods",
+        "sobol,random,exact",
+        "--set",
+        "Ball.radius=1.2",
+    ];
+    let output = report(&folder, &arguments);
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    let mut names: Vec<_> = fs::read_dir(folder.path().join("new/speed"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let all = [
+        "error-against-samples.svg",
+        "error-against-time.svg",
+        "index.html",
+        "report.csv",
+        "report.json",
+    ];
+    assert_eq!(names, all);
+
+    let csv = read(&folder, "new/speed/report.csv");
+    let columns = csv.lines().next().unwrap().split(',').count();
+    assert_eq!(csv.lines().count(), 1 + 2 * 3 + 1);
+    assert!(csv.lines().all(|line| line.split(',').count() == columns));
+    assert!(csv.lines().last().unwrap().starts_with("exact,,,2,"));
+
+    let json: Value = serde_json::from_str(&read(&folder, "new/speed/report.json")).unwrap();
+    assert_eq!(json["overrides"], serde_json::json!(["Ball.radius=1.2"]));
+    if let Some(sum) = sha256sum(&folder.path().join("a.scn")) {
+        assert_eq!(json["sha256"], sum);
+    }
+
+    for name in ["error-against-samples.svg", "error-against-time.svg"] {
+        let svg = read(&folder, &format!("new/speed/{name}"));
+        let document = parsed(&svg);
+        assert!(
+            document
+                .root_element()
+                .has_tag_name(("http://www.w3.org/2000/svg", "svg"))
+        );
+        let text: Vec<_> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("text"))
+            .collect();
+        let labelled = |word: &str| {
+            text.iter().any(|node| {
+                node.text()
+                    .is_some_and(|text| text.trim().starts_with(word))
+            })
+        };
+        assert!(
+            labelled("sobol") && labelled("random") && labelled("1/256") || name.contains("time"),
+            "{name}"
+        );
+        assert_eq!(labelled("exact:"), name.contains("time"));
+    }
+
+    let page = read(&folder, "new/speed/index.html");
+    let document = parsed(&page);
+    let elements = |name: &'static str| {
+        document
+            .descendants()
+            .filter(move |node| node.tag_name().name() == name)
+    };
+    assert_eq!(elements("script").count(), 0);
+    assert_eq!(elements("table").count(), 3);
+    // The exact picture, and for each sampled method the picture and its errors.
+    assert_eq!(elements("img").count(), 5);
+    for image in elements("img") {
+        assert!(!image.attribute("alt").unwrap().is_empty());
+        let data = image.attribute("src").unwrap();
+        let png = data.strip_prefix("data:image/png;base64,").unwrap();
+        let picture = image::load_from_memory(&BASE64_STANDARD.decode(png).unwrap()).unwrap();
+        assert_eq!((picture.width(), picture.height()), (48, 32));
+    }
+    // Nothing is fetched from elsewhere.
+    for node in document.descendants() {
+        for attribute in node
+            .attributes()
+            .filter(|attribute| ["src", "href"].contains(&attribute.name()))
+        {
+            assert!(attribute.value().starts_with("data:"));
+        }
+    }
+}
+
+#[test]
+fn labels_of_a_chart_do_not_lie_upon_each_other() {
+    let folder = folder();
+    let output = report(
+        &folder,
+        &["a.scn", "-o", "out", "--samples", "1,4", "--runs", "1"],
+    );
+    assert!(output.status.success());
+    for name in ["samples", "time"] {
+        let svg = read(&folder, &format!("out/error-against-{name}.svg"));
+        let document = parsed(&svg);
+        let mut heights: Vec<i32> = document
+            .descendants()
+            .filter(|node| {
+                let text = node.text().unwrap_or_default().trim();
+                let first = text.split(' ').next().unwrap();
+                node.has_tag_name("text")
+                    && pinhole::scene::Method::SAMPLED
+                        .iter()
+                        .any(|method| method.name() == first)
+            })
+            .map(|node| node.attribute("y").unwrap().parse().unwrap())
+            .collect();
+        assert_eq!(heights.len(), 9);
+        heights.sort_unstable();
+        assert!(
+            heights.windows(2).all(|pair| pair[1] - pair[0] >= 15),
+            "{heights:?}"
+        );
+        assert!(heights[0] > 0 && heights[8] < 540);
+    }
+}
+
+#[test]
+fn several_scenes_have_a_folder_each_and_one_page() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::write(folder.path().join("sub/a.scn"), SCENE).unwrap();
+    let arguments = [
+        "a.scn",
+        "sub/a.scn",
+        "-o",
+        "out",
+        "--samples",
+        "1",
+        "--runs",
+        "1",
+        "--methods",
+        "halton",
+    ];
+    assert!(report(&folder, &arguments).status.success());
+    for name in [
+        "out/a/report.csv",
+        "out/a-2/report.json",
+        "out/a-2/index.html",
+    ] {
+        read(&folder, name);
+    }
+    let page = read(&folder, "out/index.html");
+    assert!(page.contains(">a.scn</h2>") && page.contains(">sub/a.scn</h2>"));
+    parsed(&page);
+}
+
+#[test]
+fn a_picture_of_one_colour_has_no_error() {
+    let folder = folder();
+    let empty =
+        "image { width 4 height 4 } camera { eye (0, 1, 0) direction (0, 1, 0) up (0, 0, 1) }";
+    fs::write(folder.path().join("empty.scn"), empty).unwrap();
+    let output = report(
+        &folder,
+        &["empty.scn", "-o", "out", "--samples", "1,4", "--runs", "1"],
+    );
+    let text = words(&output.stderr);
+    assert!(output.status.success(), "{text}");
+    assert!(
+        text.contains("no slope is fitted to an error of 0"),
+        "{text}"
+    );
+    parsed(&read(&folder, "out/index.html"));
+    parsed(&read(&folder, "out/error-against-time.svg"));
+}
+
+#[test]
+fn wrong_arguments_are_told() {
+    let folder = folder();
+    fs::write(folder.path().join("file"), "kept").unwrap();
+    fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
+    let errors = fails(&folder, &["a.scn", "--methods", "sobol,jitered"], 2);
+    assert!(
+        errors.contains("jitered") && errors.contains("'jittered'"),
+        "{errors}"
+    );
+    for arguments in [
+        &["a.scn", "--samples", "0"][..],
+        &["a.scn", "--samples", "1,x"],
+        &["a.scn", "--runs", "0"],
+        &["a.scn", "--error", "0"],
+        &["a.scn", "--error", "1/0"],
+        &["a.scn", "--error", "nan"],
+        &["a.scn", "--error", "2"],
+        &["a.scn", "--budget", "0"],
+        &["a.scn", "--numerics"],
+        &["--numerics", "--runs", "3"],
+        &["none.scn"],
+        &["-", "-"],
+    ] {
+        fails(&folder, arguments, 2);
+    }
+    let errors = fails(&folder, &["a.scn", "-o", "file"], 2);
+    assert_eq!(
+        errors,
+        "error: file is a file, and the report is a folder of files\n"
+    );
+    assert_eq!(read(&folder, "file"), "kept");
+    let errors = fails(&folder, &["a.scn", "--samples", "9007199254740992"], 2);
+    assert!(errors.contains("more than 2^53"), "{errors}");
+    let errors = fails(&folder, &["a.scn", "bad.scn", "--samples", "1"], 1);
+    assert!(
+        errors.contains("pinhole::unknown_field") && !errors.contains("rays"),
+        "{errors}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_was_measured() {
+    let folder = folder();
+    fs::write(folder.path().join("slow.scn"), SLOW).unwrap();
+    // Ten thousand runs: long enough, and the first ones are over soon.
+    let arguments = [
+        "slow.scn",
+        "-o",
+        "out",
+        "--format",
+        "json",
+        "--samples",
+        "1,2",
+        "--runs",
+        "10000",
+        "--methods",
+        "sobol,exact",
+    ];
+    let child = command(&folder, &arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(2500));
+    let id = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &id])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", words(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["complete"], false);
+    let report = &answer["reports"][0];
+    assert_eq!(report["complete"], false);
+    assert!(report["runs"].as_u64().unwrap() >= 1);
+    assert!(
+        report["notes"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("Incomplete: it was interrupted in run ")
+    );
+    parsed(&read(&folder, "out/index.html"));
+    read(&folder, "out/report.csv");
+}
