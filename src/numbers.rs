@@ -28,6 +28,15 @@ pub fn short(x: f64) -> String {
     trimmed(&format!("{x:.decimals$}")).to_owned()
 }
 
+/// A bound with two significant digits that is no less.
+pub fn at_most(bound: f64) -> String {
+    let text = format!("{bound:.1e}");
+    match text.parse() {
+        Ok(read) if bound > read => format!("{:.1e}", bound * 1.05),
+        _ => text,
+    }
+}
+
 /// A number that is compared with others: short, unless the digits that are left out decide.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);

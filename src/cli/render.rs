@@ -11,6 +11,7 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, Film, Recipe},
+    numbers,
     render::{self, Control, Exact, RenderError},
     sampling::Sampling,
     scene::{Method, Scene},
@@ -140,8 +141,8 @@ fn certificate(exact: &Exact) -> String {
         1 => "the 8-bit rounding of all pixels but one is certain".to_owned(),
         others => format!("the 8-bit rounding of all pixels but {others} is certain"),
     };
-    let bound = exact.bound();
-    format!("exact: every channel is within {bound:.1e} of its true mean; {bytes}\n")
+    let bound = numbers::at_most(exact.bound());
+    format!("exact: every channel is within {bound} of its true mean; {bytes}\n")
 }
 
 /// Where a picture goes, and as what.

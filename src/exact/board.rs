@@ -120,16 +120,9 @@ impl Board {
         if endless {
             return self.far_or_both(&corners, known);
         }
-        let mut low = first.floor.map(f64::floor);
-        let mut high = low;
-        for corner in &corners[1..] {
-            for i in 0..2 {
-                let t = corner.floor[i].floor();
-                low[i] = low[i].min(t);
-                high[i] = high[i].max(t);
-            }
-        }
-        if low == high {
+        let spans = spans(&corners);
+        if spans == [1.0, 1.0] {
+            let low = first.floor;
             let sign = super::euler::square_wave(low[0]) * super::euler::square_wave(low[1]);
             let (area, perimeter) = measure(corners.iter().map(|c| c.at));
             return Sum {
@@ -137,10 +130,7 @@ impl Board {
                 bound: self.displacement * perimeter,
             };
         }
-        let spans = [high[0] - low[0] + 1.0, high[1] - low[1] + 1.0];
-        // Squares touched are at most about area plus half the perimeter; a slanted strip has many fewer than its box.
-        let squares = spans[0] + spans[1] + measure(corners.iter().map(|c| c.floor.into())).0.abs();
-        if squares.min(spans[0] * spans[1]) <= FEW {
+        if squares(&corners).min(spans[0] * spans[1]) <= FEW {
             return cells::sum(self, &corners);
         }
         self.far_or_both(&corners, known)
@@ -173,8 +163,7 @@ impl Board {
 
     /// Near squares, if they are not too many: then nothing is said of them.
     fn square_by_square(&self, corners: &[Corner]) -> Sum {
-        let squares = measure(corners.iter().map(|c| c.floor.into())).0.abs();
-        if squares <= MANY {
+        if squares(corners) <= MANY {
             return cells::sum(self, corners);
         }
         Sum {
@@ -244,6 +233,23 @@ impl Board {
         }
         kept
     }
+}
+
+/// How many squares a region meets along each axis.
+fn spans(corners: &[Corner]) -> [f64; 2] {
+    [0, 1].map(|i| {
+        let squares = corners.iter().map(|corner| corner.floor[i].floor());
+        let (low, high) = squares.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
+            (low.min(t), high.max(t))
+        });
+        high - low + 1.0
+    })
+}
+
+/// About how many squares a region meets: its area plus half its perimeter. A slanted strip has many fewer than its box.
+fn squares(corners: &[Corner]) -> f64 {
+    let [a, b] = spans(corners);
+    a + b + measure(corners.iter().map(|c| c.floor.into())).0.abs()
 }
 
 /// The signed area and the perimeter, in |dx| + |dy|, of a polygon.

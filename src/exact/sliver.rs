@@ -45,8 +45,9 @@ impl Board {
             return self.cut_at_lines(arc, [a, b], chords);
         }
         let area = arc.area();
-        if area <= NEGLECTED {
-            chords.sum.bound += area;
+        let is_large = area > NEGLECTED;
+        if !is_large {
+            chords.sum.bound += if area.is_nan() { 1.0 } else { area };
             chords.points.push(arc.end);
             return;
         }

@@ -23,6 +23,7 @@ use super::{
     table::{error, seconds, slope},
     ticks::{Ticks, ends, tick},
 };
+use crate::numbers;
 
 /// What drawing yields.
 pub(super) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
@@ -72,7 +73,7 @@ pub fn against_time(measured: &Measurement) -> String {
     });
     let exact = measured.exact.as_ref().map(|exact| {
         let time = median(&exact.times);
-        let bound = error(measured.reference.bound());
+        let bound = numbers::at_most(measured.reference.bound());
         (time, format!("exact: {}, within {bound}", seconds(time)))
     });
     let times = lines

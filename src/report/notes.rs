@@ -5,6 +5,7 @@ use super::{
     measure::{Measurement, Point},
     table::{error, method_list, seconds},
 };
+use crate::numbers::at_most;
 use crate::scene::Method;
 
 /// Times of the same work that spread by more than this share of their median, from the least to the greatest, are called noisy.
@@ -34,7 +35,7 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
         format!(
             "exact: {}, within {}",
             seconds(median(&exact.times)),
-            error(bound)
+            at_most(bound)
         )
     });
     let verdict = |&wanted: &f64| {
@@ -83,7 +84,7 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
         notes.push(format!(
             "An error of {} cannot be told from none: the reference itself is known to {} only.",
             error(wanted),
-            error(bound)
+            at_most(bound)
         ));
     }
     let flat = measured.series.iter().filter(|series| {

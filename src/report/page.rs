@@ -13,7 +13,7 @@ use super::{
     picture,
     table::{cells, count, error, plural, seconds, slope},
 };
-use crate::scene::Method;
+use crate::{numbers, scene::Method};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -49,7 +49,7 @@ fn section(html: &mut String, measured: &Measurement, class: &str) -> io::Result
         *html += &format!("<ul class=\"notes\">\n{}</ul>\n", items.collect::<String>());
     }
     *html += &facts(measured);
-    let bound = error(measured.reference.bound());
+    let bound = numbers::at_most(measured.reference.bound());
     *html += &format!(
         "<figure>\n{}<figcaption>Error against the time of a render. Lower and further to the left is better. The exact method's error \
          lies below the chart: it is within {bound}.</figcaption>\n</figure>\n",
@@ -124,7 +124,7 @@ fn errors(measured: &Measurement) -> String {
         row.push(slope(series.fit()));
         (series.method.name(), row)
     });
-    let bound = error(measured.reference.bound());
+    let bound = numbers::at_most(measured.reference.bound());
     let rungs = measured.rungs.len();
     let exact = measured
         .exact
@@ -330,7 +330,7 @@ fn method(measurements: &[Measurement]) -> String {
     let bounds = measurements
         .iter()
         .map(|measured| measured.reference.bound());
-    let bound = error(bounds.fold(0.0, f64::max));
+    let bound = numbers::at_most(bounds.fold(0.0, f64::max));
     let noisy = NOISY * 100.0;
     format!(
         "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\

@@ -7,7 +7,7 @@ use super::{
     measure::{Measurement, Series},
     notes::{NOISY, notes, spread, verdicts},
 };
-use crate::{scene::Method, suggest};
+use crate::{numbers, scene::Method, suggest};
 
 /// The tables of errors, of times and of what an error takes.
 pub fn table(measured: &Measurement) -> String {
@@ -64,7 +64,7 @@ fn errors(measured: &Measurement) -> String {
     }
     if measured.exact.is_some() {
         let width = 9 * measured.rungs.len() + 10;
-        let bound = error(measured.reference.bound());
+        let bound = numbers::at_most(measured.reference.bound());
         let _ = writeln!(text, "{:16}{bound:>width$}", "exact, within");
     }
     text
