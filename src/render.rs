@@ -128,8 +128,8 @@ pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exac
             for ((x, y), pixel) in tile.iter().zip(&pixels) {
                 exact.bounds[part.index(x, y)] = match pixel.bound {
                     0.0 => 0.0,
-                    // Rounded up.
-                    bound => (bound as f32).next_up(),
+                    // Rounded up; light is from 0 to 1.
+                    bound => (bound as f32).next_up().min(1.0),
                 };
             }
             (control.progress)(tile.pixels());

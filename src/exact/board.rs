@@ -111,6 +111,19 @@ impl Board {
 
     /// The same for a whole pixel, some of whose sides may be known.
     pub(crate) fn over_known(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
+        let sum = self.unchecked(polygon, known);
+        let area = measure(polygon.iter().copied()).0.abs();
+        if sum.value.is_finite() && sum.bound < area {
+            return sum;
+        }
+        // Out of the range of numbers, or not worth having: no sum is greater than this.
+        Sum {
+            value: 0.0,
+            bound: area,
+        }
+    }
+
+    fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
         let corners = self.visible(polygon);
         let first = match corners.first() {
             Some(first) if corners.len() > 2 => first,

@@ -16,6 +16,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Below so many crossings one by one is as good as by modes.
 const SHORT: f64 = 20_000.0;
+/// So many are summed one by one where modes are of no use; of more it is only said that they cannot add up to much.
+const LONG: f64 = 300_000.0;
+/// Where an edge crosses more lines than this, squares are so many that it may neglect the other, in square pixels.
+const DENSE: f64 = 512.0;
+const CRUMB: f64 = 2e-12;
 /// The time that a mode takes, in crossings.
 const MODE_COST: f64 = 2.0;
 /// The modes that are always computed; a later one may be skipped where it is small.
@@ -27,29 +32,30 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
         * (1..=series.terms)
             .map(|k| series.size(k, all.depth))
             .sum::<f64>();
-    if all.lines > SHORT && trivial <= 0.25 * tolerance {
+    let is_crumb = all.lines > DENSE && trivial <= CRUMB;
+    if is_crumb || (all.lines > SHORT && trivial <= 0.25 * tolerance) {
         return Sum {
             value: 0.0,
             bound: trivial,
         };
     }
-    let is_slow = all.lines > 2.0 * SHORT;
-    let short = all.lines <= SHORT || (all.edge.rise * all.lines < all.depth && !is_slow);
-    if short {
+    // Where m hardly grows, modes do not fall off.
+    let is_level = all.edge.rise * all.lines < all.depth;
+    if all.lines <= SHORT || (is_level && all.lines <= LONG) {
         return all.one_by_one(series, all.lines);
+    }
+    if is_level {
+        return Sum {
+            value: 0.0,
+            bound: trivial,
+        };
     }
     let direct = ((start(all, series, tolerance) - all.depth) / all.edge.rise)
         .ceil()
         .max(0.0);
-    if direct + SHORT >= all.lines && !is_slow {
+    if direct + SHORT >= all.lines {
         return all.one_by_one(series, all.lines);
     }
-    // From where so many cross that even a few would take long, more modes do it.
-    let direct = if all.lines.is_finite() {
-        direct.min(SHORT)
-    } else {
-        direct
-    };
     let mut sum = all.one_by_one(series, direct);
     let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];
     let share = tolerance / rests.iter().flatten().count() as f64;

@@ -43,6 +43,7 @@ use self::{
 /// A spot whose bound is no greater than this is not cut into quarters; nor one with the horizon, where squares never end.
 const ENOUGH: f64 = 1e-12;
 const ENOUGH_ENDLESS: f64 = 1e-9;
+const HOPELESS: f64 = 1e-3;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,14 +153,15 @@ impl<'a> Integrator<'a> {
     /// A part has coordinates of its own, in which roundings are smaller: the widest views need that, in which a pixel sees
     /// squares both near and far.
     fn shares(&self, spot: Spot, live: &[Live], scratch: &mut Scratch) -> Shares {
-        const FINEST: f64 = 1.0 / 4.0;
+        const FINEST: f64 = 0.5;
         let shares = self.shares_at_once(spot, live, scratch);
         let enough = if shares.is_endless {
             ENOUGH_ENDLESS
         } else {
             ENOUGH
         };
-        if shares.bound <= enough || spot.side <= FINEST {
+        // Of a spot of which next to nothing is known a quarter would not be known either.
+        if shares.bound <= enough || shares.bound > HOPELESS || spot.side <= FINEST {
             return shares;
         }
         let mut together = Shares::default();

@@ -119,6 +119,14 @@ impl<'a> Regions<'a> {
     /// The shares of all that was added.
     pub fn finish(self) -> Shares {
         let mut shares = self.shares;
+        let is_known = shares.by_slot.iter().all(|(_, share)| share.is_finite());
+        if !is_known || shares.bound.is_nan() {
+            // Out of the range of numbers: nothing is known of the spot but its colours.
+            for (_, share) in &mut shares.by_slot {
+                *share = 1.0;
+            }
+            shares.bound = 1.0;
+        }
         if let [_, _, ..] = shares.by_slot.as_slice() {
             // Sums and products of a few numbers below 1.
             shares.bound += 8.0 * f64::UNIT;

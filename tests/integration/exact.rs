@@ -177,6 +177,46 @@ fn four_quarters_are_the_pixel_of_scenes_that_pierce_themselves() {
 }
 
 #[test]
+fn four_quarters_are_the_pixel_of_extreme_cameras() {
+    let figure = example("figure_9_9.scn", 24, 16);
+    let with = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = figure.clone();
+        change(&mut scene);
+        scene
+    };
+    let wide = |d: f64| with(&|scene| scene.camera.lens = Lens::Distance(d));
+    let squares = |side: f64| {
+        with(&|scene| {
+            for object in &mut scene.objects {
+                if let Shape::Checkerboard(board) = &mut object.shape {
+                    board.square = side;
+                }
+            }
+        })
+    };
+    let sized = |width: u32, height: u32| {
+        with(&|scene| (scene.image.width, scene.image.height) = (width, height))
+    };
+    for (name, scene) in [
+        ("wide", wide(0.1)),
+        ("very wide", wide(0.02)),
+        ("narrow", wide(1e5)),
+        ("tiny squares", squares(1e-3)),
+        ("huge squares", squares(1e6)),
+        ("a pixel", sized(1, 1)),
+        ("a row", sized(60, 1)),
+        ("a column", sized(1, 60)),
+    ] {
+        assert!(
+            exact(&scene).bound() <= 1e-6,
+            "{name}: {:e}",
+            exact(&scene).bound()
+        );
+        adds_up(&scene, name);
+    }
+}
+
+#[test]
 fn a_quarter_turn_sweeps_the_other_way() {
     let mut scenes: Vec<_> = examples()
         .iter()
