@@ -93,20 +93,20 @@ Examples:
   pinhole diff mine.png figure.scn -o where.png  also a heat map of the differences
   pinhole diff mine.png figure.scn --tolerance 8 --format json
 
-Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white. Where B is a
-scene, simple mistakes that explain the difference are named: a mirrored picture, a wrong distance or
+Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white. Where B is a \
+scene, simple mistakes that explain the difference are named: a mirrored picture, a wrong distance or \
 roll, colours averaged without decoding them, an object in the wrong place, too few samples.
 
-JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel,
-a, b} (in steps), beyond {pixels, share}, tolerance (in steps), equal, likely [{mistake, message, help,
-rmse, explains}] with the best explanation first; rmse is what it leaves, explains its share of the
+JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
+a, b} (in steps), beyond {pixels, share}, tolerance (in steps), equal, likely [{mistake, message, help, \
+rmse, explains}] with the best explanation first; rmse is what it leaves, explains its share of the \
 squared difference, 0 to 1. Of pictures of different sizes rmse, largest and beyond are null.
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 
 const REPORT_EXAMPLES: &str = "\
-Renders the scenes by every method with more and more samples, several times and in mixed order, compares
-the pictures with the exact one, and tells times, errors, and what an error takes. How many samples and
+Renders the scenes by every method with more and more samples, several times and in mixed order, compares \
+the pictures with the exact one, and tells times, errors, and what an error takes. How many samples and \
 runs there are follows from the time that --budget gives, unless --samples and --runs say it.
 
 Examples:
@@ -217,7 +217,7 @@ pub struct ReportArgs {
     pub runs: Option<u64>,
     /// Tell the samples and the time that this error takes, in linear light, such as 1/256 or 0.001; may be given
     /// any number of times
-    #[arg(long = "error", value_name = "E", default_value = "1/256", value_parser = error)]
+    #[arg(long = "error", value_name = "E", default_value = "1/256", allow_negative_numbers = true, value_parser = error)]
     pub errors: Vec<f64>,
     /// About how long a scene may take, where --samples and --runs leave a choice
     #[arg(long, value_name = "SECONDS", default_value_t = 45, value_parser = value_parser!(u64).range(1..=1_000_000))]
@@ -228,9 +228,9 @@ pub struct ReportArgs {
     /// the formulas of a textbook
     #[arg(long, conflicts_with_all = ["scenes", "output", "methods", "samples", "runs", "errors", "budget", "sets"])]
     pub numerics: bool,
-    /// How many inputs to ask of each case
-    #[arg(long, value_name = "N", default_value_t = 10_000, requires = "numerics", value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
-    pub inputs: u64,
+    /// How many inputs to ask of each case [default: 10000]
+    #[arg(long, value_name = "N", requires = "numerics", value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
+    pub inputs: Option<u64>,
     #[command(flatten)]
     pub format: FormatArgs,
     /// How many threads to use [default: one for each processor]
@@ -253,7 +253,7 @@ pub struct DiffArgs {
     /// [default: what rounding explains, 0.5 for each picture of 8 bits, 0.002 for one of 16, 0.06 for an
     /// EXR of half floats and next to nothing for one of floats; the exact picture's own bound, as good as
     /// nothing, always comes on top]
-    #[arg(long, value_name = "STEPS", value_parser = not_negative)]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
     #[command(flatten)]
     pub overrides: Overrides,

@@ -14,6 +14,9 @@ use super::{
     output, progress,
 };
 
+/// How many inputs each hard case gets unless it is said.
+const INPUTS: u64 = 10_000;
+
 /// Makes the report that is asked for.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if args.numerics {
@@ -31,17 +34,18 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
 /// Asks the hard cases.
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
-    let total = args.inputs.saturating_mul(numerics::cases().count() as u64);
+    let inputs = args.inputs.unwrap_or(INPUTS);
+    let total = inputs.saturating_mul(numerics::cases().count() as u64);
     let threads = threads(args);
     let table = progress::watched(total, |done| {
         let control = Control {
             threads,
-            progress: &|inputs| {
-                done.fetch_add(inputs, Ordering::Relaxed);
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
             },
             cancel,
         };
-        numerics::run(args.inputs, &control)
+        numerics::run(inputs, &control)
     });
     let table = match table {
         Ok(table) => table,

@@ -3,7 +3,7 @@
 use super::{
     fit::median,
     measure::{Measurement, Point},
-    table::{error, method_list, seconds},
+    table::{error, method_list, plural, seconds},
 };
 use crate::numbers::at_most;
 use crate::scene::Method;
@@ -45,11 +45,11 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
                 false => "",
             };
             format!(
-                "the fastest sampled method, {}, needs {} for an error of {} ({} samples per pixel{extrapolated})",
+                "the fastest sampled method, {}, needs {} for an error of {} ({} per pixel{extrapolated})",
                 method.name(),
                 seconds(needed.seconds),
                 error(wanted),
-                needed.per_pixel
+                plural(needed.per_pixel as u64, "sample")
             )
         });
         let parts: Vec<_> = [exact.clone(), sampled].into_iter().flatten().collect();
@@ -105,7 +105,7 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     {
         notes.push(
             "scatter lets its samples fall anywhere in the picture: with n per pixel on average a share of about exp(−n) of the \
-             pixels gets none (37 % at 1, 2 % at 4) and shows the background, which is most of its error there."
+             pixels gets none (37 % at 1, 2 % at 4) and shows the background instead."
                 .to_owned(),
         );
     }
