@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::{cells, edge, sides::Known};
 
 /// The unit roundoff of `f64`.
-pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
+pub(super) const UNIT: f64 = <f64 as crate::math::Real>::UNIT;
 /// Up to about this many squares are cut out one by one.
 const FEW: f64 = 24.0;
 /// More than this many take too long, which only the widest of views have in a pixel.

@@ -7,7 +7,10 @@ use crate::{
     tracer::{Curve, Line},
 };
 
-use super::region::{Region, Regions, Shares};
+use super::{
+    board::measure,
+    region::{Region, Regions, Shares},
+};
 
 /// The pixel itself.
 pub const PIXEL: [DVec2; 4] = [
@@ -37,7 +40,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
             .collect();
     }
     for polygon in &polygons {
-        let area = area(polygon);
+        let area = measure(polygon.iter().copied()).0.abs();
         if area < SPECK {
             regions.doubt(area);
         }
@@ -76,15 +79,6 @@ fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
         part
     };
     vec![side(1.0), side(-1.0)]
-}
-
-/// The area of a convex polygon.
-pub fn area(polygon: &[DVec2]) -> f64 {
-    let mut twice = 0.0;
-    for i in 1..polygon.len().saturating_sub(1) {
-        twice += (polygon[i] - polygon[0]).perp_dot(polygon[i + 1] - polygon[0]);
-    }
-    0.5 * twice.abs()
 }
 
 fn middle(polygon: &[DVec2]) -> DVec2 {

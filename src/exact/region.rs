@@ -119,12 +119,13 @@ impl<'a> Regions<'a> {
     /// The shares of all that was added.
     pub fn finish(self) -> Shares {
         let mut shares = self.shares;
-        let is_known = shares.by_slot.iter().all(|(_, share)| share.is_finite());
-        if !is_known || shares.bound.is_nan() {
-            // Out of the range of numbers: nothing is known of the spot but its colours.
-            for (_, share) in &mut shares.by_slot {
-                *share = 1.0;
-            }
+        // What the regions leave out of the spot, or count twice, may have any colour.
+        let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
+        shares.bound += (1.0 - total).abs();
+        if !(shares.bound.is_finite() && total > 0.0) {
+            // Out of the range of numbers: nothing is known of the spot.
+            let background = self.world.palette().len() - 1;
+            shares.by_slot = vec![(background, 1.0)];
             shares.bound = 1.0;
         }
         if let [_, _, ..] = shares.by_slot.as_slice() {

@@ -85,13 +85,13 @@ impl Sweep<'_> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let is_last = width < NARROW || self.slabs >= MANY;
         let mut doubtful = 0.0;
-        let mut pieces: Vec<(Track, Piece)> = Vec::with_capacity(self.tracks.len());
+        let mut pieces: Vec<(&Track, Piece)> = Vec::with_capacity(self.tracks.len());
         for track in &self.tracks {
             if !track.is_at(middle) {
                 continue;
             }
             match track.piece(left, right) {
-                Some(piece) => pieces.push((track.clone(), piece)),
+                Some(piece) => pieces.push((track, piece)),
                 None if is_last => doubtful += width.min(1.0),
                 None => return Some(middle),
             }
@@ -100,7 +100,8 @@ impl Sweep<'_> {
         let place = |y: f64| pieces.partition_point(|(_, piece)| piece.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
         // The pixel's sides in order with what lies outside of them, and neighbours inside with each other.
-        let (bottom, top) = (side(-0.5), side(0.5));
+        let sides = [-0.5, 0.5].map(|y| (Track::Level(y), Piece::level(y)));
+        let [bottom, top] = sides.each_ref().map(|(track, piece)| (track, *piece));
         let below = pieces[..first].iter().map(|below| (below, &bottom));
         let above = pieces[end..].iter().map(|above| (&top, above));
         let mut inside = vec![&bottom];
@@ -127,11 +128,6 @@ impl Sweep<'_> {
         }
         None
     }
-}
-
-/// A side of the pixel.
-fn side(y: f64) -> (Track, Piece) {
-    (Track::Level(y), Piece::level(y))
 }
 
 /// Adds the region between two neighbours.
