@@ -3,15 +3,17 @@
 use glam::DVec2;
 
 use super::{cells, edge, sides::Known};
+use crate::math::{Double, Real};
 
 /// The unit roundoff of `f64`.
-pub(super) const UNIT: f64 = <f64 as crate::math::Real>::UNIT;
+pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
 /// Up to about this many squares are cut out one by one.
 const FEW: f64 = 24.0;
-/// More than this many take too long, which only the widest of views have in a pixel.
-const MANY: f64 = 200_000.0;
-/// The part of the board that is further away than so many squares is summed along its boundary.
-const FAR: f64 = 48.0;
+/// More rows than this take too long, which only the widest of views have in a pixel.
+const MANY: f64 = 500_000.0;
+/// The part of the board that is further away than so many squares is summed along its boundary, by series in which each
+/// term is about n/π of this times smaller than the n-th before it.
+pub(super) const FAR: f64 = 18.0;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,6 +43,8 @@ pub(crate) struct Board {
     pub(super) below: [f64; 3],
     /// ∂m/∂a and ∂m/∂b.
     pub(super) slope: [f64; 2],
+    /// m where a and b are 0.
+    pub(super) origin: f64,
     pub(super) density: f64,
     /// Whether the floor is seen mirrored: the sign of det M.
     pub(super) handed: f64,
@@ -64,40 +68,54 @@ pub(super) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [Double; 3] {
+    let minor = |i: usize, j: usize| {
+        let [a, b] = [a, b].map(|v| [v[i], v[j]].map(Double::from_f64));
+        a[0].times(&b[1]).minus(&a[1].times(&b[0]))
+    };
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+/// A form by a power of two that brings its largest factor between 1 and 2, and that power.
+fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
+    let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
+    let exponent = libm::ilogb(largest);
+    (form.map(|c| libm::ldexp(c, -exponent)), exponent)
 }
 
 impl Board {
     /// The board of three linear forms, N_a and N_b, and L; they may have any common positive factor, and M must be
     /// invertible. The nearer the origin of a and b is to the pixel, the smaller the bounds.
     pub(crate) fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
-        let largest = below.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
-        let scale = libm::ldexp(1.0, -libm::ilogb(largest));
-        let [a, b, l] = [across[0], across[1], below].map(|form| form.map(|c| c * scale));
-        let columns = [cross(&b, &l), cross(&l, &a), cross(&a, &b)];
-        let det = columns[2][0] * l[0] + columns[2][1] * l[1] + columns[2][2] * l[2];
+        let (l, scale) = normalized(below);
+        let [a, b] = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
+        // Squares may be of any size; the inverse is that of forms of about the same size.
+        let [(wide, of_a), (high, of_b)] = [a, b].map(normalized);
+        let columns = [cross(&high, &l), cross(&l, &wide), cross(&wide, &high)];
+        let [x, y, z] = [0, 1, 2].map(|i| columns[2][i].times(&Double::from_f64(l[i])));
+        let det = x.plus(&y).plus(&z);
+        let third = |column: usize, exponent: i32| {
+            libm::ldexp(columns[column][2].over(&det).to_f64(), -exponent)
+        };
+        let size = det.to_f64().abs();
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
         let displacement =
-            [a, b, l]
+            [wide, high, l]
                 .iter()
                 .zip(&columns)
                 .fold(4.0 * UNIT, |sum, (form, column)| {
                     let error =
                         4.0 * UNIT * (0.5 * (form[0].abs() + form[1].abs()) + form[2].abs());
-                    sum + error * column.iter().map(|c| c.abs()).sum::<f64>() / det.abs()
+                    sum + error * column.iter().map(|c| c.to_f64().abs()).sum::<f64>() / size
                 });
         Self {
             across: [a, b],
             below: l,
-            slope: [columns[0][2] / det, columns[1][2] / det],
-            density: 1.0 / det.abs(),
-            handed: det.signum(),
+            slope: [third(0, of_a), third(1, of_b)],
+            origin: third(2, 0),
+            density: libm::ldexp(1.0 / size, -of_a - of_b),
+            handed: det.to_f64().signum(),
             displacement,
             tail: 2e-10,
         }
@@ -163,26 +181,44 @@ impl Board {
             return edge::sum(self, corners, known);
         }
         if furthest <= depth {
-            return self.square_by_square(corners);
+            return self.near(corners, [nearest, furthest]);
         }
-        let mut line = self.below;
-        line[2] -= 1.0 / depth;
-        let near = self.clip(corners, &line);
-        let far = self.clip(corners, &line.map(|c| -c));
-        let mut sum = self.square_by_square(&near);
+        let [near, far] = self.split(corners, depth);
+        let mut sum = self.near(&near, [nearest, depth]);
         sum.add(edge::sum(self, &far, known));
         sum
     }
 
-    /// Near squares, if they are not too many: then nothing is said of them.
-    fn square_by_square(&self, corners: &[Corner]) -> Sum {
-        if squares(corners) <= MANY {
+    /// Near squares, as far as they are not too many: of those behind nothing is said.
+    fn near(&self, corners: &[Corner], depths: [f64; 2]) -> Sum {
+        let rows = |corners: &[Corner]| spans(corners)[1 - cells::along(self)];
+        if rows(corners) <= MANY {
             return cells::sum(self, corners);
         }
-        Sum {
-            value: 0.0,
-            bound: measure(corners.iter().map(|c| c.at)).0.abs(),
+        let [mut low, mut high] = depths.map(libm::log);
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            let [near, _] = self.split(corners, libm::exp(middle));
+            if rows(&near) <= MANY {
+                low = middle;
+            } else {
+                high = middle;
+            }
         }
+        let [near, behind] = self.split(corners, libm::exp(low));
+        let mut sum = cells::sum(self, &near);
+        sum.bound += measure(behind.iter().map(|c| c.at)).0.abs();
+        sum
+    }
+
+    /// The parts in front of a depth and behind it.
+    fn split(&self, corners: &[Corner], depth: f64) -> [Vec<Corner>; 2] {
+        let mut line = self.below;
+        line[2] -= 1.0 / depth;
+        [
+            self.clip(corners, &line),
+            self.clip(corners, &line.map(|c| -c)),
+        ]
     }
 
     /// The corners of the part of a convex polygon where L ≥ 0.

@@ -1,96 +1,379 @@
-//! The board's integral square by square: strips of squares, then the squares of each.
+//! The board's integral where its squares are near: row by row, and square by square at the ends of the rows.
+
+use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::board::{Board, Corner, Sum, form, measure};
+use super::board::{Board, Corner, FAR, Sum, UNIT, form, measure};
+use super::edge::MAX_TERMS;
+use super::euler::{ORDERS, square_wave, waves};
+use crate::math::two_sum;
 
-/// The integral over a convex polygon that does not reach the horizon, by cutting it along every line of the board.
+/// A row with fewer whole squares is cut square by square.
+const FEW: f64 = 3.0;
+/// More squares of a row than this are summed at once.
+const MANY: f64 = 32.0;
+
+/// The axis of the board along which rows run: the one on which m changes less.
+pub(super) fn along(board: &Board) -> usize {
+    usize::from(board.slope[0].abs() > board.slope[1].abs())
+}
+
+/// The integral over a convex polygon that does not reach the horizon.
 ///
-/// Rounding moves every side of every piece by at most the board's displacement, which bounds the error by that times
-/// the pieces' perimeters.
+/// The squares of a row that lie wholly inside have a closed form each, and where a row is long most of it is summed at
+/// once; what is left of it at the polygon's sides is cut out of the picture square by square.
 pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
-    let mut perimeters = 0.0;
-    let mut value = 0.0;
-    let mut columns = Cutter::new(corners.iter().map(|c| c.at));
-    let [a, b] = &board.across;
-    while let Some(column) = columns.next(a, &board.below) {
-        let mut squares = Cutter::new(columns.piece.iter().copied());
-        while let Some(row) = squares.next(b, &board.below) {
-            let (area, perimeter) = measure(squares.piece.iter().copied());
-            let sign = if (column ^ row) & 1 == 0 { 1.0 } else { -1.0 };
-            value += sign * area.abs();
-            perimeters += perimeter;
+    let along = along(board);
+    let mut tally = Tally::default();
+    let mut rows = Cutter::new(board, 1 - along, corners.iter().map(|c| c.at));
+    while let Some(number) = rows.next(&mut tally) {
+        let row = Row {
+            board,
+            along,
+            sign: square_wave(number),
+            number,
+        };
+        let ends = row.ends(&rows.piece);
+        if ends[ends.len() - 1] - ends[0] > MANY {
+            row.long(&rows.piece, &ends, &mut tally);
+        } else if let Some(inner) = rows.whole(board, along) {
+            let mut inside = Cutter::new(board, along, rows.piece.iter().copied());
+            inside.cut(inner[0], &mut tally);
+            row.squares(&inside.piece, &mut tally);
+            inside.cut(inner[1], &mut tally);
+            row.whole(inner, &inside.piece, &mut tally);
+            row.squares(&inside.rest, &mut tally);
+        } else {
+            row.squares(&rows.piece, &mut tally);
         }
     }
-    Sum {
-        value,
-        bound: board.displacement * perimeters,
+    let mut sum = tally.sum();
+    if tally.has_inverse {
+        // What is of the forms' inverse the rounding of the forms moves as a whole.
+        let (_, perimeter) = measure(corners.iter().map(|c| c.at));
+        sum.bound += board.displacement * perimeter;
+    }
+    sum
+}
+
+/// A row of the board.
+struct Row<'a> {
+    board: &'a Board,
+    along: usize,
+    number: f64,
+    /// The sign of its square 0.
+    sign: f64,
+}
+
+impl Row<'_> {
+    /// Where a polygon's vertices are along the row, in order.
+    fn ends(&self, piece: &[DVec2]) -> Vec<f64> {
+        let mut ends: Vec<f64> = piece.iter().map(|&at| self.place(at)).collect();
+        ends.sort_by(f64::total_cmp);
+        ends
+    }
+
+    fn place(&self, at: DVec2) -> f64 {
+        form(&self.board.across[self.along], at) / form(&self.board.below, at)
+    }
+
+    /// Cuts the part of the row that a polygon shows into squares.
+    fn squares(&self, piece: &[DVec2], tally: &mut Tally) {
+        let mut squares = Cutter::new(self.board, self.along, piece.iter().copied());
+        while let Some(square) = squares.next(tally) {
+            let (area, perimeter) = measure(squares.piece.iter().copied());
+            // Of each of a few products of two steps three roundings.
+            let rounding = 4.0 * UNIT * perimeter * perimeter;
+            tally.add(self.sign * square_wave(square) * area.abs(), rounding);
+        }
+    }
+
+    /// Adds the whole squares between two lines. Together they are `piece`.
+    fn whole(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
+        let board = self.board;
+        let [slope, climb] = [board.slope[self.along], board.slope[1 - self.along]];
+        let lower = climb * self.number + board.origin;
+        let depth = |i: f64| {
+            let m = slope * i + lower;
+            [m, m + climb]
+        };
+        let (area, _) = measure(piece.iter().copied());
+        let nearest = [depth(first), depth(last)]
+            .as_flattened()
+            .iter()
+            .fold(f64::INFINITY, |m, &depth| m.min(depth));
+        let terms = slope.abs() * first.abs().max(last.abs())
+            + climb.abs() * (self.number.abs() + 1.0)
+            + board.origin.abs();
+        // Three roundings of its terms for each of the four m, and those of the formula and of the sum.
+        let relative = UNIT * (16.0 * terms / nearest + 12.0 + last - first);
+        if !(nearest > 0.0 && relative < 1.0) {
+            return tally.add(0.0, area.abs());
+        }
+        let mut sum = 0.0;
+        let (mut i, mut left) = (first, depth(first));
+        while i < last {
+            let sign = square_wave(i);
+            i += 1.0;
+            let right = depth(i);
+            // K/m³ integrates to K(m_00 + m_11)/(2·m_00·m_01·m_10·m_11) on a square.
+            let product = (left[0] * left[1]) * (right[0] * right[1]);
+            sum += sign * 0.5 * board.density * (left[0] + right[1]) / product;
+            left = right;
+        }
+        tally.add(self.sign * sum, relative * area.abs());
+        tally.has_inverse = true;
+    }
+
+    /// Adds the part of a long row that a polygon shows, whose vertices are where `ends` says.
+    ///
+    /// Between two neighbouring ends it is bounded by one side above and by one below: most of that is summed at once.
+    fn long(&self, piece: &[DVec2], ends: &[f64], tally: &mut Tally) {
+        let mut inside = Cutter::new(self.board, self.along, piece.iter().copied());
+        for ends in ends.windows(2) {
+            let (first, last) = (ends[0].ceil(), ends[1].floor());
+            if last - first <= MANY {
+                continue;
+            }
+            inside.cut(first, tally);
+            self.squares(&inside.piece, tally);
+            inside.cut(last, tally);
+            let Some(strip) = Strip::new(self, [first, last], &inside.chords) else {
+                self.squares(&inside.piece, tally);
+                continue;
+            };
+            let [first, last] = strip.smooth();
+            if last - first <= MANY {
+                self.squares(&inside.piece, tally);
+                continue;
+            }
+            let mut pieces = Cutter::new(self.board, self.along, inside.piece.iter().copied());
+            pieces.cut(first, tally);
+            self.squares(&pieces.piece, tally);
+            pieces.cut(last, tally);
+            strip.sum([first, last], &pieces.piece, tally);
+            self.squares(&pieces.rest, tally);
+        }
+        self.squares(&inside.rest, tally);
     }
 }
 
-/// A convex polygon from which one strip of squares after the other is cut off.
+/// Much of a row: what lies between two lines of the board, and between two sides on which m is linear.
+///
+/// A line at a has G(a) = K/2|q|·(m^−2 − M^−2) of J = K/m³ between the sides, where m and M are theirs, and s(a)·G has the
+/// antiderivative Σ (−1)^k A_k+1(a) G^(k)(a). At a line of the board just the odd waves are not 0.
+struct Strip<'a> {
+    row: &'a Row<'a>,
+    first: f64,
+    /// m at the first line and its slope, on the near side and on the far one.
+    sides: [[f64; 2]; 2],
+    last: f64,
+}
+
+impl<'a> Strip<'a> {
+    /// Between two lines, given where they cut the row's piece.
+    fn new(row: &'a Row, [first, last]: [f64; 2], chords: &[Chord; 2]) -> Option<Self> {
+        let depth = |at: DVec2| 1.0 / form(&row.board.below, at);
+        let ends = |chord: Chord| {
+            let [s, t] = chord?.map(depth);
+            Some([s.min(t), s.max(t)])
+        };
+        let (from, to) = (ends(chords[0])?, ends(chords[1])?);
+        let side = |i: usize| [from[i], (to[i] - from[i]) / (last - first)];
+        Some(Self {
+            row,
+            first,
+            sides: [side(0), side(1)],
+            last,
+        })
+    }
+
+    fn depth(&self, [start, slope]: [f64; 2], i: f64) -> f64 {
+        start + slope * (i - self.first)
+    }
+
+    /// The part of it in which m changes little from line to line.
+    fn smooth(&self) -> [f64; 2] {
+        let [mut first, mut last] = [self.first, self.last];
+        for side in self.sides {
+            let slope = side[1];
+            if slope > 0.0 {
+                first = first.max(self.first + (FAR - side[0] / slope).ceil());
+            } else if slope < 0.0 {
+                let end = self.depth(side, self.last);
+                last = last.min(self.last - (FAR + end / slope).ceil());
+            }
+        }
+        [first, last]
+    }
+
+    /// Adds its part between two lines, which is `piece`.
+    fn sum(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
+        let waves = waves::<MAX_TERMS>(0.0);
+        let mut sum = 0.0;
+        let mut bound = 0.0;
+        for (i, sense) in [(first, -1.0), (last, 1.0)] {
+            for (side, half) in self.sides.into_iter().zip([1.0, -1.0]) {
+                let end = self.potential(&waves, self.depth(side, i), side[1]);
+                sum += sense * half * square_wave(i) * end.value;
+                bound += end.bound;
+            }
+        }
+        let (_, perimeter) = measure(piece.iter().copied());
+        // The sides are those between points that are a few roundings off.
+        bound += 8.0 * UNIT * perimeter;
+        tally.add(self.row.sign * sum, bound);
+        tally.has_inverse = true;
+    }
+
+    /// Σ A_k+1(0)·(K/2|q|)·(k + 1)!·γ^k·m^(−2−k), with what it neglects: |A_n| ≤ ½π^(1−n), and G^(n−1) is monotonic.
+    fn potential(&self, waves: &[f64; ORDERS], depth: f64, slope: f64) -> Sum {
+        let board = self.row.board;
+        let u = 1.0 / depth;
+        let first = 0.5 * board.density / board.slope[1 - self.row.along].abs() * u * u;
+        let (mut sum, mut factor) = (0.0, first);
+        for k in 0..MAX_TERMS - 1 {
+            sum += waves[k + 1] * factor;
+            factor *= slope * u * (k + 2) as f64;
+        }
+        let neglected = 0.5 * factor.abs() / libm::pow(PI, (MAX_TERMS - 1) as f64);
+        Sum {
+            value: sum,
+            bound: neglected + 16.0 * UNIT * first,
+        }
+    }
+}
+
+/// A sum of many numbers, and what it is off. The numbers' own rounding is kept and added in the end.
+#[derive(Default)]
+struct Tally {
+    value: f64,
+    rest: f64,
+    bound: f64,
+    /// Whether anything was computed of the forms' inverse.
+    has_inverse: bool,
+}
+
+impl Tally {
+    fn add(&mut self, value: f64, bound: f64) {
+        let sum = two_sum(self.value, value);
+        self.value = sum.hi;
+        self.rest += sum.lo;
+        self.bound += bound;
+    }
+
+    fn sum(&self) -> Sum {
+        Sum {
+            value: self.value + self.rest,
+            bound: self.bound + 2.0 * UNIT,
+        }
+    }
+}
+
+/// A convex polygon from which one strip of squares after the other is cut off, along one axis of the board.
 struct Cutter {
+    across: [f64; 3],
+    below: [f64; 3],
     rest: Vec<DVec2>,
     piece: Vec<DVec2>,
     spare: Vec<DVec2>,
     strips: Option<(i64, i64)>,
+    /// Where the lines on both sides of the piece cut the polygon.
+    chords: [Chord; 2],
 }
 
+/// What a line has of a polygon: its ends, if it was met.
+type Chord = Option<[DVec2; 2]>;
+
 impl Cutter {
-    fn new(points: impl Iterator<Item = DVec2>) -> Self {
+    fn new(board: &Board, axis: usize, points: impl Iterator<Item = DVec2>) -> Self {
         Self {
+            across: board.across[axis],
+            below: board.below,
             rest: points.collect(),
             piece: Vec::with_capacity(8),
             spare: Vec::with_capacity(8),
             strips: None,
+            chords: [None; 2],
         }
     }
 
-    /// Makes `piece` the part of the rest between the lines i and i + 1 of N/L, and returns i.
-    fn next(&mut self, across: &[f64; 3], below: &[f64; 3]) -> Option<i64> {
+    /// Makes `piece` the part of the rest between the lines i and i + 1, and returns i.
+    fn next(&mut self, tally: &mut Tally) -> Option<f64> {
         if self.rest.len() < 3 {
             return None;
         }
-        let (i, last) = self
-            .strips
-            .unwrap_or_else(|| range(&self.rest, across, below));
+        let (i, last) = self.strips.unwrap_or_else(|| self.range());
         self.strips = Some((i + 1, last));
-        self.piece.clear();
         if i >= last {
+            self.chords = [self.chords[1], None];
             std::mem::swap(&mut self.piece, &mut self.rest);
-            return Some(last);
+            self.rest.clear();
+            return Some(last as f64);
         }
-        let n = (i + 1) as f64;
-        let line = [
-            across[0] - n * below[0],
-            across[1] - n * below[1],
-            across[2] - n * below[2],
-        ];
+        self.cut((i + 1) as f64, tally);
+        Some(i as f64)
+    }
+
+    /// The first and the last strip that the polygon meets.
+    fn range(&self) -> (i64, i64) {
+        self.rest
+            .iter()
+            .fold((i64::MAX, i64::MIN), |(low, high), &p| {
+                let i = (form(&self.across, p) / form(&self.below, p)).floor() as i64;
+                (low.min(i), high.max(i))
+            })
+    }
+
+    /// Makes `piece` the part of the rest before the line n.
+    fn cut(&mut self, n: f64, tally: &mut Tally) {
+        let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
+        self.piece.clear();
         self.spare.clear();
-        split(&self.rest, &line, &mut self.piece, &mut self.spare);
+        let chord = split(&self.rest, &line, &mut self.piece, &mut self.spare);
         std::mem::swap(&mut self.rest, &mut self.spare);
-        Some(i)
+        self.chords = [self.chords[1], chord];
+        let Some([from, to]) = chord else { return };
+        let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
+        // The factors are off by three roundings of these, the form's value by four, and the point by four of its own.
+        let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
+        let step = (to - from).abs();
+        tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
+    }
+
+    /// The whole squares of the strip, as lines of the other axis count them, if there are some.
+    fn whole(&self, board: &Board, axis: usize) -> Option<[f64; 2]> {
+        let [Some(lower), Some(upper)] = self.chords else {
+            return None;
+        };
+        let [lower, upper] = [lower, upper].map(|chord| {
+            let [s, t] = chord.map(|p| form(&board.across[axis], p) / form(&self.below, p));
+            [s.min(t), s.max(t)]
+        });
+        let first = lower[0].max(upper[0]).ceil();
+        let last = lower[1].min(upper[1]).floor();
+        (last - first >= FEW).then_some([first, last])
     }
 }
 
-/// The first and the last strip that a polygon meets.
-fn range(points: &[DVec2], across: &[f64; 3], below: &[f64; 3]) -> (i64, i64) {
-    points.iter().fold((i64::MAX, i64::MIN), |(low, high), &p| {
-        let i = (form(across, p) / form(below, p)).floor() as i64;
-        (low.min(i), high.max(i))
-    })
-}
-
-/// A convex polygon's parts on the negative and on the positive side of a line.
-fn split(points: &[DVec2], line: &[f64; 3], negative: &mut Vec<DVec2>, positive: &mut Vec<DVec2>) {
-    let Some(&last) = points.last() else { return };
-    let mut before = (last, form(line, last));
+/// A convex polygon's parts on the negative and on the positive side of a line, and the line's chord.
+fn split(
+    points: &[DVec2],
+    line: &[f64; 3],
+    negative: &mut Vec<DVec2>,
+    positive: &mut Vec<DVec2>,
+) -> Chord {
+    let mut before = points.last().map(|&last| (last, form(line, last)))?;
+    let mut chord: Chord = None;
+    let mut meet = |at: DVec2| chord = Some([chord.map_or(at, |[first, _]| first), at]);
     for &point in points {
         let side = form(line, point);
         if (side > 0.0 && before.1 < 0.0) || (side < 0.0 && before.1 > 0.0) {
             let at = before.0 + (point - before.0) * (before.1 / (before.1 - side));
             negative.push(at);
             positive.push(at);
+            meet(at);
         }
         if side <= 0.0 {
             negative.push(point);
@@ -98,6 +381,10 @@ fn split(points: &[DVec2], line: &[f64; 3], negative: &mut Vec<DVec2>, positive:
         if side >= 0.0 {
             positive.push(point);
         }
+        if side == 0.0 {
+            meet(point);
+        }
         before = (point, side);
     }
+    chord
 }

@@ -18,7 +18,7 @@ use super::sides::Known;
 use std::{array, f64::consts::PI};
 
 /// The most terms of the asymptotic series.
-const MAX_TERMS: usize = 12;
+pub(super) const MAX_TERMS: usize = 20;
 /// The series is long enough when what it neglects is below this, in square pixels.
 const TRUNCATION: f64 = 1e-14;
 
@@ -135,6 +135,7 @@ fn waves_of(t: f64, terms: usize) -> [f64; ORDERS] {
         0..=2 => waves::<2>(t),
         3..=4 => waves::<4>(t),
         5..=7 => waves::<7>(t),
+        8..=12 => waves::<12>(t),
         _ => waves::<MAX_TERMS>(t),
     }
 }
@@ -357,6 +358,7 @@ impl Crossings<'_> {
                 5 => self.block::<5>(series, done, count),
                 6 => self.block::<6>(series, done, count),
                 7..=9 => self.block::<9>(series, done, count),
+                10..=12 => self.block::<12>(series, done, count),
                 _ => self.block::<MAX_TERMS>(series, done, count),
             };
             sum.value += if done % 2.0 == 0.0 { block } else { -block };

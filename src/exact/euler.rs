@@ -3,28 +3,55 @@
 use std::array;
 
 /// One more than the highest order there is.
-pub(super) const ORDERS: usize = 14;
+pub(super) const ORDERS: usize = 22;
 
-/// The coefficients of 1/cosh(x/2) in even powers of x: Euler's numbers by 4^j·(2j)!.
-const SECH: [f64; 7] = [
-    1.0,
-    -1.0 / 8.0,
-    5.0 / 384.0,
-    -61.0 / 46080.0,
-    1385.0 / 10321920.0,
-    -50521.0 / 3715891200.0,
-    2702765.0 / 1961990553600.0,
-];
+/// How many even powers of η there are in the waves of the highest order.
+const POWERS: usize = ORDERS / 2;
+
+/// The coefficients of 1/cosh(x/2) in even powers of x: Euler's numbers by 4^j·(2j)!, and from the seventh on by
+/// (−1)^j·4β(2j + 1)/π^(2j+1) with Dirichlet's β (DLMF 24.8.4 at x = ½), of which six terms are enough.
+const SECH: [f64; POWERS] = {
+    let mut all = [0.0; POWERS];
+    all[0] = 1.0;
+    all[1] = -1.0 / 8.0;
+    all[2] = 5.0 / 384.0;
+    all[3] = -61.0 / 46080.0;
+    all[4] = 1385.0 / 10321920.0;
+    all[5] = -50521.0 / 3715891200.0;
+    all[6] = 2702765.0 / 1961990553600.0;
+    let mut j = 7;
+    while j < POWERS {
+        let (mut sum, mut n) = (0.0, 6);
+        while n > 0 {
+            n -= 1;
+            let term = power(1.0 / (2 * n + 1) as f64, 2 * j + 1);
+            sum = if n % 2 == 0 { sum + term } else { sum - term };
+        }
+        let size = 4.0 * sum * power(std::f64::consts::FRAC_1_PI, 2 * j + 1);
+        all[j] = if j % 2 == 0 { size } else { -size };
+        j += 1;
+    }
+    all
+};
+
+const fn power(base: f64, exponent: usize) -> f64 {
+    let (mut product, mut left) = (1.0, exponent);
+    while left > 0 {
+        product *= base;
+        left -= 1;
+    }
+    product
+}
 
 /// The factors of η^i, i even or odd as k is, in A_k on a square: in the row k the factor of η^2j, or η^(2j+1), at j.
-const FACTORS: [[f64; 7]; ORDERS] = {
+const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;
     while k < ORDERS {
         factorials[k] = factorials[k - 1] * k as f64;
         k += 1;
     }
-    let mut all = [[0.0; 7]; ORDERS];
+    let mut all = [[0.0; POWERS]; ORDERS];
     let mut k = 1;
     while k < ORDERS {
         let mut j = 0;
@@ -91,6 +118,14 @@ pub(super) fn waves_at<const TERMS: usize, const N: usize>(t: [f64; N]) -> [[f64
     order!(11, odd, 5 4 3 2 1 0);
     order!(12, sign, 6 5 4 3 2 1 0);
     order!(13, odd, 6 5 4 3 2 1 0);
+    order!(14, sign, 7 6 5 4 3 2 1 0);
+    order!(15, odd, 7 6 5 4 3 2 1 0);
+    order!(16, sign, 8 7 6 5 4 3 2 1 0);
+    order!(17, odd, 8 7 6 5 4 3 2 1 0);
+    order!(18, sign, 9 8 7 6 5 4 3 2 1 0);
+    order!(19, odd, 9 8 7 6 5 4 3 2 1 0);
+    order!(20, sign, 10 9 8 7 6 5 4 3 2 1 0);
+    order!(21, odd, 10 9 8 7 6 5 4 3 2 1 0);
     all
 }
 
@@ -102,7 +137,7 @@ mod tests {
     #[test]
     fn waves_are_the_fourier_series() {
         for t in [-3.7, -1.0, -0.2, 0.0, 0.31, 0.5, 1.25, 2.0, 7.9] {
-            for (k, wave) in waves::<12>(t).into_iter().enumerate().skip(2) {
+            for (k, wave) in waves::<20>(t).into_iter().enumerate().skip(2) {
                 let mut sum = 0.0;
                 for n in (1..4001).step_by(2) {
                     let x = f64::from(n) * PI;

@@ -12,12 +12,14 @@
 
 use super::board::{Sum, UNIT};
 use super::edge::{Crossings, Series};
+use super::level;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Below so many crossings one by one is as good as by modes.
 const SHORT: f64 = 20_000.0;
-/// So many are summed one by one where modes are of no use; of more it is only said that they cannot add up to much.
-const LONG: f64 = 300_000.0;
+/// The same where m hardly grows; and so many are summed one by one where modes would need waves of high orders.
+const SHORT_LEVEL: f64 = 100_000.0;
+const LONG_LEVEL: f64 = 300_000.0;
 /// Where an edge crosses more lines than this, squares are so many that it may neglect the other, in square pixels.
 const DENSE: f64 = 512.0;
 const CRUMB: f64 = 2e-12;
@@ -39,16 +41,17 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
             bound: trivial,
         };
     }
-    // Where m hardly grows, modes do not fall off.
     let is_level = all.edge.rise * all.lines < all.depth;
-    if all.lines <= SHORT || (is_level && all.lines <= LONG) {
+    if all.lines <= if is_level { SHORT_LEVEL } else { SHORT } {
         return all.one_by_one(series, all.lines);
     }
     if is_level {
-        return Sum {
-            value: 0.0,
-            bound: trivial,
-        };
+        // Where m hardly grows the modes of the ends do not fall off.
+        let sum = level::crossings(all, series, trivial);
+        if sum.bound > tolerance && all.lines <= LONG_LEVEL {
+            return all.one_by_one(series, all.lines);
+        }
+        return sum;
     }
     let direct = ((start(all, series, tolerance) - all.depth) / all.edge.rise)
         .ceil()
@@ -142,7 +145,6 @@ fn rest(all: &Crossings, direct: f64, series: &Series, tolerance: f64) -> Sum {
     let threshold = 2.0 * first * waves * u3 / allowance;
     let threshold = threshold * threshold;
 
-    let turn = |x: f64| x - 2.0 * (0.5 * x).round_ties_even();
     let stride = turn(all.edge.stride);
     let stride = stride - 1.0_f64.copysign(stride);
     let t = turn(all.t + direct * all.edge.stride);
@@ -188,13 +190,18 @@ fn rest(all: &Crossings, direct: f64, series: &Series, tolerance: f64) -> Sum {
     }
 }
 
-type Complex = [f64; 2];
+/// Less whole turns, in half turns: between −1 and 1.
+pub(super) fn turn(x: f64) -> f64 {
+    x - 2.0 * (0.5 * x).round_ties_even()
+}
 
-fn times(a: Complex, b: Complex) -> Complex {
+pub(super) type Complex = [f64; 2];
+
+pub(super) fn times(a: Complex, b: Complex) -> Complex {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
-fn square(a: Complex) -> Complex {
+pub(super) fn square(a: Complex) -> Complex {
     times(a, a)
 }
 
@@ -206,12 +213,12 @@ fn over(a: Complex, b: Complex) -> Complex {
     ]
 }
 
-fn phase(x: f64) -> Complex {
+pub(super) fn phase(x: f64) -> Complex {
     [libm::cos(x), libm::sin(x)]
 }
 
 /// V_3, V_4 and V_5 at θ, |θ| ≤ π, of which e^iθ is given as well, up to R″.
-fn lerch(theta: f64, turn: Complex, w: f64) -> [Complex; 3] {
+pub(super) fn lerch(theta: f64, turn: Complex, w: f64) -> [Complex; 3] {
     let (r, slope) = rest_of_pole(theta, turn);
     let h = exponential_integrals(theta * w);
     let u = 1.0 / w;

@@ -19,6 +19,7 @@ mod cells;
 mod edge;
 mod euler;
 mod horizon;
+mod level;
 mod polygon;
 mod region;
 mod sides;

@@ -174,6 +174,57 @@ fn pixels_of_many_squares() {
     }
 }
 
+/// A view so wide that a pixel sees near squares far to the side: rows of hundreds, cut by sides of all slopes.
+#[test]
+fn wide_views() {
+    for degrees in [0.0, 0.3, 2.0, 30.0, 45.0, 89.9, 90.0, 135.0, 200.0] {
+        for (focal, across, depth) in [(0.5, 6.0, 30.0), (0.05, 2.0, 9.0), (0.02, 40.0, 0.6)] {
+            let view = View {
+                height: 1.7,
+                focal,
+                degrees,
+                place: DVec2::new(across, 0.5 + 1.7 * focal / depth),
+                foot: DVec2::new(0.3, 0.45),
+            };
+            let found = view.board().over(&PIXEL);
+            agree(found, brute(view.forms(), &PIXEL), 1e-10, view);
+            assert!(found.bound < 1e-10, "{view:?}: {found:?}");
+        }
+    }
+}
+
+/// Squares so small that an edge crosses a million lines, from above and aslant, beside the same in pieces that cross fewer.
+#[test]
+fn a_million_lines() {
+    for (turn, tilt) in [
+        (0.0, 0.0),
+        (0.3, 0.0),
+        (0.25, 1e-9),
+        (0.785, 1e-7),
+        (0.7, 1e-3),
+    ] {
+        let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+        let squares = 1.1e6;
+        let a = [squares * cos, -squares * sin, 0.25 * squares];
+        let b = [squares * sin, squares * cos, 0.15 * squares];
+        let board = Board::new([a, b], [tilt, 0.3 * tilt, 1.0]);
+        let whole = board.over(&PIXEL);
+        let strips = 16;
+        let mut pieces = Sum::default();
+        for i in 0..strips * strips {
+            let low = DVec2::new(f64::from(i / strips), f64::from(i % strips)) / f64::from(strips);
+            let square = PIXEL.map(|p| low + (p + 0.5) / f64::from(strips) - 0.5);
+            pieces.add(board.over(&square));
+        }
+        let error = (whole.value - pieces.value).abs();
+        assert!(
+            error <= whole.bound + pieces.bound,
+            "{turn}: {whole:?} {pieces:?}"
+        );
+        assert!(whole.bound < 1e-9, "{turn} {tilt}: {whole:?}");
+    }
+}
+
 #[test]
 fn the_horizon() {
     for degrees in [
