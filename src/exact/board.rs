@@ -9,7 +9,7 @@ use crate::math::{Double, Real};
 pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
 /// Up to about this many squares are cut out one by one.
 const FEW: f64 = 24.0;
-/// More rows than this take too long, which only the widest of views have in a pixel.
+/// More short rows than this take too long, which only the widest of views have in a pixel.
 const MANY: f64 = 500_000.0;
 /// The part of the board that is further away than so many squares is summed along its boundary, by series in which each
 /// term is about n/π of this times smaller than the n-th before it.
@@ -23,6 +23,18 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
+    /// Out of the range of numbers, or not worth having: then all that is known is that no sum is greater than the area.
+    fn within(self, polygon: impl Iterator<Item = DVec2>) -> Self {
+        let area = measure(polygon).0.abs();
+        if self.value.is_finite() && self.bound < area {
+            return self;
+        }
+        Self {
+            value: 0.0,
+            bound: area,
+        }
+    }
+
     pub(super) fn add(&mut self, other: Sum) {
         self.value += other.value;
         self.bound += other.bound;
@@ -46,6 +58,8 @@ pub(crate) struct Board {
     /// m where a and b are 0.
     pub(super) origin: f64,
     pub(super) density: f64,
+    /// K over |∂m/∂a| and over |∂m/∂b|, with bounds relative to them: well known even where K itself is not.
+    pub(super) per_slope: [Sum; 2],
     /// Whether the floor is seen mirrored: the sign of det M.
     pub(super) handed: f64,
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
@@ -97,6 +111,14 @@ impl Board {
         let third = |column: usize, exponent: i32| {
             libm::ldexp(columns[column][2].over(&det).to_f64(), -exponent)
         };
+        let per_slope = |column: usize, form: &[f64; 3], exponent: i32| {
+            let minor = columns[column][2].to_f64().abs();
+            let terms = (form[0] * l[1]).abs() + (form[1] * l[0]).abs();
+            Sum {
+                value: libm::ldexp(1.0 / minor, -exponent),
+                bound: 2.0 * UNIT * (terms / minor + 1.0),
+            }
+        };
         let size = det.to_f64().abs();
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
@@ -115,6 +137,7 @@ impl Board {
             slope: [third(0, of_a), third(1, of_b)],
             origin: third(2, 0),
             density: libm::ldexp(1.0 / size, -of_a - of_b),
+            per_slope: [per_slope(0, &high, of_b), per_slope(1, &wide, of_a)],
             handed: det.to_f64().signum(),
             displacement,
             tail: 2e-10,
@@ -129,16 +152,8 @@ impl Board {
 
     /// The same for a whole pixel, some of whose sides may be known.
     pub(crate) fn over_known(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
-        let sum = self.unchecked(polygon, known);
-        let area = measure(polygon.iter().copied()).0.abs();
-        if sum.value.is_finite() && sum.bound < area {
-            return sum;
-        }
-        // Out of the range of numbers, or not worth having: no sum is greater than this.
-        Sum {
-            value: 0.0,
-            bound: area,
-        }
+        self.unchecked(polygon, known)
+            .within(polygon.iter().copied())
     }
 
     fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
@@ -185,29 +200,44 @@ impl Board {
         }
         let [near, far] = self.split(corners, depth);
         let mut sum = self.near(&near, [nearest, depth]);
-        sum.add(edge::sum(self, &far, known));
+        sum.add(edge::sum(self, &far, known).within(far.iter().map(|c| c.at)));
         sum
     }
 
     /// Near squares, as far as they are not too many: of those behind nothing is said.
     fn near(&self, corners: &[Corner], depths: [f64; 2]) -> Sum {
-        let rows = |corners: &[Corner]| spans(corners)[1 - cells::along(self)];
-        if rows(corners) <= MANY {
+        let are_few = |corners: &[Corner]| {
+            let along = cells::along(self);
+            let spans = spans(corners);
+            // A long row takes as long as some short ones.
+            let length = (spans[along] / spans[1 - along]).min(cells::MANY);
+            spans[1 - along] * (1.0 + 0.25 * length) <= MANY
+                && corners.iter().all(|c| c.depth.is_finite())
+        };
+        if are_few(corners) {
             return cells::sum(self, corners);
         }
         let [mut low, mut high] = depths.map(libm::log);
         for _ in 0..24 {
             let middle = 0.5 * (low + high);
             let [near, _] = self.split(corners, libm::exp(middle));
-            if rows(&near) <= MANY {
+            if are_few(&near) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
         let [near, behind] = self.split(corners, libm::exp(low));
-        let mut sum = cells::sum(self, &near);
-        sum.bound += measure(behind.iter().map(|c| c.at)).0.abs();
+        let nothing = Sum {
+            value: 0.0,
+            bound: f64::INFINITY,
+        };
+        let mut sum = if are_few(&near) {
+            cells::sum(self, &near)
+        } else {
+            nothing.within(near.iter().map(|c| c.at))
+        };
+        sum.add(nothing.within(behind.iter().map(|c| c.at)));
         sum
     }
 

@@ -12,7 +12,15 @@ use crate::math::two_sum;
 /// A row with fewer whole squares is cut square by square.
 const FEW: f64 = 3.0;
 /// More squares of a row than this are summed at once.
-const MANY: f64 = 32.0;
+pub(super) const MANY: f64 = 32.0;
+
+/// More than this are left where points are too coarse to tell one line from the next: then nothing is said of them.
+const TOO_MANY: f64 = 1000.0;
+
+/// How far from its uncertain ends a row is summed, by their distance from the origin.
+const MARGIN: f64 = 1.0 / 4194304.0;
+/// Whole squares are only known as well as the forms' inverse is: they are cut out, too, where that is worse than this.
+const SOUND: f64 = 1e-10;
 
 /// The axis of the board along which rows run: the one on which m changes less.
 pub(super) fn along(board: &Board) -> usize {
@@ -26,7 +34,12 @@ pub(super) fn along(board: &Board) -> usize {
 pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
     let along = along(board);
     let mut tally = Tally::default();
-    let mut rows = Cutter::new(board, 1 - along, corners.iter().map(|c| c.at));
+    let (_, perimeter) = measure(corners.iter().map(|c| c.at));
+    let moved = board.displacement * perimeter;
+    let is_sound = moved <= SOUND;
+    let mut rows = Cutter::new(board, 1 - along);
+    rows.start(corners.iter().map(|c| c.at));
+    let [mut inside, mut squares] = [Cutter::new(board, along), Cutter::new(board, along)];
     while let Some(number) = rows.next(&mut tally) {
         let row = Row {
             board,
@@ -34,25 +47,23 @@ pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
             sign: square_wave(number),
             number,
         };
-        let ends = row.ends(&rows.piece);
-        if ends[ends.len() - 1] - ends[0] > MANY {
-            row.long(&rows.piece, &ends, &mut tally);
-        } else if let Some(inner) = rows.whole(board, along) {
-            let mut inside = Cutter::new(board, along, rows.piece.iter().copied());
+        if row.length(&rows.piece) > MANY {
+            row.long(&rows.piece, &mut inside, &mut squares, &mut tally);
+        } else if is_sound && let Some(inner) = rows.whole(board, along) {
+            inside.start(rows.piece.iter().copied());
             inside.cut(inner[0], &mut tally);
-            row.squares(&inside.piece, &mut tally);
+            row.squares(&inside.piece, &mut squares, &mut tally);
             inside.cut(inner[1], &mut tally);
             row.whole(inner, &inside.piece, &mut tally);
-            row.squares(&inside.rest, &mut tally);
+            row.squares(&inside.rest, &mut squares, &mut tally);
         } else {
-            row.squares(&rows.piece, &mut tally);
+            row.squares(&rows.piece, &mut squares, &mut tally);
         }
     }
     let mut sum = tally.sum();
     if tally.has_inverse {
         // What is of the forms' inverse the rounding of the forms moves as a whole.
-        let (_, perimeter) = measure(corners.iter().map(|c| c.at));
-        sum.bound += board.displacement * perimeter;
+        sum.bound += moved;
     }
     sum
 }
@@ -67,11 +78,13 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Where a polygon's vertices are along the row, in order.
-    fn ends(&self, piece: &[DVec2]) -> Vec<f64> {
-        let mut ends: Vec<f64> = piece.iter().map(|&at| self.place(at)).collect();
-        ends.sort_by(f64::total_cmp);
-        ends
+    /// How far along the row a polygon reaches.
+    fn length(&self, piece: &[DVec2]) -> f64 {
+        let places = piece.iter().map(|&at| self.place(at));
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
+            (low.min(t), high.max(t))
+        });
+        high - low
     }
 
     fn place(&self, at: DVec2) -> f64 {
@@ -79,8 +92,12 @@ impl Row<'_> {
     }
 
     /// Cuts the part of the row that a polygon shows into squares.
-    fn squares(&self, piece: &[DVec2], tally: &mut Tally) {
-        let mut squares = Cutter::new(self.board, self.along, piece.iter().copied());
+    fn squares(&self, piece: &[DVec2], squares: &mut Cutter, tally: &mut Tally) {
+        let length = self.length(piece);
+        if length > TOO_MANY || length.is_nan() {
+            return tally.add(0.0, measure(piece.iter().copied()).0.abs());
+        }
+        squares.start(piece.iter().copied());
         while let Some(square) = squares.next(tally) {
             let (area, perimeter) = measure(squares.piece.iter().copied());
             // Of each of a few products of two steps three roundings.
@@ -126,36 +143,42 @@ impl Row<'_> {
         tally.has_inverse = true;
     }
 
-    /// Adds the part of a long row that a polygon shows, whose vertices are where `ends` says.
+    /// Adds the part of a long row that a polygon shows.
     ///
-    /// Between two neighbouring ends it is bounded by one side above and by one below: most of that is summed at once.
-    fn long(&self, piece: &[DVec2], ends: &[f64], tally: &mut Tally) {
-        let mut inside = Cutter::new(self.board, self.along, piece.iter().copied());
+    /// Between two vertices it is bounded by one side above and by one below: most of that is summed at once.
+    fn long(&self, piece: &[DVec2], inside: &mut Cutter, squares: &mut Cutter, tally: &mut Tally) {
+        let mut ends: Vec<f64> = piece.iter().map(|&at| self.place(at)).collect();
+        ends.sort_by(f64::total_cmp);
+        inside.start(piece.iter().copied());
         for ends in ends.windows(2) {
-            let (first, last) = (ends[0].ceil(), ends[1].floor());
+            // Far away the ends are uncertain by more than a square, and the lines there might be missed.
+            let [from, to] = [ends[0], ends[1]];
+            let first = (from + from.abs() * MARGIN).ceil();
+            let last = (to - to.abs() * MARGIN).floor();
             if last - first <= MANY {
                 continue;
             }
             inside.cut(first, tally);
-            self.squares(&inside.piece, tally);
+            self.squares(&inside.piece, squares, tally);
             inside.cut(last, tally);
             let Some(strip) = Strip::new(self, [first, last], &inside.chords) else {
-                self.squares(&inside.piece, tally);
+                self.squares(&inside.piece, squares, tally);
                 continue;
             };
             let [first, last] = strip.smooth();
             if last - first <= MANY {
-                self.squares(&inside.piece, tally);
+                self.squares(&inside.piece, squares, tally);
                 continue;
             }
-            let mut pieces = Cutter::new(self.board, self.along, inside.piece.iter().copied());
-            pieces.cut(first, tally);
-            self.squares(&pieces.piece, tally);
-            pieces.cut(last, tally);
-            strip.sum([first, last], &pieces.piece, tally);
-            self.squares(&pieces.rest, tally);
+            let mut parts = Cutter::new(self.board, self.along);
+            parts.start(inside.piece.iter().copied());
+            parts.cut(first, tally);
+            self.squares(&parts.piece, squares, tally);
+            parts.cut(last, tally);
+            strip.sum([first, last], &parts.piece, tally);
+            self.squares(&parts.rest, squares, tally);
         }
-        self.squares(&inside.rest, tally);
+        self.squares(&inside.rest, squares, tally);
     }
 }
 
@@ -166,9 +189,15 @@ impl Row<'_> {
 struct Strip<'a> {
     row: &'a Row<'a>,
     first: f64,
-    /// m at the first line and its slope, on the near side and on the far one.
-    sides: [[f64; 2]; 2],
     last: f64,
+    sides: [Side; 2],
+}
+
+/// A side of a strip, by m at the first line and at the last.
+struct Side {
+    start: f64,
+    end: f64,
+    slope: f64,
 }
 
 impl<'a> Strip<'a> {
@@ -180,28 +209,35 @@ impl<'a> Strip<'a> {
             Some([s.min(t), s.max(t)])
         };
         let (from, to) = (ends(chords[0])?, ends(chords[1])?);
-        let side = |i: usize| [from[i], (to[i] - from[i]) / (last - first)];
+        let sides = [0, 1].map(|i| Side {
+            start: from[i],
+            end: to[i],
+            slope: (to[i] - from[i]) / (last - first),
+        });
         Some(Self {
             row,
             first,
-            sides: [side(0), side(1)],
             last,
+            sides,
         })
     }
 
-    fn depth(&self, [start, slope]: [f64; 2], i: f64) -> f64 {
-        start + slope * (i - self.first)
+    /// m on a side, from the end that is nearer: the other may be so far that its roundings are too large.
+    fn depth(&self, side: &Side, i: f64) -> f64 {
+        if i - self.first < self.last - i {
+            side.start + side.slope * (i - self.first)
+        } else {
+            side.end - side.slope * (self.last - i)
+        }
     }
 
     /// The part of it in which m changes little from line to line.
     fn smooth(&self) -> [f64; 2] {
         let [mut first, mut last] = [self.first, self.last];
-        for side in self.sides {
-            let slope = side[1];
-            if slope > 0.0 {
-                first = first.max(self.first + (FAR - side[0] / slope).ceil());
-            } else if slope < 0.0 {
-                let end = self.depth(side, self.last);
+        for Side { start, end, slope } in &self.sides {
+            if *slope > 0.0 {
+                first = first.max(self.first + (FAR - start / slope).ceil());
+            } else if *slope < 0.0 {
                 last = last.min(self.last - (FAR + end / slope).ceil());
             }
         }
@@ -214,8 +250,8 @@ impl<'a> Strip<'a> {
         let mut sum = 0.0;
         let mut bound = 0.0;
         for (i, sense) in [(first, -1.0), (last, 1.0)] {
-            for (side, half) in self.sides.into_iter().zip([1.0, -1.0]) {
-                let end = self.potential(&waves, self.depth(side, i), side[1]);
+            for (side, half) in self.sides.iter().zip([1.0, -1.0]) {
+                let end = self.potential(&waves, self.depth(side, i), side.slope);
                 sum += sense * half * square_wave(i) * end.value;
                 bound += end.bound;
             }
@@ -224,14 +260,17 @@ impl<'a> Strip<'a> {
         // The sides are those between points that are a few roundings off.
         bound += 8.0 * UNIT * perimeter;
         tally.add(self.row.sign * sum, bound);
-        tally.has_inverse = true;
     }
 
     /// Σ A_k+1(0)·(K/2|q|)·(k + 1)!·γ^k·m^(−2−k), with what it neglects: |A_n| ≤ ½π^(1−n), and G^(n−1) is monotonic.
     fn potential(&self, waves: &[f64; ORDERS], depth: f64, slope: f64) -> Sum {
         let board = self.row.board;
         let u = 1.0 / depth;
-        let first = 0.5 * board.density / board.slope[1 - self.row.along].abs() * u * u;
+        let per_slope = board.per_slope[1 - self.row.along];
+        let first = 0.5 * per_slope.value * u * u;
+        // L is off by some roundings of its terms.
+        let [x, y, z] = board.below.map(f64::abs);
+        let off = 12.0 * UNIT * (0.5 * (x + y) + z) * depth;
         let (mut sum, mut factor) = (0.0, first);
         for k in 0..MAX_TERMS - 1 {
             sum += waves[k + 1] * factor;
@@ -240,7 +279,7 @@ impl<'a> Strip<'a> {
         let neglected = 0.5 * factor.abs() / libm::pow(PI, (MAX_TERMS - 1) as f64);
         Sum {
             value: sum,
-            bound: neglected + 16.0 * UNIT * first,
+            bound: neglected + (per_slope.bound + off + 16.0 * UNIT) * first,
         }
     }
 }
@@ -287,16 +326,24 @@ struct Cutter {
 type Chord = Option<[DVec2; 2]>;
 
 impl Cutter {
-    fn new(board: &Board, axis: usize, points: impl Iterator<Item = DVec2>) -> Self {
+    fn new(board: &Board, axis: usize) -> Self {
         Self {
             across: board.across[axis],
             below: board.below,
-            rest: points.collect(),
+            rest: Vec::with_capacity(8),
             piece: Vec::with_capacity(8),
             spare: Vec::with_capacity(8),
             strips: None,
             chords: [None; 2],
         }
+    }
+
+    /// Begins with a polygon.
+    fn start(&mut self, points: impl Iterator<Item = DVec2>) {
+        self.rest.clear();
+        self.rest.extend(points);
+        self.strips = None;
+        self.chords = [None; 2];
     }
 
     /// Makes `piece` the part of the rest between the lines i and i + 1, and returns i.

@@ -20,6 +20,8 @@ const SHORT: f64 = 20_000.0;
 /// The same where m hardly grows; and so many are summed one by one where modes would need waves of high orders.
 const SHORT_LEVEL: f64 = 100_000.0;
 const LONG_LEVEL: f64 = 300_000.0;
+/// More take too long, which only the widest of views have in a pixel.
+const MOST: f64 = 1e7;
 /// Where an edge crosses more lines than this, squares are so many that it may neglect the other, in square pixels.
 const DENSE: f64 = 512.0;
 const CRUMB: f64 = 2e-12;
@@ -58,6 +60,12 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
         .max(0.0);
     if direct + SHORT >= all.lines {
         return all.one_by_one(series, all.lines);
+    }
+    if direct > MOST {
+        return Sum {
+            value: 0.0,
+            bound: trivial,
+        };
     }
     let mut sum = all.one_by_one(series, direct);
     let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];

@@ -44,7 +44,8 @@ use self::{
 /// A spot whose bound is no greater than this is not cut into quarters; nor one with the horizon, where squares never end.
 const ENOUGH: f64 = 1e-12;
 const ENOUGH_ENDLESS: f64 = 1e-9;
-const HOPELESS: f64 = 1e-3;
+/// A bound beyond this is not of roundings but of squares that were too many, which quarters would be, too.
+const HOPELESS: f64 = 1e-7;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,7 +162,6 @@ impl<'a> Integrator<'a> {
         } else {
             ENOUGH
         };
-        // Of a spot of which next to nothing is known a quarter would not be known either.
         if shares.bound <= enough || shares.bound > HOPELESS || spot.side <= FINEST {
             return shares;
         }
