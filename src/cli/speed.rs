@@ -72,7 +72,6 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if let (Some(folder), false) = (&args.output, measured.is_empty()) {
         write(folder, &args.scenes, &measured)?;
     }
-    let is_interrupted = interrupt.pressed();
     if args.format.format == Format::Json && !measured.is_empty() {
         let all = measured.iter().all(|measured| !measured.interrupted);
         let is_complete = all && measured.len() == subjects.len();
@@ -80,8 +79,11 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         let answer = json!({"complete": is_complete, "reports": reports});
         output::to_programs(format!("{answer}\n").as_bytes())?;
     }
+    let is_interrupted = interrupt.pressed();
     if is_interrupted && measured.is_empty() {
-        output::warning(&"interrupted before anything was measured");
+        output::warning(
+            &"interrupted before anything was measured: the exact picture comes first, then the methods",
+        );
     }
     Ok(if is_interrupted {
         Status::Interrupted
@@ -116,7 +118,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     }
 }
 
-/// What is measured of a scene; nothing if Ctrl-C comes before the first run.
+/// What is measured of a scene; nothing if Ctrl-C comes before anything is.
 fn measure(
     subject: &Subject,
     scene: &Scene,

@@ -74,6 +74,7 @@ pub fn to_json(measured: &Measurement) -> Value {
         "image": {"width": whole.width, "height": whole.height},
         "seed": measured.seed,
         "complete": !measured.interrupted,
+        "warm_up": measured.is_warm_up,
         "planned_runs": measured.runs,
         "runs": measured.rounds(),
         "per_pixel": measured.rungs,

@@ -57,6 +57,8 @@ pub struct Measurement {
     pub shown: u64,
     /// Whether the user ended it.
     pub interrupted: bool,
+    /// Whether it was ended before a run was over, so that these are the runs of the warm-up.
+    pub is_warm_up: bool,
     /// How long it took in all, in seconds.
     pub seconds: f64,
 }
@@ -94,6 +96,14 @@ pub struct Point {
     pub largest: f64,
 }
 
+/// What came out of a single run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub(super) seconds: f64,
+    rmse: f64,
+    largest: f64,
+}
+
 /// What an error takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Needed {
@@ -106,6 +116,22 @@ pub struct Needed {
 }
 
 impl Point {
+    fn new(per_pixel: u64, pixels: u64) -> Self {
+        Self {
+            per_pixel,
+            samples: per_pixel.saturating_mul(pixels),
+            times: Vec::new(),
+            rmse: Vec::new(),
+            largest: 0.0,
+        }
+    }
+
+    fn add(&mut self, run: Run) {
+        self.times.push(run.seconds);
+        self.rmse.push(run.rmse);
+        self.largest = self.largest.max(run.largest);
+    }
+
     /// The median time in seconds.
     pub fn seconds(&self) -> f64 {
         median(&self.times)
@@ -211,14 +237,14 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
     if measured.exact.is_some() {
         tasks.push(Task::Exact);
     }
-    for (series, (_, rate)) in plan.rates.iter().enumerate() {
-        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point, *rate)));
+    for (series, warm) in plan.warm_up.iter().enumerate() {
+        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point, warm.rate)));
     }
     'rounds: for round in 0..plan.runs {
         let round_started = Instant::now();
         shuffle(&mut tasks, round);
         for &task in &tasks {
-            match run(task, round, plan, control, &mut measured) {
+            match perform(task, round, plan, control, &mut measured) {
                 Err(RenderError::Cancelled) => {
                     measured.interrupted = true;
                     break 'rounds;
@@ -230,6 +256,9 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
         if plan.is_limited && next_ends > plan.request.budget {
             break;
         }
+    }
+    if measured.interrupted && !any_run(&measured) {
+        warmed_up(plan, &mut measured);
     }
     for series in &mut measured.series {
         series.points.retain(|point| !point.times.is_empty());
@@ -243,16 +272,13 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
 fn empty(plan: &Plan) -> Measurement {
     let machine = Machine::here();
     let pixels = plan.reference.bounds.len() as u64;
-    let point = |&per_pixel: &u64| Point {
-        per_pixel,
-        samples: per_pixel.saturating_mul(pixels),
-        times: Vec::new(),
-        rmse: Vec::new(),
-        largest: 0.0,
-    };
-    let series = plan.rates.iter().map(|&(method, _)| Series {
-        method,
-        points: plan.rungs.iter().map(point).collect(),
+    let series = plan.warm_up.iter().map(|warm| Series {
+        method: warm.method,
+        points: plan
+            .rungs
+            .iter()
+            .map(|&rung| Point::new(rung, pixels))
+            .collect(),
         picture: None,
     });
     // Enough samples for the methods to differ, few enough for the eye to see it.
@@ -275,11 +301,39 @@ fn empty(plan: &Plan) -> Measurement {
         series: series.collect(),
         shown,
         interrupted: false,
+        is_warm_up: false,
         seconds: 0.0,
     }
 }
 
-fn run(
+/// Whether anything of what counts was measured: a sampled method, if there are any.
+fn any_run(measured: &Measurement) -> bool {
+    match measured.series.is_empty() {
+        true => measured.rounds() > 0,
+        false => {
+            let mut points = measured.series.iter().flat_map(|series| &series.points);
+            points.any(|point| !point.times.is_empty())
+        }
+    }
+}
+
+/// The warm-up in place of runs, of which there are none.
+fn warmed_up(plan: &Plan, measured: &mut Measurement) {
+    measured.is_warm_up = true;
+    measured.rungs = vec![plan.warm];
+    for (series, warm) in measured.series.iter_mut().zip(&plan.warm_up) {
+        let mut point = Point::new(plan.warm, plan.reference.bounds.len() as u64);
+        warm.runs.iter().for_each(|&run| point.add(run));
+        series.points = vec![point];
+    }
+    if let Some(exact) = &mut measured.exact
+        && exact.times.is_empty()
+    {
+        exact.times.push(plan.exact_seconds);
+    }
+}
+
+fn perform(
     task: Task,
     round: u64,
     plan: &Plan,
@@ -308,12 +362,16 @@ fn run(
             let point = &mut series.points[point];
             // Seeds are below 2^53.
             let seed = (measured.seed + round) % (1 << 53);
-            let (film, seconds) =
-                rendered(plan.scene, series.method, point.per_pixel, seed, &control)?;
-            let (rmse, largest) = difference(&film, &plan.reference.film);
-            point.times.push(seconds);
-            point.rmse.push(rmse);
-            point.largest = point.largest.max(largest);
+            let (scene, reference) = (plan.scene, &plan.reference.film);
+            let (done, film) = run(
+                scene,
+                series.method,
+                point.per_pixel,
+                seed,
+                reference,
+                &control,
+            )?;
+            point.add(done);
             if round == 0 && point.per_pixel == measured.shown {
                 series.picture = Some(film);
             }
@@ -334,14 +392,15 @@ fn shuffle(tasks: &mut [Task], round: u64) {
     }
 }
 
-/// Renders by a method, and says in how many seconds.
-pub(super) fn rendered(
+/// Renders by a method, and says how long it took and how wrong it is.
+pub(super) fn run(
     scene: &Scene,
     method: Method,
     per_pixel: u64,
     seed: u64,
+    reference: &Film,
     control: &Control,
-) -> Result<(Film, f64), RenderError> {
+) -> Result<(Run, Film), RenderError> {
     let sampler = Sampler {
         method,
         count: Count::PerPixel(per_pixel),
@@ -352,7 +411,14 @@ pub(super) fn rendered(
     let world = World::new(scene);
     let sampling = Sampling::new(&sampler, width, height);
     let film = render(&world, &sampling, Area::whole(width, height), control)?;
-    Ok((film, started.elapsed().as_secs_f64()))
+    let seconds = started.elapsed().as_secs_f64();
+    let (rmse, largest) = difference(&film, reference);
+    let run = Run {
+        seconds,
+        rmse,
+        largest,
+    };
+    Ok((run, film))
 }
 
 /// Computes the exact picture, and says in how many seconds.

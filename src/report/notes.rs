@@ -61,7 +61,13 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
 /// What is to be kept in mind of the numbers.
 pub fn notes(measured: &Measurement) -> Vec<String> {
     let mut notes = Vec::new();
-    if measured.interrupted {
+    if measured.is_warm_up {
+        notes.push(
+            "Incomplete: it was interrupted before the first run was over. These are the runs of the warm-up, all with one seed, whose times \
+             are those of a cold machine, in no mixed order."
+                .to_owned(),
+        );
+    } else if measured.interrupted {
         notes.push(format!(
             "Incomplete: it was interrupted in run {} of {}.",
             measured.rounds().max(1),

@@ -269,20 +269,20 @@ fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
             part.width, part.height, whole.width, whole.height, part.x, part.y
         ),
     };
-    *html += &format!(
-        "<p>{what} by each method with {} per pixel (seed {}), and below it where it is wrong: the largest difference of a pixel's \
-         channels to the exact picture, on a logarithmic scale.</p>\n",
-        plural(measured.shown, "sample"),
-        measured.seed
-    );
-    *html += "<ul class=\"scale\">\n";
-    for (name, color) in picture::scale() {
+    if measured
+        .series
+        .iter()
+        .any(|series| series.picture.is_some())
+    {
         *html += &format!(
-            "<li><svg viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" height=\"10\" fill=\"{color}\" stroke=\"#888\"/></svg>\
-             {name}</li>\n"
+            "<p>{what} by each method with {} per pixel (seed {}), and below it where it is wrong: the largest difference of a pixel's \
+             channels to the exact picture, on a logarithmic scale.</p>\n",
+            plural(measured.shown, "sample"),
+            measured.seed
         );
+        *html += &scale();
     }
-    *html += "</ul>\n<div class=\"pictures\">\n";
+    *html += "<div class=\"pictures\">\n";
     let reference = &measured.reference.film;
     *html += &format!(
         "<figure>{}<figcaption>exact, within {}</figcaption></figure>\n",
@@ -319,6 +319,17 @@ fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
     }
     *html += "</div>\n";
     Ok(())
+}
+
+/// What the colours of the errors mean.
+fn scale() -> String {
+    let items = picture::scale().map(|(name, color)| {
+        format!(
+            "<li><svg viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" height=\"10\" fill=\"{color}\" stroke=\"#888\"/></svg>\
+             {name}</li>\n"
+        )
+    });
+    format!("<ul class=\"scale\">\n{}</ul>\n", items.collect::<String>())
 }
 
 fn image(uri: &str, text: &str) -> String {

@@ -9,6 +9,8 @@ mod exact;
 mod figure;
 mod film;
 mod images;
+#[cfg(unix)]
+mod interrupt;
 mod language;
 mod laws;
 mod numerics;
