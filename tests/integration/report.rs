@@ -4,10 +4,21 @@ use std::{
     fs,
     path::Path,
     process::{Command, Output, Stdio},
+    sync::atomic::AtomicBool,
 };
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use pinhole::report::fit::{Fit, median, quantile, root_mean_square};
+use pinhole::{
+    film::Recipe,
+    render::Control,
+    report::speed::{
+        self, Checks, Plan, Request, Subject,
+        fit::{Fit, median, quantile, root_mean_square},
+        measure,
+    },
+    scene::{self, Method},
+    source::{Source, Sources},
+};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -94,6 +105,19 @@ fn the_slopes_uncertainty_is_that_of_the_textbook() {
 }
 
 #[test]
+fn what_the_line_reaches_is_doubted_as_in_the_textbook() {
+    // The same line: s = √0.1, x̄ = 1.5, S = 5, b = −0.6.
+    let fit = Fit::of(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
+    for (x, root) in [(1.5, 0.25f64.sqrt()), (3.5, (0.25f64 + 4.0 / 5.0).sqrt())] {
+        let expected = libm::exp2(0.1f64.sqrt() / 0.6 * root);
+        let doubt = fit.doubt(libm::exp2(x)).unwrap();
+        assert!((doubt - expected).abs() < 1e-13, "{doubt}, {expected}");
+    }
+    let two = Fit::of(&[(1.0, 1.0), (4.0, 0.5)]).unwrap();
+    assert_eq!(two.doubt(4.0), None);
+}
+
+#[test]
 fn what_has_no_slope_has_no_fit() {
     assert_eq!(Fit::of(&[]), None);
     assert_eq!(Fit::of(&[(1.0, 1.0)]), None);
@@ -139,7 +163,9 @@ fn people_get_a_table() {
         "scatter",
         "exact",
         "for 1/256",
+        "× ÷",
         "extrapolated",
+        "note: What is extrapolated",
         "note: scatter",
         "the fastest sampled method",
     ] {
@@ -211,7 +237,11 @@ fn programs_get_json_and_errors_fall() {
         let needed = method["needed"].as_array().unwrap();
         assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
         assert_eq!(needed[1]["extrapolated"], false);
+        assert_eq!(needed[1]["factor"], Value::Null);
         assert_eq!(needed[2]["extrapolated"], true, "{name}");
+        assert!(needed[2]["factor"].as_f64().unwrap() > 1.0, "{name}");
+        // Whoever says how many samples are taken gets no others.
+        assert_eq!(needed[2]["taken"], Value::Null);
     }
     // Independent samples: each run draws its own seed's, and the errors of the seeds differ.
     let random = methods
@@ -343,9 +373,7 @@ fn labels_of_a_chart_do_not_lie_upon_each_other() {
                 let text = node.text().unwrap_or_default().trim();
                 let first = text.split(' ').next().unwrap();
                 node.has_tag_name("text")
-                    && pinhole::scene::Method::SAMPLED
-                        .iter()
-                        .any(|method| method.name() == first)
+                    && Method::SAMPLED.iter().any(|method| method.name() == first)
             })
             .map(|node| node.attribute("y").unwrap().parse().unwrap())
             .collect();
@@ -405,6 +433,11 @@ fn a_picture_of_one_colour_has_no_error() {
         text.contains("no slope is fitted to an error of 0"),
         "{text}"
     );
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains("; every sampled method has no error at all with 1 sample per pixel already, so that none is the fastest"),
+        "{text}"
+    );
     parsed(&read(&folder, "out/index.html"));
     parsed(&read(&folder, "out/error-against-time.svg"));
 }
@@ -435,6 +468,16 @@ fn wrong_arguments_are_told() {
     ] {
         fails(&folder, arguments, 2);
     }
+    let errors = fails(
+        &folder,
+        &["a.scn", "--methods", "exact", "--samples", "4", "-o", "new"],
+        2,
+    );
+    assert!(
+        errors.starts_with("error: `--samples` is for methods that take samples"),
+        "{errors}"
+    );
+    assert!(!folder.path().join("new").exists());
     let errors = fails(&folder, &["a.scn", "-o", "file"], 2);
     assert_eq!(
         errors,
@@ -447,6 +490,73 @@ fn wrong_arguments_are_told() {
     assert!(
         errors.contains("pinhole::unknown_field") && !errors.contains("rays"),
         "{errors}"
+    );
+}
+
+#[test]
+fn what_is_extrapolated_is_tried_where_time_is_left() {
+    let text = SCENE.replace("width 48 height 32", "width 12 height 8");
+    let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
+    let scene = scene::read(&sources).scene.unwrap();
+    let subject = Subject {
+        name: "a.scn".to_owned(),
+        recipe: Recipe {
+            scene: text,
+            overrides: Vec::new(),
+            crop: None,
+        },
+    };
+    let request = Request {
+        methods: vec![Method::Sobol, Method::Exact],
+        samples: Vec::new(),
+        runs: Some(1),
+        errors: vec![2e-4],
+        budget: std::time::Duration::from_secs(30),
+        threads: None,
+    };
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let plan = Plan::new(&subject, &scene, &request, &control).unwrap();
+    let mut measured = measure(&plan, &control).unwrap();
+    let sobol = || {
+        measured
+            .series
+            .iter()
+            .find(|series| series.method == Method::Sobol)
+    };
+    let needed = sobol().unwrap().needed(2e-4).unwrap();
+    assert!(
+        needed.is_extrapolated && needed.per_pixel > 1024.0,
+        "{needed:?}"
+    );
+    let checks = Checks::new(&plan, &measured);
+    assert!(checks.total() > 0);
+    checks.run(&mut measured, &control).unwrap();
+    let sobol = measured
+        .series
+        .iter()
+        .find(|series| series.method == Method::Sobol);
+    let check = *sobol.unwrap().check(2e-4).unwrap();
+    assert_eq!(check.per_pixel as f64, needed.per_pixel);
+    assert!((5e-5..1e-3).contains(&check.rmse), "{check:?}");
+    // It changes no prediction, and is told with it.
+    assert_eq!(sobol.unwrap().needed(2e-4), Some(needed));
+    let text = speed::table(&measured);
+    assert!(text.contains("  extrapolated; taken: error "), "{text}");
+    let json = &speed::to_json(&measured)["methods"];
+    let sobol = json
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|method| method["method"] == "sobol");
+    assert_eq!(sobol.unwrap()["needed"][0]["taken"]["rmse"], check.rmse);
+    assert!(
+        speed::page(&[measured])
+            .unwrap()
+            .contains("error when taken")
     );
 }
 

@@ -10,6 +10,7 @@ use std::{num::NonZero, sync::atomic::Ordering, time::Instant};
 use super::{
     Machine,
     fit::{Fit, median, root_mean_square},
+    needed::Check,
     plan::Plan,
 };
 use crate::{
@@ -79,6 +80,8 @@ pub struct Series {
     pub points: Vec<Point>,
     /// The picture of the first run with the number of samples that is shown.
     pub picture: Option<Film>,
+    /// What came of taking the samples that errors should take.
+    pub checks: Vec<Check>,
 }
 
 /// What was measured of a method with a number of samples.
@@ -100,19 +103,8 @@ pub struct Point {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub(super) seconds: f64,
-    rmse: f64,
-    largest: f64,
-}
-
-/// What an error takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Needed {
-    /// Samples per pixel.
-    pub per_pixel: f64,
-    /// Seconds.
-    pub seconds: f64,
-    /// Whether it lies beyond what was measured.
-    pub is_extrapolated: bool,
+    pub(super) rmse: f64,
+    pub(super) largest: f64,
 }
 
 impl Point {
@@ -158,45 +150,6 @@ impl Series {
             .collect();
         Fit::of(&points)
     }
-
-    /// What an error takes by the [`fit`](Self::fit); none if more samples do not help. Fewer samples than were measured are not asked
-    /// for: they would not take less than the pixel's share of the rest.
-    pub fn needed(&self, error: f64) -> Option<Needed> {
-        let (first, last) = (self.points.first()?, self.points.last()?);
-        if first.error() <= error {
-            return Some(Needed {
-                per_pixel: first.per_pixel as f64,
-                seconds: first.seconds(),
-                is_extrapolated: false,
-            });
-        }
-        let per_pixel = self.fit()?.reaches(error)?.ceil();
-        let per_pixel = per_pixel.max(first.per_pixel as f64);
-        Some(Needed {
-            per_pixel,
-            seconds: self.seconds_at(per_pixel)?,
-            is_extrapolated: per_pixel > last.per_pixel as f64,
-        })
-    }
-
-    /// The time of a number of samples: on the straight line between the measured neighbours, beyond the last one in proportion.
-    fn seconds_at(&self, per_pixel: f64) -> Option<f64> {
-        let last = self.points.last()?;
-        let next = self
-            .points
-            .iter()
-            .position(|point| point.per_pixel as f64 >= per_pixel);
-        Some(match next {
-            None => last.seconds() * per_pixel / last.per_pixel as f64,
-            Some(0) => self.points[0].seconds(),
-            Some(next) => {
-                let (low, high) = (&self.points[next - 1], &self.points[next]);
-                let width = (high.per_pixel - low.per_pixel) as f64;
-                let share = (per_pixel - low.per_pixel as f64) / width;
-                low.seconds() + share * (high.seconds() - low.seconds())
-            }
-        })
-    }
 }
 
 impl Measurement {
@@ -205,12 +158,12 @@ impl Measurement {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// The sampled method that needs the least time for an error, and what it needs.
-    pub fn fastest(&self, error: f64) -> Option<(Method, Needed)> {
-        self.series
-            .iter()
-            .filter_map(|series| Some((series.method, series.needed(error)?)))
-            .min_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds))
+    /// Whether all runs of everything are over, whatever was interrupted.
+    pub(super) fn is_measured(&self) -> bool {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let complete = |point: &Point| point.times.len() as u64 == self.runs;
+        let rungs = |series: &Series| series.points.len() == self.rungs.len();
+        self.rounds() as u64 == self.runs && points().all(complete) && self.series.iter().all(rungs)
     }
 
     /// How many runs were begun.
@@ -280,6 +233,7 @@ fn empty(plan: &Plan) -> Measurement {
             .map(|&rung| Point::new(rung, pixels))
             .collect(),
         picture: None,
+        checks: Vec::new(),
     });
     // Enough samples for the methods to differ, few enough for the eye to see it.
     let shown = plan.rungs.iter().find(|&&rung| rung >= 16);

@@ -29,6 +29,9 @@ const RUNS: (u64, u64) = (3, 9);
 /// So much of the time left is planned: the rest is for comparing, drawing and estimates that were too low.
 const PLANNED: f64 = 0.9;
 
+/// The same where the samples are chosen: the rest is for trying what was extrapolated, too.
+const PLANNED_CHOICE: f64 = 0.7;
+
 /// What the user asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
@@ -148,9 +151,17 @@ impl<'a> Plan<'a> {
         (self.round_seconds(&self.rungs) * self.runs as f64 * 1e9) as u64
     }
 
+    /// What is left of the time that it may take.
+    pub(super) fn left(&self) -> Duration {
+        self.request.budget.saturating_sub(self.started.elapsed())
+    }
+
     fn choose(&mut self) {
-        let left = self.request.budget.saturating_sub(self.started.elapsed());
-        let left = left.as_secs_f64() * PLANNED;
+        let share = match self.rungs.is_empty() {
+            true => PLANNED_CHOICE,
+            false => PLANNED,
+        };
+        let left = self.left().as_secs_f64() * share;
         let (wanted, most) = RUNS;
         if self.rungs.is_empty() {
             let runs = self.request.runs.unwrap_or(wanted) as f64;
