@@ -1,6 +1,8 @@
 //! One test binary, a module per subject.
 
 mod answers;
+#[cfg(feature = "report")]
+mod browser;
 mod camera;
 mod cli;
 mod diagnostics;
