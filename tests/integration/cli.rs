@@ -582,7 +582,7 @@ fn ctrl_c_keeps_what_the_hard_cases_have_shown() {
     let people = errors(&output);
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
     assert!(
-        people.ends_with("it was interrupted before 42_000_000_000 inputs were asked.\n"),
+        people.ends_with("it was interrupted before 43_000_000_000 inputs were asked.\n"),
         "{people}"
     );
     let arguments = [&arguments[..], &["--format", "json"]].concat();
