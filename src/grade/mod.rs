@@ -114,7 +114,7 @@ pub fn scene(
         .into_iter()
         .chain(camera::ideas(scene))
         .chain(board::ideas(scene))
-        .chain(objects::ideas(scene))
+        .chain(objects::ideas(a, exact, scene))
         .chain(objects::colors(a, exact, scene));
     let mut found = case.named(ideas.collect())?;
     if let [first, others @ ..] = found.as_slice()

@@ -1,5 +1,7 @@
 //! Objects of a wrong colour.
 
+use glam::DVec3;
+
 use super::{ENOUGH, OBJECTS, called};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
@@ -117,4 +119,19 @@ impl Near {
             .into_iter()
             .all(|([low, high], light)| low < light && light < high)
     }
+}
+
+/// The share of the squared difference in pixels that have a colour in either picture.
+pub(super) fn share(a: &Film, exact: &Film, near: &Near) -> f64 {
+    let (mut own, mut all) = (0.0, 0.0);
+    for (p, q) in a.pixels().iter().zip(exact.pixels()) {
+        if p != q {
+            let square = (DVec3::from(*p) - DVec3::from(*q)).length_squared();
+            all += square;
+            if near.holds(p) || near.holds(q) {
+                own += square;
+            }
+        }
+    }
+    own / all
 }

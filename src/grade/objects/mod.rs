@@ -5,9 +5,11 @@ mod search;
 
 use glam::DVec3;
 
+use self::colors::{Near, color, share};
 pub use self::{colors::colors, search::search};
 use super::{Idea, Make};
 use crate::{
+    film::Film,
     math::Angle,
     scene::{Scene, Shape},
     tracer::vertices,
@@ -15,6 +17,9 @@ use crate::{
 
 /// Of a scene with more objects only so many are looked at.
 const OBJECTS: usize = 24;
+
+/// An object may be wrong if the pixels of its colour have this share of the squared difference; noise may have the rest.
+const PART: f64 = 0.1;
 
 /// So many pixels of an object show where it is.
 const ENOUGH: u64 = 6;
@@ -44,10 +49,13 @@ fn with_shape(scene: &Scene, index: usize, shape: Shape) -> Make {
     Make::Scene(Box::new(scene))
 }
 
-/// Those that can be named at once.
-pub fn ideas(scene: &Scene) -> Vec<Idea> {
+/// Those that can be named at once, of objects whose colour has a part in the difference.
+pub fn ideas(a: &Film, exact: &Film, scene: &Scene) -> Vec<Idea> {
     let mut ideas = Vec::new();
     for (index, object) in scene.objects.iter().enumerate().take(OBJECTS) {
+        if !has_part(a, exact, object.shape) {
+            continue;
+        }
         let name = called(scene, index);
         let mut without = scene.clone();
         without.objects.remove(index);
@@ -67,6 +75,13 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
         }
     }
     ideas
+}
+
+/// Whether the pixels that have a shape's colour in either picture have a part in the difference: where the shape is and should not be, or
+/// is not and should be, one of them has it.
+fn has_part(a: &Film, exact: &Film, mut shape: Shape) -> bool {
+    let mut colors = color(&mut shape).into_iter();
+    colors.any(|color| share(a, exact, &Near::to(&color.to_linear())) > PART)
 }
 
 type Wrong = (&'static str, &'static str, &'static str, Shape);

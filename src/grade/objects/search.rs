@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     ENOUGH, OBJECTS, called,
-    colors::{Near, color},
+    colors::{Near, color, share},
     moved,
 };
 use crate::{
@@ -66,21 +66,6 @@ impl Blob {
             pixels,
         }
     }
-}
-
-/// The share of the squared difference in pixels that have a colour in either picture.
-fn share(a: &Film, exact: &Film, near: &Near) -> f64 {
-    let (mut own, mut all) = (0.0, 0.0);
-    for (p, q) in a.pixels().iter().zip(exact.pixels()) {
-        if p != q {
-            let square = (DVec3::from(*p) - DVec3::from(*q)).length_squared();
-            all += square;
-            if near.holds(p) || near.holds(q) {
-                own += square;
-            }
-        }
-    }
-    own / all
 }
 
 /// An object that is displaced by about so many pixels, and about so many times as large as it should be.

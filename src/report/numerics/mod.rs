@@ -18,6 +18,7 @@ mod cuboid;
 mod film;
 mod inputs;
 pub mod oracle;
+pub mod scenes;
 mod sphere;
 mod table;
 pub mod textbook;

@@ -125,7 +125,7 @@ fn facts(measured: &Measurement) -> String {
             "reference",
             format!(
                 "method exact, every channel within {} of the true mean",
-                error(measured.reference.bound())
+                numbers::at_most(measured.reference.bound())
             ),
         ),
         ("duration", format!("{} in all", seconds(measured.seconds))),
@@ -333,7 +333,7 @@ fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
             &picture::shown(measured, reference, Method::Exact, part)?,
             "the exact picture"
         ),
-        error(measured.reference.bound())
+        numbers::at_most(measured.reference.bound())
     );
     for series in &measured.series {
         let Some(film) = &series.picture else {

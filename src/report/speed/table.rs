@@ -44,7 +44,7 @@ pub(super) fn heading(measured: &Measurement) -> String {
         plural(measured.threads as u64, "thread"),
         machine.processor,
         plural(machine.processors as u64, "processor"),
-        error(measured.reference.bound()),
+        numbers::at_most(measured.reference.bound()),
     )
 }
 
