@@ -91,18 +91,17 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolB
     let tallies = pool(control.threads)?.install(|| {
         (0..cases.len() as u64 * blocks)
             .into_par_iter()
+            .take_any_while(|_| !control.cancel.load(Ordering::Relaxed))
             .fold(
                 || vec![Tally::default(); cases.len()],
                 |mut tallies, index| {
                     // Block by block of all cases, so that the progress is even.
                     let (block, at) = (index / cases.len() as u64, index as usize % cases.len());
-                    if !control.cancel.load(Ordering::Relaxed) {
-                        let count = BLOCK.min(inputs_per_case - block * BLOCK);
-                        let mut tally = Tally::default();
-                        (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);
-                        tallies[at] = tallies[at].plus(tally);
-                        (control.progress)(count);
-                    }
+                    let count = BLOCK.min(inputs_per_case - block * BLOCK);
+                    let mut tally = Tally::default();
+                    (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);
+                    tallies[at] = tallies[at].plus(tally);
+                    (control.progress)(count);
                     tallies
                 },
             )
