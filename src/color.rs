@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use dashu_int::UBig;
+
 /// An sRGB colour; each channel is a number from 0 to 255, fractions allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
@@ -28,7 +30,11 @@ impl Color {
 
     /// The channels in linear light, 0 to 1 (IEC 61966-2-1).
     pub fn to_linear(self) -> [f64; 3] {
-        self.srgb.map(|channel| srgb_to_linear(channel / 255.0))
+        self.srgb.map(|channel| match channel.fract() == 0.5 {
+            // A tie stays one, which is rounded up.
+            true => half_byte(channel as u8),
+            false => srgb_to_linear(channel / 255.0),
+        })
     }
 }
 
@@ -46,6 +52,39 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
         encoded / 12.92
     } else {
         libm::pow((encoded + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// The light from which on k + 1 is the nearest byte: the least `f64` that is not below the light of k + 1/2, for k below 255.
+///
+/// The powers of the curve are rational, so whole numbers decide: L = x^2.4 has the same sign of its difference as L^5 = x^12.
+pub fn half_byte(k: u8) -> f64 {
+    let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
+    while !is_below_half(light.next_down(), k) {
+        light = light.next_down();
+    }
+    while is_below_half(light, k) {
+        light = light.next_up();
+    }
+    light
+}
+
+/// Whether light, more than 0 and no subnormal number, is darker than that of k + 1/2.
+fn is_below_half(light: f64, k: u8) -> bool {
+    let exponent = (light.to_bits() >> 52) as usize;
+    let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
+    // light = significand / 2^shift
+    let shift = 1075 - exponent;
+    // Half steps, of which 510 are white.
+    let halves = 2 * u32::from(k) + 1;
+    // 0.04045 is a little more than 20 of them.
+    if halves <= 20 {
+        // L < c/12.92 with c = halves/510
+        significand * 65_892u32 < UBig::from(10 * halves) << shift
+    } else {
+        // L < x^2.4 with x = (c + 0.055)/1.055 = (1000 halves + 28050)/538050
+        let x = UBig::from(1000 * halves + 28_050);
+        significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }
 }
 

@@ -104,6 +104,10 @@ squared difference, 0 to 1. Of pictures of different sizes rmse, largest and bey
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 
+const REPORT_USAGE: &str = "\
+pinhole report [OPTIONS] <SCENE>...
+       pinhole report --numerics [--inputs <N>] [--threads <N>] [--format <FORMAT>]";
+
 const REPORT_EXAMPLES: &str = "\
 Renders the scenes by every method with more and more samples, several times and in mixed order, compares \
 the pictures with the exact one, and tells times, errors, and what an error takes. How many samples and \
@@ -198,6 +202,7 @@ pub struct ProbeArgs {
 
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
+#[command(override_usage = REPORT_USAGE)]
 pub struct ReportArgs {
     /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
     #[arg(value_name = "SCENE", required_unless_present = "numerics")]
@@ -209,7 +214,7 @@ pub struct ReportArgs {
     /// The methods [default: all]
     #[arg(long, value_delimiter = ',', value_parser = method())]
     pub methods: Vec<Method>,
-    /// Samples per pixel [default: 1,4,16 and so on up to 1024, as far as the time goes]
+    /// Samples per pixel [default: 1,4,16 and so on up to 1024, as far as the time goes, and once as many as an error should take]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
     /// Runs of each method with each number of samples [default: up to 9, as the time goes]

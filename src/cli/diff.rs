@@ -104,7 +104,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
     if let Some(path) = &args.output {
         match film::heat_map(&a.film, other.film(), tolerance) {
-            Ok(map) => write_heat_map(path, &map, cancel)?,
+            Ok(map) => write_heat_map(path, &map, legend(is_equal), cancel)?,
             Err(film::HeatError::Sizes(_)) => {
                 output::warning(&"pictures of different sizes have no heat map");
             }
@@ -208,10 +208,23 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
         .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))
 }
 
-fn write_heat_map(path: &Path, map: &Film, cancel: &AtomicBool) -> Result<(), Trouble> {
+/// What the colours of a heat map mean.
+fn legend(is_equal: bool) -> &'static str {
+    match is_equal {
+        true => "black all over: nothing differs by more than the tolerance",
+        false => HEAT_LEGEND,
+    }
+}
+
+fn write_heat_map(
+    path: &Path,
+    map: &Film,
+    legend: &str,
+    cancel: &AtomicBool,
+) -> Result<(), Trouble> {
     film::write_whole(path, cancel, |out| film::write_plain_png(map, out))
         .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))?;
-    output::to_people(&format!("{}: {HEAT_LEGEND}\n", shown(path)));
+    output::to_people(&format!("{}: {legend}\n", shown(path)));
     Ok(())
 }
 

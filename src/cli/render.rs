@@ -71,7 +71,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         ));
     }
     if let Picture::Exact(exact) = &picture {
-        output::to_people(&certificate(exact));
+        output::to_people(&certificate(exact, &output));
     }
     if output::is_watched() {
         let (width, height) = (film.width(), film.height());
@@ -132,17 +132,29 @@ fn picture(
     })
 }
 
-/// What is certain of a computed picture.
-fn certificate(exact: &Exact) -> String {
-    let certified = film::certified(&exact.film, &exact.bounds);
+/// What is certain of a computed picture, and of the numbers in its file.
+fn certificate(exact: &Exact, output: &Output) -> String {
+    let (certified, what) = match output {
+        Output::File(_, Format::Exr) => (
+            film::certified_floats(&exact.film, &exact.bounds),
+            "the 32-bit rounding",
+        ),
+        _ => (
+            film::certified(&exact.film, &exact.bounds),
+            "the 8-bit rounding",
+        ),
+    };
     let pixels = exact.bounds.len() as u64;
-    let bytes = match pixels - certified {
-        0 => "the 8-bit rounding of every pixel is certain".to_owned(),
-        1 => "the 8-bit rounding of all pixels but one is certain".to_owned(),
-        others => format!("the 8-bit rounding of all pixels but {others} is certain"),
+    let rounding = match pixels - certified {
+        0 => format!("{what} of every pixel is certain"),
+        1 => format!("{what} of all pixels but one is certain"),
+        others => format!(
+            "{what} of all pixels but {} is certain",
+            numbers::grouped(others)
+        ),
     };
     let bound = numbers::at_most(exact.bound());
-    format!("exact: every channel is within {bound} of its true mean; {bytes}\n")
+    format!("exact: every channel is within {bound} of its true mean; {rounding}\n")
 }
 
 /// Where a picture goes, and as what.

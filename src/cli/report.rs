@@ -31,7 +31,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     ))
 }
 
-/// Asks the hard cases.
+/// Asks the hard cases. After Ctrl-C, the table is of those inputs that were asked.
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);
@@ -47,16 +47,15 @@ fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble>
         };
         numerics::run(inputs, &control)
     });
-    let table = match table {
-        Ok(table) => table,
-        Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
-        Err(error) => return Err(Trouble(error.to_string())),
-    };
+    let table = table.map_err(|error| Trouble(RenderError::from(error).to_string()))?;
     match args.format.format {
         Format::Human => output::to_people(&table.to_string()),
         Format::Json => output::to_programs(format!("{}\n", table.to_json()).as_bytes())?,
     }
-    Ok(Status::Done)
+    Ok(match table.is_complete() {
+        true => Status::Done,
+        false => Status::Interrupted,
+    })
 }
 
 /// How many threads are asked for.

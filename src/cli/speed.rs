@@ -10,10 +10,11 @@ use std::{
 use pinhole::{
     film,
     render::{Control, RenderError},
-    report::{
-        self, Measurement, Plan, Request, Subject, against_samples, against_time, to_csv, to_json,
+    report::speed::{
+        self, Checks, Measurement, Plan, Request, Subject, against_samples, against_time, to_csv,
+        to_json,
     },
-    scene::Scene,
+    scene::{Method, Scene},
 };
 use serde_json::json;
 
@@ -29,12 +30,13 @@ use super::{
 /// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
+    let request = request(args);
+    check_methods(&request)?;
     if let Some(folder) = &args.output {
         make_folder(folder)?;
         let index = folder.join("index.html");
         film::check_writable(&index).map_err(|error| cannot_write(&index, &error))?;
     }
-    let request = request(args);
     let mut subjects = Vec::new();
     let mut status = Status::Done;
     for path in &args.scenes {
@@ -61,7 +63,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         };
         if args.format.format == Format::Human {
             let gap = if measured.is_empty() { "" } else { "\n" };
-            output::to_people(&format!("{gap}{}", report::table(&found)));
+            output::to_people(&format!("{gap}{}", speed::table(&found)));
         }
         measured.push(found);
         if interrupt.pressed() {
@@ -72,7 +74,6 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if let (Some(folder), false) = (&args.output, measured.is_empty()) {
         write(folder, &args.scenes, &measured)?;
     }
-    let is_interrupted = interrupt.pressed();
     if args.format.format == Format::Json && !measured.is_empty() {
         let all = measured.iter().all(|measured| !measured.interrupted);
         let is_complete = all && measured.len() == subjects.len();
@@ -80,8 +81,11 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         let answer = json!({"complete": is_complete, "reports": reports});
         output::to_programs(format!("{answer}\n").as_bytes())?;
     }
+    let is_interrupted = interrupt.pressed();
     if is_interrupted && measured.is_empty() {
-        output::warning(&"interrupted before anything was measured");
+        output::warning(
+            &"interrupted before anything was measured: the exact picture comes first, then the methods",
+        );
     }
     Ok(if is_interrupted {
         Status::Interrupted
@@ -104,6 +108,18 @@ fn request(args: &ReportArgs) -> Request {
     }
 }
 
+/// Samples are for those who take them.
+fn check_methods(request: &Request) -> Result<(), Trouble> {
+    let is_exact = |method: &Method| *method == Method::Exact;
+    match !request.samples.is_empty() && request.methods.iter().all(is_exact) {
+        true => Err(Trouble(
+            "`--samples` is for methods that take samples, and `--methods` names `exact` alone, which takes none"
+                .to_owned(),
+        )),
+        false => Ok(()),
+    }
+}
+
 /// The language's limit on samples holds here too.
 fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
@@ -116,7 +132,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     }
 }
 
-/// What is measured of a scene; nothing if Ctrl-C comes before the first run.
+/// What is measured of a scene; nothing if Ctrl-C comes before anything is.
 fn measure(
     subject: &Subject,
     scene: &Scene,
@@ -133,16 +149,14 @@ fn measure(
         Plan::new(subject, scene, request, &control)
     });
     let measured = plan.and_then(|plan| {
-        progress::watched(plan.total(), |done| {
-            let progress = |more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            };
-            let control = Control {
-                progress: &progress,
-                ..control
-            };
-            report::measure(&plan, &control)
-        })
+        let mut measured = counted(plan.total(), &control, |control| {
+            speed::measure(&plan, control)
+        })?;
+        let checks = Checks::new(&plan, &measured);
+        counted(checks.total(), &control, |control| {
+            checks.run(&mut measured, control)
+        })?;
+        Ok(measured)
     });
     match measured {
         Ok(measured) if measured.rounds() == 0 => Ok(None),
@@ -150,6 +164,20 @@ fn measure(
         Err(RenderError::Cancelled) => Ok(None),
         Err(error) => Err(Trouble(error.to_string())),
     }
+}
+
+/// Does work that tells its progress, and shows it.
+fn counted<T>(total: u64, control: &Control, work: impl FnOnce(&Control) -> T) -> T {
+    progress::watched(total, |done| {
+        let progress = |more| {
+            done.fetch_add(more, Ordering::Relaxed);
+        };
+        work(&Control {
+            threads: control.threads,
+            progress: &progress,
+            cancel: control.cancel,
+        })
+    })
 }
 
 /// Writes everything: of one scene into the folder itself, of several each into a folder there, under a page on all.
@@ -185,7 +213,7 @@ fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
 
 fn write_page(folder: &Path, measured: &[Measurement]) -> Result<(), Trouble> {
     let path = folder.join("index.html");
-    let page = report::page(measured).map_err(|error| cannot_write(&path, &error))?;
+    let page = speed::page(measured).map_err(|error| cannot_write(&path, &error))?;
     write_file(&path, &page)
 }
 

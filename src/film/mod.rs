@@ -12,7 +12,7 @@ mod read;
 mod srgb;
 mod write;
 
-use self::srgb::Encoder;
+pub(crate) use self::srgb::Encoder;
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, HeatError, Largest, SizesDiffer, Tolerance, compare,
@@ -109,11 +109,20 @@ impl Film {
 /// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::new();
+    certain(film, bounds, |light| encoder.encode(light))
+}
+
+/// The same of the 32-bit floats of an EXR file.
+pub fn certified_floats(film: &Film, bounds: &[f32]) -> u64 {
+    certain(film, bounds, |light| light.clamp(0.0, 1.0) as f32)
+}
+
+/// How many pixels become the same whatever their means are within their bounds.
+fn certain<T: PartialEq>(film: &Film, bounds: &[f32], round: impl Fn(f64) -> T) -> u64 {
     let is_certain = |(pixel, bound): &(&[f64; 3], &f32)| {
         let bound = f64::from(**bound);
-        pixel
-            .iter()
-            .all(|&light| encoder.encode(light - bound) == encoder.encode(light + bound))
+        let same = |&light: &f64| round(light - bound) == round(light + bound);
+        pixel.iter().all(same)
     };
     film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
 }

@@ -1,12 +1,12 @@
 //! Linear light as bytes of sRGB.
 //!
 //! Encoding and rounding are one comparison with thresholds: byte k stands for what lies from the light of k − 1/2 to that of k + 1/2.
-//! The thresholds are decoded as colours are, so a colour of the scene that nothing else is mixed into comes out as
-//! [`Color::to_bytes`](crate::color::Color::to_bytes) has it, ties included.
+//! The thresholds are exact, so every light gets the byte that is the nearest; and a colour of the scene that nothing else is mixed into
+//! comes out as [`Color::to_bytes`](crate::color::Color::to_bytes) has it, ties included.
 
 use std::array;
 
-use crate::color::srgb_to_linear;
+use crate::color::half_byte;
 
 /// The parts that linear light is cut into to find the byte.
 const PARTS: usize = 4096;
@@ -22,7 +22,7 @@ pub struct Encoder {
 impl Encoder {
     /// Prepares the thresholds.
     pub fn new() -> Self {
-        let thresholds = array::from_fn(|k| srgb_to_linear((k as f64 + 0.5) / 255.0));
+        let thresholds = array::from_fn(|k| half_byte(k as u8));
         let start = array::from_fn(|part| {
             let light = part as f64 / PARTS as f64;
             thresholds.partition_point(|&threshold| threshold <= light) as u8

@@ -57,10 +57,22 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
             "the checkerboard's second colour is missing where floor(x/square) + floor(z/square) is negative: the remainder of a \
              negative odd number is −1 there, not 1",
             "ask whether the remainder by 2 is 0, or use one that is never negative (rem_euclid)",
-            // Where x + z is negative so is the sum, but for the squares that the line x + z = 0 cuts.
             Make::Floor(
                 with_boards(scene, |board| board.colors[1] = board.colors[0]),
-                |at| at.x + at.y < 0.0,
+                |at| at.x.floor() + at.y.floor() < 0.0,
+            ),
+        ),
+        idea(
+            "board_remainder",
+            "the checkerboard's first colour is missing where floor(x/square) and floor(z/square) are odd and one of them is negative: \
+             their remainders are −1 and 1 there, and not equal",
+            "take the remainder of the sum and ask whether it is 0, or use one that is never negative (rem_euclid)",
+            Make::Floor(
+                with_boards(scene, |board| board.colors[0] = board.colors[1]),
+                |at| {
+                    let is_odd = |x: f64| x.floor().rem_euclid(2.0) == 1.0;
+                    is_odd(at.x) && is_odd(at.y) && (at.x < 0.0) != (at.y < 0.0)
+                },
             ),
         ),
     ];

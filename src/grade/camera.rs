@@ -47,16 +47,42 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
     let mut ideas = rolls(scene);
     ideas.extend(views(scene));
     ideas.extend(distances(scene));
-    if scene.camera.near > 0.0 || scene.camera.far.is_some() {
-        ideas.push(idea(
-            "not_clipped",
-            "the near and the far plane were not minded".to_owned(),
+    ideas.extend(clips(scene));
+    ideas
+}
+
+fn clips(scene: &Scene) -> Vec<Idea> {
+    let (near, far) = (scene.camera.near, scene.camera.far);
+    let ignored = |mistake, message: &str, near, far| {
+        idea(
+            mistake,
+            message.to_owned(),
             "what counts is the depth along the view direction, (p − eye) · (−w): more than near and less than far",
             changed(scene, |scene| {
-                scene.camera.near = 0.0;
-                scene.camera.far = None;
+                (scene.camera.near, scene.camera.far) = (near, far)
             }),
+        )
+    };
+    let mut ideas = Vec::new();
+    if near > 0.0 {
+        ideas.push(ignored(
+            "near_ignored",
+            "the near plane was not minded",
+            0.0,
+            far,
         ));
+    }
+    if far.is_some() {
+        ideas.push(ignored(
+            "far_ignored",
+            "the far plane was not minded",
+            near,
+            None,
+        ));
+    }
+    if near > 0.0 && far.is_some() {
+        let message = "the near and the far plane were not minded";
+        ideas.push(ignored("not_clipped", message, 0.0, None));
     }
     ideas
 }

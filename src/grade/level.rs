@@ -170,31 +170,33 @@ struct Floor {
     pitch: f64,
     eye: DVec3,
     y: f64,
+    square: f64,
     half: DVec2,
 }
 
 impl Floor {
     fn new(scene: &Scene) -> Self {
         let (axes, pitch) = axes(scene);
+        let board = super::board::boards(scene).next();
+        let (y, square) = board.map_or((0.0, 1.0), |(_, board)| (board.y, board.square));
         Self {
             axes,
             pitch,
             eye: scene.camera.eye,
-            y: super::board::boards(scene)
-                .next()
-                .map_or(0.0, |(_, board)| board.y),
+            y,
+            square,
             half: DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0,
         }
     }
 
-    /// The point (x, z) that a pixel's centre sees, if the floor is in front of it.
+    /// The point (x, z) that a pixel's centre sees, in squares, if the floor is in front of it.
     fn point(&self, x: u32, y: u32) -> Option<DVec2> {
         let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) - self.half;
         let [u, v, w] = self.axes;
         let ray = (u * at.x - v * at.y) * self.pitch - w;
         let t = (self.y - self.eye.y) / ray.y;
         let point = self.eye + t * ray;
-        (t > 0.0 && t.is_finite()).then_some(DVec2::new(point.x, point.z))
+        (t > 0.0 && t.is_finite()).then_some(DVec2::new(point.x, point.z) / self.square)
     }
 }
 

@@ -80,7 +80,7 @@ enum Make {
     Scene(Box<Scene>),
     /// That, decoded as if its numbers were sRGB.
     Decoded(Box<Scene>),
-    /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor for which this holds.
+    /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
     Floor(Box<Scene>, fn(DVec2) -> bool),
     /// This picture.
     Is(Film),
@@ -114,9 +114,16 @@ pub fn scene(
         .into_iter()
         .chain(camera::ideas(scene))
         .chain(board::ideas(scene))
-        .chain(objects::ideas(scene))
+        .chain(objects::ideas(a, exact, scene))
         .chain(objects::colors(a, exact, scene));
-    let found = case.named(ideas.collect())?;
+    let mut found = case.named(ideas.collect())?;
+    if let [first, others @ ..] = found.as_slice()
+        && first.mistake != "colors"
+        && others.iter().any(|other| other.mistake == "colors")
+    {
+        // What explains the whole picture explains all of its colours.
+        found.retain(|verdict| verdict.mistake != "colors");
+    }
     if !found.is_empty() {
         return Ok(found);
     }

@@ -5,11 +5,13 @@ use std::{
     io::Write,
     path::Path,
     process::{Command, Output, Stdio},
-    thread,
-    time::{Duration, Instant},
 };
 
+use serde_json::Value;
 use tempfile::TempDir;
+
+#[cfg(unix)]
+use crate::interrupt::interrupted;
 
 /// A small scene that sees something of everything.
 const SCENE: &str = "\u{feff}// A ball on a floor.\r
@@ -369,7 +371,7 @@ fn check_reports_to_people_or_to_programs() {
     let output = pinhole(&folder, &["check", "a.scn", "bad.scn", "--format", "json"]);
     assert_eq!((status(&output), errors(&output)), (1, String::new()));
     for line in String::from_utf8(output.stdout).unwrap().lines() {
-        let problem: serde_json::Value = serde_json::from_str(line).unwrap();
+        let problem: Value = serde_json::from_str(line).unwrap();
         assert_eq!(problem["file"], "bad.scn");
     }
     let output = pinhole_reading(&folder, b"nonsense", &["check", "-", "--format=json"]);
@@ -394,14 +396,14 @@ fn a_label_in_an_override_names_it_as_the_command_line_does() {
         ];
         let output = pinhole(&folder, &arguments);
         assert_eq!(status(&output), 1);
-        let problem: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let problem: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(problem["file"], scene);
         assert_eq!(problem["labels"][0]["file"], "--set #2");
     }
 }
 
 /// Runs the binary, which has to print one line of JSON and nothing else.
-fn json(folder: &TempDir, arguments: &[&str]) -> serde_json::Value {
+fn json(folder: &TempDir, arguments: &[&str]) -> Value {
     let text = String::from_utf8(done(folder, arguments)).unwrap();
     assert!(text.ends_with('\n') && text.lines().count() == 1, "{text}");
     serde_json::from_str(&text).unwrap()
@@ -433,7 +435,7 @@ fn inspect_says_what_a_scene_means() {
     );
     assert_eq!(found["objects"][0]["name"], "Ball");
     assert_eq!(found["objects"][0]["line"], 6);
-    assert_eq!(found["objects"][1]["name"], serde_json::Value::Null);
+    assert_eq!(found["objects"][1]["name"], Value::Null);
     let output = pinhole(&folder, &["inspect", "a.scn"]);
     assert_eq!((status(&output), output.stdout), (0, Vec::new()));
     assert!(!output.stderr.is_empty());
@@ -572,21 +574,23 @@ fn report_counts_wrong_decisions_for_people_and_programs() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_a_report() {
+fn ctrl_c_keeps_what_the_hard_cases_have_shown() {
     let folder = folder();
     let arguments = ["report", "--numerics", "--inputs", "1000000000"];
-    let mut child = command(folder.path(), &arguments)
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    thread::sleep(Duration::from_millis(700));
-    assert!(child.try_wait().unwrap().is_none());
-    let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(killed.success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let after = 1500;
+    let output = interrupted(&mut command(folder.path(), &arguments), after);
+    let people = errors(&output);
+    assert!(people.contains("S1a  rays that nearly touch a sphere"));
+    assert!(
+        people.ends_with("it was interrupted before 43_000_000_000 inputs were asked.\n"),
+        "{people}"
+    );
+    let arguments = [&arguments[..], &["--format", "json"]].concat();
+    let output = interrupted(&mut command(folder.path(), &arguments), after);
+    let table: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(table["complete"], false);
+    let asked = table["numerics"][0]["inputs"].as_u64().unwrap();
+    assert!((1..1_000_000_000).contains(&asked), "{asked}");
 }
 
 #[cfg(unix)]
@@ -595,21 +599,8 @@ fn ctrl_c_leaves_the_old_file() {
     let folder = folder();
     fs::write(folder.path().join("slow.scn"), SLOW).unwrap();
     fs::write(folder.path().join("slow.png"), b"old").unwrap();
-    let mut child = command(folder.path(), &["render", "slow.scn"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // Long enough to have begun, and far from long enough to be done.
-    thread::sleep(Duration::from_millis(700));
-    assert!(child.try_wait().unwrap().is_none());
-    let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(killed.success());
-    let start = Instant::now();
-    assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert!(start.elapsed() < Duration::from_secs(5));
+    let mut render = command(folder.path(), &["render", "slow.scn"]);
+    interrupted(&mut render, 700);
     assert_eq!(read(&folder, "slow.png"), b"old");
     assert_eq!(names(&folder), ["a.scn", "slow.png", "slow.scn"]);
 }

@@ -1,6 +1,8 @@
 //! One test binary, a module per subject.
 
 mod answers;
+#[cfg(feature = "report")]
+mod browser;
 mod camera;
 mod cli;
 mod diagnostics;
@@ -9,6 +11,8 @@ mod exact;
 mod figure;
 mod film;
 mod images;
+#[cfg(unix)]
+mod interrupt;
 mod language;
 mod laws;
 mod numerics;

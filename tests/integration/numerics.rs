@@ -9,7 +9,7 @@ use std::{
 };
 
 use pinhole::{
-    render::{Control, RenderError},
+    render::Control,
     report::numerics::{self, Table},
 };
 
@@ -87,9 +87,17 @@ fn it_can_be_watched_and_cancelled() {
         },
         cancel: &cancel,
     };
-    let result = numerics::run(1_000_000, &control);
-    assert!(matches!(result, Err(RenderError::Cancelled)));
-    assert!((1..10_000).contains(&done.load(Ordering::Relaxed)));
+    let table = numerics::run(1_000_000, &control).unwrap();
+    let done = done.load(Ordering::Relaxed);
+    assert!((1..10_000).contains(&done));
+    // What was asked is there, and nothing else.
+    assert_eq!((table.inputs(), table.is_complete()), (done, false));
+    assert!(table.rows.iter().all(|row| row.tally.inputs > 0));
+    assert!(table.to_string().ends_with(&format!(
+        "The table is incomplete: it was interrupted before {}_000_000 inputs were asked.\n",
+        numerics::cases().count()
+    )));
+    assert_eq!(table.to_json()["complete"], false);
 }
 
 #[test]
@@ -110,7 +118,9 @@ fn the_table_fits_a_terminal_and_a_program() {
     for line in text.lines() {
         assert!(line.chars().count() <= 100, "{line}");
     }
+    assert!(!text.contains("incomplete"));
     let json = table().to_json();
+    assert_eq!(json["complete"], true);
     let rows = json["numerics"].as_array().unwrap();
     assert_eq!(rows.len(), table().rows.len());
     let first = &rows[0];

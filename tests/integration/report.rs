@@ -4,12 +4,26 @@ use std::{
     fs,
     path::Path,
     process::{Command, Output, Stdio},
+    sync::atomic::AtomicBool,
 };
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use pinhole::report::fit::{Fit, median, quantile, root_mean_square};
+use pinhole::{
+    film::Recipe,
+    render::Control,
+    report::speed::{
+        self, Checks, Plan, Request, Subject,
+        fit::{Fit, median, quantile, root_mean_square},
+        measure,
+    },
+    scene::{self, Method},
+    source::{Source, Sources},
+};
 use serde_json::Value;
 use tempfile::TempDir;
+
+#[cfg(unix)]
+use crate::interrupt::interrupted;
 
 const SCENE: &str =
     "image { width 48 height 32 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
@@ -91,6 +105,19 @@ fn the_slopes_uncertainty_is_that_of_the_textbook() {
 }
 
 #[test]
+fn what_the_line_reaches_is_doubted_as_in_the_textbook() {
+    // The same line: s = √0.1, x̄ = 1.5, S = 5, b = −0.6.
+    let fit = Fit::of(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
+    for (x, root) in [(1.5, 0.25f64.sqrt()), (3.5, (0.25f64 + 4.0 / 5.0).sqrt())] {
+        let expected = libm::exp2(0.1f64.sqrt() / 0.6 * root);
+        let doubt = fit.doubt(libm::exp2(x)).unwrap();
+        assert!((doubt - expected).abs() < 1e-13, "{doubt}, {expected}");
+    }
+    let two = Fit::of(&[(1.0, 1.0), (4.0, 0.5)]).unwrap();
+    assert_eq!(two.doubt(4.0), None);
+}
+
+#[test]
 fn what_has_no_slope_has_no_fit() {
     assert_eq!(Fit::of(&[]), None);
     assert_eq!(Fit::of(&[(1.0, 1.0)]), None);
@@ -136,7 +163,9 @@ fn people_get_a_table() {
         "scatter",
         "exact",
         "for 1/256",
+        "× ÷",
         "extrapolated",
+        "note: What is extrapolated",
         "note: scatter",
         "the fastest sampled method",
     ] {
@@ -208,7 +237,11 @@ fn programs_get_json_and_errors_fall() {
         let needed = method["needed"].as_array().unwrap();
         assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
         assert_eq!(needed[1]["extrapolated"], false);
+        assert_eq!(needed[1]["factor"], Value::Null);
         assert_eq!(needed[2]["extrapolated"], true, "{name}");
+        assert!(needed[2]["factor"].as_f64().unwrap() > 1.0, "{name}");
+        // Whoever says how many samples are taken gets no others.
+        assert_eq!(needed[2]["taken"], Value::Null);
     }
     // Independent samples: each run draws its own seed's, and the errors of the seeds differ.
     let random = methods
@@ -340,9 +373,7 @@ fn labels_of_a_chart_do_not_lie_upon_each_other() {
                 let text = node.text().unwrap_or_default().trim();
                 let first = text.split(' ').next().unwrap();
                 node.has_tag_name("text")
-                    && pinhole::scene::Method::SAMPLED
-                        .iter()
-                        .any(|method| method.name() == first)
+                    && Method::SAMPLED.iter().any(|method| method.name() == first)
             })
             .map(|node| node.attribute("y").unwrap().parse().unwrap())
             .collect();
@@ -402,6 +433,11 @@ fn a_picture_of_one_colour_has_no_error() {
         text.contains("no slope is fitted to an error of 0"),
         "{text}"
     );
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains("; every sampled method has no error at all with 1 sample per pixel already, so that none is the fastest"),
+        "{text}"
+    );
     parsed(&read(&folder, "out/index.html"));
     parsed(&read(&folder, "out/error-against-time.svg"));
 }
@@ -432,6 +468,16 @@ fn wrong_arguments_are_told() {
     ] {
         fails(&folder, arguments, 2);
     }
+    let errors = fails(
+        &folder,
+        &["a.scn", "--methods", "exact", "--samples", "4", "-o", "new"],
+        2,
+    );
+    assert!(
+        errors.starts_with("error: `--samples` is for methods that take samples"),
+        "{errors}"
+    );
+    assert!(!folder.path().join("new").exists());
     let errors = fails(&folder, &["a.scn", "-o", "file"], 2);
     assert_eq!(
         errors,
@@ -444,6 +490,73 @@ fn wrong_arguments_are_told() {
     assert!(
         errors.contains("pinhole::unknown_field") && !errors.contains("rays"),
         "{errors}"
+    );
+}
+
+#[test]
+fn what_is_extrapolated_is_tried_where_time_is_left() {
+    let text = SCENE.replace("width 48 height 32", "width 12 height 8");
+    let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
+    let scene = scene::read(&sources).scene.unwrap();
+    let subject = Subject {
+        name: "a.scn".to_owned(),
+        recipe: Recipe {
+            scene: text,
+            overrides: Vec::new(),
+            crop: None,
+        },
+    };
+    let request = Request {
+        methods: vec![Method::Sobol, Method::Exact],
+        samples: Vec::new(),
+        runs: Some(1),
+        errors: vec![2e-4],
+        budget: std::time::Duration::from_secs(30),
+        threads: None,
+    };
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let plan = Plan::new(&subject, &scene, &request, &control).unwrap();
+    let mut measured = measure(&plan, &control).unwrap();
+    let sobol = || {
+        measured
+            .series
+            .iter()
+            .find(|series| series.method == Method::Sobol)
+    };
+    let needed = sobol().unwrap().needed(2e-4).unwrap();
+    assert!(
+        needed.is_extrapolated && needed.per_pixel > 1024.0,
+        "{needed:?}"
+    );
+    let checks = Checks::new(&plan, &measured);
+    assert!(checks.total() > 0);
+    checks.run(&mut measured, &control).unwrap();
+    let sobol = measured
+        .series
+        .iter()
+        .find(|series| series.method == Method::Sobol);
+    let check = *sobol.unwrap().check(2e-4).unwrap();
+    assert_eq!(check.per_pixel as f64, needed.per_pixel);
+    assert!((5e-5..1e-3).contains(&check.rmse), "{check:?}");
+    // It changes no prediction, and is told with it.
+    assert_eq!(sobol.unwrap().needed(2e-4), Some(needed));
+    let text = speed::table(&measured);
+    assert!(text.contains("  extrapolated; taken: error "), "{text}");
+    let json = &speed::to_json(&measured)["methods"];
+    let sobol = json
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|method| method["method"] == "sobol");
+    assert_eq!(sobol.unwrap()["needed"][0]["taken"]["rmse"], check.rmse);
+    assert!(
+        speed::page(&[measured])
+            .unwrap()
+            .contains("error when taken")
     );
 }
 
@@ -466,26 +579,15 @@ fn ctrl_c_keeps_what_was_measured() {
         "--methods",
         "sobol,exact",
     ];
-    let child = command(&folder, &arguments)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(2500));
-    let id = child.id().to_string();
-    assert!(
-        Command::new("kill")
-            .args(["-INT", &id])
-            .status()
-            .unwrap()
-            .success()
-    );
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{}", words(&output.stderr));
+    let after = 2500;
+    let output = interrupted(&mut command(&folder, &arguments), after);
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(answer["complete"], false);
     let report = &answer["reports"][0];
-    assert_eq!(report["complete"], false);
+    assert_eq!(
+        (&report["complete"], &report["warm_up"]),
+        (&false.into(), &false.into())
+    );
     assert!(report["runs"].as_u64().unwrap() >= 1);
     assert!(
         report["notes"][0]
@@ -495,4 +597,62 @@ fn ctrl_c_keeps_what_was_measured() {
     );
     parsed(&read(&folder, "out/index.html"));
     read(&folder, "out/report.csv");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_before_the_first_run_keeps_the_warm_up() {
+    let folder = folder();
+    fs::write(folder.path().join("slow.scn"), SLOW).unwrap();
+    // A run takes minutes, the warm-up does not.
+    let arguments = [
+        "slow.scn",
+        "-o",
+        "out",
+        "--samples",
+        "100000",
+        "--runs",
+        "1",
+        "--methods",
+        "sobol,random,exact",
+    ];
+    let after = 2500;
+    let output = interrupted(&mut command(&folder, &arguments), after);
+    let text = words(&output.stderr);
+    assert!(text.contains("\nrandom "), "{text}");
+    assert!(
+        text.contains("note: Incomplete: it was interrupted before the first run was over."),
+        "{text}"
+    );
+    let json: Value = serde_json::from_str(&read(&folder, "out/report.json")).unwrap();
+    assert_eq!(
+        (&json["complete"], &json["warm_up"]),
+        (&false.into(), &true.into())
+    );
+    assert_eq!(json["per_pixel"], serde_json::json!([4]));
+    assert!(json["exact"]["time"]["median"].as_f64().unwrap() > 0.0);
+    let measured = &json["methods"][0]["measured"];
+    assert_eq!(measured[0]["time"]["runs"].as_array().unwrap().len(), 2);
+    assert!(measured[0]["rmse"].as_f64().unwrap() > 0.0);
+    parsed(&read(&folder, "out/index.html"));
+    read(&folder, "out/report.csv");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_before_the_exact_picture_says_that_nothing_was_measured() {
+    let folder = folder();
+    let large = format!(
+        "{SCENE} {}",
+        "triangle { centroid (0, 1, 0) normal (0, 0, 1) }"
+    )
+    .replace("width 48 height 32", "width 6000 height 4000");
+    fs::write(folder.path().join("large.scn"), large).unwrap();
+    let arguments = ["large.scn", "--methods", "sobol", "--samples", "1"];
+    let after = 700;
+    let output = interrupted(&mut command(&folder, &arguments), after);
+    assert_eq!(
+        words(&output.stderr),
+        "warning: interrupted before anything was measured: the exact picture comes first, then the methods\n"
+    );
 }

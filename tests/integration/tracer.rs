@@ -1,100 +1,24 @@
 //! The tracer against the oracle, above all within the last bits of every boundary.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
+pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
 use pinhole::{
     color::Color,
     math::Angle,
-    report::numerics::oracle::{ALL_SIZES, Oracle},
-    scene::{
-        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
-        Sphere, Triangle, View,
+    report::numerics::{
+        oracle::{ALL_SIZES, Oracle},
+        scenes::{self, SIZE},
     },
-    source::{SourceId, Span},
+    scene::{Checkerboard, Lens, Scene, Shape, Triangle, View},
     tracer::{Precision, World},
 };
 
-const SIZE: u32 = 64;
-
-pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
-    Camera {
-        eye,
-        view: View::Lookat(lookat),
-        up: DVec3::Y,
-        roll: Angle::default(),
-        lens: Lens::Distance(2.0),
-        view_height: 2.0,
-        near: 0.0,
-        far: None,
-    }
-}
-
-/// A scene whose colours tell its objects apart.
-pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
-    let shapes = shapes.iter().enumerate().map(|(index, shape)| {
-        let own = Color::from_bytes([index as u8 + 1, 0, 0]);
-        let mut shape = *shape;
-        match &mut shape {
-            Shape::Sphere(Sphere { color, .. })
-            | Shape::Triangle(Triangle { color, .. })
-            | Shape::Box(Cuboid { color, .. }) => *color = own,
-            Shape::Checkerboard(Checkerboard { colors, .. }) => {
-                *colors = [own, Color::from_bytes([index as u8 + 1, 1, 0])];
-            }
-        }
-        Object {
-            name: None,
-            shape,
-            span: Span::new(SourceId::File, 0, 0),
-        }
-    });
-    Scene {
-        image: Image {
-            width: SIZE,
-            height: SIZE,
-            background: Color::BLACK,
-        },
-        camera,
-        sampler: Sampler {
-            method: Method::Random,
-            count: Count::PerPixel(1),
-            seed: 0,
-        },
-        objects: shapes.collect(),
-    }
-}
-
-pub fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere(Sphere {
-        center,
-        radius,
-        color: Color::BLACK,
-    })
-}
-
 pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
-    Shape::Triangle(Triangle {
-        centroid,
-        normal,
-        sides: dvec3(2.0, 2.0, 1.0),
-        spin: Angle::default(),
-        color: Color::BLACK,
-    })
-}
-
-pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
-    Shape::Box(Cuboid {
-        min,
-        max,
-        color: Color::BLACK,
-    })
+    scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
 }
 
 pub fn floor() -> Shape {
-    Shape::Checkerboard(Checkerboard {
-        y: 0.0,
-        square: 1.0,
-        colors: [Color::BLACK; 2],
-    })
+    scenes::board(0.0, 1.0)
 }
 
 /// Reproducible numbers (SplitMix64).

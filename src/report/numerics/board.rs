@@ -4,8 +4,9 @@ use glam::{DVec3, dvec2, dvec3};
 
 use super::{
     Case, Claim,
-    inputs::{Random, SIZE, along, board, camera, cuboid, scene, sphere, spun, triangle},
+    inputs::Random,
     oracle::USUAL_SIZES,
+    scenes::{SIZE, along, board, camera, cuboid, scene, sphere, spun, triangle},
     trial::{Tally, Trial},
 };
 

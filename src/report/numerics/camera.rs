@@ -4,8 +4,9 @@ use glam::{DVec3, dvec3};
 
 use super::{
     Case, Claim,
-    inputs::{Random, along, board, camera, cuboid, scene, sphere, triangle},
+    inputs::Random,
     oracle::{ALL_SIZES, Oracle, USUAL_SIZES},
+    scenes::{along, board, camera, cuboid, scene, sphere, triangle},
     textbook,
     trial::{Tally, Trial},
 };

@@ -4,8 +4,9 @@ use glam::{DVec3, dvec2, dvec3};
 
 use super::{
     Case, Claim,
-    inputs::{Random, SIZE, along, camera, cuboid, scene, sphere},
+    inputs::Random,
     oracle::USUAL_SIZES,
+    scenes::{SIZE, along, camera, cuboid, scene, sphere},
     trial::{Tally, Trial},
 };
 use crate::math::Angle;

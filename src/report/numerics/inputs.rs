@@ -1,17 +1,8 @@
-//! What inputs are made of: numbers that only look random, and scenes.
+//! Numbers that only look random, of which inputs are made.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
-use crate::{
-    color::Color,
-    math::Angle,
-    sampling::hash::{Key, scale},
-    scene::{
-        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
-        Sphere, Triangle, View,
-    },
-    source::{SourceId, Span},
-};
+use crate::sampling::hash::{Key, scale};
 
 /// Numbers that are a function of a case and a block of its inputs.
 #[derive(Clone, Debug)]
@@ -87,108 +78,5 @@ impl Random {
     /// An offset from the centre of a pixel.
     pub fn offset(&mut self) -> DVec2 {
         dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
-    }
-}
-
-/// Columns and rows of the pictures, but where a case says otherwise.
-pub const SIZE: u32 = 64;
-
-/// A camera with the language's defaults.
-pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
-    Camera {
-        eye,
-        view: View::Lookat(lookat),
-        up: DVec3::Y,
-        roll: Angle::default(),
-        lens: Lens::Distance(2.0),
-        view_height: 2.0,
-        near: 0.0,
-        far: None,
-    }
-}
-
-/// A camera that looks along a vector.
-pub fn along(eye: DVec3, direction: DVec3) -> Camera {
-    Camera {
-        view: View::Direction(direction),
-        ..camera(eye, DVec3::ZERO)
-    }
-}
-
-/// A sphere.
-pub fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere(Sphere {
-        center,
-        radius,
-        color: Color::BLACK,
-    })
-}
-
-/// A box.
-pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
-    Shape::Box(Cuboid {
-        min,
-        max,
-        color: Color::BLACK,
-    })
-}
-
-/// A triangle, not spun.
-pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
-    spun(centroid, normal, sides, 0.0)
-}
-
-/// A triangle, spun by so many degrees.
-pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
-    Shape::Triangle(Triangle {
-        centroid,
-        normal,
-        sides,
-        spin: Angle::from_degrees(spin),
-        color: Color::BLACK,
-    })
-}
-
-/// A checkerboard.
-pub fn board(y: f64, square: f64) -> Shape {
-    Shape::Checkerboard(Checkerboard {
-        y,
-        square,
-        colors: [Color::BLACK; 2],
-    })
-}
-
-/// A scene whose colours tell its objects apart.
-pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
-    let objects = (1..).zip(shapes).map(|(number, shape)| {
-        let own = Color::from_bytes([number, 0, 0]);
-        let mut shape = *shape;
-        match &mut shape {
-            Shape::Sphere(Sphere { color, .. })
-            | Shape::Triangle(Triangle { color, .. })
-            | Shape::Box(Cuboid { color, .. }) => *color = own,
-            Shape::Checkerboard(Checkerboard { colors, .. }) => {
-                *colors = [own, Color::from_bytes([number, 1, 0])];
-            }
-        }
-        Object {
-            name: None,
-            shape,
-            span: Span::new(SourceId::File, 0, 0),
-        }
-    });
-    Scene {
-        image: Image {
-            width: SIZE,
-            height: SIZE,
-            background: Color::BLACK,
-        },
-        camera,
-        sampler: Sampler {
-            method: Method::Random,
-            count: Count::PerPixel(1),
-            seed: 0,
-        },
-        objects: objects.collect(),
     }
 }

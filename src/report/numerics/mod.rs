@@ -18,6 +18,7 @@ mod cuboid;
 mod film;
 mod inputs;
 pub mod oracle;
+pub mod scenes;
 mod sphere;
 mod table;
 pub mod textbook;
@@ -26,14 +27,14 @@ mod triangle;
 
 use std::sync::atomic::Ordering;
 
-use rayon::prelude::*;
+use rayon::{ThreadPoolBuildError, prelude::*};
 
 use self::inputs::Random;
 pub use self::{
     table::{Claim, Row, Table},
     trial::Tally,
 };
-use crate::render::{Control, RenderError, pool};
+use crate::render::{Control, pool};
 
 /// A hard case.
 #[derive(Clone, Copy, Debug)]
@@ -82,25 +83,25 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 /// So many inputs of a case share a scene.
 const BLOCK: u64 = 100;
 
-/// Asks so many inputs of every case. The progress is told in inputs.
-pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, RenderError> {
+/// Asks so many inputs of every case. The progress is told in inputs. When it is cancelled, what was asked until then comes out: of all
+/// cases about as many, none that was asked nothing.
+pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolBuildError> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
     let tallies = pool(control.threads)?.install(|| {
         (0..cases.len() as u64 * blocks)
             .into_par_iter()
+            .take_any_while(|_| !control.cancel.load(Ordering::Relaxed))
             .fold(
                 || vec![Tally::default(); cases.len()],
                 |mut tallies, index| {
                     // Block by block of all cases, so that the progress is even.
                     let (block, at) = (index / cases.len() as u64, index as usize % cases.len());
-                    if !control.cancel.load(Ordering::Relaxed) {
-                        let count = BLOCK.min(inputs_per_case - block * BLOCK);
-                        let mut tally = Tally::default();
-                        (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);
-                        tallies[at] = tallies[at].plus(tally);
-                        (control.progress)(count);
-                    }
+                    let count = BLOCK.min(inputs_per_case - block * BLOCK);
+                    let mut tally = Tally::default();
+                    (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);
+                    tallies[at] = tallies[at].plus(tally);
+                    (control.progress)(count);
                     tallies
                 },
             )
@@ -109,9 +110,6 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, RenderError
                 |a, b| a.into_iter().zip(b).map(|(a, b)| a.plus(b)).collect(),
             )
     });
-    if control.cancel.load(Ordering::Relaxed) {
-        return Err(RenderError::Cancelled);
-    }
     let rows = cases.iter().zip(tallies).map(|(case, tally)| Row {
         id: case.id,
         title: case.title,
@@ -119,6 +117,7 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, RenderError
         tally,
     });
     Ok(Table {
-        rows: rows.collect(),
+        rows: rows.filter(|row| row.tally.inputs > 0).collect(),
+        planned: inputs_per_case.saturating_mul(cases.len() as u64),
     })
 }

@@ -62,6 +62,8 @@ pub struct Row {
 pub struct Table {
     /// The cases in the order of the catalogue.
     pub rows: Vec<Row>,
+    /// How many inputs were to be asked.
+    pub planned: u64,
 }
 
 impl Table {
@@ -73,6 +75,11 @@ impl Table {
     /// How many questions were asked.
     pub fn inputs(&self) -> u64 {
         self.rows.iter().map(|row| row.tally.inputs).sum()
+    }
+
+    /// Whether every input was asked.
+    pub fn is_complete(&self) -> bool {
+        self.inputs() == self.planned
     }
 
     /// The same for programs. An error that is no number, as of a distance that is not found at all, is null, as is what a
@@ -100,7 +107,7 @@ impl Table {
                 "unit": row.claim.unit(),
             })
         });
-        json!({ "numerics": rows.collect::<Vec<_>>() })
+        json!({ "complete": self.is_complete(), "numerics": rows.collect::<Vec<_>>() })
     }
 }
 
@@ -146,7 +153,15 @@ impl fmt::Display for Table {
         writeln!(
             f,
             "Errors are of the distance and the point seen in ulp, of unit vectors in u = 2^-53."
-        )
+        )?;
+        match self.is_complete() {
+            true => Ok(()),
+            false => writeln!(
+                f,
+                "The table is incomplete: it was interrupted before {} inputs were asked.",
+                grouped(self.planned)
+            ),
+        }
     }
 }
 

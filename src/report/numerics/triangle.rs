@@ -4,8 +4,9 @@ use glam::{DVec3, dvec2, dvec3};
 
 use super::{
     Case, Claim,
-    inputs::{Random, SIZE, along, camera, scene, spun, triangle},
+    inputs::Random,
     oracle::USUAL_SIZES,
+    scenes::{SIZE, along, camera, scene, spun, triangle},
     trial::{Tally, Trial},
 };
 use crate::scene::Lens;

@@ -11,7 +11,7 @@ use super::{
     measure::{Measurement, Point, Series},
     notes::{NOISY, notes, spread, verdicts},
     picture,
-    table::{cells, count, error, plural, seconds, slope},
+    table::{cells, count, error, factor, plural, seconds, slope},
 };
 use crate::{numbers, scene::Method};
 
@@ -39,27 +39,17 @@ fn section(html: &mut String, measured: &Measurement, class: &str) -> io::Result
     let name = escaped(&measured.subject.name);
     *html += &format!("<section>\n<h2{class}>{name}</h2>\n");
     for verdict in verdicts(measured) {
-        *html += &format!("<p class=\"lead\">{}.</p>\n", escaped(&capital(&verdict)));
+        *html += &format!("<p class=\"lead\">{}.</p>\n", prose(&capital(&verdict)));
     }
     let notes = notes(measured);
     if !notes.is_empty() {
         let items = notes
             .iter()
-            .map(|note| format!("<li>{}</li>\n", escaped(note)));
+            .map(|note| format!("<li>{}</li>\n", prose(note)));
         *html += &format!("<ul class=\"notes\">\n{}</ul>\n", items.collect::<String>());
     }
     *html += &facts(measured);
-    let bound = numbers::at_most(measured.reference.bound());
-    *html += &format!(
-        "<figure>\n{}<figcaption>Error against the time of a render. Lower and further to the left is better. The exact method's error \
-         lies below the chart: it is within {bound}.</figcaption>\n</figure>\n",
-        against_time(measured)
-    );
-    *html += &format!(
-        "<figure>\n{}<figcaption>Error against samples per pixel. The number beside a name is the slope with its standard error: −0.5 \
-         is that of independent samples, about −0.75 the best that a slanted edge allows.</figcaption>\n</figure>\n",
-        against_samples(measured)
-    );
+    *html += &charts(measured);
     *html += "<h3>The numbers</h3>\n";
     *html += &errors(measured);
     *html += &times(measured);
@@ -67,6 +57,40 @@ fn section(html: &mut String, measured: &Measurement, class: &str) -> io::Result
     pictures(html, measured)?;
     *html += "</section>\n";
     Ok(())
+}
+
+fn charts(measured: &Measurement) -> String {
+    let bound = prose(&numbers::at_most(measured.reference.bound()));
+    let is_tried = measured
+        .series
+        .iter()
+        .any(|series| !series.checks.is_empty());
+    let tried = match is_tried {
+        true => {
+            " Points further out are single runs that try what was extrapolated; the slope leaves them out."
+        }
+        false => "",
+    };
+    format!(
+        "<figure>\n<div class=\"wide\">{}</div><figcaption>Error against the time of a render. Lower and further to the left is better. \
+         The exact method's error lies below the chart: it is within {bound}.</figcaption>\n</figure>\n\
+         <figure>\n<div class=\"wide\">{}</div><figcaption>Error against samples per pixel. The number beside a name is the slope with \
+         its standard error: −0.5 is that of independent samples, about −0.75 the best that a slanted edge allows.{tried}</figcaption>\n\
+         </figure>\n",
+        against_time(measured),
+        against_samples(measured)
+    )
+}
+
+/// Text in which no line's end breaks a number with an exponent.
+fn prose(text: &str) -> String {
+    let whole =
+        |word: &str| match word.contains("e-") && word.starts_with(|c: char| c.is_ascii_digit()) {
+            true => format!("<span class=\"number\">{word}</span>"),
+            false => word.to_owned(),
+        };
+    let words: Vec<_> = escaped(text).split(' ').map(whole).collect();
+    words.join(" ")
 }
 
 fn facts(measured: &Measurement) -> String {
@@ -101,7 +125,7 @@ fn facts(measured: &Measurement) -> String {
             "reference",
             format!(
                 "method exact, every channel within {} of the true mean",
-                error(measured.reference.bound())
+                numbers::at_most(measured.reference.bound())
             ),
         ),
         ("duration", format!("{} in all", seconds(measured.seconds))),
@@ -111,7 +135,7 @@ fn facts(measured: &Measurement) -> String {
     }
     let items = facts
         .iter()
-        .map(|(name, fact)| format!("<dt>{name}</dt><dd>{}</dd>\n", escaped(fact)));
+        .map(|(name, fact)| format!("<dt>{name}</dt><dd>{}</dd>\n", prose(fact)));
     format!("<dl class=\"facts\">\n{}</dl>\n", items.collect::<String>())
 }
 
@@ -181,15 +205,30 @@ fn ranged(times: &[f64]) -> String {
 }
 
 fn needs(measured: &Measurement) -> String {
-    let cell = |series: &Series, wanted: f64| match series.needed(wanted) {
-        None => ["–".to_owned(), "–".to_owned()],
-        Some(needed) => {
-            let mark = if needed.is_extrapolated { "*" } else { "" };
-            [
-                format!("{}{mark}", count(needed.per_pixel)),
-                format!("{}{mark}", seconds(needed.seconds)),
-            ]
+    let is_tried = measured
+        .series
+        .iter()
+        .any(|series| !series.checks.is_empty());
+    let cell = |series: &Series, wanted: f64| {
+        let needed = series.needed(wanted);
+        let mark = |text: String| match needed.is_some_and(|needed| needed.is_extrapolated) {
+            true => format!("{text}*"),
+            false => text,
+        };
+        let none = || "–".to_owned();
+        let samples = needed.map(|needed| match needed.factor {
+            Some(doubt) => mark(format!("{} × ÷ {}", count(needed.per_pixel), factor(doubt))),
+            None => mark(count(needed.per_pixel)),
+        });
+        let time = needed.map(|needed| mark(seconds(needed.seconds)));
+        let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];
+        if is_tried {
+            let taken = series
+                .check(wanted)
+                .map(|check| format!("{} in {}", error(check.rmse), seconds(check.seconds)));
+            cells.push(taken.unwrap_or_else(none));
         }
+        cells
     };
     let rows = measured.series.iter().map(|series| {
         let row = measured
@@ -200,24 +239,28 @@ fn needs(measured: &Measurement) -> String {
     });
     let exact = measured.exact.as_ref().map(|exact| {
         let time = seconds(median(&exact.times));
-        format!("<td>–</td><td>{time}</td>").repeat(measured.errors.len())
+        let taken = if is_tried { "<td></td>" } else { "" };
+        format!("<td>–</td><td>{time}</td>{taken}").repeat(measured.errors.len())
     });
     let names: Vec<_> = measured
         .errors
         .iter()
         .flat_map(|&wanted| {
             let wanted = error(wanted);
-            [
+            let mut names = vec![
                 format!("samples for {wanted}"),
                 format!("time for {wanted}"),
-            ]
+            ];
+            names.extend(is_tried.then(|| "error when taken".to_owned()));
+            names
         })
         .collect();
     if names.is_empty() {
         return String::new();
     }
     table(
-        "What an error takes: samples per pixel by the fitted line, and their time. A star marks what lies beyond the measured range.",
+        "What an error takes: samples per pixel by the fitted line, × and ÷ one standard error, and their time. A star marks what lies \
+         beyond the measured range; where it was tried, the last column is what one run left of the error.",
         &names,
         rows,
         exact,
@@ -235,7 +278,7 @@ fn table(
     exact: Option<String>,
 ) -> String {
     let mut html = format!(
-        "<div class=\"wide\"><table>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">method</th>"
+        "<div class=\"wide\"><table>\n<caption><span>{caption}</span></caption>\n<thead><tr><th scope=\"col\">method</th>"
     );
     for name in names {
         let _ = write!(html, "<th scope=\"col\">{name}</th>");
@@ -269,20 +312,20 @@ fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
             part.width, part.height, whole.width, whole.height, part.x, part.y
         ),
     };
-    *html += &format!(
-        "<p>{what} by each method with {} per pixel (seed {}), and below it where it is wrong: the largest difference of a pixel's \
-         channels to the exact picture, on a logarithmic scale.</p>\n",
-        plural(measured.shown, "sample"),
-        measured.seed
-    );
-    *html += "<ul class=\"scale\">\n";
-    for (name, color) in picture::scale() {
+    if measured
+        .series
+        .iter()
+        .any(|series| series.picture.is_some())
+    {
         *html += &format!(
-            "<li><svg viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" height=\"10\" fill=\"{color}\" stroke=\"#888\"/></svg>\
-             {name}</li>\n"
+            "<p>{what} by each method with {} per pixel (seed {}), and below it where it is wrong: the largest difference of a pixel's \
+             channels to the exact picture, on a logarithmic scale.</p>\n",
+            plural(measured.shown, "sample"),
+            measured.seed
         );
+        *html += &scale();
     }
-    *html += "</ul>\n<div class=\"pictures\">\n";
+    *html += "<div class=\"pictures\">\n";
     let reference = &measured.reference.film;
     *html += &format!(
         "<figure>{}<figcaption>exact, within {}</figcaption></figure>\n",
@@ -290,7 +333,7 @@ fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
             &picture::shown(measured, reference, Method::Exact, part)?,
             "the exact picture"
         ),
-        error(measured.reference.bound())
+        numbers::at_most(measured.reference.bound())
     );
     for series in &measured.series {
         let Some(film) = &series.picture else {
@@ -321,6 +364,17 @@ fn pictures(html: &mut String, measured: &Measurement) -> io::Result<()> {
     Ok(())
 }
 
+/// What the colours of the errors mean.
+fn scale() -> String {
+    let items = picture::scale().map(|(name, color)| {
+        format!(
+            "<li><svg viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" height=\"10\" fill=\"{color}\" stroke=\"#888\"/></svg>\
+             {name}</li>\n"
+        )
+    });
+    format!("<ul class=\"scale\">\n{}</ul>\n", items.collect::<String>())
+}
+
 fn image(uri: &str, text: &str) -> String {
     format!("<img src=\"{uri}\" alt=\"{text}\"/>")
 }
@@ -330,7 +384,7 @@ fn method(measurements: &[Measurement]) -> String {
     let bounds = measurements
         .iter()
         .map(|measured| measured.reference.bound());
-    let bound = numbers::at_most(bounds.fold(0.0, f64::max));
+    let bound = prose(&numbers::at_most(bounds.fold(0.0, f64::max)));
     let noisy = NOISY * 100.0;
     format!(
         "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\
@@ -351,7 +405,11 @@ fn method(measurements: &[Measurement]) -> String {
          √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4).</li>\n\
          <li><b>What an error takes</b> is where that line comes down to it, rounded up to a whole number of samples; its time lies on the \
          straight line between the measured neighbours. Beyond the most samples that were measured it is extrapolated, the time in \
-         proportion, and marked.</li>\n\
+         proportion, and marked. Its standard error is that of ln x, s/|b| · √(1/k + (x − x̄)²/Σ(x − x̄)²) with s = √(Σr² / (k − 2)), to \
+         first order (the same, section 3.2); it takes the line for straight. Where the samples are left to the program and time is \
+         left, the samples so found are taken once, the fastest methods first, and what they leave of the error stands beside them.</li>\n\
+         <li><b>The fastest method</b> is named together with all whose time may be the same, within the standard error of the samples \
+         and half of the spread of the times.</li>\n\
          </ul>\n</section>\n"
     )
 }

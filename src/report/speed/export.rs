@@ -74,6 +74,7 @@ pub fn to_json(measured: &Measurement) -> Value {
         "image": {"width": whole.width, "height": whole.height},
         "seed": measured.seed,
         "complete": !measured.interrupted,
+        "warm_up": measured.is_warm_up,
         "planned_runs": measured.runs,
         "runs": measured.rounds(),
         "per_pixel": measured.rungs,
@@ -91,12 +92,18 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
         |fit| json!({"slope": fit.slope, "slope_error": fit.slope_error, "points": fit.points}),
     );
     let needed = errors.iter().map(|&error| match series.needed(error) {
-        None => json!({"error": error, "per_pixel": null, "time": null, "extrapolated": null}),
+        None => {
+            json!({"error": error, "per_pixel": null, "factor": null, "time": null, "extrapolated": null, "taken": null})
+        }
         Some(needed) => json!({
             "error": error,
             "per_pixel": needed.per_pixel,
+            "factor": needed.factor,
             "time": needed.seconds,
             "extrapolated": needed.is_extrapolated,
+            "taken": series.check(error).map(
+                |check| json!({"per_pixel": check.per_pixel, "time": check.seconds, "rmse": check.rmse, "largest_error": check.largest}),
+            ),
         }),
     });
     json!({

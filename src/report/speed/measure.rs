@@ -10,6 +10,7 @@ use std::{num::NonZero, sync::atomic::Ordering, time::Instant};
 use super::{
     Machine,
     fit::{Fit, median, root_mean_square},
+    needed::Check,
     plan::Plan,
 };
 use crate::{
@@ -57,6 +58,8 @@ pub struct Measurement {
     pub shown: u64,
     /// Whether the user ended it.
     pub interrupted: bool,
+    /// Whether it was ended before a run was over, so that these are the runs of the warm-up.
+    pub is_warm_up: bool,
     /// How long it took in all, in seconds.
     pub seconds: f64,
 }
@@ -77,6 +80,8 @@ pub struct Series {
     pub points: Vec<Point>,
     /// The picture of the first run with the number of samples that is shown.
     pub picture: Option<Film>,
+    /// What came of taking the samples that errors should take.
+    pub checks: Vec<Check>,
 }
 
 /// What was measured of a method with a number of samples.
@@ -94,18 +99,31 @@ pub struct Point {
     pub largest: f64,
 }
 
-/// What an error takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Needed {
-    /// Samples per pixel.
-    pub per_pixel: f64,
-    /// Seconds.
-    pub seconds: f64,
-    /// Whether it lies beyond what was measured.
-    pub is_extrapolated: bool,
+/// What came out of a single run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub(super) seconds: f64,
+    pub(super) rmse: f64,
+    pub(super) largest: f64,
 }
 
 impl Point {
+    fn new(per_pixel: u64, pixels: u64) -> Self {
+        Self {
+            per_pixel,
+            samples: per_pixel.saturating_mul(pixels),
+            times: Vec::new(),
+            rmse: Vec::new(),
+            largest: 0.0,
+        }
+    }
+
+    fn add(&mut self, run: Run) {
+        self.times.push(run.seconds);
+        self.rmse.push(run.rmse);
+        self.largest = self.largest.max(run.largest);
+    }
+
     /// The median time in seconds.
     pub fn seconds(&self) -> f64 {
         median(&self.times)
@@ -132,45 +150,6 @@ impl Series {
             .collect();
         Fit::of(&points)
     }
-
-    /// What an error takes by the [`fit`](Self::fit); none if more samples do not help. Fewer samples than were measured are not asked
-    /// for: they would not take less than the pixel's share of the rest.
-    pub fn needed(&self, error: f64) -> Option<Needed> {
-        let (first, last) = (self.points.first()?, self.points.last()?);
-        if first.error() <= error {
-            return Some(Needed {
-                per_pixel: first.per_pixel as f64,
-                seconds: first.seconds(),
-                is_extrapolated: false,
-            });
-        }
-        let per_pixel = self.fit()?.reaches(error)?.ceil();
-        let per_pixel = per_pixel.max(first.per_pixel as f64);
-        Some(Needed {
-            per_pixel,
-            seconds: self.seconds_at(per_pixel)?,
-            is_extrapolated: per_pixel > last.per_pixel as f64,
-        })
-    }
-
-    /// The time of a number of samples: on the straight line between the measured neighbours, beyond the last one in proportion.
-    fn seconds_at(&self, per_pixel: f64) -> Option<f64> {
-        let last = self.points.last()?;
-        let next = self
-            .points
-            .iter()
-            .position(|point| point.per_pixel as f64 >= per_pixel);
-        Some(match next {
-            None => last.seconds() * per_pixel / last.per_pixel as f64,
-            Some(0) => self.points[0].seconds(),
-            Some(next) => {
-                let (low, high) = (&self.points[next - 1], &self.points[next]);
-                let width = (high.per_pixel - low.per_pixel) as f64;
-                let share = (per_pixel - low.per_pixel as f64) / width;
-                low.seconds() + share * (high.seconds() - low.seconds())
-            }
-        })
-    }
 }
 
 impl Measurement {
@@ -179,12 +158,12 @@ impl Measurement {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// The sampled method that needs the least time for an error, and what it needs.
-    pub fn fastest(&self, error: f64) -> Option<(Method, Needed)> {
-        self.series
-            .iter()
-            .filter_map(|series| Some((series.method, series.needed(error)?)))
-            .min_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds))
+    /// Whether all runs of everything are over, whatever was interrupted.
+    pub(super) fn is_measured(&self) -> bool {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let complete = |point: &Point| point.times.len() as u64 == self.runs;
+        let rungs = |series: &Series| series.points.len() == self.rungs.len();
+        self.rounds() as u64 == self.runs && points().all(complete) && self.series.iter().all(rungs)
     }
 
     /// How many runs were begun.
@@ -211,14 +190,14 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
     if measured.exact.is_some() {
         tasks.push(Task::Exact);
     }
-    for (series, (_, rate)) in plan.rates.iter().enumerate() {
-        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point, *rate)));
+    for (series, warm) in plan.warm_up.iter().enumerate() {
+        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point, warm.rate)));
     }
     'rounds: for round in 0..plan.runs {
         let round_started = Instant::now();
         shuffle(&mut tasks, round);
         for &task in &tasks {
-            match run(task, round, plan, control, &mut measured) {
+            match perform(task, round, plan, control, &mut measured) {
                 Err(RenderError::Cancelled) => {
                     measured.interrupted = true;
                     break 'rounds;
@@ -230,6 +209,9 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
         if plan.is_limited && next_ends > plan.request.budget {
             break;
         }
+    }
+    if measured.interrupted && !any_run(&measured) {
+        warmed_up(plan, &mut measured);
     }
     for series in &mut measured.series {
         series.points.retain(|point| !point.times.is_empty());
@@ -243,17 +225,15 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
 fn empty(plan: &Plan) -> Measurement {
     let machine = Machine::here();
     let pixels = plan.reference.bounds.len() as u64;
-    let point = |&per_pixel: &u64| Point {
-        per_pixel,
-        samples: per_pixel.saturating_mul(pixels),
-        times: Vec::new(),
-        rmse: Vec::new(),
-        largest: 0.0,
-    };
-    let series = plan.rates.iter().map(|&(method, _)| Series {
-        method,
-        points: plan.rungs.iter().map(point).collect(),
+    let series = plan.warm_up.iter().map(|warm| Series {
+        method: warm.method,
+        points: plan
+            .rungs
+            .iter()
+            .map(|&rung| Point::new(rung, pixels))
+            .collect(),
         picture: None,
+        checks: Vec::new(),
     });
     // Enough samples for the methods to differ, few enough for the eye to see it.
     let shown = plan.rungs.iter().find(|&&rung| rung >= 16);
@@ -275,11 +255,39 @@ fn empty(plan: &Plan) -> Measurement {
         series: series.collect(),
         shown,
         interrupted: false,
+        is_warm_up: false,
         seconds: 0.0,
     }
 }
 
-fn run(
+/// Whether anything of what counts was measured: a sampled method, if there are any.
+fn any_run(measured: &Measurement) -> bool {
+    match measured.series.is_empty() {
+        true => measured.rounds() > 0,
+        false => {
+            let mut points = measured.series.iter().flat_map(|series| &series.points);
+            points.any(|point| !point.times.is_empty())
+        }
+    }
+}
+
+/// The warm-up in place of runs, of which there are none.
+fn warmed_up(plan: &Plan, measured: &mut Measurement) {
+    measured.is_warm_up = true;
+    measured.rungs = vec![plan.warm];
+    for (series, warm) in measured.series.iter_mut().zip(&plan.warm_up) {
+        let mut point = Point::new(plan.warm, plan.reference.bounds.len() as u64);
+        warm.runs.iter().for_each(|&run| point.add(run));
+        series.points = vec![point];
+    }
+    if let Some(exact) = &mut measured.exact
+        && exact.times.is_empty()
+    {
+        exact.times.push(plan.exact_seconds);
+    }
+}
+
+fn perform(
     task: Task,
     round: u64,
     plan: &Plan,
@@ -308,12 +316,16 @@ fn run(
             let point = &mut series.points[point];
             // Seeds are below 2^53.
             let seed = (measured.seed + round) % (1 << 53);
-            let (film, seconds) =
-                rendered(plan.scene, series.method, point.per_pixel, seed, &control)?;
-            let (rmse, largest) = difference(&film, &plan.reference.film);
-            point.times.push(seconds);
-            point.rmse.push(rmse);
-            point.largest = point.largest.max(largest);
+            let (scene, reference) = (plan.scene, &plan.reference.film);
+            let (done, film) = run(
+                scene,
+                series.method,
+                point.per_pixel,
+                seed,
+                reference,
+                &control,
+            )?;
+            point.add(done);
             if round == 0 && point.per_pixel == measured.shown {
                 series.picture = Some(film);
             }
@@ -334,14 +346,15 @@ fn shuffle(tasks: &mut [Task], round: u64) {
     }
 }
 
-/// Renders by a method, and says in how many seconds.
-pub(super) fn rendered(
+/// Renders by a method, and says how long it took and how wrong it is.
+pub(super) fn run(
     scene: &Scene,
     method: Method,
     per_pixel: u64,
     seed: u64,
+    reference: &Film,
     control: &Control,
-) -> Result<(Film, f64), RenderError> {
+) -> Result<(Run, Film), RenderError> {
     let sampler = Sampler {
         method,
         count: Count::PerPixel(per_pixel),
@@ -352,7 +365,14 @@ pub(super) fn rendered(
     let world = World::new(scene);
     let sampling = Sampling::new(&sampler, width, height);
     let film = render(&world, &sampling, Area::whole(width, height), control)?;
-    Ok((film, started.elapsed().as_secs_f64()))
+    let seconds = started.elapsed().as_secs_f64();
+    let (rmse, largest) = difference(&film, reference);
+    let run = Run {
+        seconds,
+        rmse,
+        largest,
+    };
+    Ok((run, film))
 }
 
 /// Computes the exact picture, and says in how many seconds.

@@ -44,7 +44,7 @@ pub(super) fn heading(measured: &Measurement) -> String {
         plural(measured.threads as u64, "thread"),
         machine.processor,
         plural(machine.processors as u64, "processor"),
-        error(measured.reference.bound()),
+        numbers::at_most(measured.reference.bound()),
     )
 }
 
@@ -108,34 +108,43 @@ fn times(measured: &Measurement) -> String {
 
 fn needs(measured: &Measurement, wanted: f64) -> String {
     let mut text = format!(
-        "{:16}{:>9}{:>9}\n",
+        "{:16}{:>9}{:>8}{:>9}\n",
         format!("for {}", error(wanted)),
         "samples",
+        "× ÷",
         "time"
     );
     for series in &measured.series {
         let name = series.method.name();
         let _ = match series.needed(wanted) {
-            None => writeln!(text, "{name:16}{:>9}{:>9}", "-", "-"),
-            Some(needed) => writeln!(
-                text,
-                "{name:16}{:>9}{:>9}{}",
-                count(needed.per_pixel),
-                seconds(needed.seconds),
-                if needed.is_extrapolated {
-                    "  extrapolated"
-                } else {
-                    ""
-                }
-            ),
+            None => writeln!(text, "{name:16}{:>9}{:>8}{:>9}", "-", "", "-"),
+            Some(needed) => {
+                let mark = match (needed.is_extrapolated, series.check(wanted)) {
+                    (false, _) => String::new(),
+                    (true, None) => "  extrapolated".to_owned(),
+                    (true, Some(check)) => format!(
+                        "  extrapolated; taken: error {} in {}",
+                        error(check.rmse),
+                        seconds(check.seconds)
+                    ),
+                };
+                let factor = needed.factor.map_or(String::new(), factor);
+                writeln!(
+                    text,
+                    "{name:16}{:>9}{factor:>8}{:>9}{mark}",
+                    count(needed.per_pixel),
+                    seconds(needed.seconds),
+                )
+            }
         };
     }
     if let Some(exact) = &measured.exact {
         let _ = writeln!(
             text,
-            "{:16}{:>9}{:>9}",
+            "{:16}{:>9}{:>8}{:>9}",
             "exact",
             "-",
+            "",
             seconds(median(&exact.times))
         );
     }
@@ -192,6 +201,14 @@ pub(super) fn seconds(seconds: f64) -> String {
         format!("{} s", significant(seconds, 3))
     } else {
         format!("{seconds:.1e} s")
+    }
+}
+
+/// A standard error as a factor.
+pub(super) fn factor(factor: f64) -> String {
+    match factor < 100.0 {
+        true => significant(factor, 3),
+        false => format!("{factor:.0e}"),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::{
     fit::median,
-    measure::{Measurement, Point},
+    measure::{Measurement, Point, Series},
+    needed::{Fastest, Needed},
     table::{error, method_list, plural, seconds},
 };
 use crate::numbers::at_most;
@@ -39,18 +40,9 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
         )
     });
     let verdict = |&wanted: &f64| {
-        let sampled = measured.fastest(wanted).map(|(method, needed)| {
-            let extrapolated = match needed.is_extrapolated {
-                true => ", extrapolated",
-                false => "",
-            };
-            format!(
-                "the fastest sampled method, {}, needs {} for an error of {} ({} per pixel{extrapolated})",
-                method.name(),
-                seconds(needed.seconds),
-                error(wanted),
-                plural(needed.per_pixel as u64, "sample")
-            )
+        let sampled = measured.fastest(wanted).map(|fastest| match fastest {
+            Fastest::All => all(measured, wanted),
+            Fastest::Of(methods) => of_methods(measured, &methods, wanted),
         });
         let parts: Vec<_> = [exact.clone(), sampled].into_iter().flatten().collect();
         (!parts.is_empty()).then(|| parts.join("; "))
@@ -58,10 +50,71 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
     measured.errors.iter().filter_map(verdict).collect()
 }
 
+/// What is said where the fewest samples are enough for all.
+fn all(measured: &Measurement, wanted: f64) -> String {
+    let firsts = || {
+        let points = measured.series.iter();
+        points.filter_map(|series| series.points.first())
+    };
+    let worst = firsts().map(Point::error).fold(0.0, f64::max);
+    let fewest = firsts().map(|point| point.per_pixel).max().unwrap_or(1);
+    let error = match worst {
+        0.0 => "no error at all".to_owned(),
+        _ => format!("an error of {} or less", error(wanted)),
+    };
+    format!(
+        "every sampled method has {error} with {} per pixel already, so that none is the fastest to come there",
+        plural(fewest, "sample")
+    )
+}
+
+fn of_methods(measured: &Measurement, methods: &[(Method, Needed)], wanted: f64) -> String {
+    let names: Vec<_> = methods.iter().map(|(method, _)| *method).collect();
+    let (method, needed) = methods[0];
+    let samples = plural(needed.per_pixel as u64, "sample");
+    let found = match needed.is_extrapolated {
+        false => String::new(),
+        true => {
+            let series = measured
+                .series
+                .iter()
+                .find(|series| series.method == method);
+            match series.and_then(|series| series.check(wanted)) {
+                None => ", extrapolated".to_owned(),
+                Some(check) => format!(
+                    ", extrapolated; taken, they left {} in {}",
+                    error(check.rmse),
+                    seconds(check.seconds)
+                ),
+            }
+        }
+    };
+    let (time, wanted) = (seconds(needed.seconds), error(wanted));
+    match names.as_slice() {
+        [one] => format!(
+            "the fastest sampled method, {}, needs {time} for an error of {wanted} ({samples} per pixel{found})",
+            one.name()
+        ),
+        several => format!(
+            "the fastest sampled methods, {}, cannot be told apart; {} needs {time} for an error of {wanted} ({samples} per pixel{found})",
+            method_list(several),
+            method.name()
+        ),
+    }
+}
+
 /// What is to be kept in mind of the numbers.
 pub fn notes(measured: &Measurement) -> Vec<String> {
     let mut notes = Vec::new();
-    if measured.interrupted {
+    if measured.is_warm_up {
+        notes.push(
+            "Incomplete: it was interrupted before the first run was over. These are the runs of the warm-up, all with one seed, whose times \
+             are those of a cold machine, in no mixed order."
+                .to_owned(),
+        );
+    } else if measured.interrupted && measured.is_measured() {
+        notes.push("Incomplete: it was interrupted while predictions were tried.".to_owned());
+    } else if measured.interrupted {
         notes.push(format!(
             "Incomplete: it was interrupted in run {} of {}.",
             measured.rounds().max(1),
@@ -79,6 +132,7 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     }
     notes.extend(noise(measured));
     notes.extend(drift(measured));
+    notes.extend(extrapolation(measured));
     let bound = measured.reference.bound();
     for &wanted in measured.errors.iter().filter(|&&wanted| wanted <= bound) {
         notes.push(format!(
@@ -110,6 +164,21 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
         );
     }
     notes
+}
+
+fn extrapolation(measured: &Measurement) -> Option<String> {
+    let needs = |series: &Series| {
+        let needs = measured
+            .errors
+            .iter()
+            .filter_map(|&error| series.needed(error));
+        needs.into_iter().any(|needed| needed.is_extrapolated)
+    };
+    measured.series.iter().any(needs).then(|| {
+        "What is extrapolated follows the line through the fewer samples that were measured. × and ÷ is one standard error of that line; \
+         where it bends, that is too little: what was taken shows it."
+            .to_owned()
+    })
 }
 
 fn noise(measured: &Measurement) -> Option<String> {

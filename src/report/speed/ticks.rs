@@ -40,11 +40,11 @@ impl Ticks {
         }
     }
 
-    /// An axis with numbers at these values.
-    pub fn at(values: &[f64]) -> Self {
+    /// An axis with numbers at these values, which goes at least to some value.
+    pub fn at(values: &[f64], most: f64) -> Self {
         let (low, high) = ends(values.iter().copied());
         Self {
-            ends: (low / 1.25, high * 1.25),
+            ends: (low / 1.25, high.max(most) * 1.25),
             major: values.to_vec(),
             minor: Vec::new(),
         }

@@ -1,14 +1,14 @@
 //! What is measured, so that it fits into the time there is.
 //!
-//! The exact picture is computed, and every method renders twice. That warms the machine up and counts for nothing; what it took
-//! decides how far the ladder of samples goes and how many runs there are, where the user leaves that open.
+//! The exact picture is computed, and every method renders twice. That warms the machine up and counts for nothing, unless nothing else
+//! gets measured; what it took decides how far the ladder of samples goes and how many runs there are, where the user leaves that open.
 
 use std::{
     num::NonZero,
     time::{Duration, Instant},
 };
 
-use super::measure::{Subject, computed, rendered};
+use super::measure::{Run, Subject, computed, run};
 use crate::{
     render::{Control, Exact, RenderError},
     scene::{Method, Scene},
@@ -28,6 +28,9 @@ const RUNS: (u64, u64) = (3, 9);
 
 /// So much of the time left is planned: the rest is for comparing, drawing and estimates that were too low.
 const PLANNED: f64 = 0.9;
+
+/// The same where the samples are chosen: the rest is for trying what was extrapolated, too.
+const PLANNED_CHOICE: f64 = 0.7;
 
 /// What the user asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,16 +59,29 @@ pub struct Plan<'a> {
     /// The exact picture.
     pub(super) reference: Exact,
     pub(super) is_limited: bool,
+    /// The samples per pixel of the warm-up.
+    pub(super) warm: u64,
     /// Samples per pixel, ascending.
     pub(super) rungs: Vec<u64>,
     pub(super) runs: u64,
-    /// Estimates: seconds for the exact picture, and for each sampled method seconds a sample.
+    /// How long the exact picture took.
     pub(super) exact_seconds: f64,
-    pub(super) rates: Vec<(Method, f64)>,
+    /// What each sampled method did before anything counted.
+    pub(super) warm_up: Vec<Warm>,
+}
+
+/// The warm-up of a method.
+#[derive(Debug)]
+pub(super) struct Warm {
+    pub(super) method: Method,
+    /// Each with the seed of the scene and few samples.
+    pub(super) runs: Vec<Run>,
+    /// The estimate: seconds a sample.
+    pub(super) rate: f64,
 }
 
 impl<'a> Plan<'a> {
-    /// Warms up, and decides.
+    /// Warms up, and decides. Cancelled after the exact picture, it has warmed up as many methods as it came to.
     pub fn new(
         subject: &'a Subject,
         scene: &'a Scene,
@@ -79,19 +95,10 @@ impl<'a> Plan<'a> {
             cancel: control.cancel,
         };
         let (reference, exact_seconds) = computed(scene, &silent)?;
-        let pixels = reference.bounds.len() as f64;
         let warm = match request.samples.iter().min() {
             Some(&least) => least.min(WARM),
             None => WARM,
         };
-        let mut rates = Vec::new();
-        for method in sampled(request) {
-            // The first run finds the machine cold: the second one is the estimate, unless something else delays it.
-            let (_, first) = rendered(scene, method, warm, scene.sampler.seed, &silent)?;
-            let (_, second) = rendered(scene, method, warm, scene.sampler.seed, &silent)?;
-            let seconds = first.min(second);
-            rates.push((method, seconds / (warm as f64 * pixels)));
-        }
         let mut plan = Self {
             subject,
             scene,
@@ -99,13 +106,44 @@ impl<'a> Plan<'a> {
             started,
             reference,
             is_limited: false,
+            warm,
             rungs: request.samples.clone(),
             runs: request.runs.unwrap_or(0),
             exact_seconds,
-            rates,
+            warm_up: Vec::new(),
         };
+        for method in sampled(request) {
+            match plan.warmed(method, &silent) {
+                Err(RenderError::Cancelled) => break,
+                warmed => plan.warm_up.push(warmed?),
+            }
+        }
         plan.choose();
         Ok(plan)
+    }
+
+    /// Renders twice by a method.
+    fn warmed(&self, method: Method, control: &Control) -> Result<Warm, RenderError> {
+        let film = &self.reference.film;
+        let run = || {
+            run(
+                self.scene,
+                method,
+                self.warm,
+                self.scene.sampler.seed,
+                film,
+                control,
+            )
+        };
+        // The first run finds the machine cold: the second one is the estimate, unless something else delays it.
+        let runs = vec![run()?.0, run()?.0];
+        let seconds = runs[0].seconds.min(runs[1].seconds);
+        let samples = self.warm as f64 * self.reference.bounds.len() as f64;
+        Ok(Warm {
+            method,
+            runs,
+            rate: seconds / samples,
+        })
     }
 
     /// How long the measuring will take, in nanoseconds: the whole of the progress.
@@ -113,9 +151,17 @@ impl<'a> Plan<'a> {
         (self.round_seconds(&self.rungs) * self.runs as f64 * 1e9) as u64
     }
 
+    /// What is left of the time that it may take.
+    pub(super) fn left(&self) -> Duration {
+        self.request.budget.saturating_sub(self.started.elapsed())
+    }
+
     fn choose(&mut self) {
-        let left = self.request.budget.saturating_sub(self.started.elapsed());
-        let left = left.as_secs_f64() * PLANNED;
+        let share = match self.rungs.is_empty() {
+            true => PLANNED_CHOICE,
+            false => PLANNED,
+        };
+        let left = self.left().as_secs_f64() * share;
         let (wanted, most) = RUNS;
         if self.rungs.is_empty() {
             let runs = self.request.runs.unwrap_or(wanted) as f64;
@@ -142,7 +188,7 @@ impl<'a> Plan<'a> {
     fn round_seconds(&self, rungs: &[u64]) -> f64 {
         let samples = rungs.iter().map(|&rung| rung as f64).sum::<f64>();
         let pixels = self.reference.bounds.len() as f64;
-        let rates: f64 = self.rates.iter().map(|(_, rate)| rate).sum();
+        let rates: f64 = self.warm_up.iter().map(|warm| warm.rate).sum();
         let exact = match self.request.methods.contains(&Method::Exact) {
             true => self.exact_seconds,
             false => 0.0,

@@ -113,6 +113,8 @@ pub fn against_samples(measured: &Measurement) -> String {
         },
     );
     let rungs: Vec<_> = measured.rungs.iter().map(|&rung| rung as f64).collect();
+    let samples = lines.iter().flat_map(|line| line.points.iter());
+    let most = samples.map(|point| point.0).fold(0.0, f64::max);
     draw(&Chart {
         title: "Error against samples, with the slopes".to_owned(),
         description: format!(
@@ -120,7 +122,7 @@ pub fn against_samples(measured: &Measurement) -> String {
             measured.subject.name
         ),
         x_name: "samples per pixel",
-        x_ticks: Ticks::at(&rungs),
+        x_ticks: Ticks::at(&rungs, most),
         y_ticks: y_ticks(measured, &lines),
         write_x: |samples| format!("{samples}"),
         lines,
@@ -136,12 +138,19 @@ fn lines(
 ) -> Vec<Line> {
     let line = |at: usize| {
         let series = &measured.series[at];
+        let mut points = series.points.clone();
+        let pixels = measured.reference.bounds.len() as u64;
+        points.extend(series.checks.iter().map(|check| check.point(pixels)));
+        points.sort_by_key(|point| point.per_pixel);
         // An error of 0 has no place on a logarithmic axis.
-        let points = series.points.iter().filter(|point| point.error() > 0.0);
+        points.retain(|point| point.error() > 0.0);
         Line {
             look: Look::of(series.method),
             label: label(measured, at),
-            points: points.map(|point| (x(point), point.error())).collect(),
+            points: points
+                .iter()
+                .map(|point| (x(point), point.error()))
+                .collect(),
         }
     };
     (0..measured.series.len())

@@ -1,0 +1,185 @@
+//! Objects in a wrong place or of a wrong size.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    ENOUGH, OBJECTS, called,
+    colors::{Near, color, share},
+    moved,
+};
+use crate::{
+    film::Film,
+    grade::{Case, Idea, Make, fit::fit, level::axes},
+    numbers::{short, short_vector},
+    render::RenderError,
+    scene::{Scene, Shape},
+};
+
+/// A search for an object's place is worth its time if the pixels of its colour have this share of the squared difference.
+const OWN: f64 = 0.4;
+
+/// Objects in a wrong place or of a wrong size, found by their colours.
+pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
+    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+    let mut ideas = Vec::new();
+    for (index, object) in scene.objects.iter().enumerate().take(OBJECTS) {
+        let mut shape = object.shape;
+        let colors = color(&mut shape);
+        let [color] = colors.as_slice() else { continue };
+        let near = Near::to(&color.to_linear());
+        let (is, should) = (Blob::of(a, &near), Blob::of(exact, &near));
+        if is.pixels < ENOUGH || should.pixels < ENOUGH {
+            continue;
+        }
+        if share(a, exact, &near) < OWN {
+            continue;
+        }
+        let by = is.middle - should.middle;
+        let factor = (is.pixels as f64 / should.pixels as f64).sqrt();
+        if by.length() < 0.05 && (factor - 1.0).abs() < 0.002 {
+            continue;
+        }
+        ideas.extend(placed(case, index, by, factor)?);
+    }
+    Ok(ideas)
+}
+
+/// Where and how large a colour is in a picture, in pixels.
+struct Blob {
+    middle: DVec2,
+    pixels: u64,
+}
+
+impl Blob {
+    fn of(film: &Film, near: &Near) -> Self {
+        let (mut sum, mut pixels) = (DVec2::ZERO, 0);
+        for y in 0..film.height() {
+            for (x, pixel) in film.row(y).iter().enumerate() {
+                if near.holds(pixel) {
+                    sum += DVec2::new(x as f64, f64::from(y));
+                    pixels += 1;
+                }
+            }
+        }
+        Self {
+            middle: sum / pixels as f64,
+            pixels,
+        }
+    }
+}
+
+/// An object that is displaced by about so many pixels, and about so many times as large as it should be.
+fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>, RenderError> {
+    let scene = &case.full.scene;
+    let shape = scene.objects[index].shape;
+    let middle = match shape {
+        Shape::Sphere(sphere) => sphere.center,
+        Shape::Triangle(triangle) => triangle.centroid,
+        Shape::Box(cuboid) => (cuboid.min + cuboid.max) / 2.0,
+        Shape::Checkerboard(_) => return Ok(Vec::new()),
+    };
+    let ([u, v, w], pitch) = axes(scene);
+    let depth = (scene.camera.eye - middle).dot(w);
+    if depth <= 0.0 {
+        return Ok(Vec::new());
+    }
+    // What a pixel is at the object's depth, in metres.
+    let pixel = depth * pitch;
+    let width = 0.5 * f64::from(case.small.factor) * pixel;
+    let name = called(scene, index);
+    let mut ideas = Vec::new();
+    let with = |by: DVec3, factor: f64| {
+        let mut scene = Scene::clone(scene);
+        scene.objects[index].shape = moved(&shape, by, factor);
+        (factor > 0.0).then_some(scene)
+    };
+    let (small, control) = (&case.small, &case.control);
+
+    // One coordinate wrong is the simplest.
+    for (axis, letter) in [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")] {
+        let depth_change = axis.dot(w);
+        let at = middle - scene.camera.eye;
+        // How many pixels the middle moves for a metre: the derivative of (at · u, −at · v)/depth.
+        let slope = DVec2::new(
+            (axis.dot(u) * depth + at.dot(u) * depth_change) / (depth * depth),
+            -(axis.dot(v) * depth + at.dot(v) * depth_change) / (depth * depth),
+        ) / pitch;
+        let start = match slope.length_squared() {
+            0.0 => 0.0,
+            square => slope.dot(by) / square,
+        };
+        let make = |p: &[f64]| with(axis * p[0], 1.0);
+        let Some(found) = fit(small, control, &[start], &[width], &make)? else {
+            continue;
+        };
+        let Some(other) = make(&found) else { continue };
+        let there = middle + axis * found[0];
+        ideas.push(Idea {
+            mistake: "object_place",
+            message: format!(
+                "{name} is in a wrong place: as if the {letter} of its middle were {} instead of {}{}",
+                few(there.dot(axis)),
+                short(middle.dot(axis)),
+                displaced(by)
+            ),
+            help: format!("its middle is {}", short_vector(middle)),
+            make: Make::Scene(Box::new(other)),
+        });
+    }
+
+    let make = |p: &[f64]| with(u * p[0] + v * p[1], libm::exp2(p[2]));
+    let start = [by.x * pixel, -by.y * pixel, libm::log2(factor)];
+    let Some(found) = fit(small, control, &start, &[width, width, 0.01], &make)? else {
+        return Ok(ideas);
+    };
+    let Some(other) = make(&found) else {
+        return Ok(ideas);
+    };
+    let (right, down, factor) = (found[0] / pixel, -found[1] / pixel, libm::exp2(found[2]));
+    let place = displaced(DVec2::new(right, down));
+    let size = match (factor - 1.0).abs() < 0.01 {
+        true => String::new(),
+        false => format!(" is {} times as large as it should be", few(factor)),
+    };
+    let (mistake, message) = match (place.is_empty(), size.is_empty()) {
+        (true, _) => ("object_size", format!("{name}{size}, or nearer or farther")),
+        (false, true) => ("object_place", format!("{name} is in a wrong place{place}")),
+        (false, false) => (
+            "object_place",
+            format!("{name}{size} (or nearer or farther), and in a wrong place{place}"),
+        ),
+    };
+    ideas.push(Idea {
+        mistake,
+        message,
+        help: format!(
+            "its middle is {}; look at its place, its size and the field of view",
+            short_vector(middle)
+        ),
+        make: Make::Scene(Box::new(other)),
+    });
+    Ok(ideas)
+}
+
+/// A displacement in words; none, if it is none.
+fn displaced(by: DVec2) -> String {
+    let mut way = Vec::new();
+    for (by, positive, negative) in [(by.x, "to the right", "to the left"), (by.y, "down", "up")] {
+        if by.abs() >= 0.05 {
+            let side = if by > 0.0 { positive } else { negative };
+            way.push(format!("{} pixels {side}", few(by.abs())));
+        }
+    }
+    match way.is_empty() {
+        true => String::new(),
+        false => format!(", {}", way.join(" and ")),
+    }
+}
+
+/// What was found by a search has few right digits.
+fn few(x: f64) -> String {
+    match x.abs() < 5e-3 {
+        true => "0".to_owned(),
+        false => short(format!("{x:.2e}").parse().unwrap_or(x)),
+    }
+}

@@ -1,0 +1,116 @@
+//! The scenes of the cases: cameras, shapes, and colours that tell them apart.
+
+use glam::DVec3;
+
+use crate::{
+    color::Color,
+    math::Angle,
+    scene::{
+        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
+        Sphere, Triangle, View,
+    },
+    source::{SourceId, Span},
+};
+
+/// Columns and rows of the pictures, but where a case says otherwise.
+pub const SIZE: u32 = 64;
+
+/// A camera with the language's defaults.
+pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
+    Camera {
+        eye,
+        view: View::Lookat(lookat),
+        up: DVec3::Y,
+        roll: Angle::default(),
+        lens: Lens::Distance(2.0),
+        view_height: 2.0,
+        near: 0.0,
+        far: None,
+    }
+}
+
+/// A camera that looks along a vector.
+pub fn along(eye: DVec3, direction: DVec3) -> Camera {
+    Camera {
+        view: View::Direction(direction),
+        ..camera(eye, DVec3::ZERO)
+    }
+}
+
+/// A sphere.
+pub fn sphere(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere(Sphere {
+        center,
+        radius,
+        color: Color::BLACK,
+    })
+}
+
+/// A box.
+pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
+    Shape::Box(Cuboid {
+        min,
+        max,
+        color: Color::BLACK,
+    })
+}
+
+/// A triangle, not spun.
+pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
+    spun(centroid, normal, sides, 0.0)
+}
+
+/// A triangle, spun by so many degrees.
+pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
+    Shape::Triangle(Triangle {
+        centroid,
+        normal,
+        sides,
+        spin: Angle::from_degrees(spin),
+        color: Color::BLACK,
+    })
+}
+
+/// A checkerboard.
+pub fn board(y: f64, square: f64) -> Shape {
+    Shape::Checkerboard(Checkerboard {
+        y,
+        square,
+        colors: [Color::BLACK; 2],
+    })
+}
+
+/// A scene whose colours tell its objects apart.
+pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
+    let objects = (1..).zip(shapes).map(|(number, shape)| {
+        let own = Color::from_bytes([number, 0, 0]);
+        let mut shape = *shape;
+        match &mut shape {
+            Shape::Sphere(Sphere { color, .. })
+            | Shape::Triangle(Triangle { color, .. })
+            | Shape::Box(Cuboid { color, .. }) => *color = own,
+            Shape::Checkerboard(Checkerboard { colors, .. }) => {
+                *colors = [own, Color::from_bytes([number, 1, 0])];
+            }
+        }
+        Object {
+            name: None,
+            shape,
+            span: Span::new(SourceId::File, 0, 0),
+        }
+    });
+    Scene {
+        image: Image {
+            width: SIZE,
+            height: SIZE,
+            background: Color::BLACK,
+        },
+        camera,
+        sampler: Sampler {
+            method: Method::Random,
+            count: Count::PerPixel(1),
+            seed: 0,
+        },
+        objects: objects.collect(),
+    }
+}

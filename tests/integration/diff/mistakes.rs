@@ -1,0 +1,243 @@
+//! Mistakes of the picture, the camera and the objects.
+
+use std::fs;
+
+use image::{ImageBuffer, Rgb};
+
+use super::{SCENE, diff, folder, json, mistake, open, pinhole, render, save};
+
+#[test]
+fn mistakes_of_the_whole_picture_are_named() {
+    let folder = folder();
+    let picture = open(&folder, "a.png").to_rgb8();
+    let flipped = |edit: &dyn Fn(&mut image::RgbImage)| {
+        let mut other = picture.clone();
+        edit(&mut other);
+        save(&folder, "b.png", other);
+        let of_scene = mistake(&folder);
+        let found = json(&folder, &["b.png", "a.png"]);
+        assert_eq!(found["likely"][0]["mistake"], of_scene.as_str());
+        of_scene
+    };
+    assert_eq!(
+        flipped(&image::imageops::flip_horizontal_in_place),
+        "mirrored"
+    );
+    assert_eq!(
+        flipped(&image::imageops::flip_vertical_in_place),
+        "upside_down"
+    );
+    assert_eq!(flipped(&image::imageops::rotate180_in_place), "turned_180");
+    let bytes = |change: &'static dyn Fn(f64) -> f64| {
+        move |picture: &mut image::RgbImage| {
+            for pixel in picture.pixels_mut() {
+                pixel.0 = pixel
+                    .0
+                    .map(|byte| (255.0 * change(f64::from(byte) / 255.0)).round() as u8);
+            }
+        }
+    };
+    let decode = |c: f64| {
+        if c <= 0.04045 {
+            c / 12.92
+        } else {
+            libm::pow((c + 0.055) / 1.055, 2.4)
+        }
+    };
+    let encode = |c: f64| {
+        if c <= 0.0031308 {
+            12.92 * c
+        } else {
+            1.055 * libm::pow(c, 1.0 / 2.4) - 0.055
+        }
+    };
+    assert_eq!(flipped(&bytes(Box::leak(Box::new(decode)))), "not_encoded");
+    assert_eq!(
+        flipped(&bytes(Box::leak(Box::new(encode)))),
+        "encoded_twice"
+    );
+    let swap =
+        |picture: &mut image::RgbImage| picture.pixels_mut().for_each(|pixel| pixel.0.reverse());
+    assert_eq!(flipped(&swap), "channels");
+    // That the objects have other colours then is the same, said again.
+    let found = json(&folder, &["b.png", "a.scn"]);
+    assert_eq!(found["likely"].as_array().unwrap().len(), 1, "{found:#}");
+}
+
+#[test]
+fn a_power_in_place_of_the_curve_is_named() {
+    let folder = folder();
+    render(&folder, &["-o", "a.exr"]);
+    let light = open(&folder, "a.exr").to_rgb32f();
+    let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+        let byte = |light: f32| (255.0 * libm::pow(f64::from(light), 1.0 / 2.2)).round() as u8;
+        Rgb(light.get_pixel(x, y).0.map(byte))
+    });
+    save(&folder, "b.png", picture);
+    assert_eq!(mistake(&folder), "gamma_22");
+}
+
+#[test]
+fn several_wrong_colours_are_named_at_once() {
+    let folder = folder();
+    let colors = ["--set", "Ball.color=red", "--set", "Crate.color=lime"];
+    render(&folder, &[&["-o", "b.png"], &colors[..]].concat());
+    let found = json(&folder, &["b.png", "a.scn"]);
+    let first = &found["likely"][0];
+    assert_eq!(first["mistake"], "colors", "{found:#}");
+    let message = first["message"].as_str().unwrap();
+    assert!(
+        message.contains("`Ball` has the colour #ff0000")
+            && message.contains("`Crate` has the colour #00ff00")
+    );
+}
+
+#[test]
+fn mistakes_that_another_scene_makes_are_named() {
+    let folder = folder();
+    for (set, expected) in [
+        ("camera.roll=-10deg", "roll_sign"),
+        ("camera.roll=0deg", "roll_ignored"),
+        ("camera.roll=10rad", "roll_unit"),
+        ("camera.roll=37deg", "roll"),
+        ("camera.d=1.375", "field_of_view"),
+        ("camera.d=4.125", "field_of_view"),
+        ("camera.d=2.1", "distance"),
+        ("camera.direction=(0.2, 0.8, 0)", "lookat_as_direction"),
+        ("camera.direction=(2.8, 2.7, 8)", "looks_back"),
+        ("Ball.color=red", "color"),
+        ("image.background=black", "color"),
+        ("Ball.radius=2", "object_size"),
+        ("Ball.radius=1.3", "object_size"),
+        ("Ball.center=(-1.6, 0, 0)", "object_place"),
+        ("Ball.center=(-1.2, 1.3, 0)", "object_place"),
+        ("Crate.center=(2.25, 1.5, 0.5)", "object_place"),
+        ("Crate.center=(2.3, 0.75, -0.5)", "object_place"),
+        ("Sail.spin=180deg", "object_orientation"),
+        ("Sail.sides=(0.0001, 0.0001, 0.0001)", "object_missing"),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        assert_eq!(mistake(&folder), expected, "{set}");
+    }
+    render(&folder, &["-o", "b.png", "--set", "camera.d=2.1"]);
+    let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+    assert!(text.contains("as if d were 2.1 instead of 2.75"), "{text}");
+}
+
+#[test]
+fn planes_that_are_not_minded_are_named() {
+    let folder = folder();
+    for (sets, expected) in [
+        (&["camera.near=8"][..], "near_ignored"),
+        (&["camera.far=9.5"], "far_ignored"),
+        (&["camera.near=8", "camera.far=9.5"], "not_clipped"),
+    ] {
+        let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", *set]).collect();
+        let found = json(&folder, &[&["a.png", "a.scn"], sets.as_slice()].concat());
+        assert_eq!(found["likely"][0]["mistake"], expected, "{sets:?}");
+    }
+    let both = ["--set", "camera.near=8", "--set", "camera.far=9.5"];
+    for (set, expected) in [
+        ("camera.near=8", "far_ignored"),
+        ("camera.far=9.5", "near_ignored"),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        let found = json(&folder, &[&["b.png", "a.scn"], &both[..]].concat());
+        assert_eq!(found["likely"][0]["mistake"], expected, "{set}");
+    }
+}
+
+#[test]
+fn an_up_vector_of_the_wrong_sign_is_named() {
+    let folder = folder();
+    render(&folder, &["-o", "b.png", "--set", "camera.up=(0, -1, 0)"]);
+    let found = json(&folder, &["b.png", "a.scn"]);
+    let found: Vec<_> = found["likely"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|likely| &likely["mistake"])
+        .collect();
+    // It turns the picture, and nobody can tell from the picture which it was.
+    assert_eq!(found, ["turned_180", "up_negated"]);
+}
+
+#[test]
+fn a_square_window_in_a_wide_picture_is_named() {
+    let folder = folder();
+    // A square of twice the width, of which two columns and three rows are taken together.
+    let square = ["--set", "image.width=192", "--set", "image.height=192"];
+    render(&folder, &[&["-o", "fine.exr"], &square[..]].concat());
+    let fine = open(&folder, "fine.exr").to_rgb32f();
+    let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+        let mut sum = [0.0; 3];
+        for (i, j) in (0..6).map(|k| (k % 2, k / 2)) {
+            for (sum, light) in sum.iter_mut().zip(fine.get_pixel(2 * x + i, 3 * y + j).0) {
+                *sum += light / 6.0;
+            }
+        }
+        Rgb(sum)
+    });
+    save(&folder, "b.exr", picture);
+    let found = json(&folder, &["b.exr", "a.scn"]);
+    assert_eq!(found["likely"][0]["mistake"], "squeezed", "{found:#}");
+}
+
+/// A board from above, of whose squares each has 4 × 4 pixels; x grows to the right and z downwards, and both change their sign
+/// in the middle.
+const ABOVE: &str = "image { width 96 height 64 }
+camera { eye (0, 4, 0) direction (0, -1, 0) up (0, 0, -1) d 4 view_height 16 }
+sampler { method exact } checkerboard { colors (gray, white) }
+";
+
+#[test]
+fn whole_numbers_that_went_wrong_in_the_board_are_named() {
+    let folder = folder();
+    fs::write(folder.path().join("a.scn"), ABOVE).unwrap();
+    type IsFirst = fn(f64, f64) -> bool;
+    let ways: [(IsFirst, &str); 4] = [
+        (
+            |x, z| (x.floor() as i32 + z.floor() as i32).rem_euclid(2) == 0,
+            "none",
+        ),
+        (|x, z| (x as i32 + z as i32) % 2 == 0, "board_truncated"),
+        (
+            |x, z| (x.floor() as i32 + z.floor() as i32) % 2 != 1,
+            "board_remainder",
+        ),
+        (
+            |x, z| x.floor() as i32 % 2 == z.floor() as i32 % 2,
+            "board_remainder",
+        ),
+    ];
+    for (is_first, expected) in ways {
+        let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+            let (x, z) = ((f64::from(x) - 47.5) / 4.0, (f64::from(y) - 31.5) / 4.0);
+            Rgb([if is_first(x, z) { 128u8 } else { 255 }; 3])
+        });
+        save(&folder, "b.png", picture);
+        assert_eq!(mistake(&folder), expected);
+    }
+}
+
+#[test]
+fn mistakes_of_the_checkerboard_are_named() {
+    let folder = folder();
+    let swapped = SCENE.replace("checkerboard {}", "checkerboard { colors (white, gray) }");
+    for (text, expected) in [
+        (swapped.clone(), "board_swapped"),
+        (
+            SCENE.replace("checkerboard {}", "checkerboard { square 2 }"),
+            "board_square",
+        ),
+        (SCENE.replace("checkerboard {}", ""), "object_missing"),
+    ] {
+        fs::write(folder.path().join("b.scn"), text).unwrap();
+        assert!(
+            pinhole(folder.path(), &["render", "b.scn"])
+                .status
+                .success()
+        );
+        assert_eq!(mistake(&folder), expected);
+    }
+}

@@ -1,0 +1,132 @@
+//! Mistakes of samples: too few, in the wrong place, averaged wrongly.
+
+use image::{ImageBuffer, Rgb};
+
+use super::{diff, folder, json, mistake, open, render, save};
+
+#[test]
+fn mistakes_of_sampling_are_named() {
+    let folder = folder();
+    let one = [
+        "-o",
+        "b.png",
+        "--set",
+        "sampler.method=regular",
+        "--set",
+        "sampler.per_pixel=1",
+    ];
+    render(&folder, &one);
+    assert_eq!(mistake(&folder), "sample_at_center");
+    // A picture with a column and a row more, whose pixels' centres are the corners of the other's.
+    let corners = [
+        &one[..],
+        &["--set", "image.width=97", "--set", "image.height=65"],
+        &["--set", "camera.view_height=2.03125", "--crop", "0,0,96,64"],
+    ];
+    render(&folder, &corners.concat());
+    assert_eq!(mistake(&folder), "sample_at_corner");
+    for method in ["random", "multi_jittered", "sobol", "jittered", "regular"] {
+        for count in [4, 16, 64] {
+            let (method, count) = (
+                format!("sampler.method={method}"),
+                format!("sampler.per_pixel={count}"),
+            );
+            render(&folder, &["-o", "b.png", "--set", &method, "--set", &count]);
+            assert_eq!(mistake(&folder), "noise", "{method}, {count}");
+        }
+    }
+    let noisy = [
+        "-o",
+        "b.png",
+        "--set",
+        "sampler.method=random",
+        "--set",
+        "sampler.per_pixel=16",
+    ];
+    render(&folder, &noisy);
+    let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+    assert!(
+        text.contains("as with about 1") && text.contains(" random samples per pixel"),
+        "{text}"
+    );
+    // Noise hides no mistake.
+    for (set, expected) in [
+        ("camera.roll=-10deg", "roll_sign"),
+        ("camera.d=2.1", "distance"),
+        ("Ball.color=red", "color"),
+    ] {
+        render(&folder, &[&noisy[..], &["--set", set]].concat());
+        assert_eq!(mistake(&folder), expected, "{set}");
+    }
+}
+
+#[test]
+fn a_picture_displaced_by_half_a_pixel_is_named() {
+    let folder = folder();
+    // Twice the columns and rows, of which those a half of a pixel beside are taken together.
+    render(
+        &folder,
+        &[
+            "-o",
+            "fine.exr",
+            "--set",
+            "image.width=192",
+            "--set",
+            "image.height=128",
+        ],
+    );
+    let fine = open(&folder, "fine.exr").to_rgb32f();
+    for (by, words) in [
+        ([1, 1], "0.5 pixels to the left and 0.5 pixels up"),
+        ([2, 0], "1 pixel to the left"),
+    ] {
+        let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+            let mut sum = [0.0; 3];
+            for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let (column, row) = ((2 * x + i + by[0]).min(191), (2 * y + j + by[1]).min(127));
+                for (sum, light) in sum.iter_mut().zip(fine.get_pixel(column, row).0) {
+                    *sum += light / 4.0;
+                }
+            }
+            Rgb(sum)
+        });
+        save(&folder, "b.exr", picture);
+        let found = json(&folder, &["b.exr", "a.scn"]);
+        assert_eq!(found["likely"][0]["mistake"], "shifted");
+        let message = found["likely"][0]["message"].as_str().unwrap();
+        assert!(message.ends_with(words), "{message}");
+    }
+}
+
+#[test]
+fn samples_averaged_as_bytes_are_named() {
+    let folder = folder();
+    // The mean of 64 single samples in each pixel, of their bytes.
+    render(
+        &folder,
+        &[
+            "-o",
+            "fine.png",
+            "--set",
+            "image.width=768",
+            "--set",
+            "image.height=512",
+            "--set",
+            "sampler.method=regular",
+            "--set",
+            "sampler.per_pixel=1",
+        ],
+    );
+    let fine = open(&folder, "fine.png").to_rgb8();
+    let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+        let mut sum = [0u32; 3];
+        for (i, j) in (0..64).map(|k| (k % 8, k / 8)) {
+            for (sum, byte) in sum.iter_mut().zip(fine.get_pixel(8 * x + i, 8 * y + j).0) {
+                *sum += u32::from(byte);
+            }
+        }
+        Rgb(sum.map(|sum| ((sum + 32) / 64) as u8))
+    });
+    save(&folder, "b.png", picture);
+    assert_eq!(mistake(&folder), "averaged_encoded");
+}
