@@ -156,35 +156,41 @@ impl<'s> Parser<'s> {
         let read = std::mem::take(&mut self.read);
         while self.base < self.end {
             let rest = read.get(self.base..).unwrap_or_default();
-            let next = Grammar::parse(Rule::next, rest).ok();
-            let Some(pair) = next.and_then(|mut pairs| pairs.next()) else {
-                // The junk rules take everything but white space; nothing comes here.
-                break;
-            };
-            let length = pair.as_span().end();
-            match pair.as_rule() {
-                Rule::definition => {
-                    let definition = self.definition(pair);
-                    self.items.push(Item::Definition(definition));
-                }
-                Rule::block => {
-                    let block = self.block(pair);
-                    self.items.push(Item::Block(block));
-                }
-                Rule::bad_definition => self.bad_definition(pair),
-                Rule::stray_close => self.stray_close(pair),
-                Rule::bad_item => self.bad_item(pair),
-                _ => break,
+            // The junk rules take everything but white space: there is always a piece, or the end.
+            let mut length = 0;
+            for pair in Grammar::parse(Rule::next, rest).into_iter().flatten() {
+                length = match pair.as_rule() {
+                    Rule::EOI => 0,
+                    _ => pair.as_span().end(),
+                };
+                self.piece(pair);
             }
-            if matches!(self.items.last(), Some(Item::Definition(_))) {
-                self.nesting = 0;
-            }
-            self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
             if length == 0 {
                 break;
             }
             self.base += length;
         }
+    }
+
+    fn piece(&mut self, pair: Pairs<'_>) {
+        match pair.as_rule() {
+            Rule::definition => {
+                let definition = self.definition(pair);
+                self.items.push(Item::Definition(definition));
+            }
+            Rule::block => {
+                let block = self.block(pair);
+                self.items.push(Item::Block(block));
+            }
+            Rule::bad_definition => self.bad_definition(pair),
+            Rule::stray_close => self.stray_close(pair),
+            Rule::bad_item => self.bad_item(pair),
+            _ => return,
+        }
+        if matches!(self.items.last(), Some(Item::Definition(_))) {
+            self.nesting = 0;
+        }
+        self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
     }
 
     fn whole_value(&mut self) -> Value<'s> {
@@ -247,7 +253,10 @@ impl<'s> Parser<'s> {
         let whole = self.span(&pair);
         let mut block = Block::empty(whole);
         self.defined_block(&mut block);
-        for part in pair.into_inner() {
+        let parts = pair.into_inner();
+        // All parts but the kind and the two braces, as a rule.
+        block.fields.reserve_exact(parts.len().saturating_sub(3));
+        for part in parts {
             let span = self.span(&part);
             match part.as_rule() {
                 Rule::let_word => self.problems.push(Problem::BadName {
