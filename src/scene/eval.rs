@@ -24,7 +24,7 @@ use crate::{
     suggest::{self, Budget},
     syntax::{
         shorten,
-        tree::{self, Element, Name, Operator, Step, Unit, ValueKind},
+        tree::{self, Call, Element, Name, Operator, Step, Unit, ValueKind},
     },
 };
 
@@ -154,11 +154,7 @@ impl<'s> Evaluator<'_, 's> {
             }
             ValueKind::ColorCode(written) => color_code(written).map(Value::Color),
             ValueKind::Name(name) => self.name(name, value.span, wanted),
-            ValueKind::Call {
-                function,
-                arguments,
-                parentheses,
-            } => self.call(function, arguments, *parentheses, wanted),
+            ValueKind::Call(call) => self.call(call, wanted),
             ValueKind::Parentheses(inner) => self.value(inner, wanted),
             ValueKind::Tuple(elements) => self.tuple(elements, value.span, wanted),
             ValueKind::Negation { sign, operand } => self.negation(*sign, operand),
@@ -284,13 +280,12 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    fn call(
-        &mut self,
-        function: &Name<'s>,
-        arguments: &[Element<'s>],
-        parentheses: Span,
-        wanted: Option<Type>,
-    ) -> Option<Value> {
+    fn call(&mut self, call: &Call<'s>, wanted: Option<Type>) -> Option<Value> {
+        let Call {
+            function,
+            arguments,
+            parentheses,
+        } = call;
         let Some(row) = schema::function(function.text) else {
             self.unknown_function(function, arguments);
             return None;
@@ -302,7 +297,7 @@ impl<'s> Evaluator<'_, 's> {
         }
         let least = row.takes.len();
         if values.len() < least || (values.len() > least && !row.more) {
-            self.argument_count(row, function.span.to(parentheses), arguments);
+            self.argument_count(row, function.span.to(*parentheses), arguments);
             return None;
         }
         let mut known = Vec::with_capacity(values.len());
