@@ -42,12 +42,11 @@ impl<'s> Lowering<'s> {
                 None
             }
         };
-        let mut objects = Vec::with_capacity(blocks.len());
+        let mut objects = std::mem::take(&mut self.objects);
         for block in blocks.iter().filter(|block| block.row.is_object) {
             objects.extend(self.object(block));
         }
-        let none = !blocks.iter().any(|block| block.row.is_object);
-        if none && bad.is_empty() && !self.cut {
+        if !self.has_objects && bad.is_empty() && !self.cut {
             self.problems.push(Problem::NoObjects { span: start });
         }
         Some(Scene {
@@ -56,6 +55,13 @@ impl<'s> Lowering<'s> {
             sampler: sampler?,
             objects,
         })
+    }
+
+    /// Builds an object at once.
+    pub(super) fn build_object(&mut self, block: &Block<'s>) {
+        self.missing_fields(block);
+        let object = self.object(block);
+        self.objects.extend(object);
     }
 
     fn missing_fields(&mut self, block: &Block<'s>) {

@@ -8,13 +8,13 @@ mod build;
 mod overriding;
 mod words;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, hash_map::Entry};
 
 use glam::DVec3;
 
 use self::words::{missing_value, range_words, shown, type_help, unknown_field};
 use super::{
-    Reading, Scene,
+    Object, Reading, Scene,
     error::Problem,
     eval::{Evaluator, Names, predefined},
     overrides::{self, Override},
@@ -39,20 +39,25 @@ pub fn read(sources: &Sources) -> Reading {
     let problems = parsed.problems.iter();
     let mut diagnostics: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
     let overrides = overrides::read(sources, &mut diagnostics);
+    let tree = parsed.tree;
     let mut lowering = Lowering {
         sources,
         cut: parsed.cut.is_some(),
-        names: Names::new(definitions(&parsed.tree), names_of_objects(&parsed.tree)),
+        names: Names::new(definitions(&tree), names_of_objects(&tree)),
+        sets_objects: overrides.iter().any(overriding::may_set_object),
         overrides,
         targets: HashMap::new(),
         blocks: Vec::new(),
         first_blocks: HashMap::new(),
+        objects: Vec::new(),
+        has_objects: false,
+        first_names: HashMap::new(),
         problems: Vec::new(),
         slips: Vec::new(),
         unknown: Vec::new(),
         in_begun_blocks: false,
     };
-    let scene = lowering.scene(&parsed.tree);
+    let scene = lowering.scene(tree);
     // How a value is written does not matter where its field is unknown.
     diagnostics.retain(|diagnostic| !starts_in(diagnostic, &lowering.unknown));
     let problems = lowering.problems.iter();
@@ -127,11 +132,20 @@ struct Lowering<'s> {
     cut: bool,
     names: Names<'s>,
     overrides: Vec<Override<'s>>,
+    /// Whether one of them may set a field of an object.
+    sets_objects: bool,
     /// The overrides by the block and the field or `let` that they set.
     targets: HashMap<(Option<&'s str>, &'s str), usize>,
+    /// The blocks that are not built yet: those that are no objects, and objects if an argument may set a field of one.
     blocks: Vec<Block<'s>>,
     /// The blocks by the names that `--set` knows them by; of several of one name the first.
     first_blocks: HashMap<&'s str, usize>,
+    /// The objects that are built.
+    objects: Vec<Object>,
+    /// Whether there is an object, built or not.
+    has_objects: bool,
+    /// Where each object's name stands first.
+    first_names: HashMap<&'s str, Span>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
@@ -166,23 +180,19 @@ struct Given {
 }
 
 impl<'s> Lowering<'s> {
-    fn scene(&mut self, tree: &syntax::Tree<'s>) -> Option<Scene> {
-        self.keep_last_overrides(tree);
-        for item in &tree.items {
+    /// Each item's tree is dropped as soon as it is known what the item means.
+    fn scene(&mut self, tree: syntax::Tree<'s>) -> Option<Scene> {
+        self.keep_last_overrides(&tree);
+        let mut bad: Vec<&str> = Vec::new();
+        for item in tree.items {
             match item {
-                Item::Definition(definition) => self.definition(definition),
-                Item::Block(block) => self.block(block),
-                Item::Bad(_) => {}
+                Item::Definition(definition) => self.definition(&definition),
+                Item::Block(block) => self.block(&block),
+                Item::Bad(span) => bad.push(self.sources.text(span)),
             }
         }
-        self.names_of_objects();
         self.override_fields();
         self.override_targets();
-        let bad = tree.items.iter().filter_map(|item| match item {
-            Item::Bad(span) => Some(self.sources.text(*span)),
-            _ => None,
-        });
-        let bad: Vec<&str> = bad.collect();
         self.build(&bad)
     }
 
@@ -290,6 +300,9 @@ impl<'s> Lowering<'s> {
             self.field(field, &mut lowered, &replaced);
         }
         self.conflicts(&lowered, &replaced);
+        if row.is_object {
+            self.name_of_object(&lowered);
+        }
         if !duplicate {
             self.push(lowered);
         }
@@ -420,7 +433,7 @@ impl<'s> Lowering<'s> {
                 self.problems.truncate(before);
             }
             let found = match (&tree.kind, value) {
-                (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
+                (ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. }, value) => {
                     shown(value, condition)
                 }
                 _ if rounded_to_zero => {
@@ -547,24 +560,24 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    fn names_of_objects(&mut self) {
-        let mut first: HashMap<&str, Span> = HashMap::new();
-        for block in &self.blocks {
-            let Some(name) = block.name else { continue };
-            let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
-            if reserved {
-                self.problems.push(Problem::ReservedName {
-                    name: name.text.to_owned(),
-                    span: name.span,
-                });
-            } else if let Some(&first) = first.get(name.text) {
-                self.problems.push(Problem::DuplicateName {
-                    name: name.text.to_owned(),
-                    second: name.span,
-                    first,
-                });
-            } else {
-                first.insert(name.text, name.span);
+    fn name_of_object(&mut self, block: &Block<'s>) {
+        let Some(name) = block.name else { return };
+        let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
+        if reserved {
+            self.problems.push(Problem::ReservedName {
+                name: name.text.to_owned(),
+                span: name.span,
+            });
+            return;
+        }
+        match self.first_names.entry(name.text) {
+            Entry::Occupied(first) => self.problems.push(Problem::DuplicateName {
+                name: name.text.to_owned(),
+                second: name.span,
+                first: *first.get(),
+            }),
+            Entry::Vacant(free) => {
+                free.insert(name.span);
             }
         }
     }

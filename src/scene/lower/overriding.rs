@@ -4,7 +4,10 @@ use std::collections::{HashMap, HashSet};
 
 use super::{Block, Given, Lowering, words::unknown_field};
 use crate::{
-    scene::{overrides, schema},
+    scene::{
+        overrides::{self, Override},
+        schema,
+    },
     syntax::{
         Tree,
         tree::{self, Item},
@@ -57,8 +60,13 @@ impl<'s> Lowering<'s> {
         replaced
     }
 
-    /// Adds a block, the first of its name or not.
+    /// Adds a block, the first of its name or not. An object is built at once if no argument can change it.
     pub(super) fn push(&mut self, block: Block<'s>) {
+        self.has_objects |= block.row.is_object;
+        if block.row.is_object && !self.sets_objects {
+            self.build_object(&block);
+            return;
+        }
         if let Some(target) = target(&block) {
             let index = self.blocks.len();
             self.first_blocks.entry(target).or_insert(index);
@@ -141,6 +149,12 @@ impl<'s> Lowering<'s> {
             self.problems.extend(problem);
         }
     }
+}
+
+/// Whether an argument sets a field of an object, as far as its target tells.
+pub(super) fn may_set_object(set: &Override<'_>) -> bool {
+    set.block
+        .is_none_or(|block| schema::block(block.text).is_none_or(|row| row.is_object))
 }
 
 /// What kind of object each name is; of a name that stands twice, the first.
