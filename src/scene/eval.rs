@@ -4,7 +4,7 @@
 //! and what uses it stays silent. What a value is for is not known here, beyond the type that is wanted.
 
 use std::{
-    cell::RefCell,
+    cell::{Cell, RefCell},
     collections::{HashMap, HashSet, hash_map::Entry},
 };
 
@@ -35,14 +35,23 @@ pub struct Names<'s> {
     defined: HashMap<&'s str, Defined>,
     /// The same names, in order.
     order: Vec<&'s str>,
-    /// Every `let` of the file, wherever it stands.
-    everywhere: HashMap<&'s str, Span>,
-    /// The names of objects, which are no values.
-    objects: HashSet<&'s str>,
+    /// The names of the whole file; none while it is still being read.
+    whole: Option<Whole<'s>>,
+    /// Whether something was asked about the whole file before it was read.
+    asked_early: Cell<bool>,
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
     reported: RefCell<HashMap<&'s str, usize>>,
+}
+
+/// The names that stand in a file, wherever.
+#[derive(Debug, Default)]
+struct Whole<'s> {
+    /// Every `let`.
+    definitions: HashMap<&'s str, Span>,
+    /// The names of objects, which are no values.
+    objects: HashSet<&'s str>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -61,14 +70,30 @@ impl<'s> Names<'s> {
         everywhere: impl IntoIterator<Item = Name<'s>>,
         objects: impl IntoIterator<Item = &'s str>,
     ) -> Self {
-        let mut names = Self {
+        let mut whole = Whole {
             objects: objects.into_iter().collect(),
-            ..Self::default()
+            definitions: HashMap::new(),
         };
         for name in everywhere {
-            names.everywhere.entry(name.text).or_insert(name.span);
+            whole.definitions.entry(name.text).or_insert(name.span);
         }
-        names
+        Self {
+            whole: Some(whole),
+            ..Self::default()
+        }
+    }
+
+    /// Whether something was asked about the names of the whole file, which are not known: what was made of the answers
+    /// does not count.
+    pub fn were_asked_early(&self) -> bool {
+        self.asked_early.get()
+    }
+
+    fn whole(&self) -> Option<&Whole<'s>> {
+        if self.whole.is_none() {
+            self.asked_early.set(true);
+        }
+        self.whole.as_ref()
     }
 
     /// Defines a name; a second time it keeps its value.
@@ -88,9 +113,20 @@ impl<'s> Names<'s> {
         self.defined.get(name).map(|defined| defined.place)
     }
 
+    /// The first `let` of the file that defines it.
+    fn definition(&self, name: &str) -> Option<Span> {
+        self.whole()?.definitions.get(name).copied()
+    }
+
+    /// Whether it is the name of an object.
+    fn is_object(&self, name: &str) -> bool {
+        self.whole()
+            .is_some_and(|whole| whole.objects.contains(name))
+    }
+
     /// Whether any `let` of the file defines it.
     pub fn knows(&self, name: &str) -> bool {
-        self.everywhere.contains_key(name)
+        self.definition(name).is_some()
     }
 
     /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
@@ -107,7 +143,8 @@ impl<'s> Names<'s> {
 
     /// Every name that the file defines.
     pub fn all(&self) -> impl Iterator<Item = &'s str> {
-        self.everywhere.keys().copied()
+        let whole = self.whole().into_iter();
+        whole.flat_map(|whole| whole.definitions.keys().copied())
     }
 }
 
@@ -214,8 +251,8 @@ impl<'s> Evaluator<'_, 's> {
         }
         reported.insert(name, self.problems.len());
         drop(reported);
-        let problem = match self.names.everywhere.get(name) {
-            Some(&definition) => self.used_before(name, span, definition),
+        let problem = match self.names.definition(name) {
+            Some(definition) => self.used_before(name, span, definition),
             None => self.unknown_name(name, span, wanted),
         };
         self.problems.push(problem);
@@ -265,7 +302,7 @@ impl<'s> Evaluator<'_, 's> {
             };
         }
         let help = match near {
-            _ if self.names.objects.contains(name.as_str()) => {
+            _ if self.names.is_object(&name) => {
                 "an object is no value: define its place with `let`, and use that in both"
                     .to_owned()
             }

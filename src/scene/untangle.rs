@@ -128,7 +128,7 @@ fn is_tangled(fields: &[tree::Field<'_>], row: &schema::Block, names: &Names<'_>
         two_words(row, field, name)
             || (method && !one_value)
             || (is_field(name) && !is_value(name))
-            || (is_value(field) && !is_field(field))
+            || (!is_field(field) && is_value(field))
     })
 }
 

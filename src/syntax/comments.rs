@@ -21,6 +21,8 @@ pub struct Walk {
     pub unclosed: bool,
     /// Values that nest too deep.
     pub deep: Vec<Deep>,
+    /// Where every `}` outside of comments ends.
+    pub braces: Vec<usize>,
     /// Characters outside of comments that cannot be seen and are no white space of the language.
     pub odd_spaces: Vec<Range<usize>>,
 }
@@ -39,6 +41,9 @@ impl Walk {
         }
         for deep in &mut self.deep {
             deep.at += by;
+        }
+        for end in &mut self.braces {
+            *end += by;
         }
     }
 }
@@ -97,6 +102,9 @@ pub fn walk(text: &str, start: Start) -> Walk {
             }
             _ => {
                 nesting.sign(byte, at, &mut found.deep);
+                if byte == b'}' {
+                    found.braces.push(at + 1);
+                }
                 at + 1
             }
         };

@@ -13,6 +13,7 @@ mod language;
 mod laws;
 mod numerics;
 mod overrides;
+mod parts;
 mod readme;
 mod render;
 #[cfg(feature = "report")]

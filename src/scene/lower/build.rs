@@ -22,8 +22,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// The scene, or nothing if a part of it failed; `bad` are the texts of items that could not be understood.
-    pub(super) fn build(&mut self, bad: &[&str]) -> Option<Scene> {
+    /// The scene, or nothing if a part of it failed.
+    pub(super) fn build(&mut self) -> Option<Scene> {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
             self.missing_fields(block);
@@ -32,7 +32,7 @@ impl<'s> Lowering<'s> {
         let image = self.image(one(Kind::Image));
         let sampler = self.sampler(one(Kind::Sampler), image);
         let start = Span::new(SourceId::File, 0, 0);
-        let unknown = |name| self.cut || bad.iter().any(|text| mentions(text, name));
+        let unknown = |name| self.cut || self.bad.iter().any(|text| mentions(text, name));
         let camera = match one(Kind::Camera) {
             Some(block) => self.camera(block),
             None => {
@@ -46,7 +46,7 @@ impl<'s> Lowering<'s> {
         for block in blocks.iter().filter(|block| block.row.is_object) {
             objects.extend(self.object(block));
         }
-        if !self.has_objects && bad.is_empty() && !self.cut {
+        if !self.has_objects && self.bad.is_empty() && !self.cut {
             self.problems.push(Problem::NoObjects { span: start });
         }
         Some(Scene {

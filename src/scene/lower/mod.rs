@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use self::words::{missing_value, range_words, shown, type_help, unknown_field};
 use super::{
-    Object, Reading, Scene,
+    Object, Reading,
     error::Problem,
     eval::{Evaluator, Names, predefined},
     overrides::{self, Override},
@@ -35,42 +35,41 @@ use crate::{
 
 /// Reads a scene: parses the file and the overrides, and makes of them what they mean.
 pub fn read(sources: &Sources) -> Reading {
+    /// A part is long enough to be worth its hand-over, and so short that many are at work at once.
+    const PART: usize = 1 << 16;
+    read_in_parts(sources, PART)
+}
+
+/// The same with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
+/// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes of
+/// syntax, or with one whose report tells of the whole file, is read again as a whole.
+pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
+    let mut diagnostics = Vec::new();
+    let overrides = overrides::read(sources, &mut diagnostics);
+    let mut lowering = Lowering::new(sources, overrides.clone(), Names::default());
+    if !lowering.sets_by_name {
+        lowering.keep_last_overrides(&[]);
+        let all = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |items| {
+            lowering.items(items);
+            !lowering.names.were_asked_early()
+        });
+        lowering.override_blocks();
+        if all && !lowering.names.were_asked_early() {
+            return lowering.finish(diagnostics);
+        }
+    }
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let problems = parsed.problems.iter();
-    let mut diagnostics: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
-    let overrides = overrides::read(sources, &mut diagnostics);
+    let mut found: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
+    found.append(&mut diagnostics);
     let tree = parsed.tree;
-    let mut lowering = Lowering {
-        sources,
-        cut: parsed.cut.is_some(),
-        names: Names::new(definitions(&tree), names_of_objects(&tree)),
-        sets_objects: overrides.iter().any(overriding::may_set_object),
-        overrides,
-        targets: HashMap::new(),
-        blocks: Vec::new(),
-        first_blocks: HashMap::new(),
-        objects: Vec::new(),
-        has_objects: false,
-        first_names: HashMap::new(),
-        problems: Vec::new(),
-        slips: Vec::new(),
-        unknown: Vec::new(),
-        in_begun_blocks: false,
-    };
-    let scene = lowering.scene(tree);
-    // How a value is written does not matter where its field is unknown.
-    diagnostics.retain(|diagnostic| !starts_in(diagnostic, &lowering.unknown));
-    let problems = lowering.problems.iter();
-    diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
-    let slips = lowering.slips.iter();
-    diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
-    invalid_utf8(sources, &mut diagnostics);
-    diagnostic::sort(&mut diagnostics);
-    let failed = diagnostics.iter().any(Diagnostic::is_error);
-    Reading {
-        scene: scene.filter(|_| !failed),
-        diagnostics,
-    }
+    let names = Names::new(definitions(&tree), names_of_objects(&tree));
+    let mut lowering = Lowering::new(sources, overrides, names);
+    lowering.cut = parsed.cut.is_some();
+    lowering.keep_last_overrides(&tree.items);
+    lowering.items(tree.items);
+    lowering.override_blocks();
+    lowering.finish(found)
 }
 
 /// Whether a problem stands in one of some places, which are in the order of the text.
@@ -132,8 +131,8 @@ struct Lowering<'s> {
     cut: bool,
     names: Names<'s>,
     overrides: Vec<Override<'s>>,
-    /// Whether one of them may set a field of an object.
-    sets_objects: bool,
+    /// Whether one of them sets a `let`, or a field of an object.
+    sets_by_name: bool,
     /// The overrides by the block and the field or `let` that they set.
     targets: HashMap<(Option<&'s str>, &'s str), usize>,
     /// The blocks that are not built yet: those that are no objects, and objects if an argument may set a field of one.
@@ -146,6 +145,8 @@ struct Lowering<'s> {
     has_objects: bool,
     /// Where each object's name stands first.
     first_names: HashMap<&'s str, Span>,
+    /// The texts of items that could not be understood.
+    bad: Vec<&'s str>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
@@ -180,20 +181,54 @@ struct Given {
 }
 
 impl<'s> Lowering<'s> {
-    /// Each item's tree is dropped as soon as it is known what the item means.
-    fn scene(&mut self, tree: syntax::Tree<'s>) -> Option<Scene> {
-        self.keep_last_overrides(&tree);
-        let mut bad: Vec<&str> = Vec::new();
-        for item in tree.items {
+    fn new(sources: &'s Sources, overrides: Vec<Override<'s>>, names: Names<'s>) -> Self {
+        Self {
+            sources,
+            cut: false,
+            names,
+            sets_by_name: overrides.iter().any(overriding::is_by_name),
+            overrides,
+            targets: HashMap::new(),
+            blocks: Vec::new(),
+            first_blocks: HashMap::new(),
+            objects: Vec::new(),
+            has_objects: false,
+            first_names: HashMap::new(),
+            bad: Vec::new(),
+            problems: Vec::new(),
+            slips: Vec::new(),
+            unknown: Vec::new(),
+            in_begun_blocks: false,
+        }
+    }
+
+    /// Makes sense of the next items of the file. Each one's tree is dropped then.
+    fn items(&mut self, items: Vec<Item<'s>>) {
+        for item in items {
             match item {
                 Item::Definition(definition) => self.definition(&definition),
                 Item::Block(block) => self.block(&block),
-                Item::Bad(span) => bad.push(self.sources.text(span)),
+                Item::Bad(span) => self.bad.push(self.sources.text(span)),
             }
         }
-        self.override_fields();
-        self.override_targets();
-        self.build(&bad)
+    }
+
+    /// Makes the scene of what was read; `diagnostics` are those of syntax.
+    fn finish(mut self, mut diagnostics: Vec<Diagnostic>) -> Reading {
+        let scene = self.build();
+        // How a value is written does not matter where its field is unknown.
+        diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
+        let problems = self.problems.iter();
+        diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
+        let slips = self.slips.iter();
+        diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
+        invalid_utf8(self.sources, &mut diagnostics);
+        diagnostic::sort(&mut diagnostics);
+        let failed = diagnostics.iter().any(Diagnostic::is_error);
+        Reading {
+            scene: scene.filter(|_| !failed),
+            diagnostics,
+        }
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {
