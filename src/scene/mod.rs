@@ -23,7 +23,7 @@ pub mod schema;
 mod untangle;
 mod value;
 
-pub use lower::read;
+pub use lower::{read, read_in_parts};
 
 use glam::DVec3;
 

@@ -117,7 +117,7 @@ fn is_tangled(fields: &[tree::Field<'_>], row: &schema::Block, names: &Names<'_>
         let name = match kind {
             ValueKind::Missing => return true,
             ValueKind::Name(name) => name,
-            ValueKind::Call { function, .. } => function.text,
+            ValueKind::Call(call) => call.function.text,
             _ => "",
         };
         let field = field.name.text;
@@ -128,7 +128,7 @@ fn is_tangled(fields: &[tree::Field<'_>], row: &schema::Block, names: &Names<'_>
         two_words(row, field, name)
             || (method && !one_value)
             || (is_field(name) && !is_value(name))
-            || (is_value(field) && !is_field(field))
+            || (!is_field(field) && is_value(field))
     })
 }
 
@@ -146,13 +146,9 @@ fn pieces<'s>(field: &tree::Field<'s>) -> impl Iterator<Item = Piece<'s>> + use<
             let span = value.span;
             (Some(Piece::Word(Name { text, span })), None)
         }
-        ValueKind::Call {
-            function,
-            arguments,
-            parentheses,
-        } if predefined(function.text).is_none() => {
-            let list = list(arguments.clone(), *parentheses);
-            (Some(Piece::Word(*function)), Some(Piece::Value(list)))
+        ValueKind::Call(call) if predefined(call.function.text).is_none() => {
+            let list = list(call.arguments.clone(), call.parentheses);
+            (Some(Piece::Word(call.function)), Some(Piece::Value(list)))
         }
         _ => (None, Some(Piece::Value(value.clone()))),
     };
@@ -288,11 +284,11 @@ fn called<'s>(function: Name<'s>, list: tree::Value<'s>) -> ValueKind<'s> {
         }],
         _ => Vec::new(),
     };
-    ValueKind::Call {
+    ValueKind::Call(Box::new(tree::Call {
         function,
         arguments,
         parentheses,
-    }
+    }))
 }
 
 fn list<'s>(mut arguments: Vec<tree::Element<'s>>, span: Span) -> tree::Value<'s> {

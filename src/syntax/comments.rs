@@ -8,6 +8,10 @@ use std::ops::Range;
 /// Parentheses, signs and calls nest at most this deep.
 pub const NESTING_LIMIT: usize = 256;
 
+/// So many parentheses may be closed where it takes the grammar to tell whether that was in quotes. What is read with them
+/// nests at most so much deeper than the limit.
+const DOUBTFUL_LIMIT: usize = 4 * NESTING_LIMIT;
+
 /// What the walk finds.
 #[derive(Debug, Default)]
 pub struct Walk {
@@ -17,6 +21,8 @@ pub struct Walk {
     pub unclosed: bool,
     /// Values that nest too deep.
     pub deep: Vec<Deep>,
+    /// Where every `}` outside of comments ends.
+    pub braces: Vec<usize>,
     /// Characters outside of comments that cannot be seen and are no white space of the language.
     pub odd_spaces: Vec<Range<usize>>,
 }
@@ -35,6 +41,9 @@ impl Walk {
         }
         for deep in &mut self.deep {
             deep.at += by;
+        }
+        for end in &mut self.braces {
+            *end += by;
         }
     }
 }
@@ -75,7 +84,11 @@ pub fn walk(text: &str, start: Start) -> Walk {
                 found.comments.push(at..end);
                 end
             }
-            (b' ' | b'\t' | b'\r' | b'\n', _) => at + 1,
+            (b' ' | b'\t' | b'\r', _) => at + 1,
+            (b'\n', _) => {
+                nesting.quote_before = false;
+                at + 1
+            }
             (0..=0x1F | 0x80.., _) if odd_space(text, at) > 0 => {
                 let end = at + odd_space(text, at);
                 found.odd_spaces.push(at..end);
@@ -89,6 +102,9 @@ pub fn walk(text: &str, start: Start) -> Walk {
             }
             _ => {
                 nesting.sign(byte, at, &mut found.deep);
+                if byte == b'}' {
+                    found.braces.push(at + 1);
+                }
                 at + 1
             }
         };
@@ -141,6 +157,11 @@ struct Nesting {
     outermost: usize,
     /// Where the last token stands, if it is a word in the place of a value: a function, if a parenthesis follows.
     function: Option<usize>,
+    /// Whether a quotation mark stands in this line: what follows may be in quotes, which end with their line.
+    quote_before: bool,
+    /// The parentheses that were closed behind a quotation mark since the last brace without one. In
+    /// `( ")" ( ")" …` they are still open.
+    doubtful: usize,
     /// Where it became too deep.
     too_deep: Option<usize>,
 }
@@ -171,6 +192,11 @@ impl Nesting {
                 self.signs = 0;
                 self.operand_may_follow = true;
             }
+            b'"' | b'\'' => {
+                self.quote_before = true;
+                self.operand_may_follow = false;
+            }
+            b')' | b']' | b'{' | b'}' if self.is_doubtful(byte) => {}
             b')' | b']' => {
                 let signs = self.open.pop().unwrap_or(0);
                 self.signs_outside -= signs;
@@ -204,6 +230,18 @@ impl Nesting {
         if self.depth() > NESTING_LIMIT && self.too_deep.is_none() {
             self.too_deep = Some(at);
         }
+    }
+
+    /// Whether a sign would close more parentheses in doubt than are let pass.
+    fn is_doubtful(&mut self, sign: u8) -> bool {
+        let is_brace = matches!(sign, b'{' | b'}');
+        self.doubtful = match (self.quote_before, is_brace) {
+            (true, true) => self.doubtful.saturating_add(self.open.len()),
+            (true, false) => self.doubtful.saturating_add(1),
+            (false, true) => 0,
+            (false, false) => return false,
+        };
+        self.doubtful > DOUBTFUL_LIMIT
     }
 
     fn depth(&self) -> usize {

@@ -138,15 +138,8 @@ pub enum ValueKind<'s> {
     ColorCode(&'s str),
     /// A name.
     Name(&'s str),
-    /// `FUNCTION(ARGUMENT, …)`
-    Call {
-        /// The function.
-        function: Name<'s>,
-        /// Its arguments.
-        arguments: Vec<Element<'s>>,
-        /// `(` to `)`
-        parentheses: Span,
-    },
+    /// `FUNCTION(ARGUMENT, …)`; its parts lie apart, as they would make every value twice as large.
+    Call(Box<Call<'s>>),
     /// `(VALUE)`
     Parentheses(Box<Value<'s>>),
     /// `(VALUE, VALUE, …)` with two or more values, or none.
@@ -171,6 +164,17 @@ pub enum ValueKind<'s> {
     Missing,
     /// Something that was reported.
     Bad,
+}
+
+/// `FUNCTION(ARGUMENT, …)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Call<'s> {
+    /// The function.
+    pub function: Name<'s>,
+    /// Its arguments.
+    pub arguments: Vec<Element<'s>>,
+    /// `(` to `)`
+    pub parentheses: Span,
 }
 
 /// An operator and what stands after it.

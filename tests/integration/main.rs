@@ -17,6 +17,7 @@ mod language;
 mod laws;
 mod numerics;
 mod overrides;
+mod parts;
 mod readme;
 mod render;
 #[cfg(feature = "report")]

@@ -189,6 +189,19 @@ fn deep_values() {
         let value = format!("{}{inner}{}", open.repeat(100_000), close.repeat(100_000));
         assert!(!read(format!("{CAMERA} let a = {value}")), "{open}");
     }
+    // In quotes nothing is closed.
+    for (piece, count) in [
+        ("( \")\" ", 300),
+        ("( ')' ", 100_000),
+        ("( \"}\" ", 100_000),
+        ("[ ']' + (\n", 100_000),
+        ("(' \" ( ') \" ", 100_000),
+    ] {
+        assert!(
+            !read(format!("{CAMERA} let a = {}", piece.repeat(count))),
+            "{piece}"
+        );
+    }
     let long = vec!["1"; 100_000].join(" + ");
     assert!(
         read(format!("{CAMERA} let a = {long}")),

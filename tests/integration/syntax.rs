@@ -107,13 +107,9 @@ impl Printer<'_> {
             ValueKind::Angle { number, unit } => self.line(&format!("angle {number} {unit:?}")),
             ValueKind::ColorCode(text) => self.line(&format!("color {text}")),
             ValueKind::Name(text) => self.line(&format!("name {text}")),
-            ValueKind::Call {
-                function,
-                arguments,
-                ..
-            } => {
-                self.line(&format!("call {}", function.text));
-                self.elements(arguments);
+            ValueKind::Call(call) => {
+                self.line(&format!("call {}", call.function.text));
+                self.elements(&call.arguments);
             }
             ValueKind::Parentheses(inner) => {
                 self.line("parentheses");
@@ -234,13 +230,9 @@ impl Tokens {
             | ValueKind::Angle { .. }
             | ValueKind::ColorCode(_)
             | ValueKind::Name(_) => self.mark(value.span),
-            ValueKind::Call {
-                function,
-                arguments,
-                parentheses,
-            } => {
-                self.mark(function.span);
-                self.list(*parentheses, arguments);
+            ValueKind::Call(call) => {
+                self.mark(call.function.span);
+                self.list(call.parentheses, &call.arguments);
             }
             ValueKind::Parentheses(inner) => {
                 self.ends(value.span);

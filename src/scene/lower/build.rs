@@ -22,8 +22,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// The scene, or nothing if a part of it failed; `bad` are the texts of items that could not be understood.
-    pub(super) fn build(&mut self, bad: &[&str]) -> Option<Scene> {
+    /// The scene, or nothing if a part of it failed.
+    pub(super) fn build(&mut self) -> Option<Scene> {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
             self.missing_fields(block);
@@ -32,7 +32,7 @@ impl<'s> Lowering<'s> {
         let image = self.image(one(Kind::Image));
         let sampler = self.sampler(one(Kind::Sampler), image);
         let start = Span::new(SourceId::File, 0, 0);
-        let unknown = |name| self.cut || bad.iter().any(|text| mentions(text, name));
+        let unknown = |name| self.cut || self.bad.iter().any(|text| mentions(text, name));
         let camera = match one(Kind::Camera) {
             Some(block) => self.camera(block),
             None => {
@@ -42,12 +42,11 @@ impl<'s> Lowering<'s> {
                 None
             }
         };
-        let mut objects = Vec::with_capacity(blocks.len());
+        let mut objects = std::mem::take(&mut self.objects);
         for block in blocks.iter().filter(|block| block.row.is_object) {
             objects.extend(self.object(block));
         }
-        let none = !blocks.iter().any(|block| block.row.is_object);
-        if none && bad.is_empty() && !self.cut {
+        if !self.has_objects && self.bad.is_empty() && !self.cut {
             self.problems.push(Problem::NoObjects { span: start });
         }
         Some(Scene {
@@ -56,6 +55,13 @@ impl<'s> Lowering<'s> {
             sampler: sampler?,
             objects,
         })
+    }
+
+    /// Builds an object at once.
+    pub(super) fn build_object(&mut self, block: &Block<'s>) {
+        self.missing_fields(block);
+        let object = self.object(block);
+        self.objects.extend(object);
     }
 
     fn missing_fields(&mut self, block: &Block<'s>) {

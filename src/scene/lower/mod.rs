@@ -8,13 +8,13 @@ mod build;
 mod overriding;
 mod words;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, hash_map::Entry};
 
 use glam::DVec3;
 
 use self::words::{missing_value, range_words, shown, type_help, unknown_field};
 use super::{
-    Reading, Scene,
+    Object, Reading,
     error::Problem,
     eval::{Evaluator, Names, predefined},
     overrides::{self, Override},
@@ -35,37 +35,41 @@ use crate::{
 
 /// Reads a scene: parses the file and the overrides, and makes of them what they mean.
 pub fn read(sources: &Sources) -> Reading {
+    /// A part is long enough to be worth its hand-over, and so short that many are at work at once.
+    const PART: usize = 1 << 16;
+    read_in_parts(sources, PART)
+}
+
+/// The same with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
+/// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes of
+/// syntax, or with one whose report tells of the whole file, is read again as a whole.
+pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
+    let mut diagnostics = Vec::new();
+    let overrides = overrides::read(sources, &mut diagnostics);
+    let mut lowering = Lowering::new(sources, overrides.clone(), Names::default());
+    if !lowering.sets_by_name {
+        lowering.keep_last_overrides(&[]);
+        let all = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |items| {
+            lowering.items(items);
+            !lowering.names.were_asked_early()
+        });
+        lowering.override_blocks();
+        if all && !lowering.names.were_asked_early() {
+            return lowering.finish(diagnostics);
+        }
+    }
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let problems = parsed.problems.iter();
-    let mut diagnostics: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
-    let overrides = overrides::read(sources, &mut diagnostics);
-    let mut lowering = Lowering {
-        sources,
-        cut: parsed.cut.is_some(),
-        names: Names::new(definitions(&parsed.tree), names_of_objects(&parsed.tree)),
-        overrides,
-        targets: HashMap::new(),
-        blocks: Vec::new(),
-        first_blocks: HashMap::new(),
-        problems: Vec::new(),
-        slips: Vec::new(),
-        unknown: Vec::new(),
-        in_begun_blocks: false,
-    };
-    let scene = lowering.scene(&parsed.tree);
-    // How a value is written does not matter where its field is unknown.
-    diagnostics.retain(|diagnostic| !starts_in(diagnostic, &lowering.unknown));
-    let problems = lowering.problems.iter();
-    diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
-    let slips = lowering.slips.iter();
-    diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
-    invalid_utf8(sources, &mut diagnostics);
-    diagnostic::sort(&mut diagnostics);
-    let failed = diagnostics.iter().any(Diagnostic::is_error);
-    Reading {
-        scene: scene.filter(|_| !failed),
-        diagnostics,
-    }
+    let mut found: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
+    found.append(&mut diagnostics);
+    let tree = parsed.tree;
+    let names = Names::new(definitions(&tree), names_of_objects(&tree));
+    let mut lowering = Lowering::new(sources, overrides, names);
+    lowering.cut = parsed.cut.is_some();
+    lowering.keep_last_overrides(&tree.items);
+    lowering.items(tree.items);
+    lowering.override_blocks();
+    lowering.finish(found)
 }
 
 /// Whether a problem stands in one of some places, which are in the order of the text.
@@ -127,11 +131,22 @@ struct Lowering<'s> {
     cut: bool,
     names: Names<'s>,
     overrides: Vec<Override<'s>>,
+    /// Whether one of them sets a `let`, or a field of an object.
+    sets_by_name: bool,
     /// The overrides by the block and the field or `let` that they set.
     targets: HashMap<(Option<&'s str>, &'s str), usize>,
+    /// The blocks that are not built yet: those that are no objects, and objects if an argument may set a field of one.
     blocks: Vec<Block<'s>>,
     /// The blocks by the names that `--set` knows them by; of several of one name the first.
     first_blocks: HashMap<&'s str, usize>,
+    /// The objects that are built.
+    objects: Vec<Object>,
+    /// Whether there is an object, built or not.
+    has_objects: bool,
+    /// Where each object's name stands first.
+    first_names: HashMap<&'s str, Span>,
+    /// The texts of items that could not be understood.
+    bad: Vec<&'s str>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
@@ -166,24 +181,54 @@ struct Given {
 }
 
 impl<'s> Lowering<'s> {
-    fn scene(&mut self, tree: &syntax::Tree<'s>) -> Option<Scene> {
-        self.keep_last_overrides(tree);
-        for item in &tree.items {
+    fn new(sources: &'s Sources, overrides: Vec<Override<'s>>, names: Names<'s>) -> Self {
+        Self {
+            sources,
+            cut: false,
+            names,
+            sets_by_name: overrides.iter().any(overriding::is_by_name),
+            overrides,
+            targets: HashMap::new(),
+            blocks: Vec::new(),
+            first_blocks: HashMap::new(),
+            objects: Vec::new(),
+            has_objects: false,
+            first_names: HashMap::new(),
+            bad: Vec::new(),
+            problems: Vec::new(),
+            slips: Vec::new(),
+            unknown: Vec::new(),
+            in_begun_blocks: false,
+        }
+    }
+
+    /// Makes sense of the next items of the file. Each one's tree is dropped then.
+    fn items(&mut self, items: Vec<Item<'s>>) {
+        for item in items {
             match item {
-                Item::Definition(definition) => self.definition(definition),
-                Item::Block(block) => self.block(block),
-                Item::Bad(_) => {}
+                Item::Definition(definition) => self.definition(&definition),
+                Item::Block(block) => self.block(&block),
+                Item::Bad(span) => self.bad.push(self.sources.text(span)),
             }
         }
-        self.names_of_objects();
-        self.override_fields();
-        self.override_targets();
-        let bad = tree.items.iter().filter_map(|item| match item {
-            Item::Bad(span) => Some(self.sources.text(*span)),
-            _ => None,
-        });
-        let bad: Vec<&str> = bad.collect();
-        self.build(&bad)
+    }
+
+    /// Makes the scene of what was read; `diagnostics` are those of syntax.
+    fn finish(mut self, mut diagnostics: Vec<Diagnostic>) -> Reading {
+        let scene = self.build();
+        // How a value is written does not matter where its field is unknown.
+        diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
+        let problems = self.problems.iter();
+        diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
+        let slips = self.slips.iter();
+        diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
+        invalid_utf8(self.sources, &mut diagnostics);
+        diagnostic::sort(&mut diagnostics);
+        let failed = diagnostics.iter().any(Diagnostic::is_error);
+        Reading {
+            scene: scene.filter(|_| !failed),
+            diagnostics,
+        }
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {
@@ -290,6 +335,9 @@ impl<'s> Lowering<'s> {
             self.field(field, &mut lowered, &replaced);
         }
         self.conflicts(&lowered, &replaced);
+        if row.is_object {
+            self.name_of_object(&lowered);
+        }
         if !duplicate {
             self.push(lowered);
         }
@@ -420,7 +468,7 @@ impl<'s> Lowering<'s> {
                 self.problems.truncate(before);
             }
             let found = match (&tree.kind, value) {
-                (ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Chain { .. }, value) => {
+                (ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. }, value) => {
                     shown(value, condition)
                 }
                 _ if rounded_to_zero => {
@@ -547,24 +595,24 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    fn names_of_objects(&mut self) {
-        let mut first: HashMap<&str, Span> = HashMap::new();
-        for block in &self.blocks {
-            let Some(name) = block.name else { continue };
-            let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
-            if reserved {
-                self.problems.push(Problem::ReservedName {
-                    name: name.text.to_owned(),
-                    span: name.span,
-                });
-            } else if let Some(&first) = first.get(name.text) {
-                self.problems.push(Problem::DuplicateName {
-                    name: name.text.to_owned(),
-                    second: name.span,
-                    first,
-                });
-            } else {
-                first.insert(name.text, name.span);
+    fn name_of_object(&mut self, block: &Block<'s>) {
+        let Some(name) = block.name else { return };
+        let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
+        if reserved {
+            self.problems.push(Problem::ReservedName {
+                name: name.text.to_owned(),
+                span: name.span,
+            });
+            return;
+        }
+        match self.first_names.entry(name.text) {
+            Entry::Occupied(first) => self.problems.push(Problem::DuplicateName {
+                name: name.text.to_owned(),
+                second: name.span,
+                first: *first.get(),
+            }),
+            Entry::Vacant(free) => {
+                free.insert(name.span);
             }
         }
     }

@@ -4,20 +4,20 @@ use std::collections::{HashMap, HashSet};
 
 use super::{Block, Given, Lowering, words::unknown_field};
 use crate::{
-    scene::{overrides, schema},
-    syntax::{
-        Tree,
-        tree::{self, Item},
+    scene::{
+        overrides::{self, Override},
+        schema,
     },
+    syntax::tree::{self, Item},
 };
 
 impl<'s> Lowering<'s> {
     /// Of several overrides of one target, or of fields that exclude each other, only the last counts.
-    pub(super) fn keep_last_overrides(&mut self, tree: &Tree<'s>) {
+    pub(super) fn keep_last_overrides(&mut self, items: &[Item<'s>]) {
         if self.overrides.is_empty() {
             return;
         }
-        let rows = rows_of_objects(tree);
+        let rows = rows_of_objects(items);
         let mut later = HashSet::new();
         let mut kept = Vec::with_capacity(self.overrides.len());
         for set in std::mem::take(&mut self.overrides).into_iter().rev() {
@@ -57,8 +57,13 @@ impl<'s> Lowering<'s> {
         replaced
     }
 
-    /// Adds a block, the first of its name or not.
+    /// Adds a block, the first of its name or not. An object is built at once if no argument can change it.
     pub(super) fn push(&mut self, block: Block<'s>) {
+        self.has_objects |= block.row.is_object;
+        if block.row.is_object && !self.sets_by_name {
+            self.build_object(&block);
+            return;
+        }
         if let Some(target) = target(&block) {
             let index = self.blocks.len();
             self.first_blocks.entry(target).or_insert(index);
@@ -66,8 +71,13 @@ impl<'s> Lowering<'s> {
         self.blocks.push(block);
     }
 
-    /// Evaluates the overrides of fields, now that every name is defined.
-    pub(super) fn override_fields(&mut self) {
+    /// Sets what the overrides set, now that every name is defined.
+    pub(super) fn override_blocks(&mut self) {
+        self.override_fields();
+        self.override_targets();
+    }
+
+    fn override_fields(&mut self) {
         let overrides = std::mem::take(&mut self.overrides);
         for set in &overrides {
             let Some(target) = set.block else { continue };
@@ -112,8 +122,9 @@ impl<'s> Lowering<'s> {
     }
 
     /// Reports overrides whose target does not exist.
-    pub(super) fn override_targets(&mut self) {
-        if self.overrides.is_empty() {
+    fn override_targets(&mut self) {
+        // All other targets are there, or were added.
+        if !self.sets_by_name {
             return;
         }
         let objects: Vec<&str> = self
@@ -143,10 +154,16 @@ impl<'s> Lowering<'s> {
     }
 }
 
+/// Whether an argument names what it sets by a name of the file: a `let`, or an object.
+pub(super) fn is_by_name(set: &Override<'_>) -> bool {
+    set.block
+        .is_none_or(|block| schema::block(block.text).is_none_or(|row| row.is_object))
+}
+
 /// What kind of object each name is; of a name that stands twice, the first.
-fn rows_of_objects<'s>(tree: &Tree<'s>) -> HashMap<&'s str, &'static schema::Block> {
+fn rows_of_objects<'s>(items: &[Item<'s>]) -> HashMap<&'s str, &'static schema::Block> {
     let mut rows = HashMap::new();
-    for item in &tree.items {
+    for item in items {
         if let Item::Block(tree::Block {
             kind: Some(kind),
             name: Some(name),

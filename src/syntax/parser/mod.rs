@@ -8,7 +8,10 @@
 //! used (a line and a column from pest would take a walk over the text each).
 
 mod mistakes;
+mod parts;
 mod values;
+
+pub use parts::parse_in_parts;
 
 use std::{borrow::Cow, collections::BTreeMap, ops::Range, thread};
 
@@ -32,9 +35,8 @@ const STACK: usize = 64 << 20;
 /// Parses a file.
 pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
     with_stack(|| {
-        let start = source.bom_len();
-        let (mut parser, walk) = Parser::new(source.text(), id, start..source.text().len());
-        parser.file();
+        let (mut parser, walk) = Parser::of_source(source, id, source.bom_len());
+        parser.pieces(source.text().len());
         parser.finish(walk)
     })
 }
@@ -43,7 +45,7 @@ pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
 /// without a name.
 pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Problem>) {
     with_stack(|| {
-        let (mut parser, walk) = Parser::new(source.text(), id, start..source.text().len());
+        let (mut parser, walk) = Parser::of_source(source, id, start);
         let value = parser.whole_value();
         (value, parser.finish(walk).problems)
     })
@@ -87,26 +89,37 @@ struct Parser<'s> {
 type Pairs<'p> = Pair<'p, Rule>;
 
 impl<'s> Parser<'s> {
-    fn new(text: &'s str, id: SourceId, part: Range<usize>) -> (Self, Walk) {
-        let start = match id {
+    /// Reads from an offset on, what the walk over the text found left out.
+    fn of_source(source: &'s Source, id: SourceId, start: usize) -> (Self, Walk) {
+        let text = source.text();
+        let first = match id {
             SourceId::File => Start::Items,
             SourceId::Set(_) => Start::Value,
         };
-        let mut walk = comments::walk(text.get(part.clone()).unwrap_or_default(), start);
-        walk.shift(part.start);
+        let mut walk = comments::walk(text.get(start..).unwrap_or_default(), first);
+        walk.shift(start);
         let parser = Self {
+            read: without_odd_spaces(without_deep(text, &walk.deep), &walk.odd_spaces),
+            deep: std::mem::take(&mut walk.deep),
+            ..Self::new(text, id, start)
+        };
+        (parser, walk)
+    }
+
+    /// Reads from an offset on.
+    fn new(text: &'s str, id: SourceId, start: usize) -> Self {
+        Self {
             id,
             text,
-            read: without_odd_spaces(without_deep(text, &walk.deep), &walk.odd_spaces),
-            base: part.start,
-            end: part.end,
-            deep: std::mem::take(&mut walk.deep),
+            read: Cow::Borrowed(text),
+            base: start,
+            end: text.len(),
+            deep: Vec::new(),
             items: Vec::new(),
             problems: Vec::new(),
             in_odd_lines: false,
             nesting: 0,
-        };
-        (parser, walk)
+        }
     }
 
     fn finish(mut self, walk: Walk) -> Parsed<'s> {
@@ -152,39 +165,50 @@ impl<'s> Parser<'s> {
         }
     }
 
-    fn file(&mut self) {
+    /// Reads piece after piece up to the first that ends at an offset or behind it; answers whether one ends there.
+    fn pieces(&mut self, end: usize) -> bool {
         let read = std::mem::take(&mut self.read);
-        while self.base < self.end {
+        while self.base < end {
             let rest = read.get(self.base..).unwrap_or_default();
-            let next = Grammar::parse(Rule::next, rest).ok();
-            let Some(pair) = next.and_then(|mut pairs| pairs.next()) else {
-                // The junk rules take everything but white space; nothing comes here.
-                break;
-            };
-            let length = pair.as_span().end();
-            match pair.as_rule() {
-                Rule::definition => {
-                    let definition = self.definition(pair);
-                    self.items.push(Item::Definition(definition));
+            // The junk rules take everything but white space: there is always a piece, or the end.
+            let mut length = 0;
+            for pair in Grammar::parse(Rule::next, rest).into_iter().flatten() {
+                if pair.as_rule() == Rule::EOI {
+                    return end == self.end;
                 }
-                Rule::block => {
-                    let block = self.block(pair);
-                    self.items.push(Item::Block(block));
+                length = pair.as_span().end();
+                self.piece(pair);
+                if self.base + length >= end {
+                    break;
                 }
-                Rule::bad_definition => self.bad_definition(pair),
-                Rule::stray_close => self.stray_close(pair),
-                Rule::bad_item => self.bad_item(pair),
-                _ => break,
             }
-            if matches!(self.items.last(), Some(Item::Definition(_))) {
-                self.nesting = 0;
-            }
-            self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
             if length == 0 {
-                break;
+                return false;
             }
             self.base += length;
         }
+        self.base == end
+    }
+
+    fn piece(&mut self, pair: Pairs<'_>) {
+        match pair.as_rule() {
+            Rule::definition => {
+                let definition = self.definition(pair);
+                self.items.push(Item::Definition(definition));
+            }
+            Rule::block => {
+                let block = self.block(pair);
+                self.items.push(Item::Block(block));
+            }
+            Rule::bad_definition => self.bad_definition(pair),
+            Rule::stray_close => self.stray_close(pair),
+            Rule::bad_item => self.bad_item(pair),
+            _ => return,
+        }
+        if matches!(self.items.last(), Some(Item::Definition(_))) {
+            self.nesting = 0;
+        }
+        self.in_odd_lines &= matches!(self.items.last(), Some(Item::Bad(_)));
     }
 
     fn whole_value(&mut self) -> Value<'s> {
@@ -247,7 +271,10 @@ impl<'s> Parser<'s> {
         let whole = self.span(&pair);
         let mut block = Block::empty(whole);
         self.defined_block(&mut block);
-        for part in pair.into_inner() {
+        let parts = pair.into_inner();
+        // All parts but the kind and the two braces, as a rule.
+        block.fields.reserve_exact(parts.len().saturating_sub(3));
+        for part in parts {
             let span = self.span(&part);
             match part.as_rule() {
                 Rule::let_word => self.problems.push(Problem::BadName {

@@ -7,7 +7,7 @@ use crate::{
         Problem,
         grammar::Rule,
         junk,
-        tree::{Element, Name, Operator, Step, Unit, Value, ValueKind},
+        tree::{Call, Element, Name, Operator, Step, Unit, Value, ValueKind},
     },
 };
 
@@ -192,11 +192,11 @@ impl<'s> Parser<'s> {
                     let parentheses = self.span(&part);
                     let span = name.span.to(parentheses);
                     let kind = match self.elements(part) {
-                        Some(arguments) => ValueKind::Call {
+                        Some(arguments) => ValueKind::Call(Box::new(Call {
                             function: name,
                             arguments,
                             parentheses,
-                        },
+                        })),
                         None => ValueKind::Bad,
                     };
                     return Value { kind, span };
@@ -233,10 +233,12 @@ impl<'s> Parser<'s> {
     /// The values of a list, a comma between two; none if something was wrong that makes their number doubtful.
     fn elements(&mut self, pair: Pairs<'_>) -> Option<Vec<Element<'s>>> {
         let whole = self.span(&pair);
-        let mut elements: Vec<Element<'s>> = Vec::new();
+        let parts = pair.into_inner();
+        // A comma between two values, as a rule.
+        let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
         let mut missing = None;
         let mut needless = None;
-        for part in pair.into_inner() {
+        for part in parts {
             let span = self.span(&part);
             match part.as_rule() {
                 Rule::comma => match elements.last_mut() {
@@ -277,7 +279,7 @@ impl<'s> Parser<'s> {
         let number = matches!(left.value.kind, ValueKind::Number(_));
         let word = matches!(
             right.value.kind,
-            ValueKind::Name(_) | ValueKind::Call { .. } | ValueKind::Parentheses(_)
+            ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Parentheses(_)
         );
         let problem = if number && word && elements.len() != 3 {
             junk::missing_operator(&left_text, &right_text, span)

@@ -1,0 +1,90 @@
+//! The text of many small spheres, as somebody might write it: names, comments, `let`s and expressions here and there.
+
+use std::fmt::Write;
+
+/// How a block is laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// A line for each field.
+    Blocks,
+    /// A line for each block.
+    Lines,
+}
+
+/// A scene of so many spheres: 80 bytes each.
+pub fn spheres(count: usize, layout: Layout) -> String {
+    const COLORS: [&str; 8] = [
+        "olive",
+        "teal",
+        "orange",
+        "gray",
+        "#fa0",
+        "#3366cc",
+        "rgb(255, 165, 0)",
+        "steelblue",
+    ];
+    let (open, between, close) = match layout {
+        Layout::Blocks => ("\n  ", "\n  ", "\n}\n\n"),
+        Layout::Lines => (" ", "  ", " }\n"),
+    };
+    let mut random = Random(1);
+    let mut text = String::from(
+        "// Many small spheres.\nlet unit = 0.05\nimage { width 1280  height 720 }\n\
+         camera { eye (0, 40, 120)  lookat (0, 0, 0)  d 2.75 }\nsampler { method jittered  per_pixel 4 }\n\n",
+    );
+    for index in 0..count {
+        let [x, y, z] = [(); 3].map(|()| random.between(-100.0, 100.0));
+        let row = index / 1000;
+        let mut line = String::new();
+        if index % 1000 == 0 {
+            let _ = writeln!(line, "let row_{row} = {y:.3}");
+        }
+        if index % 100 == 0 {
+            let _ = writeln!(line, "// From {index} on.");
+        }
+        line.push_str("sphere");
+        if index % 10 == 0 {
+            let _ = write!(line, " Ball_{index}");
+        }
+        line.push_str(" {");
+        if index % 20 == 0 {
+            let _ = write!(line, " /* {} */", index / 20);
+        }
+        let _ = match index % 7 {
+            0 => write!(
+                line,
+                "{open}center ({x:.3}, row_{row} + {:.3}, {z:.3})",
+                y / 100.0
+            ),
+            _ => write!(line, "{open}center ({x:.3}, {y:.3}, {z:.3})"),
+        };
+        let _ = match index % 5 {
+            0 => write!(
+                line,
+                "{between}radius {:.3} * unit",
+                random.between(1.0, 9.0)
+            ),
+            _ => write!(line, "{between}radius {:.4}", random.between(0.05, 0.45)),
+        };
+        let color = COLORS[(random.next() % 8) as usize];
+        let _ = write!(line, "{between}color {color}{close}");
+        text.push_str(&line);
+    }
+    text
+}
+
+/// Vigna's splitmix64, so that the scene is the same everywhere.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

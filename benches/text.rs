@@ -1,0 +1,116 @@
+//! From a text to what the tracer starts with, stage by stage: `cargo bench --bench text`. See README.md beside this file.
+//!
+//! `cargo bench --bench text -- --write COUNT blocks|lines` writes a scene of many spheres to standard output instead.
+
+use std::{
+    env,
+    hint::black_box,
+    time::{Duration, Instant},
+};
+
+use criterion::{Criterion, Throughput};
+use pest::Parser;
+use pinhole::{
+    scene,
+    source::{Source, SourceId, Sources},
+    syntax,
+    tracer::World,
+};
+
+use self::{
+    grammar::{Grammar, Rule},
+    spheres::{Layout, spheres},
+};
+
+mod spheres;
+
+/// pest's parser of the same grammar: what everything else is measured by.
+mod grammar {
+    #[derive(pest_derive::Parser)]
+    #[grammar = "grammar/scn.pest"]
+    pub struct Grammar;
+}
+
+const OBJECTS: usize = 10_000;
+
+/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
+const ROUNDS: usize = 20;
+
+fn main() {
+    let arguments: Vec<String> = env::args().collect();
+    if let Some(at) = arguments.iter().position(|argument| argument == "--write") {
+        let count = arguments.get(at + 1).and_then(|count| count.parse().ok());
+        let layout = match arguments.get(at + 2).map(String::as_str) {
+            Some("lines") => Layout::Lines,
+            _ => Layout::Blocks,
+        };
+        print!("{}", spheres(count.unwrap_or(OBJECTS), layout));
+        return;
+    }
+    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    if !arguments.iter().any(|argument| argument == "--bench") {
+        return;
+    }
+    let mut criterion = Criterion::default().configure_from_args();
+    for layout in [Layout::Blocks, Layout::Lines] {
+        let sources = Sources::new(Source::from_text("spheres.scn", spheres(OBJECTS, layout)));
+        let reading = scene::read(&sources)
+            .scene
+            .expect("a scene without mistakes");
+        let stages: [(&str, &dyn Fn()); 5] = [
+            ("pest alone", &|| {
+                black_box(pieces(sources.file.text()));
+            }),
+            ("a tree of the whole", &|| {
+                black_box(syntax::parse(&sources.file, SourceId::File));
+            }),
+            ("the scene, through such a tree", &|| {
+                black_box(scene::read_in_parts(&sources, usize::MAX));
+            }),
+            ("the scene, in parts", &|| {
+                black_box(scene::read(&sources));
+            }),
+            ("the tracer's world", &|| {
+                black_box(World::new(&reading));
+            }),
+        ];
+        ratios(layout, &stages);
+        let mut group = criterion.benchmark_group(format!("{layout:?}"));
+        group.throughput(Throughput::Bytes(sources.file.text().len() as u64));
+        for (name, stage) in stages {
+            group.bench_function(name, |bencher| bencher.iter(stage));
+        }
+        group.finish();
+    }
+    criterion.final_summary();
+}
+
+/// Parses piece by piece, as the parser does, and looks at nothing.
+fn pieces(text: &str) -> usize {
+    let mut at = 0;
+    while let Some(rest) = text.get(at..)
+        && let Ok(pairs) = Grammar::parse(Rule::next, rest)
+        && let Some(last) = pairs.last()
+        && last.as_rule() != Rule::EOI
+    {
+        at += last.as_span().end();
+    }
+    at
+}
+
+/// How long each stage takes as a multiple of the first, in turns, so that a busy moment meets all of them.
+fn ratios(layout: Layout, stages: &[(&str, &dyn Fn())]) {
+    let mut best = vec![Duration::MAX; stages.len()];
+    for _ in 0..ROUNDS {
+        for ((_, stage), best) in stages.iter().zip(&mut best) {
+            let start = Instant::now();
+            stage();
+            *best = start.elapsed().min(*best);
+        }
+    }
+    println!("{OBJECTS} spheres as {layout:?}: the time of each stage by that of the first");
+    for ((name, _), time) in stages.iter().zip(&best) {
+        let ratio = time.as_secs_f64() / best[0].as_secs_f64();
+        println!("{name:32} {ratio:6.2}   {time:.1?}");
+    }
+}

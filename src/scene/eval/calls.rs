@@ -1,0 +1,281 @@
+//! Functions and their arguments.
+
+use super::{Evaluator, predefined};
+use crate::{
+    color::Color,
+    numbers,
+    scene::{
+        error::Problem,
+        schema::{self, Function, Type},
+        value::{self, Value},
+    },
+    source::Span,
+    suggest,
+    syntax::{
+        shorten,
+        tree::{self, Call, Element, Name, ValueKind},
+    },
+};
+
+impl<'s> Evaluator<'_, 's> {
+    pub(super) fn call(&mut self, call: &Call<'s>, wanted: Option<Type>) -> Option<Value> {
+        let Call {
+            function,
+            arguments,
+            parentheses,
+        } = call;
+        let Some(row) = schema::function(function.text) else {
+            self.unknown_function(function, arguments);
+            return None;
+        };
+        let mut values = Vec::with_capacity(arguments.len());
+        for (index, argument) in arguments.iter().enumerate() {
+            let takes = row.takes.get(index).or(row.takes.last()).copied();
+            values.push(self.value(&argument.value, takes.or(wanted)));
+        }
+        let least = row.takes.len();
+        if values.len() < least || (values.len() > least && !row.more) {
+            self.argument_count(row, function.span.to(*parentheses), arguments);
+            return None;
+        }
+        let mut known = Vec::with_capacity(values.len());
+        for (index, (argument, value)) in arguments.iter().zip(values).enumerate() {
+            let Some(value) = value else { continue };
+            let takes = row.takes.get(index).or(row.takes.last()).copied();
+            match takes {
+                Some(takes) if takes != value.kind() => {
+                    self.argument_type(row, takes, &argument.value, value);
+                }
+                _ => known.push(value),
+            }
+        }
+        if known.len() < arguments.len() {
+            return None;
+        }
+        let result = value::call(row.name, &known)?;
+        if let Value::Color(color) = result
+            && !self.in_range(color, arguments)
+        {
+            return None;
+        }
+        self.finite_call(row, arguments, function.span, &known, result)
+    }
+
+    fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Element<'s>]) {
+        for argument in arguments {
+            self.value(&argument.value, None);
+        }
+        let functions = schema::FUNCTIONS.iter().map(|function| function.name);
+        let near = suggest::nearest(function.text, functions);
+        let is_let = self.names.place(function.text).is_some();
+        let is_value = is_let || predefined(function.text).is_some();
+        let (help, label) = match near {
+            _ if is_value => (
+                format!(
+                    "write an operator between, such as `{} * (…)`",
+                    function.text
+                ),
+                "a value, not a function".to_owned(),
+            ),
+            Some(near) => (
+                format!("did you mean `{near}`?"),
+                "not a function".to_owned(),
+            ),
+            None => (
+                format!(
+                    "the functions are {}",
+                    suggest::list(schema::FUNCTIONS.iter().map(|function| function.name))
+                ),
+                "not a function".to_owned(),
+            ),
+        };
+        self.problems.push(Problem::UnknownFunction {
+            name: function.text.to_owned(),
+            help,
+            span: function.span,
+            label,
+        });
+    }
+
+    fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
+        let found = arguments.len();
+        let values = |count: usize| match count {
+            1 => "one value".to_owned(),
+            2 => "two values".to_owned(),
+            3 => "three values".to_owned(),
+            count => format!("{count} values"),
+        };
+        let takes = match row.more {
+            true => format!("{} or more", values(row.takes.len())),
+            false => values(row.takes.len()),
+        };
+        let are = match found {
+            0 => "there is none".to_owned(),
+            1 => "there is one".to_owned(),
+            2 => "there are two".to_owned(),
+            count => format!("there are {count}"),
+        };
+        self.problems.push(Problem::ArgumentCount {
+            name: row.name.to_owned(),
+            takes,
+            are,
+            example: self.argument_example(row, arguments),
+            span,
+            label: match found {
+                0 => "no value".to_owned(),
+                count => values(count),
+            },
+        });
+    }
+
+    /// The call with as many of its values as it takes; what a vector is made of stands in parentheses of its own, and what
+    /// numbers are does not.
+    fn argument_example(&self, row: &Function, arguments: &[Element<'s>]) -> String {
+        let text = |e: &Element<'_>| shorten(self.sources.text(e.value.span));
+        let texts: Vec<String> = arguments.iter().map(text).collect();
+        match (row.takes, arguments) {
+            ([Type::Vector], [_, _, _]) => format!("{}(({}))", row.name, texts.join(", ")),
+            (takes, [only]) if matches!(&only.value.kind, ValueKind::Tuple(parts) if parts.len() == takes.len()) =>
+            {
+                format!("{}{}", row.name, texts.join(", "))
+            }
+            (takes, _) => match texts.get(..takes.len()) {
+                Some(kept) => format!("{}({})", row.name, kept.join(", ")),
+                None => example(row),
+            },
+        }
+    }
+
+    fn argument_type(
+        &mut self,
+        row: &Function,
+        takes: Type,
+        argument: &tree::Value<'s>,
+        found: Value,
+    ) {
+        let label = self.described(argument, found.kind());
+        let written = self.quoted(argument.span);
+        if takes == Type::Angle && found.kind() == Type::Number {
+            let [degrees, radians] = self.with_units(argument);
+            self.problems.push(Problem::BareAngle {
+                what: format!("the argument of `{}`", row.name),
+                written,
+                help: format!("write `{0}({degrees})` (or `{0}({radians})`)", row.name),
+                span: argument.span,
+                label,
+            });
+            return;
+        }
+        self.problems.push(Problem::ArgumentType {
+            name: row.name.to_owned(),
+            takes: match row.takes {
+                [_, _] => takes.two(),
+                [_, _, _] => "three numbers",
+                _ => takes.noun(),
+            },
+            written,
+            found: found.kind().noun(),
+            help: format!("call it with {}, such as `{}`", takes.noun(), example(row)),
+            span: argument.span,
+            label,
+        });
+    }
+
+    /// Whether the channels of a colour lie from 0 to 255; what does not is reported.
+    fn in_range(&mut self, color: Color, arguments: &[Element<'s>]) -> bool {
+        let mut fits = true;
+        let names = ["red", "green", "blue"];
+        for ((channel, name), argument) in color.srgb.into_iter().zip(names).zip(arguments) {
+            if (0.0..=255.0).contains(&channel) {
+                continue;
+            }
+            fits = false;
+            let (bound, label) = match channel > 255.0 {
+                true => ("255", "too much"),
+                false => ("0", "too little"),
+            };
+            self.problems.push(Problem::ColorRange {
+                channel: name,
+                found: numbers::beside(channel, &[0.0, 255.0]),
+                help: format!("write `{bound}`, or a number that lies between"),
+                span: argument.value.span,
+                label,
+            });
+        }
+        fits
+    }
+
+    fn finite_call(
+        &mut self,
+        row: &Function,
+        arguments: &[Element<'s>],
+        span: Span,
+        known: &[Value],
+        result: Value,
+    ) -> Option<Value> {
+        if result.is_finite() {
+            return Some(result);
+        }
+        let written = match arguments {
+            [only] => shorten(self.sources.text(only.value.span)),
+            _ => "…".to_owned(),
+        };
+        let (message, help, label) = match (row.name, known) {
+            ("sqrt", _) => (
+                "a negative number has no square root".to_owned(),
+                format!("write `sqrt(abs({written}))` if its size is meant"),
+                computed(known.first()),
+            ),
+            ("tan", _) => (
+                format!("`tan({written})` is infinite"),
+                "a tangent has a value only away from 90deg, 270deg and so on".to_owned(),
+                "infinite here".to_owned(),
+            ),
+            ("asin" | "acos", _) => (
+                format!("`{}` takes a number from -1 to 1", row.name),
+                format!(
+                    "write `{}(max(-1, min(1, {written})))` to keep it in range",
+                    row.name
+                ),
+                computed(known.first()),
+            ),
+            ("normalize", _) => (
+                "the zero vector has no direction".to_owned(),
+                "normalize a vector other than (0, 0, 0)".to_owned(),
+                "its argument is (0, 0, 0)".to_owned(),
+            ),
+            _ => (
+                format!("`{}` gives a number that is too large", row.name),
+                "numbers go up to 1.7976931348623157e308".to_owned(),
+                "too large".to_owned(),
+            ),
+        };
+        self.problems.push(Problem::NotFinite {
+            message,
+            help,
+            span,
+            label,
+        });
+        None
+    }
+}
+
+/// How a function is called.
+pub(super) fn example(function: &Function) -> String {
+    let arguments = match function.takes {
+        [Type::Angle] => "30deg",
+        [Type::Vector] => "(1, 2, 3)",
+        [Type::Vector, Type::Vector] => "(1, 0, 0), (0, 1, 0)",
+        [Type::Number] => "0.5",
+        [Type::Number, Type::Number] => "1, 2",
+        _ => "255, 165, 0",
+    };
+    format!("{}({arguments})", function.name)
+}
+
+fn computed(value: Option<&Value>) -> String {
+    match value {
+        Some(Value::Number(number)) => format!("its argument is {}", numbers::short(*number)),
+        _ => "not finite".to_owned(),
+    }
+}

@@ -1,0 +1,167 @@
+//! Signs and operators.
+
+use super::Evaluator;
+use crate::{
+    math::Angle,
+    scene::{
+        error::Problem,
+        schema::Type,
+        value::{self, Value},
+    },
+    source::Span,
+    syntax::{
+        shorten,
+        tree::{self, Operator, Step, ValueKind},
+    },
+};
+
+impl<'s> Evaluator<'_, 's> {
+    pub(super) fn negation(&mut self, sign: Span, operand: &tree::Value<'s>) -> Option<Value> {
+        let value = self.value(operand, None)?;
+        let negative = value::negate(value);
+        if negative.is_none() {
+            let right_label = self.described(operand, value.kind());
+            self.problems.push(Problem::OperandTypes {
+                message: format!("{} has no negative", value.kind().noun()),
+                help: "take the `-` away; only numbers, angles and vectors have a sign".to_owned(),
+                operator: sign,
+                left: None,
+                left_label: String::new(),
+                right: operand.span,
+                right_label,
+            });
+        }
+        negative
+    }
+
+    pub(super) fn chain(&mut self, first: &tree::Value<'s>, rest: &[Step<'s>]) -> Option<Value> {
+        let mut left = self.value(first, None);
+        let mut span = first.span;
+        for (index, step) in rest.iter().enumerate() {
+            let right = self.value(&step.operand, None);
+            left = match (left, right) {
+                (Some(a), Some(b)) => {
+                    let named = (index == 0).then_some(first);
+                    self.step(step, (a, span, named), b)
+                }
+                _ => None,
+            };
+            span = span.to(step.operand.span);
+        }
+        left
+    }
+
+    /// One operation; of the left operand its value, its place, and its tree if it is not a result itself.
+    fn step(
+        &mut self,
+        step: &Step<'s>,
+        (left, left_span, left_tree): (Value, Span, Option<&tree::Value<'s>>),
+        right: Value,
+    ) -> Option<Value> {
+        let Some(result) = value::operate(step.operator, left, right) else {
+            let left_label = match left_tree {
+                Some(tree) => self.described(tree, left.kind()),
+                None => left.kind().noun().to_owned(),
+            };
+            let right_label = self.described(&step.operand, right.kind());
+            let help = self.operand_help(step, (left, left_span), right);
+            self.problems.push(Problem::OperandTypes {
+                message: cannot(step.operator, left.kind(), right.kind()),
+                help,
+                operator: step.sign,
+                left: Some(left_span),
+                left_label,
+                right: step.operand.span,
+                right_label,
+            });
+            return None;
+        };
+        if result.is_finite() {
+            return Some(result);
+        }
+        let by_zero = step.operator == Operator::Divide
+            && matches!(
+                right,
+                Value::Number(0.0)
+                    | Value::Angle(Angle {
+                        degrees: 0.0,
+                        radians: 0.0
+                    })
+            );
+        let problem = if by_zero {
+            let written = shorten(self.sources.text(step.operand.span));
+            let zero = matches!(&step.operand.kind, ValueKind::Number(_));
+            Problem::NotFinite {
+                message: "this divides by zero".to_owned(),
+                help: match zero {
+                    true => "divide by a number other than 0".to_owned(),
+                    false => format!("make `{written}` other than 0; it is 0 here"),
+                },
+                span: step.sign,
+                label: "the right side is 0".to_owned(),
+            }
+        } else {
+            Problem::NotFinite {
+                message: "the result of this is too large".to_owned(),
+                help: "numbers go up to 1.7976931348623157e308".to_owned(),
+                span: step.sign,
+                label: "too large from here on".to_owned(),
+            }
+        };
+        self.problems.push(problem);
+        None
+    }
+
+    fn operand_help(&self, step: &Step<'s>, left: (Value, Span), right: Value) -> String {
+        use Type::{Angle, Color, Colors, Number, Vector};
+        let text = |span| shorten(self.sources.text(span));
+        let (a, b) = (text(left.1), text(step.operand.span));
+        let sign = step.operator.sign();
+        let sum = matches!(step.operator, Operator::Add | Operator::Subtract);
+        match (left.0.kind(), right.kind()) {
+            (Color | Colors, _) | (_, Color | Colors) => {
+                "colours are not computed with; `rgb(r, g, b)` takes computed numbers".to_owned()
+            }
+            (Vector, Number) if sum => format!(
+                "add a vector, such as `{a} {sign} ({b}, {b}, {b})`, or scale it: `{a} * {b}`"
+            ),
+            (Number, Vector) if sum => format!(
+                "write a vector, such as `({a}, {a}, {a}) {sign} {b}`, or scale it: `{a} * {b}`"
+            ),
+            (Vector, Vector) if step.operator == Operator::Multiply => {
+                format!("write `dot({a}, {b})` for a number, or `cross({a}, {b})` for a vector")
+            }
+            (_, Vector) if step.operator == Operator::Divide => {
+                format!("divide by a number, such as `length({b})`")
+            }
+            (Angle, Number) if sum => {
+                let [degrees, radians] = self.with_units(&step.operand);
+                format!("give it a unit: `{a} {sign} {degrees}` (or `{radians}`)")
+            }
+            (Number, Angle) if sum => {
+                format!("give {a} a unit: `{a}deg {sign} {b}` (or `{a}rad`)")
+            }
+            (Angle, Angle) => {
+                format!("an angle divided by `1deg` is a number: `{a} * ({b} / 1deg)`")
+            }
+            (Number, Angle) => {
+                format!("an angle divided by `1deg` is a number: `{a} / ({b} / 1deg)`")
+            }
+            _ => "only numbers, angles and vectors of one kind go together".to_owned(),
+        }
+    }
+}
+
+fn cannot(operator: Operator, left: Type, right: Type) -> String {
+    let (a, b) = (left.noun(), right.noun());
+    let both = match left == right {
+        true => left.two().to_owned(),
+        false => format!("{a} and {b}"),
+    };
+    match operator {
+        Operator::Add => format!("{both} cannot be added"),
+        Operator::Subtract => format!("{b} cannot be subtracted from {a}"),
+        Operator::Multiply => format!("{both} cannot be multiplied"),
+        Operator::Divide => format!("{a} cannot be divided by {b}"),
+    }
+}

@@ -1,0 +1,245 @@
+//! The facts of the language: its blocks and their fields, types, defaults and conditions, with a line of help each.
+//!
+//! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought among them, and the
+//! language's reference is tested against them.
+//!
+//! Here is what a row says; the rows stand in `blocks` and `words`.
+
+mod blocks;
+mod words;
+
+pub use blocks::BLOCKS;
+pub use words::{CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names};
+
+use std::fmt;
+
+/// A kind of block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// The picture.
+    Image,
+    /// The camera.
+    Camera,
+    /// The samples.
+    Sampler,
+    /// A sphere.
+    Sphere,
+    /// A triangle.
+    Triangle,
+    /// A box.
+    Box,
+    /// The checkerboard.
+    Checkerboard,
+}
+
+/// What there is to know about a kind of block.
+#[derive(Debug)]
+pub struct Block {
+    /// Its kind.
+    pub kind: Kind,
+    /// The word that it starts with.
+    pub name: &'static str,
+    /// The word with its article, for messages.
+    pub noun: &'static str,
+    /// Whether it is an object: it may have a name, and there may be many.
+    pub is_object: bool,
+    /// What it is, in a line.
+    pub help: &'static str,
+    /// Its fields.
+    pub fields: &'static [Field],
+    /// Conditions between fields.
+    pub together: &'static [&'static str],
+    /// Other words that people try for it.
+    pub also_tried: &'static [&'static str],
+}
+
+/// What there is to know about a field.
+#[derive(Debug)]
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// What it takes.
+    pub takes: Type,
+    /// What it is when it is not given.
+    pub preset: Preset,
+    /// What its value must be.
+    pub must: &'static [Condition],
+    /// The fields that it excludes.
+    pub excludes: &'static [&'static str],
+    /// What it is, in a line.
+    pub help: &'static str,
+    /// Other words that people try for it.
+    pub also_tried: &'static [&'static str],
+    /// A value that it can have, if neither its default nor any of its type will do.
+    pub example: &'static str,
+}
+
+/// What a value can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Type {
+    /// A number.
+    Number,
+    /// A number with a unit.
+    Angle,
+    /// Three numbers.
+    Vector,
+    /// An sRGB colour.
+    Color,
+    /// Two colours.
+    Colors,
+    /// The name of a sampling technique.
+    Method,
+}
+
+impl Type {
+    /// The type with its article.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Angle => "an angle",
+            Self::Vector => "a vector",
+            Self::Color => "a colour",
+            Self::Colors => "a pair of colours",
+            Self::Method => "a method",
+        }
+    }
+
+    /// Two of the type.
+    pub fn two(self) -> &'static str {
+        match self {
+            Self::Number => "two numbers",
+            Self::Angle => "two angles",
+            Self::Vector => "two vectors",
+            Self::Color => "two colours",
+            Self::Colors => "two pairs of colours",
+            Self::Method => "two methods",
+        }
+    }
+}
+
+/// What a field is when it is not given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preset {
+    /// It must be given.
+    Required,
+    /// It, or one of those that it excludes, must be given.
+    Alternative,
+    /// Nothing.
+    Nothing,
+    /// This.
+    Value(Literal),
+}
+
+/// A value as the table writes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Literal {
+    /// A number.
+    Number(f64),
+    /// An angle in degrees.
+    Degrees(f64),
+    /// A vector.
+    Vector([f64; 3]),
+    /// A colour's name.
+    Color(&'static str),
+    /// Two colours' names.
+    Colors([&'static str; 2]),
+    /// A method's name.
+    Method(&'static str),
+}
+
+/// As it is written in a scene.
+impl fmt::Display for Literal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Degrees(degrees) => write!(f, "{degrees}deg"),
+            Self::Vector([x, y, z]) => write!(f, "({x}, {y}, {z})"),
+            Self::Color(name) | Self::Method(name) => f.write_str(name),
+            Self::Colors([first, second]) => write!(f, "({first}, {second})"),
+        }
+    }
+}
+
+/// What a field's value must be, beyond its type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// A number without a fraction.
+    Whole,
+    /// A number above this one.
+    MoreThan(f64),
+    /// A number not below this one.
+    AtLeast(f64),
+    /// A number not above 2 to this power.
+    AtMostTwoTo(u32),
+    /// A number below 2 to this power.
+    LessThanTwoTo(u32),
+    /// An angle between 0 and 180 degrees, both excluded.
+    LessThanHalfTurn,
+    /// A vector other than zero.
+    NotZero,
+    /// A vector whose three parts are above 0.
+    EachMoreThanZero,
+}
+
+/// What the value must be, in words.
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("a whole number"),
+            Self::MoreThan(bound) => write!(f, "more than {bound}"),
+            Self::AtLeast(bound) => write!(f, "at least {bound}"),
+            Self::AtMostTwoTo(power) => write!(f, "at most {} (2^{power})", 1_u64 << power),
+            Self::LessThanTwoTo(power) => write!(f, "less than 2^{power}"),
+            Self::LessThanHalfTurn => f.write_str("more than 0 and less than 180deg"),
+            Self::NotZero => f.write_str("other than (0, 0, 0)"),
+            Self::EachMoreThanZero => f.write_str("more than 0 in every part"),
+        }
+    }
+}
+
+/// A block's row, found by its word.
+pub fn block(name: &str) -> Option<&'static Block> {
+    BLOCKS.iter().find(|block| block.name == name)
+}
+
+impl Block {
+    /// A field's row, found by its name.
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// The names of its fields.
+    pub fn field_names(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.fields.iter().map(|field| field.name)
+    }
+
+    /// The field that was probably meant, if any is near.
+    pub fn nearest_field(&self, written: &str) -> Option<&'static str> {
+        let tried = |field: &&Field| also(written, field.also_tried);
+        let tried = self.fields.iter().find(tried).map(|field| field.name);
+        tried.or_else(|| crate::suggest::nearest(written, self.field_names()))
+    }
+
+    /// The field whose name another word was joined to: `centerball` is the center and `ball`.
+    pub fn joined_field(&self, written: &str) -> Option<&'static str> {
+        let joined = |name: &&str| name.len() > 2 && written.starts_with(*name);
+        self.field_names()
+            .filter(joined)
+            .max_by_key(|name| name.len())
+    }
+}
+
+/// The words that blocks start with.
+pub fn block_names() -> impl Iterator<Item = &'static str> {
+    BLOCKS.iter().map(|block| block.name)
+}
+
+/// The block that was probably meant, if any is near.
+pub fn nearest_block(written: &str) -> Option<&'static Block> {
+    let tried = BLOCKS.iter().find(|block| also(written, block.also_tried));
+    tried.or_else(|| crate::suggest::nearest(written, block_names()).and_then(block))
+}
+
+fn also(written: &str, tried: &[&str]) -> bool {
+    tried.iter().any(|name| name.eq_ignore_ascii_case(written))
+}

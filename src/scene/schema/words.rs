@@ -1,0 +1,130 @@
+//! The tables of predefined words: methods, functions and constants.
+
+use super::Type;
+use crate::scene::Method;
+
+/// Every sampling technique, with a line of help.
+pub const METHODS: &[(Method, &str)] = &[
+    (Method::Regular, "an even grid, centred"),
+    (Method::Random, "independent and uniform"),
+    (Method::Jittered, "one at random in each cell of a grid"),
+    (Method::NRooks, "one in each row and each column"),
+    (Method::MultiJittered, "jittered and n_rooks at once"),
+    (
+        Method::Hammersley,
+        "the Hammersley points, shifted per pixel",
+    ),
+    (Method::Halton, "the Halton points, shifted per pixel"),
+    (
+        Method::Sobol,
+        "Sobol' points with Owen scrambling, per pixel",
+    ),
+    (Method::Scatter, "points uniform over the whole picture"),
+    (Method::Exact, "no samples: the mean itself, computed"),
+];
+
+/// A method, found by its name.
+pub fn method(name: &str) -> Option<Method> {
+    let mut methods = METHODS.iter().map(|&(method, _)| method);
+    methods.find(|method| method.name() == name)
+}
+
+/// The names of the methods.
+pub fn method_names() -> impl Iterator<Item = &'static str> {
+    METHODS.iter().map(|(method, _)| method.name())
+}
+
+/// A function's row, found by its name.
+pub fn function(name: &str) -> Option<&'static Function> {
+    FUNCTIONS.iter().find(|function| function.name == name)
+}
+
+/// Every function, with what it takes and gives.
+pub const FUNCTIONS: &[Function] = {
+    use Type::{Angle, Color, Number, Vector};
+    const fn of(
+        name: &'static str,
+        takes: &'static [Type],
+        gives: Type,
+        help: &'static str,
+    ) -> Function {
+        Function {
+            name,
+            takes,
+            more: false,
+            gives,
+            help,
+        }
+    }
+    &[
+        of("sin", &[Angle], Number, "the sine of an angle"),
+        of("cos", &[Angle], Number, "the cosine of an angle"),
+        of("tan", &[Angle], Number, "the tangent of an angle"),
+        of("asin", &[Number], Angle, "the angle of this sine"),
+        of("acos", &[Number], Angle, "the angle of this cosine"),
+        of("atan", &[Number], Angle, "the angle of this tangent"),
+        of(
+            "atan2",
+            &[Number, Number],
+            Angle,
+            "the angle of the point (x, y), called atan2(y, x)",
+        ),
+        of("sqrt", &[Number], Number, "the square root"),
+        of("abs", &[Number], Number, "the number without its sign"),
+        Function {
+            more: true,
+            ..of(
+                "min",
+                &[Number, Number],
+                Number,
+                "the least of two or more numbers",
+            )
+        },
+        Function {
+            more: true,
+            ..of(
+                "max",
+                &[Number, Number],
+                Number,
+                "the greatest of two or more numbers",
+            )
+        },
+        of("length", &[Vector], Number, "the length of a vector"),
+        of("dot", &[Vector, Vector], Number, "the dot product"),
+        of("cross", &[Vector, Vector], Vector, "the cross product"),
+        of(
+            "normalize",
+            &[Vector],
+            Vector,
+            "the vector of length 1 in the same direction",
+        ),
+        of(
+            "rgb",
+            &[Number, Number, Number],
+            Color,
+            "a colour of red, green and blue, 0 to 255 each",
+        ),
+    ]
+};
+
+/// What there is to know about a function.
+#[derive(Clone, Copy, Debug)]
+pub struct Function {
+    /// Its name.
+    pub name: &'static str,
+    /// The types of its arguments.
+    pub takes: &'static [Type],
+    /// Whether it takes more of the last type.
+    pub more: bool,
+    /// The type of its result.
+    pub gives: Type,
+    /// What it is, in a line.
+    pub help: &'static str,
+}
+
+/// The predefined names that are neither colours nor functions, with a line of help.
+pub const CONSTANTS: &[(&str, &str)] = &[
+    ("pi", "the number 3.141592653589793"),
+    ("deg", "the angle 1deg"),
+    ("rad", "the angle 1rad"),
+];

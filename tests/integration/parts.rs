@@ -1,0 +1,200 @@
+//! A text that is read in parts means what it means as a whole: the same tree, the same scene, the same diagnostics.
+//!
+//! Parts of a single byte are taken apart at every brace, so that small texts have many.
+
+use std::{fs, path::Path, sync::LazyLock};
+
+use pinhole::{
+    scene,
+    source::{Source, SourceId, Sources},
+    syntax,
+};
+use proptest::{prelude::*, sample::select};
+
+/// Every scene that there is beside the source.
+static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = [
+        "examples",
+        "tests/diagnostics",
+        "tests/syntax/ok",
+        "tests/syntax/bad",
+    ];
+    let entries = folders.map(|folder| fs::read_dir(root.join(folder)).expect("the folder"));
+    let paths = entries.into_iter().flatten();
+    let mut paths: Vec<_> = paths.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "scn"));
+    paths.sort();
+    let text = |path| String::from_utf8_lossy(&fs::read(path).expect("a scene")).into_owned();
+    paths.iter().map(text).collect()
+});
+
+/// Compares the two ways; answers whether the text was parsed in parts.
+#[track_caller]
+fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
+    let sources = Sources::new(Source::from_text("test.scn", text)).with_sets(sets);
+    let whole = syntax::parse(&sources.file, SourceId::File);
+    let mut items = Vec::new();
+    let in_parts = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |part| {
+        items.extend(part);
+        true
+    });
+    let long = text.len() / 2 >= bytes;
+    assert_eq!(in_parts, long && whole.problems.is_empty(), "{text:?}");
+    if in_parts {
+        assert_eq!(items, whole.tree.items, "{text:?}");
+    }
+    let as_parts = scene::read_in_parts(&sources, bytes);
+    let as_whole = scene::read_in_parts(&sources, usize::MAX);
+    assert_eq!(as_parts.diagnostics, as_whole.diagnostics, "{text:?}");
+    assert_eq!(as_parts.scene, as_whole.scene, "{text:?}");
+    in_parts
+}
+
+#[test]
+fn every_scene() {
+    let in_parts = SCENES.iter().filter(|text| check(text, 1, &[])).count();
+    // Those of the examples alone; the others are there for their mistakes.
+    assert!(in_parts >= 20, "{in_parts}");
+}
+
+#[test]
+fn every_prefix_of_a_scene_of_everything() {
+    let text = fs::read_to_string("examples/language_tour.scn").expect("the tour");
+    for (end, _) in text.char_indices() {
+        check(&text[..end], 1, &[]);
+    }
+}
+
+/// What is one mistake at a brace, or two across a part's end.
+#[test]
+fn mistakes_at_the_end_of_a_part() {
+    let camera = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
+    for text in [
+        "let a = { sphere { center (0, 1, 0) } }",
+        "sphere { center (0, 1, 0) /* } sphere {} */ }",
+        "sphere { center (0, 1, 0) /* } sphere {} ",
+        "sphere { center (0, 1, 0) } /* sphere {} ",
+        "sphere { center (0, 1, 0) // }\n} sphere { center (0, 0, 0) }",
+        "sphere { center \"}\" } sphere { center '}' }",
+        "sphere { center (0, 1, 0) } } sphere { center (0, 1, 0) }",
+        "sphere { center (0, 1, 0) { } } sphere { center (0, 1, 0) }",
+        "sphere { sphere { center (0, 1, 0) } } sphere { center (0, 1, 0) }",
+        "sphere { center (0, 1, 0) } } }",
+        "{ center (0, 1, 0) } { center (0, 1, 0) }",
+        "sphere { center (0, 1, 0) let a = 1 } sphere { center (0, a, 0) }",
+        "sphere A { center (0, b, 0) } let b = 1 sphere A { center (0, b, 0) }",
+        "sphere A { center A } sphere B { center (0, 1, 0) radius color }",
+        "sphere { center (0, 1, 0) radius radius } let radius = 1",
+        "sphere { center (0, 1, 0) radius 1e-400 } let radius = 1 sphere { centre (0, 1, 0) }",
+        "sphere { center (0, 1, 0) };\nsphere { center (0, 1, 0) },\n",
+        "let a = 2 pi\nsphere { center (0, 1, 0) }",
+        "let a =\nsphere { center (0, 1, 0) }",
+        "sphere { center (0, 1, 0) } let a = 2 pi\nsphere { center (0, a, 0) }",
+    ] {
+        for text in [
+            text.to_owned(),
+            format!("{camera}{text}"),
+            format!("{text}\n{camera}"),
+        ] {
+            check(&text, 1, &[]);
+            check(&text, 20, &["image.width=64"]);
+        }
+    }
+}
+
+#[test]
+fn arguments() {
+    let text = "let a = 1 camera { eye (0, 2, 8) lookat (0, a, 0) } sphere Ball { center (0, a, 0) } let b = 2 sphere { center (b, 1, 0) }";
+    for (set, value) in [
+        ("image.width", "64"),
+        ("camera.d", "b"),
+        ("camera.d", "Ball"),
+        ("camera.d", "c"),
+        ("camera.lens", "2"),
+        ("camera.direction", "(0, 0, -b)"),
+        ("a", "2"),
+        ("c", "2"),
+        ("Ball", "2"),
+        ("Ball.radius", "b"),
+        ("Bal.radius", "b"),
+        ("sphere.radius", "b"),
+        ("sampler.total", "100"),
+    ] {
+        assert!(check(text, 1, &[&format!("{set}={value}")]));
+    }
+}
+
+/// One change of a text, at a place in it.
+#[derive(Clone, Debug)]
+enum Change {
+    PutIn(&'static str),
+    TakeOut(usize),
+    CutOff,
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let signs = vec![
+        "/*",
+        "*/",
+        "//",
+        "\"",
+        "'",
+        "{",
+        "}",
+        "}}",
+        "(",
+        ")",
+        "[",
+        "]",
+        ",",
+        ";",
+        "=",
+        "let ",
+        "let x = 1 ",
+        "let x = ",
+        "\n",
+        " x",
+        " 2",
+        " radius",
+        "sphere {",
+        "sphere A { ",
+        "\u{a0}",
+    ];
+    prop_oneof![
+        6 => select(signs).prop_map(Change::PutIn),
+        3 => (1..4_usize).prop_map(Change::TakeOut),
+        1 => Just(Change::CutOff),
+    ]
+}
+
+fn changed(mut text: String, changes: &[(prop::sample::Index, Change)]) -> String {
+    for (place, change) in changes {
+        let boundary = |at: usize| (0..=at).rev().find(|&at| text.is_char_boundary(at));
+        let at = boundary(place.index(text.len() + 1)).unwrap_or(0);
+        match change {
+            Change::PutIn(sign) => text.insert_str(at, sign),
+            Change::CutOff => text.truncate(at),
+            Change::TakeOut(count) => {
+                let end = boundary(text.len().min(at + count)).unwrap_or(at);
+                text.replace_range(at..end, "");
+            }
+        }
+    }
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn changed_scenes(
+        one in select(&SCENES[..]),
+        other in select(&SCENES[..]),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), change()), 0..4),
+        bytes in 1_usize..100,
+    ) {
+        check(&changed(format!("{one}\n{other}"), &changes), bytes, &[]);
+        check(&changed(one, &changes), bytes, &[]);
+    }
+}
