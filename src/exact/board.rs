@@ -64,6 +64,10 @@ pub(crate) struct Board {
     pub(super) handed: f64,
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
     pub(super) displacement: f64,
+    /// The direction of the horizon, of length 1.
+    horizon: DVec2,
+    /// The same for what is displaced across the direction of the horizon: on the horizon, and more for every 1 of L.
+    upwards: [f64; 2],
     /// What may be neglected at the horizon, for an edge that runs into it, in square pixels.
     pub(super) tail: f64,
 }
@@ -122,15 +126,16 @@ impl Board {
         let size = det.to_f64().abs();
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
-        let displacement =
-            [wide, high, l]
-                .iter()
-                .zip(&columns)
-                .fold(4.0 * UNIT, |sum, (form, column)| {
-                    let error =
-                        4.0 * UNIT * (0.5 * (form[0].abs() + form[1].abs()) + form[2].abs());
-                    sum + error * column.iter().map(|c| c.to_f64().abs()).sum::<f64>() / size
-                });
+        let forms = [wide, high, l];
+        let errors =
+            forms.map(|form| 4.0 * UNIT * (0.5 * (form[0].abs() + form[1].abs()) + form[2].abs()));
+        let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
+        for (error, column) in errors.iter().zip(&columns) {
+            let column = column.map(|c| c.to_f64().abs());
+            displacement += error * column.iter().sum::<f64>() / size;
+            tilt += error * column[2] / size;
+        }
+        let steepness = libm::hypot(l[0], l[1]);
         Self {
             across: [a, b],
             below: l,
@@ -140,6 +145,8 @@ impl Board {
             per_slope: [per_slope(0, &high, of_b), per_slope(1, &wide, of_a)],
             handed: det.to_f64().signum(),
             displacement,
+            horizon: DVec2::new(l[1], -l[0]) / steepness,
+            upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
             tail: 2e-10,
         }
     }
@@ -170,16 +177,37 @@ impl Board {
         if spans == [1.0, 1.0] {
             let low = first.floor;
             let sign = super::euler::square_wave(low[0]) * super::euler::square_wave(low[1]);
-            let (area, perimeter) = measure(corners.iter().map(|c| c.at));
+            let points = corners.iter().map(|c| c.at);
             return Sum {
-                value: sign * area.abs(),
-                bound: self.displacement * perimeter,
+                value: sign * measure(points.clone()).0.abs(),
+                bound: self.displaced(points),
             };
         }
         if squares(&corners).min(spans[0] * spans[1]) <= FEW {
             return cells::sum(self, &corners);
         }
         self.far_or_both(&corners, known)
+    }
+
+    /// By how much rounding may change what a polygon shows of the board: the displacement of its boundary.
+    ///
+    /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L: near the horizon points hardly move across it,
+    /// however far they may move along it in the widest of views.
+    pub(super) fn displaced(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
+        let level = points
+            .clone()
+            .fold(0.0, |m: f64, p| m.max(form(&self.below, p)));
+        let [least, more] = self.upwards;
+        let across = (least + more * level).min(self.displacement);
+        let mut rest = points.clone();
+        let mut before = rest.by_ref().last().unwrap_or_default();
+        points.fold(0.0, |sum, point| {
+            let step = point - before;
+            before = point;
+            let [along, up] = [self.horizon.dot(step), self.horizon.perp_dot(step)].map(f64::abs);
+            let either = self.displacement * (step.x.abs() + step.y.abs());
+            sum + either.min(across * along + self.displacement * up)
+        })
     }
 
     /// Whether a polygon shows the horizon.

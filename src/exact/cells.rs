@@ -17,8 +17,6 @@ pub(super) const MANY: f64 = 32.0;
 /// More than this are left where points are too coarse to tell one line from the next: then nothing is said of them.
 const TOO_MANY: f64 = 1000.0;
 
-/// How far from its uncertain ends a row is summed, by their distance from the origin.
-const MARGIN: f64 = 1.0 / 4194304.0;
 /// Whole squares are only known as well as the forms' inverse is: they are cut out, too, where that is worse than this.
 const SOUND: f64 = 1e-10;
 
@@ -34,8 +32,7 @@ pub(super) fn along(board: &Board) -> usize {
 pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
     let along = along(board);
     let mut tally = Tally::default();
-    let (_, perimeter) = measure(corners.iter().map(|c| c.at));
-    let moved = board.displacement * perimeter;
+    let moved = board.displaced(corners.iter().map(|c| c.at));
     let is_sound = moved <= SOUND;
     let mut rows = Cutter::new(board, 1 - along);
     rows.start(corners.iter().map(|c| c.at));
@@ -147,14 +144,21 @@ impl Row<'_> {
     ///
     /// Between two vertices it is bounded by one side above and by one below: most of that is summed at once.
     fn long(&self, piece: &[DVec2], inside: &mut Cutter, squares: &mut Cutter, tally: &mut Tally) {
-        let mut ends: Vec<f64> = piece.iter().map(|&at| self.place(at)).collect();
-        ends.sort_by(f64::total_cmp);
+        // Far away a vertex is uncertain by more than a square, and which side a line there crosses.
+        let size = |[x, y, z]: [f64; 3]| 0.5 * (x.abs() + y.abs()) + z.abs();
+        let [across, below] = [self.board.across[self.along], self.board.below].map(size);
+        let vertex = |&at: &DVec2| {
+            let place = self.place(at);
+            let roundings = 16.0 * UNIT / form(&self.board.below, at);
+            (place, roundings * (across + place.abs() * below))
+        };
+        let mut ends: Vec<(f64, f64)> = piece.iter().map(vertex).collect();
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         inside.start(piece.iter().copied());
         for ends in ends.windows(2) {
-            // Far away the ends are uncertain by more than a square, and the lines there might be missed.
             let [from, to] = [ends[0], ends[1]];
-            let first = (from + from.abs() * MARGIN).ceil();
-            let last = (to - to.abs() * MARGIN).floor();
+            let first = (from.0 + from.1).ceil();
+            let last = (to.0 - to.1).floor();
             if last - first <= MANY {
                 continue;
             }
@@ -193,26 +197,31 @@ struct Strip<'a> {
     sides: [Side; 2],
 }
 
-/// A side of a strip, by m at the first line and at the last.
+/// A side of a strip: where it begins and ends along the row and m there, and the slope of m.
+///
+/// Far away both are uncertain, but by the same factor 1/L, so that the slope is not.
 struct Side {
-    start: f64,
-    end: f64,
+    start: [f64; 2],
+    end: [f64; 2],
     slope: f64,
 }
 
 impl<'a> Strip<'a> {
     /// Between two lines, given where they cut the row's piece.
     fn new(row: &'a Row, [first, last]: [f64; 2], chords: &[Chord; 2]) -> Option<Self> {
-        let depth = |at: DVec2| 1.0 / form(&row.board.below, at);
+        let point = |at: DVec2| [row.place(at), 1.0 / form(&row.board.below, at)];
         let ends = |chord: Chord| {
-            let [s, t] = chord?.map(depth);
-            Some([s.min(t), s.max(t)])
+            let [s, t] = chord?.map(point);
+            Some(if s[1] <= t[1] { [s, t] } else { [t, s] })
         };
         let (from, to) = (ends(chords[0])?, ends(chords[1])?);
-        let sides = [0, 1].map(|i| Side {
-            start: from[i],
-            end: to[i],
-            slope: (to[i] - from[i]) / (last - first),
+        let sides = [0, 1].map(|i| {
+            let (start, end) = (from[i], to[i]);
+            Side {
+                start,
+                end,
+                slope: (end[1] - start[1]) / (end[0] - start[0]),
+            }
         });
         Some(Self {
             row,
@@ -222,12 +231,12 @@ impl<'a> Strip<'a> {
         })
     }
 
-    /// m on a side, from the end that is nearer: the other may be so far that its roundings are too large.
-    fn depth(&self, side: &Side, i: f64) -> f64 {
+    /// m on a side, from the end that is nearer.
+    fn depth(&self, Side { start, end, slope }: &Side, i: f64) -> f64 {
         if i - self.first < self.last - i {
-            side.start + side.slope * (i - self.first)
+            start[1] + slope * (i - start[0])
         } else {
-            side.end - side.slope * (self.last - i)
+            end[1] + slope * (i - end[0])
         }
     }
 
@@ -236,9 +245,9 @@ impl<'a> Strip<'a> {
         let [mut first, mut last] = [self.first, self.last];
         for Side { start, end, slope } in &self.sides {
             if *slope > 0.0 {
-                first = first.max(self.first + (FAR - start / slope).ceil());
+                first = first.max(self.first + (FAR - start[1] / slope).ceil());
             } else if *slope < 0.0 {
-                last = last.min(self.last - (FAR + end / slope).ceil());
+                last = last.min(self.last - (FAR + end[1] / slope).ceil());
             }
         }
         [first, last]

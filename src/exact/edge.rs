@@ -38,7 +38,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
     if corners.len() < 3 {
         return Sum::default();
     }
-    let (area, perimeter) = measure(corners.iter().map(|c| c.at));
+    let (area, _) = measure(corners.iter().map(|c| c.at));
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
         .collect();
@@ -46,7 +46,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
     let (terms, truncation) = terms(board, nearest, &edges, area.abs());
     let mut sum = Sum {
         value: 0.0,
-        bound: truncation + board.displacement * perimeter,
+        bound: truncation + board.displaced(corners.iter().map(|c| c.at)),
     };
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;

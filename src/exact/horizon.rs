@@ -58,14 +58,15 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
     let direct = ((start(all, series, tolerance) - all.depth) / all.edge.rise)
         .ceil()
         .max(0.0);
-    if direct + SHORT >= all.lines {
-        return all.one_by_one(series, all.lines);
-    }
-    if direct > MOST {
+    let is_short = direct <= MOST;
+    if all.lines > MOST && !is_short {
         return Sum {
             value: 0.0,
             bound: trivial,
         };
+    }
+    if direct + SHORT >= all.lines {
+        return all.one_by_one(series, all.lines);
     }
     let mut sum = all.one_by_one(series, direct);
     let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];
