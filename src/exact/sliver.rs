@@ -146,6 +146,9 @@ struct Chords {
 
 /// The roots in (0, 1) of f0·(1 − t)² + f1·t(1 − t) + f2·t².
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
+    // Of squares as large as numbers can be the products would vanish.
+    let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
+    let [f0, f1, f2] = [f0 * scale, f1 * scale, f2 * scale];
     let discriminant = f1 * f1 - 4.0 * f0 * f2;
     if discriminant < 0.0 {
         return [None, None];
