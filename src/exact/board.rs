@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{cells, edge, sides::Known};
-use crate::math::{Double, Real};
+use crate::math::{Double, Real, two_product};
 
 /// The unit roundoff of `f64`.
 pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
@@ -86,12 +86,14 @@ pub(super) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [Double; 3] {
-    let minor = |i: usize, j: usize| {
-        let [a, b] = [a, b].map(|v| [v[i], v[j]].map(Double::from_f64));
-        a[0].times(&b[1]).minus(&a[1].times(&b[0]))
-    };
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
+/// A cross product, each part to within two roundings of itself.
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    minors(a, b).map(|[plus, minus]| (plus.hi - minus.hi) + (plus.lo - minus.lo))
+}
+
+/// The products, without an error, of which a cross product's parts are the differences.
+fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }
 
 /// A form by a power of two that brings its largest factor between 1 and 2, and that power.
@@ -110,20 +112,23 @@ impl Board {
         // Squares may be of any size; the inverse is that of forms of about the same size.
         let [(wide, of_a), (high, of_b)] = [a, b].map(normalized);
         let columns = [cross(&high, &l), cross(&l, &wide), cross(&wide, &high)];
-        let [x, y, z] = [0, 1, 2].map(|i| columns[2][i].times(&Double::from_f64(l[i])));
-        let det = x.plus(&y).plus(&z);
-        let third = |column: usize, exponent: i32| {
-            libm::ldexp(columns[column][2].over(&det).to_f64(), -exponent)
-        };
+        let det = minors(&wide, &high)
+            .iter()
+            .zip(l)
+            .fold(Double::from_f64(0.0), |sum, ([plus, minus], l)| {
+                sum.plus(&plus.minus(minus).times(&Double::from_f64(l)))
+            })
+            .to_f64();
+        let third = |column: usize, exponent: i32| libm::ldexp(columns[column][2] / det, -exponent);
         let per_slope = |column: usize, form: &[f64; 3], exponent: i32| {
-            let minor = columns[column][2].to_f64().abs();
+            let minor = columns[column][2].abs();
             let terms = (form[0] * l[1]).abs() + (form[1] * l[0]).abs();
             Sum {
                 value: libm::ldexp(1.0 / minor, -exponent),
-                bound: 2.0 * UNIT * (terms / minor + 1.0),
+                bound: 2.0 * UNIT * (terms / minor + 2.0),
             }
         };
-        let size = det.to_f64().abs();
+        let size = det.abs();
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
         let forms = [wide, high, l];
@@ -131,7 +136,7 @@ impl Board {
             forms.map(|form| 4.0 * UNIT * (0.5 * (form[0].abs() + form[1].abs()) + form[2].abs()));
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
-            let column = column.map(|c| c.to_f64().abs());
+            let column = column.map(f64::abs);
             displacement += error * column.iter().sum::<f64>() / size;
             tilt += error * column[2] / size;
         }
@@ -143,7 +148,7 @@ impl Board {
             origin: third(2, 0),
             density: libm::ldexp(1.0 / size, -of_a - of_b),
             per_slope: [per_slope(0, &high, of_b), per_slope(1, &wide, of_a)],
-            handed: det.to_f64().signum(),
+            handed: det.signum(),
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
             upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],

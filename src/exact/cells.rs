@@ -44,7 +44,8 @@ pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
             sign: square_wave(number),
             number,
         };
-        if row.length(&rows.piece) > MANY {
+        squares.start(rows.piece.iter().copied());
+        if squares.count() > MANY {
             row.long(&rows.piece, &mut inside, &mut squares, &mut tally);
         } else if is_sound && let Some(inner) = rows.whole(board, along) {
             inside.start(rows.piece.iter().copied());
@@ -54,7 +55,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
             row.whole(inner, &inside.piece, &mut tally);
             row.squares(&inside.rest, &mut squares, &mut tally);
         } else {
-            row.squares(&rows.piece, &mut squares, &mut tally);
+            row.started(&mut squares, &mut tally);
         }
     }
     let mut sum = tally.sum();
@@ -75,26 +76,22 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// How far along the row a polygon reaches.
-    fn length(&self, piece: &[DVec2]) -> f64 {
-        let places = piece.iter().map(|&at| self.place(at));
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
-            (low.min(t), high.max(t))
-        });
-        high - low
-    }
-
     fn place(&self, at: DVec2) -> f64 {
         form(&self.board.across[self.along], at) / form(&self.board.below, at)
     }
 
     /// Cuts the part of the row that a polygon shows into squares.
     fn squares(&self, piece: &[DVec2], squares: &mut Cutter, tally: &mut Tally) {
-        let length = self.length(piece);
-        if length > TOO_MANY || length.is_nan() {
-            return tally.add(0.0, measure(piece.iter().copied()).0.abs());
-        }
         squares.start(piece.iter().copied());
+        self.started(squares, tally);
+    }
+
+    /// Cuts a polygon with which a cutter has begun.
+    fn started(&self, squares: &mut Cutter, tally: &mut Tally) {
+        if squares.count() > TOO_MANY {
+            let (area, _) = measure(squares.rest.iter().copied());
+            return tally.add(0.0, area.abs());
+        }
         while let Some(square) = squares.next(tally) {
             let (area, perimeter) = measure(squares.piece.iter().copied());
             // Of each of a few products of two steps three roundings.
@@ -120,8 +117,8 @@ impl Row<'_> {
         let terms = slope.abs() * first.abs().max(last.abs())
             + climb.abs() * (self.number.abs() + 1.0)
             + board.origin.abs();
-        // Three roundings of its terms for each of the four m, and those of the formula and of the sum.
-        let relative = UNIT * (16.0 * terms / nearest + 12.0 + last - first);
+        // Seven roundings of its terms for each of the four m, and those of the formula and of the sum.
+        let relative = UNIT * (28.0 * terms / nearest + 12.0 + last - first);
         if !(nearest > 0.0 && relative < 1.0) {
             return tally.add(0.0, area.abs());
         }
@@ -339,9 +336,9 @@ impl Cutter {
         Self {
             across: board.across[axis],
             below: board.below,
-            rest: Vec::with_capacity(8),
-            piece: Vec::with_capacity(8),
-            spare: Vec::with_capacity(8),
+            rest: Vec::new(),
+            piece: Vec::new(),
+            spare: Vec::new(),
             strips: None,
             chords: [None; 2],
         }
@@ -351,7 +348,7 @@ impl Cutter {
     fn start(&mut self, points: impl Iterator<Item = DVec2>) {
         self.rest.clear();
         self.rest.extend(points);
-        self.strips = None;
+        self.strips = self.range();
         self.chords = [None; 2];
     }
 
@@ -360,7 +357,7 @@ impl Cutter {
         if self.rest.len() < 3 {
             return None;
         }
-        let (i, last) = self.strips.unwrap_or_else(|| self.range());
+        let (i, last) = self.strips?;
         self.strips = Some((i + 1, last));
         if i >= last {
             self.chords = [self.chords[1], None];
@@ -372,14 +369,25 @@ impl Cutter {
         Some(i as f64)
     }
 
-    /// The first and the last strip that the polygon meets.
-    fn range(&self) -> (i64, i64) {
-        self.rest
-            .iter()
-            .fold((i64::MAX, i64::MIN), |(low, high), &p| {
-                let i = (form(&self.across, p) / form(&self.below, p)).floor() as i64;
-                (low.min(i), high.max(i))
-            })
+    /// The first and the last strip that the polygon meets; none if they are out of the range of numbers.
+    fn range(&self) -> Option<(i64, i64)> {
+        let mut range = None;
+        for &p in &self.rest {
+            let place = form(&self.across, p) / form(&self.below, p);
+            if place.is_nan() || place.abs() > 1e18 {
+                return None;
+            }
+            let i = place.floor() as i64;
+            let (low, high) = range.unwrap_or((i, i));
+            range = Some((low.min(i), high.max(i)));
+        }
+        range
+    }
+
+    /// How many strips are left.
+    fn count(&self) -> f64 {
+        self.strips
+            .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
     }
 
     /// Makes `piece` the part of the rest before the line n.
