@@ -15,6 +15,9 @@ const MANY: f64 = 500_000.0;
 /// term is about n/π of this times smaller than the n-th before it.
 pub(super) const FAR: f64 = 18.0;
 
+/// A displacement of no more area than this is not looked at closely.
+const LITTLE: f64 = 1e-14;
+
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sum {
@@ -199,20 +202,24 @@ impl Board {
     /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L: near the horizon points hardly move across it,
     /// however far they may move along it in the widest of views.
     pub(super) fn displaced(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
+        let (_, perimeter) = measure(points.clone());
+        let anyhow = self.displacement * perimeter;
+        if anyhow <= LITTLE {
+            return anyhow;
+        }
         let level = points
             .clone()
             .fold(0.0, |m: f64, p| m.max(form(&self.below, p)));
         let [least, more] = self.upwards;
         let across = (least + more * level).min(self.displacement);
-        let mut rest = points.clone();
-        let mut before = rest.by_ref().last().unwrap_or_default();
-        points.fold(0.0, |sum, point| {
+        let mut before = points.clone().last().unwrap_or_default();
+        let sides = points.fold(0.0, |sum, point| {
             let step = point - before;
             before = point;
             let [along, up] = [self.horizon.dot(step), self.horizon.perp_dot(step)].map(f64::abs);
-            let either = self.displacement * (step.x.abs() + step.y.abs());
-            sum + either.min(across * along + self.displacement * up)
-        })
+            sum + across * along + self.displacement * up
+        });
+        anyhow.min(sides)
     }
 
     /// Whether a polygon shows the horizon.

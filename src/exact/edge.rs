@@ -108,9 +108,19 @@ fn terms(board: &Board, nearest: f64, edges: &[Option<Edge>], area: f64) -> (usi
 
 /// Ψ at a corner, and its size before anything cancels.
 fn potential(board: &Board, corner: &Corner, terms: usize) -> (f64, f64) {
+    match terms {
+        0..=2 => potential_of::<2>(board, corner, terms),
+        3..=4 => potential_of::<4>(board, corner, terms),
+        5..=7 => potential_of::<7>(board, corner, terms),
+        8..=12 => potential_of::<12>(board, corner, terms),
+        _ => potential_of::<MAX_TERMS>(board, corner, terms),
+    }
+}
+
+fn potential_of<const MOST: usize>(board: &Board, corner: &Corner, terms: usize) -> (f64, f64) {
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
-        let mut waves = waves_of(corner.floor[i], terms);
+        let mut waves = waves::<MOST>(corner.floor[i]);
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;
