@@ -110,13 +110,13 @@ impl Sweep<'_> {
         let neighbors = inside.windows(2).map(|pair| (pair[0], pair[1]));
         for ((lower, a), (upper, b)) in below.chain(neighbors).chain(above) {
             let overlap = a.overlap(b, left, right).clamp(0.0, 1.0);
-            if overlap <= TIE || overlap * width <= CRUMB || is_last {
+            if overlap <= TIE || overlap * width <= CRUMB {
                 doubtful += overlap * width;
                 continue;
             }
             let distance = a.distance(b);
-            if distance <= TIE {
-                doubtful += distance * width;
+            if distance <= TIE || is_last {
+                doubtful += overlap.min(distance) * width;
                 continue;
             }
             return Some(crossing(lower, upper, a, b, left, right));

@@ -233,11 +233,39 @@ impl Piece {
         let controls = [self, other].map(|piece| piece.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
         // Both hulls are straight between these places.
-        places
+        let hulls = places
             .into_iter()
             .flatten()
             .map(|x| self.hull(1.0, x, left, right) - other.hull(-1.0, x, left, right))
-            .fold(f64::NEG_INFINITY, f64::max)
+            .fold(f64::NEG_INFINITY, f64::max);
+        hulls.min(self.rise(other))
+    }
+
+    /// The same for arcs that are nearly parallel, however close: point by point of their parameter.
+    ///
+    /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. What its x is
+    /// off, and what other weights move it, counts by the steepest tangent.
+    fn rise(&self, other: &Self) -> f64 {
+        let (Some((up, a)), Some((other_up, b))) = (&self.arc, &other.arc) else {
+            return f64::INFINITY;
+        };
+        if up != other_up {
+            return f64::INFINITY;
+        }
+        let [from, to] = [a, b].map(|arc| [arc.control - arc.start, arc.end - arc.control]);
+        let steepest = [from, to]
+            .as_flattened()
+            .iter()
+            .map(|leg| (leg.y / leg.x).abs())
+            .fold(0.0, f64::max);
+        let size = from[0].length() + from[1].length();
+        let moved = (a.weight - b.weight).abs() * size;
+        let rise = (a.start.y - b.start.y)
+            .max(a.control.y - b.control.y)
+            .max(a.end.y - b.end.y);
+        let aside = (a.control.x - b.control.x).abs() + moved;
+        let rounding = 64.0 * f64::UNIT * (1.0 + size);
+        rise + moved + (aside + rounding) * steepest + rounding
     }
 
     /// The integral of y over its range.

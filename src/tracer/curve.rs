@@ -96,13 +96,16 @@ impl<T: Real> Place<T> {
     }
 
     /// The factors of some forms and a last one in the pixel, all by one power of two smaller or greater so that they are about
-    /// 1; from each of the first the last is taken off as often, an even number of times, as makes it small in the middle.
+    /// 1; from each of the first the last is taken off as often, an even number of times, as makes it small at the corner
+    /// where the last is largest: elsewhere it may be next to nothing.
     pub fn together(&self, forms: [&Form<T>; 2], last: &Form<T>) -> [Line; 3] {
         let (below, rad) = self.local(last);
-        let steep = below[2].to_f64();
+        let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
+        let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
+        let steep = corner(&below);
         let local = forms.map(|form| {
             let (factors, own_rad) = self.local(form);
-            let times = 2.0 * (0.5 * factors[2].to_f64() / steep).round();
+            let times = 2.0 * (0.5 * corner(&factors) / steep).round();
             // From 2^52 on every number is even, and a rounded one of the right parity may not be near.
             if !(times.abs() < 4e15 && steep > 0.0) {
                 return (factors, own_rad);

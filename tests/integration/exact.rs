@@ -606,3 +606,41 @@ fn ten_thousand_objects() {
     let exact = exact(&scene);
     assert!(exact.bound() <= 1e-9, "{:e}", exact.bound());
 }
+
+/// Where the horizon passes next to the centres of pixels, level or along their diagonals.
+#[test]
+fn a_horizon_anywhere_in_a_pixel() {
+    for side in [8, 9, 65] {
+        for lift in [0.0, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16] {
+            for (lift, roll) in [(lift, 0), (-lift, 0), (lift, 45), (-lift, 45)] {
+                let scene = read(&format!(
+                    "image {{ width {side} height {side} }}
+                     camera {{ eye (0.3, 0.3, 8) direction (0.7, {lift}, -8) roll {roll}deg fov 50deg }}
+                     sampler {{ method exact }}
+                     checkerboard {{ y 0 square 1 }}"
+                ));
+                let bound = exact(&scene).bound();
+                assert!(bound <= 1e-9, "{side} {lift:e} {roll}: {bound:e}");
+            }
+        }
+    }
+}
+
+/// Outlines of spheres that all but coincide are told apart, as closely as roundings allow.
+#[test]
+fn outlines_that_nearly_coincide() {
+    for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14"] {
+        for center in ["(0, 0.3, 0)", &format!("({gap}, 0.3, 0)")] {
+            let scene = read(&format!(
+                "image {{ width 24 height 16 }}
+                 camera {{ eye (0, 1.5, 6) lookat (0, 0.5, 0) }}
+                 sampler {{ method exact }}
+                 sphere {{ center (0, 0.3, 0) radius 1 color red }}
+                 sphere {{ center {center} radius 1 + {gap} color blue }}"
+            ));
+            let bound = exact(&scene).bound();
+            assert!(bound <= 1e-12, "{gap} {center}: {bound:e}");
+            adds_up(&scene, gap);
+        }
+    }
+}
