@@ -21,7 +21,7 @@ const SHORT: f64 = 20_000.0;
 const SHORT_LEVEL: f64 = 100_000.0;
 const LONG_LEVEL: f64 = 300_000.0;
 /// More take too long, which only the widest of views have in a pixel.
-const MOST: f64 = 1e7;
+const MOST: f64 = 1e6;
 /// Where an edge crosses more lines than this, squares are so many that it may neglect the other, in square pixels.
 const DENSE: f64 = 512.0;
 const CRUMB: f64 = 2e-12;

@@ -43,7 +43,7 @@ use self::{
 
 /// A spot whose bound is no greater than this is not cut into quarters; nor one with the horizon, where squares never end.
 const ENOUGH: f64 = 1e-12;
-const ENOUGH_ENDLESS: f64 = 1e-9;
+const ENOUGH_ENDLESS: f64 = 4e-9;
 /// A bound beyond this is not of roundings but of squares that were too many, which quarters would be, too.
 const HOPELESS: f64 = 1e-7;
 
