@@ -8,6 +8,8 @@
 //! Cells are counted in whole numbers, into which a coordinate's conversion is monotone: what it rounds never separates a point from
 //! bounds that hold it by more than one, and bounds are one wider.
 
+use std::cmp::Reverse;
+
 use rayon::prelude::*;
 
 use super::{
@@ -16,14 +18,14 @@ use super::{
     extent::Extent,
 };
 
-/// The side of the root is 2 to this power.
-const LEVELS: u32 = 30;
+/// The side of the root is 2 to this power: units are far smaller than pixels in a picture of any common size.
+const LEVELS: u32 = 24;
 
 /// A cell with no more objects is not divided.
-const FEW: usize = 8;
+const FEW: usize = 32;
 
 /// A cell with more objects is divided by several threads.
-const MANY: usize = 1 << 12;
+const MANY: usize = 1 << 14;
 
 /// The objects that may be seen, by where in the view plane they are.
 #[derive(Debug)]
@@ -37,7 +39,8 @@ pub struct Hierarchy {
 pub struct Item {
     low: [u32; 2],
     high: [u32; 2],
-    entry: Entry,
+    nearest: Nearness,
+    object: u32,
 }
 
 /// An object in a list.
@@ -47,6 +50,9 @@ pub struct Entry {
     nearest: Nearness,
     /// Its index in the file.
     pub object: u32,
+    /// Its bounds in parts of the cell, ends included.
+    low: [u8; 2],
+    high: [u8; 2],
 }
 
 /// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, which is ordered as the number is.
@@ -151,11 +157,9 @@ impl Grid {
         Some(Item {
             low,
             high,
-            entry: Entry {
-                nearest: Nearness::above(extent.nearest),
-                // A text of so many objects would not fit into memory.
-                object: u32::try_from(object).ok()?,
-            },
+            nearest: Nearness::above(extent.nearest),
+            // More would not fit into memory.
+            object: object as u32,
         })
     }
 }
@@ -165,12 +169,11 @@ impl Hierarchy {
     pub fn new(grid: Grid, items: Vec<Item>) -> Self {
         Self {
             grid,
-            tree: Tree::new([0; 2], LEVELS, items),
+            tree: Tree::new(Place::ROOT, items),
         }
     }
 
-    /// The lists of objects that a ray may meet, as long as something in them may be nearer than what `bar` says when it is asked. None
-    /// for a direction outside of the window.
+    /// The way down to the objects that a ray may meet; none for a direction outside of the window.
     #[inline]
     pub fn at(&self, r: &Direction<f64>) -> Option<Descent<'_>> {
         Some(Descent {
@@ -187,7 +190,7 @@ impl Hierarchy {
         let center = [patch.center.x, patch.center.y];
         let ranges = [0, 1].map(|i| Range::about(center[i], patch.half[i]));
         if let Some((low, high)) = self.grid.ends(ranges) {
-            self.tree.within(0, [0; 2], LEVELS, (low, high), out);
+            self.tree.within(0, Place::ROOT, (low, high), out);
         }
         out.sort_unstable();
         out.dedup();
@@ -213,146 +216,250 @@ pub struct Descent<'a> {
 impl<'a> Descent<'a> {
     /// The next list, unless all that is left is behind `bar`.
     #[inline]
-    pub fn next(&mut self, bar: Nearness) -> Option<&'a [Entry]> {
+    pub fn next(&mut self, bar: Nearness) -> Option<List<'a>> {
         let cell = self.tree.cells[self.cell? as usize];
         if cell.nearest <= bar {
             return None;
         }
+        let list = List {
+            entries: &self.tree.entries[cell.start as usize..cell.end as usize],
+            at: self.at.map(|x| part_of(self.level, x)),
+        };
         self.cell = (cell.quarters > 0).then(|| {
             self.level -= 1;
             let bit = |axis: usize| self.at[axis] >> self.level & 1;
             cell.quarters + bit(0) + 2 * bit(1)
         });
-        Some(&self.tree.entries[cell.start as usize..cell.end as usize])
+        Some(list)
     }
 }
 
-impl Entry {
-    /// Whether all of the object is behind `bar`.
+/// The list of a cell.
+#[derive(Clone, Copy, Debug)]
+pub struct List<'a> {
+    entries: &'a [Entry],
+    /// Where the point is, in parts of the cell.
+    at: [u8; 2],
+}
+
+impl<'a> List<'a> {
+    /// The next object that the ray may meet, unless all that is left is behind `bar`.
     #[inline]
-    pub fn is_behind(self, bar: Nearness) -> bool {
-        self.nearest <= bar
+    pub fn next(&mut self, bar: Nearness) -> Option<usize> {
+        while let [entry, rest @ ..] = self.entries {
+            if entry.nearest <= bar {
+                return None;
+            }
+            self.entries = rest;
+            let holds = |axis: usize| {
+                (entry.low[axis] <= self.at[axis]) & (self.at[axis] <= entry.high[axis])
+            };
+            if holds(0) & holds(1) {
+                return Some(entry.object as usize);
+            }
+        }
+        None
+    }
+}
+
+/// Which of 256 parts of a cell with a side of 2^level holds a coordinate in the cell; of the smallest cells not all parts are used.
+#[inline]
+fn part_of(level: u32, x: u32) -> u8 {
+    let within = x & ((1 << level) - 1);
+    match level {
+        0..8 => (within << (8 - level)) as u8,
+        _ => (within >> (level - 8)) as u8,
     }
 }
 
 impl Tree {
-    /// The tree of a cell with a side of 2^level.
-    fn new(corner: [u32; 2], level: u32, items: Vec<Item>) -> Self {
-        if items.len() <= FEW || level == 0 {
-            return Self::leaf(items);
+    /// The tree of a cell.
+    fn new(place: Place, items: Vec<Item>) -> Self {
+        let mut tree = Self::default();
+        tree.cells.push(Cell::EMPTY);
+        if items.len() <= MANY || place.level == 0 {
+            tree.fill(0, place, items);
+            return tree;
         }
-        let half = 1 << (level - 1);
-        let middle = corner.map(|x| x + half);
-        let mut own = Vec::new();
-        let mut below: [Vec<Item>; 4] = Default::default();
-        for item in &items {
-            if (0..2).any(|axis| item.high[axis] - item.low[axis] > half) {
-                own.push(*item);
-                continue;
-            }
-            for (quarter, list) in below.iter_mut().enumerate() {
-                let overlaps = |axis: usize| match quarter >> axis & 1 {
-                    0 => item.low[axis] < middle[axis],
-                    _ => item.high[axis] >= middle[axis],
-                };
-                if overlaps(0) && overlaps(1) {
-                    list.push(*item);
+        let (own, items): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
+        tree.list(0, place, &own);
+        let quarters = (0..4).into_par_iter().map(|quarter| {
+            let place = place.quarter(quarter);
+            let items = items.iter().filter(|item| place.meets(item));
+            Self::new(place, items.copied().collect())
+        });
+        tree.join(quarters.collect());
+        tree
+    }
+
+    /// Fills a cell and all below it.
+    fn fill(&mut self, cell: usize, place: Place, items: Vec<Item>) {
+        // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
+        let mut stack = items;
+        self.divide(cell, place, &mut stack, 0);
+        self.cells.shrink_to_fit();
+        self.entries.shrink_to_fit();
+    }
+
+    fn divide(&mut self, cell: usize, place: Place, stack: &mut Vec<Item>, start: usize) {
+        if stack.len() - start <= FEW || place.level == 0 {
+            return self.list(cell, place, &stack[start..]);
+        }
+        stack[start..].sort_by_key(|item| !place.keeps(item));
+        let own = stack[start..].partition_point(|item| place.keeps(item));
+        self.list(cell, place, &stack[start..start + own]);
+        let (start, end) = (start + own, stack.len());
+        let quarters = self.cells.len();
+        self.cells.extend([Cell::EMPTY; 4]);
+        self.cells[cell].quarters = quarters as u32;
+        for quarter in 0..4 {
+            let below = place.quarter(quarter);
+            for index in start..end {
+                let item = stack[index];
+                if below.meets(&item) {
+                    stack.push(item);
                 }
             }
-        }
-        let is_large = items.len() > MANY;
-        drop(items);
-        let tree = |(quarter, items): (usize, Vec<Item>)| {
-            let side = |axis: usize| if quarter >> axis & 1 == 0 { corner } else { middle }[axis];
-            Self::new([side(0), side(1)], level - 1, items)
-        };
-        let quarters = below.into_iter().enumerate();
-        let quarters: Vec<Self> = match is_large {
-            true => quarters
-                .collect::<Vec<_>>()
-                .into_par_iter()
-                .map(tree)
-                .collect(),
-            false => quarters.map(tree).collect(),
-        };
-        Self::leaf(own).with_quarters(quarters)
-    }
-
-    /// A cell that is not divided.
-    fn leaf(items: Vec<Item>) -> Self {
-        let mut entries: Vec<_> = items.into_iter().map(|item| item.entry).collect();
-        entries.sort_unstable_by_key(|entry| (std::cmp::Reverse(entry.nearest), entry.object));
-        let cell = Cell {
-            quarters: 0,
-            start: 0,
-            end: entries.len() as u32,
-            nearest: entries
-                .first()
-                .map_or(Nearness::NONE, |entry| entry.nearest),
-        };
-        Self {
-            cells: vec![cell],
-            entries,
+            let child = quarters + quarter as usize;
+            self.divide(child, below, stack, end);
+            stack.truncate(end);
+            self.cells[cell].nearest = self.cells[cell].nearest.max(self.cells[child].nearest);
         }
     }
 
-    /// A cell with its quarters: their own cells stand together, then what is below each of them.
-    fn with_quarters(mut self, quarters: Vec<Self>) -> Self {
+    /// Lists items in a cell, behind all lists so far.
+    fn list(&mut self, cell: usize, place: Place, items: &[Item]) {
+        let start = self.entries.len();
+        self.entries
+            .extend(items.iter().map(|item| place.entry(item)));
+        let list = &mut self.entries[start..];
+        list.sort_unstable_by_key(|entry| (Reverse(entry.nearest), entry.object));
+        self.cells[cell] = Cell {
+            nearest: list.first().map_or(Nearness::NONE, |entry| entry.nearest),
+            start: start as u32,
+            end: self.entries.len() as u32,
+            ..self.cells[cell]
+        };
+    }
+
+    /// Puts the trees of its quarters below the only cell so far: their own cells together, then what is below each of them.
+    fn join(&mut self, quarters: Vec<Self>) {
         self.cells[0].quarters = 1;
         let mut rest = Vec::new();
-        for mut quarter in quarters {
-            let (first, cells) = (4 + rest.len() as u32, self.entries.len() as u32);
-            for cell in &mut quarter.cells {
-                cell.start += cells;
-                cell.end += cells;
-                if cell.quarters > 0 {
-                    cell.quarters += first;
-                }
-            }
-            self.entries.append(&mut quarter.entries);
-            let mut below = quarter.cells.into_iter();
-            if let Some(cell) = below.next() {
+        for quarter in quarters {
+            let (cells, entries) = (4 + rest.len() as u32, self.entries.len() as u32);
+            self.entries.extend_from_slice(&quarter.entries);
+            let mut moved = quarter.cells.into_iter().map(|cell| Cell {
+                quarters: match cell.quarters {
+                    0 => 0,
+                    own => own + cells,
+                },
+                start: cell.start + entries,
+                end: cell.end + entries,
+                nearest: cell.nearest,
+            });
+            if let Some(cell) = moved.next() {
                 self.cells[0].nearest = self.cells[0].nearest.max(cell.nearest);
                 self.cells.push(cell);
             }
-            rest.extend(below);
+            rest.extend(moved);
         }
         self.cells.append(&mut rest);
-        self
+        self.cells.shrink_to_fit();
+        self.entries.shrink_to_fit();
     }
 
-    /// The objects of a cell and of those below it that overlap a rectangle.
+    /// Adds the objects of a cell, and of those below it, that may overlap a rectangle.
     fn within(
         &self,
         cell: u32,
-        corner: [u32; 2],
-        level: u32,
+        place: Place,
         rectangle: ([u32; 2], [u32; 2]),
         out: &mut Vec<usize>,
     ) {
         let (low, high) = rectangle;
-        let side = 1 << level;
-        if (0..2).any(|axis| high[axis] < corner[axis] || low[axis] >= corner[axis] + side) {
+        if (0..2).any(|axis| high[axis] < place.corner[axis] || low[axis] > place.last(axis)) {
             return;
         }
-        let Cell {
-            quarters,
-            start,
-            end,
-            ..
-        } = self.cells[cell as usize];
-        let entries = &self.entries[start as usize..end as usize];
-        out.extend(entries.iter().map(|entry| entry.object as usize));
-        if quarters == 0 {
-            return;
+        let cell = self.cells[cell as usize];
+        let list = &self.entries[cell.start as usize..cell.end as usize];
+        let (low, high) = (place.parts(low), place.parts(high));
+        let may_overlap = |entry: &&Entry| {
+            (0..2).all(|axis| entry.low[axis] <= high[axis] && low[axis] <= entry.high[axis])
+        };
+        let overlapping = list.iter().filter(may_overlap);
+        out.extend(overlapping.map(|entry| entry.object as usize));
+        if cell.quarters > 0 {
+            for quarter in 0..4 {
+                let below = place.quarter(quarter);
+                self.within(cell.quarters + quarter, below, rectangle, out);
+            }
         }
-        let half = side / 2;
-        for quarter in 0..4 {
-            let corner = [
-                corner[0] + (quarter & 1) * half,
-                corner[1] + (quarter >> 1) * half,
-            ];
-            self.within(quarters + quarter, corner, level - 1, rectangle, out);
+    }
+}
+
+impl Cell {
+    const EMPTY: Self = Self {
+        quarters: 0,
+        start: 0,
+        end: 0,
+        nearest: Nearness::NONE,
+    };
+}
+
+/// Where a cell is, and that its side is 2^level.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    corner: [u32; 2],
+    level: u32,
+}
+
+impl Place {
+    const ROOT: Self = Self {
+        corner: [0; 2],
+        level: LEVELS,
+    };
+
+    /// The last coordinate in the cell.
+    fn last(self, axis: usize) -> u32 {
+        self.corner[axis] + ((1 << self.level) - 1)
+    }
+
+    /// Whether an object is larger than the cell's quarters, and so not listed below it.
+    fn keeps(self, item: &Item) -> bool {
+        (0..2).any(|axis| item.high[axis] - item.low[axis] > 1 << (self.level - 1))
+    }
+
+    fn meets(self, item: &Item) -> bool {
+        (0..2).all(|axis| item.low[axis] <= self.last(axis) && item.high[axis] >= self.corner[axis])
+    }
+
+    /// A quarter: right of the first for 1 and 3, below it for 2 and 3.
+    fn quarter(self, quarter: u32) -> Self {
+        let level = self.level - 1;
+        let [x, y] = self.corner;
+        Self {
+            corner: [x + ((quarter & 1) << level), y + ((quarter >> 1) << level)],
+            level,
+        }
+    }
+
+    /// The parts of the cell that hold two coordinates, or are the nearest to them.
+    fn parts(self, at: [u32; 2]) -> [u8; 2] {
+        [0, 1].map(|axis| {
+            part_of(
+                self.level,
+                at[axis].clamp(self.corner[axis], self.last(axis)),
+            )
+        })
+    }
+
+    fn entry(self, item: &Item) -> Entry {
+        Entry {
+            nearest: item.nearest,
+            object: item.object,
+            low: self.parts(item.low),
+            high: self.parts(item.high),
         }
     }
 }

@@ -279,12 +279,9 @@ impl World {
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
-        while let Some(list) = descent.next(bar) {
-            for entry in list {
-                if entry.is_behind(bar) {
-                    break;
-                }
-                if self.meet(&r, entry.object as usize, &mut nearest)?
+        while let Some(mut list) = descent.next(bar) {
+            while let Some(index) = list.next(bar) {
+                if self.meet(&r, index, &mut nearest)?
                     && let Some(Nearest { crossing, .. }) = &nearest
                 {
                     bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
@@ -292,6 +289,18 @@ impl World {
             }
         }
         self.with_color(&r, nearest)
+    }
+
+    #[cfg(test)]
+    pub(super) fn double_camera(&self) -> &Camera<Double> {
+        &self.double.camera
+    }
+
+    /// How much memory it takes by object, spheres alone being in it and none of them kept in a higher precision.
+    #[cfg(test)]
+    pub(super) fn bytes_per_object(&self) -> f64 {
+        let each = size_of::<Object<f64>>() + size_of::<Numbers>() + size_of::<u32>();
+        each as f64 + self.hierarchy.bytes() as f64 / self.len() as f64
     }
 
     /// What is seen where `f64` was in doubt.
@@ -311,14 +320,14 @@ impl World {
     }
 
     /// The objects that the ray through a point may meet, in file order.
-    fn candidates(&self, point: &Point) -> Vec<usize> {
+    pub(super) fn candidates(&self, point: &Point) -> Vec<usize> {
         let r = self.fast.camera.direction(point);
         let Some(mut descent) = self.hierarchy.at(&r) else {
             return (0..self.len()).collect();
         };
         let mut candidates = Vec::new();
-        while let Some(list) = descent.next(Nearness::NONE) {
-            candidates.extend(list.iter().map(|entry| entry.object as usize));
+        while let Some(mut list) = descent.next(Nearness::NONE) {
+            candidates.extend(std::iter::from_fn(|| list.next(Nearness::NONE)));
         }
         candidates.sort_unstable();
         candidates
