@@ -10,7 +10,7 @@
 
 use std::cmp::Reverse;
 
-use rayon::prelude::*;
+use rayon::{ThreadPool, prelude::*};
 
 use super::{
     camera::{Direction, Window},
@@ -70,7 +70,7 @@ pub struct Grid {
 }
 
 /// Cells, the first of which holds the others.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Tree {
     cells: Vec<Cell>,
     entries: Vec<Entry>,
@@ -165,12 +165,13 @@ impl Grid {
 }
 
 impl Hierarchy {
-    /// A hierarchy over some objects.
-    pub fn new(grid: Grid, items: Vec<Item>) -> Self {
-        Self {
-            grid,
-            tree: Tree::new(Place::ROOT, items),
-        }
+    /// A hierarchy over some objects, built by some threads, or by this one alone.
+    pub fn new(grid: Grid, items: Vec<Item>, threads: Option<&ThreadPool>) -> Self {
+        let tree = match threads {
+            Some(threads) => threads.install(|| Tree::of_many(Place::ROOT, items)),
+            None => Tree::new(Place::ROOT, items),
+        };
+        Self { grid, tree }
     }
 
     /// The way down to the objects that a ray may meet; none for a direction outside of the window.
@@ -275,32 +276,40 @@ fn part_of(level: u32, x: u32) -> u8 {
 impl Tree {
     /// The tree of a cell.
     fn new(place: Place, items: Vec<Item>) -> Self {
-        let mut tree = Self::default();
-        tree.cells.push(Cell::EMPTY);
+        // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
+        let mut stack = items;
+        let mut tree = Self::empty();
+        tree.divide(0, place, &mut stack, 0);
+        tree.cells.shrink_to_fit();
+        tree.entries.shrink_to_fit();
+        tree
+    }
+
+    /// The tree of a cell, by several threads.
+    fn of_many(place: Place, items: Vec<Item>) -> Self {
         if items.len() <= MANY || place.level == 0 {
-            tree.fill(0, place, items);
-            return tree;
+            return Self::new(place, items);
         }
+        let mut tree = Self::empty();
         let (own, items): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
         tree.list(0, place, &own);
         let quarters = (0..4).into_par_iter().map(|quarter| {
             let place = place.quarter(quarter);
             let items = items.iter().filter(|item| place.meets(item));
-            Self::new(place, items.copied().collect())
+            Self::of_many(place, items.copied().collect())
         });
         tree.join(quarters.collect());
         tree
     }
 
-    /// Fills a cell and all below it.
-    fn fill(&mut self, cell: usize, place: Place, items: Vec<Item>) {
-        // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
-        let mut stack = items;
-        self.divide(cell, place, &mut stack, 0);
-        self.cells.shrink_to_fit();
-        self.entries.shrink_to_fit();
+    fn empty() -> Self {
+        Self {
+            cells: vec![Cell::EMPTY],
+            entries: Vec::new(),
+        }
     }
 
+    /// Fills a cell and all below it with the items from `start` on.
     fn divide(&mut self, cell: usize, place: Place, stack: &mut Vec<Item>, start: usize) {
         if stack.len() - start <= FEW || place.level == 0 {
             return self.list(cell, place, &stack[start..]);

@@ -301,6 +301,10 @@ fn very_many_objects() {
         "{} bytes",
         world.bytes_per_object()
     );
+    assert!(
+        size_of::<Object<f64>>() <= 96,
+        "a sphere takes what it needs"
+    );
     let mut seen = 0;
     for number in 0..400 {
         let mut point = random.point();

@@ -3,7 +3,7 @@
 use std::{cmp::Ordering, collections::HashMap, ops::Deref, sync::OnceLock};
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 
 use super::{
     camera::{Basis, Camera, Direction, Point},
@@ -98,8 +98,8 @@ struct Nearest<T: Real> {
 /// which costs little beside what is done with them, and so take no memory.
 const KEPT: usize = 1 << 12;
 
-/// So many objects are prepared by one thread without a break; with fewer no thread is asked for help.
-const AT_ONCE: usize = 1 << 10;
+/// With fewer objects it takes no longer to prepare them than to start threads for it.
+const MANY: usize = 1 << 10;
 
 /// A crossing of a ray with a surface, for people: numbers are right to the last bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,21 +136,22 @@ impl World {
             let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
             (object, extent.and_then(|extent| grid.item(index, &extent)))
         };
-        let mut objects = Vec::new();
-        let mut items: Vec<Option<Item>> = Vec::new();
-        scene
-            .objects
-            .par_iter()
-            .enumerate()
-            .with_min_len(AT_ONCE)
-            .map(prepare)
-            .unzip_into_vecs(&mut objects, &mut items);
+        let threads = threads_for(scene.objects.len());
+        let (mut objects, mut items) = (Vec::new(), Vec::new());
+        match &threads {
+            Some(threads) => threads.install(|| {
+                let prepared = scene.objects.par_iter().enumerate().map(prepare);
+                prepared.unzip_into_vecs(&mut objects, &mut items);
+            }),
+            None => (objects, items) = scene.objects.iter().enumerate().map(prepare).unzip(),
+        }
+        let items: Vec<Item> = items.into_iter().flatten().collect();
         Self {
             big: Frame::new(&basis, scene, reach, few),
             basis,
             numbers: scene.objects.iter().map(Numbers::new).collect(),
             objects,
-            hierarchy: Hierarchy::new(grid, items.into_iter().flatten().collect()),
+            hierarchy: Hierarchy::new(grid, items, threads.as_ref()),
             fast,
             double,
             colors: Colors::new(scene),
@@ -618,6 +619,13 @@ fn rounded(x: &Big) -> Ball<Big> {
         rad: x.magnitude() * (32.0 * Big::UNIT),
         mid: x.clone(),
     }
+}
+
+/// Threads to prepare so many objects; none if they are few, or if the system starts none.
+fn threads_for(objects: usize) -> Option<ThreadPool> {
+    (objects >= MANY)
+        .then(|| ThreadPoolBuilder::new().build().ok())
+        .flatten()
 }
 
 /// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no height of 1e-97.
