@@ -1,8 +1,9 @@
-//! The text of many small spheres, as somebody might write it: names, comments, `let`s and expressions here and there.
+//! The texts of many small spheres.
 
 use std::fmt::Write;
 
 /// How a block is laid out.
+#[allow(dead_code, reason = "each benchmark has its own scene")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// A line for each field.
@@ -11,18 +12,20 @@ pub enum Layout {
     Lines,
 }
 
-/// A scene of so many spheres: 80 bytes each.
+const COLORS: [&str; 8] = [
+    "olive",
+    "teal",
+    "orange",
+    "gray",
+    "#fa0",
+    "#3366cc",
+    "rgb(255, 165, 0)",
+    "steelblue",
+];
+
+/// A scene of so many spheres as somebody might write it, with names, comments, `let`s and expressions here and there: 80 bytes each.
+#[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn spheres(count: usize, layout: Layout) -> String {
-    const COLORS: [&str; 8] = [
-        "olive",
-        "teal",
-        "orange",
-        "gray",
-        "#fa0",
-        "#3366cc",
-        "rgb(255, 165, 0)",
-        "steelblue",
-    ];
     let (open, between, close) = match layout {
         Layout::Blocks => ("\n  ", "\n  ", "\n}\n\n"),
         Layout::Lines => (" ", "  ", " }\n"),
@@ -69,6 +72,34 @@ pub fn spheres(count: usize, layout: Layout) -> String {
         let color = COLORS[(random.next() % 8) as usize];
         let _ = write!(line, "{between}color {color}{close}");
         text.push_str(&line);
+    }
+    text
+}
+
+/// A scene of so many spheres that together would cover the picture one and a half times, at distances from 5 to 50: of whatever number
+/// they are, some are seen, some are hidden, and a good fifth of the picture stays empty.
+#[allow(dead_code, reason = "each benchmark has its own scene")]
+pub fn crowd(count: usize) -> String {
+    const COVERED: f64 = 1.5;
+    let (width, height, d) = (1280.0, 720.0, 2.75);
+    let pitch = 2.0 / height / d;
+    let radius = (COVERED * width * height / count as f64 / std::f64::consts::PI).sqrt();
+    let mut random = Random(1);
+    let mut text = format!(
+        "// Spheres all over the picture.\nimage {{ width {width}  height {height} }}\n\
+         camera {{ eye (0, 0, 0)  direction (0, 0, -1)  d {d} }}\nsampler {{ method jittered  per_pixel 4 }}\n\n",
+    );
+    for _ in 0..count {
+        let depth = 5.0 * libm::exp10(random.between(0.0, 1.0));
+        let x = random.between(-0.52, 0.52) * width * pitch * depth;
+        let y = random.between(-0.52, 0.52) * height * pitch * depth;
+        let radius = random.between(0.6, 1.4) * radius * pitch * depth;
+        let color = COLORS[(random.next() % 8) as usize];
+        let _ = writeln!(
+            text,
+            "sphere {{ center ({x:.5}, {y:.5}, {:.5})  radius {radius:.6}  color {color} }}",
+            -depth
+        );
     }
     text
 }

@@ -60,7 +60,6 @@ pub struct Pixel {
 #[derive(Debug)]
 pub struct Integrator<'a> {
     world: &'a World,
-    everything: Vec<Live>,
     /// Of the palette, in linear light.
     colors: Vec<[f64; 3]>,
 }
@@ -80,7 +79,6 @@ impl<'a> Integrator<'a> {
     pub fn new(world: &'a World) -> Self {
         Self {
             world,
-            everything: world.everything(),
             colors: world
                 .palette()
                 .iter()
@@ -105,15 +103,17 @@ impl<'a> Integrator<'a> {
             sides: Sides::default(),
             cancel,
         };
-        self.quarter(part, &self.everything, 0, &mut scratch, &mut film);
+        let mut live = Vec::new();
+        self.world.live_in(part, &mut live);
+        self.fill(part, &live, 0, &mut scratch, &mut film);
         (!cancel.load(Ordering::Relaxed)).then_some(film.pixels)
     }
 
     /// Fills a part of the picture, given the objects that may be seen there.
-    fn quarter(
+    fn fill(
         &self,
         part: Area,
-        among: &[Live],
+        live: &[Live],
         depth: usize,
         scratch: &mut Scratch,
         film: &mut Film,
@@ -121,12 +121,7 @@ impl<'a> Integrator<'a> {
         if scratch.cancel.load(Ordering::Relaxed) {
             return;
         }
-        if scratch.live.len() <= depth {
-            scratch.live.push(Vec::new());
-        }
-        let mut live = std::mem::take(&mut scratch.live[depth]);
-        self.world.live(part, among, &mut live);
-        match live.as_slice() {
+        match live {
             [] => film.fill(part, self.colors[self.colors.len() - 1]),
             [only] if only.is_whole && self.is_one_color(part, *only) => {
                 let slot = self.world.slot_at(part.x, part.y, glam::DVec2::ZERO);
@@ -134,15 +129,20 @@ impl<'a> Integrator<'a> {
             }
             _ if part.width == 1 && part.height == 1 => {
                 let spot = Spot::pixel(part.x, part.y);
-                film.set(part, self.mean(self.shares(spot, &live, scratch)));
+                film.set(part, self.mean(self.shares(spot, live, scratch)));
             }
             _ => {
-                for quarter in part.quarters() {
-                    self.quarter(quarter, &live, depth + 1, scratch, film);
+                if scratch.live.len() <= depth {
+                    scratch.live.push(Vec::new());
                 }
+                let mut below = std::mem::take(&mut scratch.live[depth]);
+                for quarter in part.quarters() {
+                    self.world.live(quarter, live, &mut below);
+                    self.fill(quarter, &below, depth + 1, scratch, film);
+                }
+                scratch.live[depth] = below;
             }
         }
-        scratch.live[depth] = live;
     }
 
     fn is_one_color(&self, part: Area, live: Live) -> bool {

@@ -49,6 +49,22 @@ impl Patch {
     }
 }
 
+impl Patch {
+    /// All that a camera sees.
+    pub fn window(camera: &Camera<f64>) -> Self {
+        let window = camera.window;
+        Self {
+            center: Direction {
+                x: 0.0,
+                y: 0.0,
+                z: window.z,
+                square: window.z * window.z,
+            },
+            half: [window.x, window.y],
+        }
+    }
+}
+
 impl Range {
     /// All numbers.
     pub const ALL: Self = Self {

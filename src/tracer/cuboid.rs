@@ -13,7 +13,7 @@ use super::{
     form::{Form, axis_vector, inverse_depth},
 };
 use crate::{
-    math::{Double, Doubt, Radius, Real, UP},
+    math::{Ball3, Double, Doubt, Radius, Real, UP},
     scene,
 };
 
@@ -134,6 +134,17 @@ impl<T: Real> Cuboid<T> {
         let face = faces.find(|face| face.index == index)?;
         Some(&face.inverse_depth)
     }
+}
+
+/// Its eight corners.
+pub fn corners<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid) -> [Ball3<T>; 8] {
+    let (min, max) = (camera.relative(shape.min), camera.relative(shape.max));
+    std::array::from_fn(|corner| {
+        camera.turned(&[0, 1, 2].map(|axis| {
+            let side = if corner >> axis & 1 == 0 { &min } else { &max };
+            side[axis].clone()
+        }))
+    })
 }
 
 /// From inside, a ray along a face's plane may leave at no finite depth only by rounding.

@@ -5,7 +5,8 @@
 //!
 //! All rays share the eye, so everything happens in the view plane: boundaries are lines and conics there, and of the
 //! surfaces at a point the nearest is the one with the greatest inverse depth, a linear form for everything flat. What does
-//! not depend on the sample point is prepared once per picture. Every decision is made in `f64` with a bound on its error;
+//! not depend on the sample point is prepared once per picture; which objects a ray may meet at all, a quadtree over the view plane
+//! knows. Every decision is made in `f64` with a bound on its error;
 //! what that leaves in doubt is decided in double-double, and what that leaves in doubt, in big numbers.
 
 mod camera;
@@ -14,10 +15,14 @@ mod cover;
 mod crossing;
 mod cuboid;
 mod curve;
+mod extent;
 mod form;
+mod hierarchy;
 mod object;
 mod outlook;
 mod sphere;
+#[cfg(test)]
+mod tests;
 mod triangle;
 mod world;
 

@@ -13,10 +13,10 @@ use super::{
 };
 use crate::{
     math::{Double, Doubt, Real},
-    scene::Shape,
+    scene::{self, Shape},
 };
 
-/// An object prepared for one picture.
+/// An object prepared for one picture: a sphere in place, since of spheres there may be very many.
 #[derive(Clone, Debug)]
 pub enum Object<T: Real> {
     /// A flat object in whose plane the eye lies.
@@ -24,25 +24,25 @@ pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
     /// A triangle.
-    Triangle(Triangle<T>),
+    Triangle(Box<Triangle<T>>),
     /// A box.
-    Cuboid(Cuboid<T>),
+    Cuboid(Box<Cuboid<T>>),
     /// A checkerboard.
-    Checkerboard(Checkerboard<T>),
+    Checkerboard(Box<Checkerboard<T>>),
 }
 
 impl<T: Real> Object<T> {
     /// Prepares an object.
     pub fn new(camera: &Camera<T>, shape: &Shape) -> Self {
         match shape {
-            Shape::Sphere(sphere) => Self::Sphere(Sphere::new(camera, sphere)),
-            Shape::Triangle(triangle) => {
-                Triangle::new(camera, triangle).map_or(Self::EdgeOn, Self::Triangle)
+            Shape::Sphere(scene::Sphere { center, radius, .. }) => {
+                Self::Sphere(Sphere::new(camera, *center, *radius))
             }
-            Shape::Box(cuboid) => Self::Cuboid(Cuboid::new(camera, cuboid)),
-            Shape::Checkerboard(board) => {
-                Checkerboard::new(camera, board).map_or(Self::EdgeOn, Self::Checkerboard)
-            }
+            Shape::Triangle(triangle) => Triangle::new(camera, triangle)
+                .map_or(Self::EdgeOn, |triangle| Self::Triangle(Box::new(triangle))),
+            Shape::Box(cuboid) => Self::Cuboid(Box::new(Cuboid::new(camera, cuboid))),
+            Shape::Checkerboard(board) => Checkerboard::new(camera, board)
+                .map_or(Self::EdgeOn, |board| Self::Checkerboard(Box::new(board))),
         }
     }
 
@@ -151,9 +151,9 @@ impl Object<Double> {
         match self {
             Self::EdgeOn => Object::EdgeOn,
             Self::Sphere(sphere) => Object::Sphere(sphere.narrowed(window)),
-            Self::Triangle(triangle) => Object::Triangle(triangle.narrowed(window)),
-            Self::Cuboid(cuboid) => Object::Cuboid(cuboid.narrowed(window)),
-            Self::Checkerboard(checkerboard) => Object::Checkerboard(checkerboard.narrowed(window)),
+            Self::Triangle(triangle) => Object::Triangle(Box::new(triangle.narrowed(window))),
+            Self::Cuboid(cuboid) => Object::Cuboid(Box::new(cuboid.narrowed(window))),
+            Self::Checkerboard(board) => Object::Checkerboard(Box::new(board.narrowed(window))),
         }
     }
 }

@@ -102,6 +102,18 @@ impl World {
 
     /// Of some candidates, in file order, those that may be seen in a part of the picture.
     pub fn live(&self, part: Area, among: &[Live], out: &mut Vec<Live>) {
+        self.live_among(part, among.iter().map(|live| live.object), out);
+    }
+
+    /// Of all objects, in file order, those that may be seen in a part of the picture.
+    pub fn live_in(&self, part: Area, out: &mut Vec<Live>) {
+        let mut candidates = Vec::new();
+        self.hierarchy
+            .within(&Patch::new(&self.fast.camera, part), &mut candidates);
+        self.live_among(part, candidates.into_iter(), out);
+    }
+
+    fn live_among(&self, part: Area, among: impl Iterator<Item = usize>, out: &mut Vec<Live>) {
         out.clear();
         let patch = Patch::new(&self.fast.camera, part);
         let near = self.fast.near.as_ref().map(|form| form.over(&patch));
@@ -109,7 +121,7 @@ impl World {
         // The nearest of what is met everywhere hides what is farther.
         let mut hidden = f64::NEG_INFINITY;
         for candidate in among {
-            let Some(live) = self.cover(candidate.object, &patch, near, far) else {
+            let Some(live) = self.cover(candidate, &patch, near, far) else {
                 continue;
             };
             if live.inverse_depth.high < hidden {
@@ -198,12 +210,12 @@ impl World {
             let planes = |index: usize, at: usize| {
                 let object = Double::object(self, index);
                 match object.surfaces(Crossings::First).get(at) {
-                    Some(Surface::Plane(form)) => Some(*form),
+                    Some(Surface::Plane(form)) => Some((*form).clone()),
                     _ => None,
                 }
             };
             front < back
-                && matches!((planes(front, i), planes(back, j)), (Some(a), Some(b)) if a.equals(b))
+                && matches!((planes(front, i), planes(back, j)), (Some(a), Some(b)) if a.equals(&b))
         };
         let (a, b) = (f64::object(self, front), f64::object(self, back));
         let (planes_a, planes_b) = (a.surfaces(Crossings::First), b.surfaces(Crossings::First));
@@ -243,22 +255,22 @@ impl World {
                 out.push(curve);
             }
         };
-        let surfaces = |live: &Live| -> Vec<Surface<T>> {
-            let which = match live.is_cut {
+        let objects: Vec<_> = live
+            .iter()
+            .map(|live| T::object(self, live.object))
+            .collect();
+        let surfaces = |at: usize| -> Vec<Surface<T>> {
+            objects[at].surfaces(match live[at].is_cut {
                 true => Crossings::Both,
                 false => Crossings::First,
-            };
-            T::object(self, live.object).surfaces(which)
+            })
         };
         for (i, a) in live.iter().enumerate() {
             if !a.is_whole {
-                T::object(self, a.object)
-                    .outline(&place)
-                    .into_iter()
-                    .for_each(&mut push);
+                objects[i].outline(&place).into_iter().for_each(&mut push);
                 let clips = [&frame.near, &frame.far];
                 for clip in clips.into_iter().flatten() {
-                    for surface in &surfaces(a) {
+                    for surface in &surfaces(i) {
                         place
                             .crossing(surface, &Surface::Plane(clip))
                             .into_iter()
@@ -266,14 +278,14 @@ impl World {
                     }
                 }
             }
-            for b in &live[i + 1..] {
+            for (j, b) in live.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
                 if apart {
                     continue;
                 }
-                let others = surfaces(b);
-                for surface in &surfaces(a) {
+                let others = surfaces(j);
+                for surface in &surfaces(i) {
                     for other in &others {
                         place
                             .crossing(surface, other)
@@ -313,7 +325,8 @@ impl World {
     }
 
     fn board_in<T: Level>(&self, object: usize, spot: Spot) -> Option<Board> {
-        let Object::Checkerboard(board) = T::object(self, object) else {
+        let object = T::object(self, object);
+        let Object::Checkerboard(board) = &*object else {
             return None;
         };
         let place = Place::new(&T::frame(self).camera, spot);
@@ -330,7 +343,8 @@ impl World {
 
     /// Whether a part of the picture in which a checkerboard is all that may be seen shows but one of its squares.
     pub fn is_one_square(&self, part: Area, object: usize) -> bool {
-        let Object::Checkerboard(board) = f64::object(self, object) else {
+        let object = f64::object(self, object);
+        let Object::Checkerboard(board) = &*object else {
             return false;
         };
         let camera = &self.fast.camera;

@@ -13,10 +13,7 @@ use super::{
     cover::{Cover, Patch, Range},
     crossing::{Crossing, Part},
 };
-use crate::{
-    math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot},
-    scene,
-};
+use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
 
 /// A sphere prepared for one picture. Its lengths are scaled by a power of two to be about 1.
 #[derive(Clone, Debug)]
@@ -45,8 +42,7 @@ const ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
     /// Prepares a sphere.
-    pub fn new(camera: &Camera<T>, shape: &scene::Sphere) -> Self {
-        let scene::Sphere { center, radius, .. } = *shape;
+    pub fn new(camera: &Camera<T>, center: DVec3, radius: f64) -> Self {
         let from_eye = camera.relative(center);
         let radius_ball = camera.length(radius);
         let greatest = from_eye
@@ -168,6 +164,13 @@ impl<T: Real> Sphere<T> {
 }
 
 impl Sphere<f64> {
+    /// The centre and the radius of a ball that holds it, errors included, in its own unit; none for an eye that is not outside.
+    pub fn ball(&self) -> Option<([f64; 3], f64)> {
+        const WIDER: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
+        let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
+        (self.side == Ordering::Greater).then_some((self.center, radius * WIDER))
+    }
+
     /// How it stands to a rectangle; `None` if no ray through it meets the sphere.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.ranges(patch);

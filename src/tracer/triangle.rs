@@ -24,9 +24,23 @@ pub struct Triangle<T: Real> {
     pub plane: Form<T>,
 }
 
+/// The corners of a triangle in the camera's axes, their lengths times a power of two.
+#[derive(Clone, Debug)]
+pub struct Corners<T: Real> {
+    /// Left base end, right base end, apex.
+    pub points: [Ball3<T>; 3],
+    /// That power's exponent.
+    pub exponent: i32,
+}
+
 impl<T: Real> Triangle<T> {
     /// Prepares a triangle; `None` if its plane holds the eye, which sees it edge-on: not at all.
     pub fn new(camera: &Camera<T>, shape: &scene::Triangle) -> Option<Self> {
+        Self::with_corners(camera, shape).map(|(triangle, _)| triangle)
+    }
+
+    /// Prepares a triangle, and tells where its corners are.
+    pub fn with_corners(camera: &Camera<T>, shape: &scene::Triangle) -> Option<(Self, Corners<T>)> {
         let from_eye = camera.relative(shape.centroid);
         let (normal, height, side) = plane(camera, shape);
         if side.is_eq() {
@@ -52,10 +66,15 @@ impl<T: Real> Triangle<T> {
             Form::new(camera, &n)
         };
         let [left, right, apex] = &vertices;
-        Some(Self {
+        let triangle = Self {
             edges: [edge(left, right), edge(right, apex), edge(apex, left)],
             plane,
-        })
+        };
+        let corners = Corners {
+            points: vertices,
+            exponent,
+        };
+        Some((triangle, corners))
     }
 
     /// The crossing, if the ray meets the closed triangle in front of the eye.

@@ -1,14 +1,17 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 
-use std::{cmp::Ordering, sync::OnceLock};
+use std::{cmp::Ordering, collections::HashMap, ops::Deref, sync::OnceLock};
 
 use glam::{DVec2, DVec3};
+use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 
 use super::{
     camera::{Basis, Camera, Direction, Point},
     crossing::{Crossing, Part},
     form::Form,
+    hierarchy::{Grid, Hierarchy, Item, Nearness},
     object::Object,
+    sphere::Sphere,
 };
 use crate::{
     color::Color,
@@ -20,22 +23,43 @@ use crate::{
 #[derive(Debug)]
 pub struct World {
     basis: Basis,
-    shapes: Vec<Shape>,
+    /// What the objects are prepared from.
+    numbers: Vec<Numbers>,
+    /// The objects for `f64`.
+    objects: Vec<Object<f64>>,
+    pub(super) hierarchy: Hierarchy,
     pub(super) fast: Frame<f64>,
     double: Frame<Double>,
     big: Frame<Big>,
-    /// The distinct colours of the objects, and the background.
-    palette: Vec<Color>,
-    /// For each object the slots of its colour, and of a checkerboard's second one.
-    slots: Vec<[usize; 2]>,
+    colors: Colors,
 }
 
-/// The camera and the objects in one precision.
+/// The numbers of the scene that an object is prepared from.
+#[derive(Debug)]
+enum Numbers {
+    /// A sphere's centre and radius.
+    Sphere(DVec3, f64),
+    /// All of any other shape.
+    Other(Box<Shape>),
+}
+
+/// The colours of the objects.
+#[derive(Debug)]
+struct Colors {
+    /// The distinct ones, and the background.
+    palette: Vec<Color>,
+    /// The distinct pairs of slots of the palette: an object's colour, and a checkerboard's second one.
+    pairs: Vec<[usize; 2]>,
+    /// For each object its pair.
+    of_objects: Vec<u32>,
+}
+
+/// The camera and some objects in one precision.
 #[derive(Debug)]
 pub(super) struct Frame<T: Real> {
     pub camera: Camera<T>,
-    /// Filled in when first asked for; `f64` at once.
-    objects: Vec<OnceLock<Box<Object<T>>>>,
+    /// The first objects, each filled in when it is first asked for.
+    kept: Vec<OnceLock<Box<Object<T>>>>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
 }
@@ -60,6 +84,22 @@ struct Seen {
     /// Whether it is a checkerboard's second colour.
     odd: bool,
 }
+
+/// The nearest crossing so far.
+#[derive(Debug)]
+struct Nearest<T: Real> {
+    object: usize,
+    /// Whether it is the object's second one.
+    second: bool,
+    crossing: Crossing<T>,
+}
+
+/// So many objects are kept in the higher precisions once they were asked for: all that people write by hand. Others are prepared each time,
+/// which costs little beside what is done with them, and so take no memory.
+const KEPT: usize = 1 << 12;
+
+/// With fewer objects it takes no longer to prepare them than to start threads for it.
+const MANY: usize = 1 << 10;
 
 /// A crossing of a ray with a surface, for people: numbers are right to the last bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,22 +128,33 @@ impl World {
     /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
     pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
-        let shapes: Vec<_> = scene.objects.iter().map(|object| object.shape).collect();
-        let (palette, slots) = palette(&shapes, scene.image.background);
-        let double = Frame::new(&basis, scene, reach);
-        let fast = Frame::new(&basis, scene, reach);
-        for (shape, slot) in shapes.iter().zip(&fast.objects) {
-            let object = Object::new(&double.camera, shape).narrowed(&fast.camera.window);
-            slot.get_or_init(|| Box::new(object));
+        let few = scene.objects.len().min(KEPT);
+        let double = Frame::new(&basis, scene, reach, few);
+        let fast = Frame::new(&basis, scene, reach, 0);
+        let grid = Grid::new(&fast.camera.window);
+        let prepare = |(index, object): (usize, &scene::Object)| {
+            let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
+            (object, extent.and_then(|extent| grid.item(index, &extent)))
+        };
+        let threads = threads_for(scene.objects.len());
+        let (mut objects, mut items) = (Vec::new(), Vec::new());
+        match &threads {
+            Some(threads) => threads.install(|| {
+                let prepared = scene.objects.par_iter().enumerate().map(prepare);
+                prepared.unzip_into_vecs(&mut objects, &mut items);
+            }),
+            None => (objects, items) = scene.objects.iter().enumerate().map(prepare).unzip(),
         }
+        let items: Vec<Item> = items.into_iter().flatten().collect();
         Self {
-            big: Frame::new(&basis, scene, reach),
+            big: Frame::new(&basis, scene, reach, few),
             basis,
-            shapes,
+            numbers: scene.objects.iter().map(Numbers::new).collect(),
+            objects,
+            hierarchy: Hierarchy::new(grid, items, threads.as_ref()),
             fast,
             double,
-            palette,
-            slots,
+            colors: Colors::new(scene),
         }
     }
 
@@ -114,7 +165,7 @@ impl World {
 
     /// The distinct colours that can be seen: the objects' in the order of the file, the background last.
     pub fn palette(&self) -> &[Color] {
-        &self.palette
+        &self.colors.palette
     }
 
     /// Which colour of the palette is seen at a sample point: the pixel in column `x` and row `y` from the top left, and
@@ -122,13 +173,13 @@ impl World {
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
         let point = self.fast.camera.sample_point(x, y, offset);
-        match self.seen::<f64>(&point) {
+        match self.seen_fast(&point) {
             Ok(seen) => self.slot(seen),
             Err(Doubt) => self.slot(self.seen_after_doubt(&point)),
         }
     }
 
-    /// What [`slot_at`](World::slot_at) answers in one precision alone, or `None` if that is in doubt.
+    /// What [`slot_at`](World::slot_at) answers in one precision alone and without the hierarchy, or `None` if that is in doubt.
     pub fn slot_in(&self, precision: Precision, x: u32, y: u32, offset: DVec2) -> Option<usize> {
         let point = self.fast.camera.sample_point(x, y, offset);
         let seen = match precision {
@@ -141,17 +192,17 @@ impl World {
 
     /// The slots of the palette that an object's colour has, and a checkerboard's second one.
     pub fn slots(&self, object: usize) -> [usize; 2] {
-        self.slots[object]
+        self.colors.pairs[self.colors.of_objects[object] as usize]
     }
 
     /// How many objects there are.
     pub fn len(&self) -> usize {
-        self.shapes.len()
+        self.objects.len()
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.shapes.is_empty()
+        self.objects.is_empty()
     }
 
     /// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
@@ -159,9 +210,11 @@ impl World {
     /// the reach that the world was made for.
     pub fn ray(&self, pixels: DVec2) -> (DVec3, Vec<Hit>) {
         let camera = &self.big.camera;
-        let r = camera.direction(&camera.picture_point(pixels));
+        let point = camera.picture_point(pixels);
+        let r = camera.direction(&point);
+        let candidates = self.candidates(&point);
         let mut crossings = Vec::new();
-        for index in 0..self.shapes.len() {
+        for &index in &candidates {
             let object = Big::object(self, index);
             let first = object.first(&r).unwrap_or_default();
             let second = first.as_ref().and_then(|_| object.second(&r));
@@ -170,7 +223,8 @@ impl World {
         }
         self.sort(&mut crossings);
 
-        let seen = self.seen_in_direction(&r).unwrap_or_default();
+        let among = candidates.iter().copied();
+        let seen = self.seen_in_direction(&r, among).unwrap_or_default();
         let along = [&r.x, &r.y, &r.z].map(rounded);
         let world: Ball3<Big> = [0, 1, 2].map(|i| {
             let part = |j: usize| &camera.axes[j][i] * &along[j];
@@ -189,7 +243,7 @@ impl World {
                 t: settled(&(&lambda * &length)),
                 depth: settled(&(&lambda * &along[2])),
                 point: [0, 1, 2].map(coordinate).into(),
-                color: self.palette[self.slots[index][usize::from(odd)]],
+                color: self.palette()[self.slots(index)[usize::from(odd)]],
                 visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
             }
         };
@@ -216,30 +270,98 @@ impl World {
         }
     }
 
+    /// What is seen as far as `f64` can tell, by way of the hierarchy.
+    #[inline]
+    fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
+        let r = self.fast.camera.direction(point);
+        let Some(mut descent) = self.hierarchy.at(&r) else {
+            return self.seen::<f64>(point);
+        };
+        let mut nearest = None;
+        // All farther than this is hidden.
+        let mut bar = Nearness::NONE;
+        while let Some(mut list) = descent.next(bar) {
+            while let Some(index) = list.next(bar) {
+                if self.meet(&r, index, &mut nearest)?
+                    && let Some(Nearest { crossing, .. }) = &nearest
+                {
+                    bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
+                }
+            }
+        }
+        self.with_color(&r, nearest)
+    }
+
+    #[cfg(test)]
+    pub(super) fn double_camera(&self) -> &Camera<Double> {
+        &self.double.camera
+    }
+
+    /// How much memory it takes by object, spheres alone being in it and none of them kept in a higher precision.
+    #[cfg(test)]
+    pub(super) fn bytes_per_object(&self) -> f64 {
+        let each = size_of::<Object<f64>>() + size_of::<Numbers>() + size_of::<u32>();
+        each as f64 + self.hierarchy.bytes() as f64 / self.len() as f64
+    }
+
     /// What is seen where `f64` was in doubt.
     #[cold]
     fn seen_after_doubt(&self, point: &Point) -> Option<Seen> {
-        match self.seen::<Double>(point) {
+        let candidates = self.candidates(point);
+        let among = || candidates.iter().copied();
+        let r = self.double.camera.direction(point);
+        match self.seen_in_direction(&r, among()) {
             Ok(seen) => seen,
             // The last precision is never in doubt.
-            Err(Doubt) => self.seen::<Big>(point).unwrap_or_default(),
+            Err(Doubt) => {
+                let r = self.big.camera.direction(point);
+                self.seen_in_direction(&r, among()).unwrap_or_default()
+            }
         }
     }
 
-    #[inline]
-    fn seen<T: Level>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
-        self.seen_in_direction(&T::frame(self).camera.direction(point))
+    /// The objects that the ray through a point may meet, in file order.
+    pub(super) fn candidates(&self, point: &Point) -> Vec<usize> {
+        let r = self.fast.camera.direction(point);
+        let Some(mut descent) = self.hierarchy.at(&r) else {
+            return (0..self.len()).collect();
+        };
+        let mut candidates = Vec::new();
+        while let Some(mut list) = descent.next(Nearness::NONE) {
+            candidates.extend(std::iter::from_fn(|| list.next(Nearness::NONE)));
+        }
+        candidates.sort_unstable();
+        candidates
     }
 
-    /// The nearest crossing between the near and the far plane; of equal ones the object's that comes first in the file.
+    fn seen<T: Level>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
+        let r = T::frame(self).camera.direction(point);
+        self.seen_in_direction(&r, 0..self.len())
+    }
+
+    /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
     #[inline]
-    fn seen_in_direction<T: Level>(&self, r: &Direction<T>) -> Result<Option<Seen>, Doubt> {
-        let Some((index, second)) = self.nearest(r, 0..self.shapes.len())? else {
+    fn seen_in_direction<T: Level>(
+        &self,
+        r: &Direction<T>,
+        among: impl Iterator<Item = usize>,
+    ) -> Result<Option<Seen>, Doubt> {
+        let nearest = self.nearest_crossing(r, among)?;
+        self.with_color(r, nearest)
+    }
+
+    #[inline]
+    fn with_color<T: Level>(
+        &self,
+        r: &Direction<T>,
+        nearest: Option<Nearest<T>>,
+    ) -> Result<Option<Seen>, Doubt> {
+        let Some(Nearest { object, second, .. }) = nearest else {
             return Ok(None);
         };
-        let odd = T::object(self, index).is_odd(r)?;
+        let odd = T::object(self, object).is_odd(r)?;
         Ok(Some(Seen {
-            object: index,
+            object,
             second,
             odd,
         }))
@@ -252,23 +374,52 @@ impl World {
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
     ) -> Result<Option<(usize, bool)>, Doubt> {
-        let mut nearest: Option<(usize, bool, Crossing<T>)> = None;
+        let nearest = self.nearest_crossing(r, among)?;
+        Ok(nearest.map(|nearest| (nearest.object, nearest.second)))
+    }
+
+    #[inline]
+    fn nearest_crossing<T: Level>(
+        &self,
+        r: &Direction<T>,
+        among: impl Iterator<Item = usize>,
+    ) -> Result<Option<Nearest<T>>, Doubt> {
+        let mut nearest = None;
         for index in among {
-            let object = T::object(self, index);
-            let Some(first) = object.first(r)? else {
-                continue;
-            };
-            let Some((second, crossing)) = self.clip(index, first, object, r)? else {
-                continue;
-            };
-            if let Some((best, _, best_crossing)) = &nearest
-                && self.order((index, &crossing), (*best, best_crossing))? != Ordering::Greater
-            {
-                continue;
-            }
-            nearest = Some((index, second, crossing));
+            self.meet(r, index, &mut nearest)?;
         }
-        Ok(nearest.map(|(index, second, _)| (index, second)))
+        Ok(nearest)
+    }
+
+    /// Whether an object's crossing is nearer than the nearest so far, in whose place it is put then; of equal ones that of the object
+    /// which comes first in the file is.
+    #[inline]
+    fn meet<T: Level>(
+        &self,
+        r: &Direction<T>,
+        index: usize,
+        nearest: &mut Option<Nearest<T>>,
+    ) -> Result<bool, Doubt> {
+        let object = T::object(self, index);
+        let Some(first) = object.first(r)? else {
+            return Ok(false);
+        };
+        let Some((second, crossing)) = self.clip(index, first, &object, r)? else {
+            return Ok(false);
+        };
+        if let Some(best) = nearest {
+            match self.order((index, &crossing), (best.object, &best.crossing))? {
+                Ordering::Greater => {}
+                Ordering::Equal if index < best.object => {}
+                _ => return Ok(false),
+            }
+        }
+        *nearest = Some(Nearest {
+            object: index,
+            second,
+            crossing,
+        });
+        Ok(true)
     }
 
     /// The first of an object's crossings that lies between the near and the far plane, and whether it is the second one.
@@ -329,7 +480,8 @@ impl World {
             return order;
         }
         let clips = [&self.double.near, &self.double.far];
-        let plane = Double::object(self, index).plane(crossing.part);
+        let object = Double::object(self, index);
+        let plane = object.plane(crossing.part);
         let same = |clip: &&Option<Form<Double>>| match (plane, clip) {
             (Some(plane), Some(clip)) => plane.equals(clip),
             _ => false,
@@ -344,18 +496,13 @@ impl World {
     /// Whether two parts of objects are one surface: planes with the same form, or the same side of equal spheres.
     #[cold]
     fn is_same_surface(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
-        match (&self.shapes[i], &self.shapes[j]) {
-            (
-                Shape::Sphere(scene::Sphere { center, radius, .. }),
-                Shape::Sphere(scene::Sphere {
-                    center: other_center,
-                    radius: other_radius,
-                    ..
-                }),
-            ) => a == b && center == other_center && radius == other_radius,
+        match (&self.numbers[i], &self.numbers[j]) {
+            (Numbers::Sphere(center, radius), Numbers::Sphere(other_center, other_radius)) => {
+                a == b && center == other_center && radius == other_radius
+            }
             _ => {
-                let plane = |index, part| Double::object(self, index).plane(part);
-                match (plane(i, a), plane(j, b)) {
+                let (first, second) = (Double::object(self, i), Double::object(self, j));
+                match (first.plane(a), second.plane(b)) {
                     (Some(a), Some(b)) => a.equals(b),
                     _ => false,
                 }
@@ -366,14 +513,14 @@ impl World {
     #[inline]
     fn slot(&self, seen: Option<Seen>) -> usize {
         match seen {
-            None => self.palette.len() - 1,
-            Some(seen) => self.slots[seen.object][usize::from(seen.odd)],
+            None => self.palette().len() - 1,
+            Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],
         }
     }
 }
 
 impl<T: Real> Frame<T> {
-    fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
+    fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
         // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
@@ -385,7 +532,7 @@ impl<T: Real> Frame<T> {
         Self {
             near: (near > 0.0).then(|| clip(near)),
             far: far.map(clip),
-            objects: scene.objects.iter().map(|_| OnceLock::new()).collect(),
+            kept: (0..kept).map(|_| OnceLock::new()).collect(),
             camera,
         }
     }
@@ -395,12 +542,50 @@ impl<T: Real> Frame<T> {
 pub(super) trait Level: Real {
     fn frame(world: &World) -> &Frame<Self>;
 
-    /// An object in this precision, prepared when it is first asked for.
+    /// An object in this precision, prepared when it is asked for.
+    fn object(world: &World, index: usize) -> Held<'_, Self> {
+        let Frame { camera, kept, .. } = Self::frame(world);
+        let made = || Box::new(world.numbers[index].object(camera));
+        match kept.get(index) {
+            Some(kept) => Held::Kept(kept.get_or_init(made)),
+            None => Held::Made(made()),
+        }
+    }
+}
+
+/// An object that is kept, or was made for the one who asks.
+#[derive(Debug)]
+pub(super) enum Held<'a, T: Real> {
+    Kept(&'a Object<T>),
+    Made(Box<Object<T>>),
+}
+
+impl<T: Real> Deref for Held<'_, T> {
+    type Target = Object<T>;
+
     #[inline]
-    fn object(world: &World, index: usize) -> &Object<Self> {
-        let frame = Self::frame(world);
-        frame.objects[index]
-            .get_or_init(|| Box::new(Object::new(&frame.camera, &world.shapes[index])))
+    fn deref(&self) -> &Object<T> {
+        match self {
+            Self::Kept(object) => object,
+            Self::Made(object) => object,
+        }
+    }
+}
+
+impl Numbers {
+    fn new(object: &scene::Object) -> Self {
+        match &object.shape {
+            Shape::Sphere(sphere) => Self::Sphere(sphere.center, sphere.radius),
+            other => Self::Other(Box::new(*other)),
+        }
+    }
+
+    /// The object in one precision.
+    fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
+        match self {
+            Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),
+            Self::Other(shape) => Object::new(camera, shape),
+        }
     }
 }
 
@@ -408,6 +593,11 @@ impl Level for f64 {
     #[inline]
     fn frame(world: &World) -> &Frame<Self> {
         &world.fast
+    }
+
+    #[inline]
+    fn object(world: &World, index: usize) -> Held<'_, Self> {
+        Held::Kept(&world.objects[index])
     }
 }
 
@@ -431,6 +621,13 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
+/// Threads to prepare so many objects; none if they are few, or if the system starts none.
+fn threads_for(objects: usize) -> Option<ThreadPool> {
+    (objects >= MANY)
+        .then(|| ThreadPoolBuilder::new().build().ok())
+        .flatten()
+}
+
 /// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
@@ -439,28 +636,40 @@ fn settled(x: &Ball<Big>) -> f64 {
     }
 }
 
-/// The distinct colours of all objects in file order with the background behind them, and for each object the places of its
-/// colours among them.
-fn palette(shapes: &[Shape], background: Color) -> (Vec<Color>, Vec<[usize; 2]>) {
-    let mut palette = Vec::new();
-    let mut places = std::collections::HashMap::new();
-    let mut place = |color: Color| {
-        *places
-            .entry(color.srgb.map(f64::to_bits))
-            .or_insert_with(|| {
-                palette.push(color);
-                palette.len() - 1
+impl Colors {
+    /// The distinct colours of all objects in file order with the background behind them, and the places of the objects' among them.
+    fn new(scene: &Scene) -> Self {
+        let mut palette = Vec::new();
+        let mut places = HashMap::new();
+        let mut place = |color: Color| {
+            *places
+                .entry(color.srgb.map(f64::to_bits))
+                .or_insert_with(|| {
+                    palette.push(color);
+                    palette.len() - 1
+                })
+        };
+        let mut pairs = Vec::new();
+        let mut places_of_pairs = HashMap::new();
+        let pair = |object: &scene::Object| {
+            let pair = match object.shape {
+                Shape::Sphere(scene::Sphere { color, .. })
+                | Shape::Triangle(scene::Triangle { color, .. })
+                | Shape::Box(scene::Cuboid { color, .. }) => [place(color); 2],
+                Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut place),
+            };
+            *places_of_pairs.entry(pair).or_insert_with(|| {
+                pairs.push(pair);
+                // No more than objects.
+                (pairs.len() - 1) as u32
             })
-    };
-    let slots = shapes
-        .iter()
-        .map(|shape| match *shape {
-            Shape::Sphere(scene::Sphere { color, .. })
-            | Shape::Triangle(scene::Triangle { color, .. })
-            | Shape::Box(scene::Cuboid { color, .. }) => [place(color); 2],
-            Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut place),
-        })
-        .collect();
-    palette.push(background);
-    (palette, slots)
+        };
+        let of_objects = scene.objects.iter().map(pair).collect();
+        palette.push(scene.image.background);
+        Self {
+            palette,
+            pairs,
+            of_objects,
+        }
+    }
 }

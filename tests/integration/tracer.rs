@@ -10,6 +10,7 @@ use pinhole::{
         scenes::{self, SIZE},
     },
     scene::{Checkerboard, Lens, Scene, Shape, Triangle, View},
+    source::{Source, Sources},
     tracer::{Precision, World},
 };
 
@@ -140,6 +141,30 @@ fn f64_alone_decides_nearly_everything() {
     }
     // The rows at the horizon leave doubts of about 1e-10 of the samples.
     assert_eq!(doubts, 0);
+}
+
+#[test]
+fn the_examples_are_the_same_without_the_hierarchy() {
+    let folder = format!("{}/examples", env!("CARGO_MANIFEST_DIR"));
+    let files = std::fs::read_dir(folder).unwrap();
+    let paths = files.map(|entry| entry.unwrap().path());
+    let mut random = Random(3);
+    for path in paths.filter(|path| path.extension().is_some_and(|ending| ending == "scn")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let sources = Sources::new(Source::from_text("a.scn", text));
+        let scene = pinhole::scene::read(&sources).scene.unwrap();
+        let world = World::new(&scene);
+        let size = [scene.image.width, scene.image.height].map(u64::from);
+        for _ in 0..3000 {
+            let [x, y] = size.map(|size| (random.bits() % size) as u32);
+            let offset = random.offset();
+            let plain = [Precision::Single, Precision::Double, Precision::Big]
+                .into_iter()
+                .find_map(|precision| world.slot_in(precision, x, y, offset));
+            let found = world.slot_at(x, y, offset);
+            assert_eq!(Some(found), plain, "{path:?}, pixel {x}, {y} at {offset}");
+        }
+    }
 }
 
 #[test]

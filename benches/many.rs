@@ -1,0 +1,184 @@
+//! Many objects: how preparing and rendering them grows with their number, and what the hierarchy gains: `cargo bench --bench many`. See
+//! README.md beside this file.
+//!
+//! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
+//! of each phase once, and the memory that the world takes.
+
+use std::{
+    env, fs,
+    hint::black_box,
+    sync::atomic::AtomicBool,
+    time::{Duration, Instant},
+};
+
+use criterion::{BenchmarkId, Criterion, Throughput};
+use glam::DVec2;
+use pinhole::{
+    area::Area,
+    render::{Control, render, render_exact},
+    sampling::Sampling,
+    scene::{self, Scene},
+    source::{Source, Sources},
+    tracer::{Precision, World},
+};
+
+use self::spheres::crowd;
+
+mod spheres;
+
+/// How many objects the plain loop over all of them is bearable for.
+const PLAIN: [usize; 3] = [100, 1_000, 10_000];
+const ALL: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
+
+/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
+const ROUNDS: usize = 5;
+
+fn main() {
+    let arguments: Vec<String> = env::args().collect();
+    let numbers = |after: &str| -> Option<Vec<usize>> {
+        let at = arguments.iter().position(|argument| argument == after)?;
+        let rest = arguments[at + 1..].iter();
+        Some(rest.map_while(|count| count.parse().ok()).collect())
+    };
+    if let Some(counts) = numbers("--write") {
+        counts
+            .into_iter()
+            .for_each(|count| print!("{}", crowd(count)));
+        return;
+    }
+    if let Some(counts) = numbers("--phases") {
+        counts.into_iter().for_each(phases);
+        return;
+    }
+    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    if !arguments.iter().any(|argument| argument == "--bench") {
+        return;
+    }
+    ratios();
+    growth(&mut Criterion::default().configure_from_args());
+}
+
+fn read(count: usize) -> Scene {
+    let sources = Sources::new(Source::from_text("spheres.scn", crowd(count)));
+    scene::read(&sources)
+        .scene
+        .expect("a scene without mistakes")
+}
+
+fn picture(world: &World, scene: &Scene) {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    black_box(render(world, &sampling, whole, &control)).expect("there is memory for it");
+}
+
+/// Points all over the picture, row by row.
+fn points(scene: &Scene) -> Vec<(u32, u32)> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    whole
+        .iter()
+        .filter(|(x, y)| x % 16 == 0 && y % 16 == 0)
+        .collect()
+}
+
+/// How much longer the plain loop takes, in turns, so that a busy moment meets both.
+fn ratios() {
+    println!("the plain loop over all objects by the hierarchy, per ray");
+    for count in PLAIN {
+        let scene = read(count);
+        let world = World::new(&scene);
+        let points = points(&scene);
+        let offset = DVec2::new(0.125, -0.25);
+        let mut best = [Duration::MAX; 2];
+        for _ in 0..ROUNDS {
+            let start = Instant::now();
+            for &(x, y) in &points {
+                black_box(world.slot_in(Precision::Single, x, y, offset));
+            }
+            let middle = Instant::now();
+            for &(x, y) in &points {
+                black_box(world.slot_at(x, y, offset));
+            }
+            best[0] = best[0].min(middle - start);
+            best[1] = best[1].min(middle.elapsed());
+        }
+        let ratio = best[0].as_secs_f64() / best[1].as_secs_f64();
+        let each = best[1] / points.len() as u32;
+        println!("{count:9} spheres {ratio:8.1}   {each:.0?} a ray by the hierarchy");
+    }
+}
+
+fn growth(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("many");
+    group.sample_size(10);
+    for count in ALL {
+        let scene = read(count);
+        group.throughput(Throughput::Elements(count as u64));
+        group.bench_function(BenchmarkId::new("world", count), |bencher| {
+            bencher.iter(|| black_box(World::new(&scene)));
+        });
+        let world = World::new(&scene);
+        let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
+        group.throughput(Throughput::Elements(4 * pixels));
+        group.bench_function(BenchmarkId::new("render", count), |bencher| {
+            bencher.iter(|| picture(&world, &scene));
+        });
+    }
+    group.finish();
+}
+
+/// The CPU seconds of each phase, and the bytes of the world by object.
+fn phases(count: usize) {
+    const RENDERS: u32 = 4;
+    let scene = read(count);
+    let before = (cpu_seconds(), resident_bytes());
+    let world = World::new(&scene);
+    let after = (cpu_seconds(), resident_bytes());
+    (0..RENDERS).for_each(|_| picture(&world, &scene));
+    let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
+    let bytes = (after.1 - before.1) / count as f64;
+    let start = cpu_seconds();
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let exact = match env::args().any(|argument| argument == "--exact") {
+        true => {
+            black_box(render_exact(&world, whole, &control)).expect("there is memory for it");
+            format!(", exact {:.2}", cpu_seconds() - start)
+        }
+        false => String::new(),
+    };
+    let prepared = after.0 - before.0;
+    println!(
+        "{count:9} spheres: world {prepared:.2} CPU s and {bytes:.0} bytes each, render {rendered:.3} CPU s{exact}"
+    );
+}
+
+/// User and system time of the process so far, in hundredths; 0 where there is no /proc.
+fn cpu_seconds() -> f64 {
+    let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // The process's name may hold spaces, and ends at the last parenthesis.
+    let fields = stat.rsplit(')').next().unwrap_or_default();
+    let ticks = fields.split_whitespace().skip(11).take(2);
+    ticks
+        .filter_map(|ticks| ticks.parse::<f64>().ok())
+        .sum::<f64>()
+        / 100.0
+}
+
+/// The memory that the process holds; 0 where there is no /proc.
+fn resident_bytes() -> f64 {
+    let statm = fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages = statm.split_whitespace().nth(1);
+    pages
+        .and_then(|pages| pages.parse::<f64>().ok())
+        .unwrap_or_default()
+        * 4096.0
+}

@@ -1,0 +1,168 @@
+//! Where in the view plane an object may be seen, and how near it is at most.
+//!
+//! The bounds are those of the object's convex hull, and wider than all roundings on the way by far more than the last
+//! precision cannot tell: outside of them every decision says for certain that the object is missed.
+
+use super::{
+    camera::Camera,
+    cover::{Patch, Range},
+    cuboid,
+    object::Object,
+    sphere::Sphere,
+    triangle::{Corners, Triangle},
+};
+use crate::{
+    math::{Ball3, Double, Radius, Real, UP},
+    scene::Shape,
+};
+
+/// Bounds of an object as seen from the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Of X and of Y where rays meet it.
+    pub across: [Range; 2],
+    /// No inverse depth of it is greater.
+    pub nearest: f64,
+}
+
+/// By how much of its terms a quotient is widened: a few roundings count for 2^−50 of them.
+const WIDER: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Below this, numbers lose digits to the range of an `f64`.
+const LEAST: f64 = 1e-280;
+
+impl Object<f64> {
+    /// Prepares an object, with its bounds if it may be seen at all through the window.
+    pub fn with_extent(
+        double: &Camera<Double>,
+        fast: &Camera<f64>,
+        shape: &Shape,
+    ) -> (Self, Option<Extent>) {
+        let mut corners = None;
+        let object = match shape {
+            Shape::Triangle(triangle) => match Triangle::with_corners(double, triangle) {
+                Some((triangle, of_triangle)) => {
+                    corners = Some(of_triangle);
+                    Object::Triangle(Box::new(triangle))
+                }
+                None => Object::EdgeOn,
+            },
+            _ => Object::new(double, shape),
+        };
+        let object = object.narrowed(&fast.window);
+        let hull = match (&object, shape) {
+            (Self::EdgeOn, _) => return (object, None),
+            (Self::Sphere(sphere), _) => of_sphere(sphere, fast.window.z),
+            (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), fast.window.z),
+            _ => match &corners {
+                Some(Corners { points, exponent }) => {
+                    let scale = libm::ldexp(1.0, *exponent);
+                    of_corners(points, fast.window.z).times_nearest(scale)
+                }
+                None => Hull::Unbounded,
+            },
+        };
+        let extent = match hull {
+            Hull::Behind => None,
+            Hull::Ahead(extent) if extent.is_sound() => Some(extent),
+            Hull::Ahead(_) | Hull::Unbounded => {
+                object.cover(&Patch::window(fast)).map(|cover| Extent {
+                    across: [Range::ALL; 2],
+                    nearest: cover.inverse_depth.or_all().high,
+                })
+            }
+        };
+        (object, extent)
+    }
+}
+
+/// The bounds of a convex hull.
+enum Hull {
+    /// All of it is behind the eye.
+    Behind,
+    /// All of it is before the eye.
+    Ahead(Extent),
+    /// It is on both sides, or endless, or out of the range of numbers.
+    Unbounded,
+}
+
+impl Hull {
+    fn times_nearest(self, power: f64) -> Self {
+        match self {
+            Self::Ahead(extent) => Self::Ahead(Extent {
+                nearest: extent.nearest * power,
+                ..extent
+            }),
+            other => other,
+        }
+    }
+}
+
+impl Extent {
+    /// Whether no number in it comes from an overflow.
+    fn is_sound(&self) -> bool {
+        self.across.iter().all(|range| range.low <= range.high) && self.nearest >= 0.0
+    }
+}
+
+/// Two planes through the eye and along an axis touch the ball: in the plane across that axis it is a disc with the centre (c, z),
+/// to which two lines through the origin are tangent. Their slopes are (cz ± R √(c² + z² − R²))/(z² − R²).
+fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
+    let Some(([x, y, z], radius)) = sphere.ball() else {
+        return Hull::Unbounded;
+    };
+    if z + radius < 0.0 {
+        return Hull::Behind;
+    }
+    // z − R and z + R are rounded once, so that their product and what it is added to are good in all their digits.
+    let below = (z - radius) * (z + radius);
+    if !(z > radius && below > LEAST) {
+        return Hull::Unbounded;
+    }
+    let across = [x, y].map(|c| {
+        let (middle, reach) = (c * z, radius * (c * c + below).sqrt());
+        let slack = (middle.abs() + reach) * WIDER;
+        Range {
+            low: (middle - reach - slack) / below * ahead,
+            high: (middle + reach + slack) / below * ahead,
+        }
+    });
+    Hull::Ahead(Extent {
+        across,
+        nearest: ahead / (z - radius) * (1.0 + WIDER) * sphere.scale(),
+    })
+}
+
+/// The slopes of a hull lie between those of its corners.
+fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
+    let mut across = [Range {
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+    }; 2];
+    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for corner in corners {
+        let [x, y, z] = corner.each_ref().map(|ball| {
+            let middle = ball.mid.to_f64();
+            Range::about(middle, ball.rad.to_f64() * UP + middle.abs() * WIDER)
+        });
+        least = least.min(z.low);
+        greatest = greatest.max(z.high);
+        for (range, at) in across.iter_mut().zip([x, y]) {
+            let low = at.low / if at.low < 0.0 { z.low } else { z.high };
+            let high = at.high / if at.high < 0.0 { z.high } else { z.low };
+            range.low = range.low.min(low - low.abs() * WIDER);
+            range.high = range.high.max(high + high.abs() * WIDER);
+        }
+    }
+    if greatest < 0.0 {
+        return Hull::Behind;
+    }
+    // Not so where a number was lost.
+    if !(least > LEAST && greatest >= least) {
+        return Hull::Unbounded;
+    }
+    Hull::Ahead(Extent {
+        across: across.map(|range| range.times_power(ahead)),
+        nearest: ahead / least * (1.0 + WIDER),
+    })
+}

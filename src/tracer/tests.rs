@@ -1,0 +1,322 @@
+//! The hierarchy against the plain loop over all objects, in scenes that are hard on its bounds.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3, dvec2, dvec3};
+
+use super::{
+    Spot, World,
+    extent::Extent,
+    object::Object,
+    world::{Level, Precision},
+};
+use crate::{
+    area::Area,
+    math::{Ball, Big},
+    report::numerics::scenes::{SIZE, board, camera, cuboid, scene, sphere, spun, triangle},
+    scene::{Camera, Scene, Shape},
+};
+
+/// Vigna's splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, end: usize) -> usize {
+        (self.bits() % end as u64) as usize
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn vector(&mut self, size: f64) -> DVec3 {
+        let mut one = || self.within(-size, size);
+        dvec3(one(), one(), one())
+    }
+
+    /// From very small to very large.
+    fn length(&mut self) -> f64 {
+        libm::exp2(self.within(-12.0, 4.0))
+    }
+
+    /// An object somewhere around the eye, behind it, about it, or touching it.
+    fn shape(&mut self, eye: DVec3) -> Shape {
+        let at = eye + self.vector(12.0);
+        let size = dvec3(self.length(), self.length(), self.length());
+        match self.below(12) {
+            0 => board(self.within(-3.0, 3.0), self.length()),
+            1 => spun(
+                at,
+                self.vector(1.0),
+                DVec3::splat(size.x),
+                self.within(0.0, 360.0),
+            ),
+            // In the eye's own plane, and about parallel to the rays.
+            2 => triangle(
+                eye + dvec3(1.0, 0.0, -2.0),
+                dvec3(0.0, 1.0, 0.0),
+                DVec3::splat(1.0),
+            ),
+            3 | 4 => triangle(at, self.vector(1.0), dvec3(2.0, 2.0, 1.0) * size.x),
+            5 | 6 => cuboid(at - size, at + size),
+            // The eye in a face's plane, on the surface, and inside.
+            7 => cuboid(dvec3(eye.x, at.y, at.z), dvec3(eye.x, at.y, at.z) + size),
+            8 => sphere(eye + dvec3(0.0, 0.0, -size.x), size.x),
+            9 => sphere(eye + size * 0.25, size.max_element()),
+            _ => sphere(at, size.x),
+        }
+    }
+
+    /// Such objects, some of them twice, in a picture of some pixels.
+    fn scene(&mut self, objects: usize) -> Scene {
+        let eye = self.vector(2.0);
+        let mut shapes: Vec<Shape> = Vec::new();
+        for _ in 0..objects {
+            let shape = match self.below(4) {
+                0 if !shapes.is_empty() => shapes[self.below(shapes.len())],
+                _ => self.shape(eye),
+            };
+            // Most of what hides all the others would leave nothing to decide.
+            let hides = matches!(shape, Shape::Sphere(shape) if shape.radius > 3.0);
+            if !hides || self.below(8) == 0 {
+                shapes.push(shape);
+            }
+        }
+        let clipped = self.below(2) == 0;
+        let camera = Camera {
+            near: if clipped { 1.0 } else { 0.0 },
+            far: clipped.then_some(9.0),
+            ..camera(eye, eye + self.vector(1.0))
+        };
+        scene(camera, &shapes)
+    }
+
+    fn point(&mut self) -> (u32, u32, DVec2) {
+        let pixel = |bits: usize| bits as u32;
+        let offset = dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5));
+        (
+            pixel(self.below(SIZE as usize)),
+            pixel(self.below(SIZE as usize)),
+            offset,
+        )
+    }
+}
+
+/// What is seen at a point by the plain loop over all objects.
+fn plain(world: &World, (x, y, offset): (u32, u32, DVec2)) -> Option<usize> {
+    [Precision::Single, Precision::Double, Precision::Big]
+        .into_iter()
+        .find_map(|precision| world.slot_in(precision, x, y, offset))
+}
+
+/// The pixel and the offset in it of a point of the view plane, if it is in the picture.
+fn point_of(world: &World, at: DVec2) -> Option<(u32, u32, DVec2)> {
+    let pixels = at / world.fast.camera.pitch + f64::from(SIZE) / 2.0;
+    let floor = pixels.floor();
+    let is_within = floor.min_element() >= 0.0 && floor.max_element() < f64::from(SIZE);
+    is_within.then(|| (floor.x as u32, floor.y as u32, pixels - floor - 0.5))
+}
+
+fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
+    let cameras = (world.double_camera(), &world.fast.camera);
+    let objects = scene.objects.iter();
+    objects
+        .map(|object| Object::with_extent(cameras.0, cameras.1, &object.shape).1)
+        .collect()
+}
+
+#[test]
+fn the_hierarchy_changes_nothing() {
+    for seed in 0..60 {
+        let mut random = Random(seed);
+        let scene = random.scene(3 + seed as usize * 4);
+        let world = World::new(&scene);
+        let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
+        // And at the ends of the bounds, where they matter, and within the last bits of them.
+        for Extent { across: [x, y], .. } in extents(&world, &scene).into_iter().flatten() {
+            for _ in 0..2 {
+                let along = |random: &mut Random, low: f64, high: f64| match random.below(3) {
+                    0 => low,
+                    1 => high,
+                    _ => random.within(low.max(-1.0), high.min(1.0)),
+                };
+                let at = dvec2(
+                    along(&mut random, x.low, x.high),
+                    along(&mut random, y.low, y.high),
+                );
+                let nudge = 1.0 + random.within(-8.0, 8.0) * f64::EPSILON;
+                points.extend(point_of(&world, at * nudge));
+            }
+        }
+        for point in points {
+            let (x, y, offset) = point;
+            let found = Some(world.slot_at(x, y, offset));
+            assert_eq!(found, plain(&world, point), "seed {seed}, {point:?}");
+        }
+    }
+}
+
+#[test]
+fn what_a_ray_meets_is_within_bounds() {
+    let mut met = 0;
+    for seed in 0..40 {
+        let mut random = Random(1000 + seed);
+        let scene = random.scene(40);
+        let world = World::new(&scene);
+        let extents = extents(&world, &scene);
+        for _ in 0..40 {
+            let (x, y, offset) = random.point();
+            let point = world.fast.camera.sample_point(x, y, offset);
+            let candidates = world.candidates(&point);
+            assert!(candidates.is_sorted_by(|a, b| a < b));
+            let r = Big::frame(&world).camera.direction(&point);
+            for (index, extent) in extents.iter().enumerate() {
+                let object = Big::object(&world, index);
+                let Ok(Some(crossing)) = object.first(&r) else {
+                    continue;
+                };
+                met += 1;
+                assert!(
+                    candidates.contains(&index),
+                    "seed {seed}: {index} at {point:?}"
+                );
+                let nearest = extent.expect("bounds of what is met").nearest;
+                let is_nearer = nearest < f64::INFINITY
+                    && crossing.inverse_depth.compare(&Ball::exact(nearest))
+                        == Ok(Ordering::Greater);
+                assert!(!is_nearer, "seed {seed}: {index} at {point:?}");
+            }
+        }
+    }
+    assert!(met > 2000, "{met} crossings");
+}
+
+#[test]
+fn bounds_are_tight() {
+    // Of a sphere at the height of the eye, the ends right and left are met at that height; of a box, at a corner.
+    for shape in [
+        sphere(dvec3(0.4, 0.0, -8.0), 0.5),
+        sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),
+        cuboid(dvec3(0.5, -1.0, -9.0), dvec3(1.5, 1.0, -8.0)),
+    ] {
+        let scene = scene(camera(DVec3::ZERO, dvec3(0.0, 0.0, -1.0)), &[shape]);
+        let world = World::new(&scene);
+        let [Some(Extent { across, .. })] = extents(&world, &scene)[..] else {
+            panic!("no bounds of {shape:?}");
+        };
+        let size = across[0].high - across[0].low;
+        for (end, inwards) in [(across[0].low, 1.0), (across[0].high, -1.0)] {
+            for (step, slot) in [(1e-6, 0), (-1e-6, 1)] {
+                let at = dvec2(end + inwards * step * size, 0.0);
+                let (x, y, offset) = point_of(&world, at).expect("a point of the picture");
+                assert_eq!(
+                    plain(&world, (x, y, offset)),
+                    Some(slot),
+                    "{shape:?} at {at}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_seen_in_a_part_is_live_there() {
+    let mut seen = 0;
+    for seed in 0..60 {
+        let mut random = Random(2000 + seed);
+        let scene = random.scene(3 + seed as usize * 4);
+        let world = World::new(&scene);
+        let everything = world.everything();
+        let (mut some, mut all) = (Vec::new(), Vec::new());
+        for _ in 0..20 {
+            let ((x, y, _), (right, bottom, _)) = (random.point(), random.point());
+            let part = Area {
+                x: x.min(right),
+                y: y.min(bottom),
+                width: x.abs_diff(right) % 8 + 1,
+                height: y.abs_diff(bottom) % 8 + 1,
+            };
+            world.live_in(part, &mut some);
+            world.live(part, &everything, &mut all);
+            // The hierarchy's bounds may leave out more, but nothing else comes in.
+            let places: Vec<_> = some.iter().map(|live| live.object).collect();
+            assert!(places.is_sorted_by(|a, b| a < b));
+            assert!(
+                places
+                    .iter()
+                    .all(|place| all.iter().any(|live| live.object == *place))
+            );
+            for (x, y) in part.iter() {
+                let spot = Spot::pixel(x, y);
+                let at = dvec2(random.within(-0.5, 0.5), random.within(-0.5, 0.5));
+                let expected = world.object_at(spot, at, &everything);
+                assert_eq!(
+                    world.object_at(spot, at, &some),
+                    expected,
+                    "seed {seed}: {part:?}"
+                );
+                seen += usize::from(expected.is_some());
+            }
+        }
+    }
+    assert!(seen > 1000, "{seen} points show an object");
+}
+
+#[test]
+fn very_many_objects() {
+    // Enough that several threads divide them, all over the picture and many in one place.
+    let eye = DVec3::ZERO;
+    let mut random = Random(1);
+    let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);
+    let template = stage.objects.remove(0);
+    for index in 0..40_000 {
+        let depth = random.within(1.0, 10.0);
+        let spread = if index % 2 == 0 { 0.5 } else { 1e-9 };
+        let at = dvec3(
+            random.within(-spread, spread),
+            random.within(-spread, spread),
+            -1.0,
+        );
+        let radius = random.within(0.001, 0.01) * spread;
+        let mut object = template.clone();
+        object.shape = sphere(at * depth, radius * depth);
+        stage.objects.push(object);
+    }
+    // Each has its own colour.
+    for (index, object) in stage.objects.iter_mut().enumerate() {
+        if let Shape::Sphere(sphere) = &mut object.shape {
+            sphere.color.srgb[0] = index as f64 / 256.0;
+        }
+    }
+    let world = World::new(&stage);
+    assert!(
+        world.bytes_per_object() <= 200.0,
+        "{} bytes",
+        world.bytes_per_object()
+    );
+    assert!(
+        size_of::<Object<f64>>() <= 96,
+        "a sphere takes what it needs"
+    );
+    let mut seen = 0;
+    for number in 0..400 {
+        let mut point = random.point();
+        if number % 4 == 0 {
+            // A cluster that is far smaller than a pixel, about the corner of the middle ones.
+            let (x, y) = (random.within(-1e-9, 1e-9), random.within(-1e-9, 1e-9));
+            point = point_of(&world, dvec2(x, y)).expect("the middle of the picture");
+        }
+        let (x, y, offset) = point;
+        let found = world.slot_at(x, y, offset);
+        assert_eq!(Some(found), plain(&world, point), "{point:?}");
+        seen += usize::from(found + 1 < world.palette().len());
+    }
+    assert!(seen > 100, "{seen} points show a sphere");
+}
