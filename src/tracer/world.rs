@@ -144,6 +144,11 @@ impl World {
         self.slots[object]
     }
 
+    /// The slot of the background's colour.
+    pub fn background(&self) -> usize {
+        self.palette.len() - 1
+    }
+
     /// How many objects there are.
     pub fn len(&self) -> usize {
         self.shapes.len()
@@ -366,7 +371,7 @@ impl World {
     #[inline]
     fn slot(&self, seen: Option<Seen>) -> usize {
         match seen {
-            None => self.palette.len() - 1,
+            None => self.background(),
             Some(seen) => self.slots[seen.object][usize::from(seen.odd)],
         }
     }

@@ -1,0 +1,111 @@
+//! The picture cut into parts that show one colour for certain, and pixels of which that is not known.
+//!
+//! Sampled and exact pictures share it: what is certain of a part is so for every ray through it, and for every decision about
+//! one.
+
+use std::ops::ControlFlow;
+
+use glam::DVec2;
+
+use super::{outlook::Live, world::World};
+use crate::area::Area;
+
+/// Cuts the parts of one picture.
+#[derive(Debug)]
+pub struct Quartering<'a> {
+    world: &'a World,
+    everything: Vec<Live>,
+}
+
+/// A part of the picture.
+#[derive(Clone, Copy, Debug)]
+pub enum Part<'a> {
+    /// One colour is seen in all of it.
+    Flat {
+        /// Where it lies.
+        area: Area,
+        /// The colour's slot in the palette.
+        slot: usize,
+    },
+    /// A pixel in which more than one colour may be seen.
+    Open {
+        /// Its column.
+        x: u32,
+        /// Its row.
+        y: u32,
+        /// The objects that may be seen there, in file order.
+        live: &'a [Live],
+    },
+}
+
+/// The candidates at each depth of the quartering, kept from tile to tile for their room.
+#[derive(Debug, Default)]
+pub struct Room(Vec<Vec<Live>>);
+
+impl<'a> Quartering<'a> {
+    /// For a prepared scene.
+    pub fn new(world: &'a World) -> Self {
+        Self {
+            world,
+            everything: world.everything(),
+        }
+    }
+
+    /// Shows `visit` the parts of an area, until it has seen enough. They cover the area, and each pixel once.
+    pub fn parts(
+        &self,
+        area: Area,
+        room: &mut Room,
+        visit: &mut impl FnMut(Part) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.quarter(area, &self.everything, 0, room, visit)
+    }
+
+    fn quarter(
+        &self,
+        area: Area,
+        among: &[Live],
+        depth: usize,
+        room: &mut Room,
+        visit: &mut impl FnMut(Part) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if room.0.len() <= depth {
+            room.0.push(Vec::new());
+        }
+        let mut live = std::mem::take(&mut room.0[depth]);
+        self.world.live(area, among, &mut live);
+        let flow = if let Some(slot) = self.only_slot(area, &live) {
+            visit(Part::Flat { area, slot })
+        } else if area.pixels() == 1 {
+            visit(Part::Open {
+                x: area.x,
+                y: area.y,
+                live: &live,
+            })
+        } else {
+            area.quarters()
+                .try_for_each(|quarter| self.quarter(quarter, &live, depth + 1, room, visit))
+        };
+        room.0[depth] = live;
+        flow
+    }
+
+    /// The only colour in an area, if it is certain that there is but one.
+    fn only_slot(&self, area: Area, live: &[Live]) -> Option<usize> {
+        let world = self.world;
+        match live {
+            [] => Some(world.background()),
+            [only] if only.is_whole => {
+                let [first, second] = world.slots(only.object);
+                if first == second {
+                    Some(first)
+                } else if world.is_one_square(area, only.object) {
+                    Some(world.slot_at(area.x, area.y, DVec2::ZERO))
+                } else {
+                    None
+                }
+            }
+            _ => None,
+        }
+    }
+}
