@@ -41,13 +41,12 @@ pub struct Film {
 impl Film {
     /// A black picture, if the memory for it is there.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
-        let mut pixels = Vec::new();
-        let count = memory::reserve(&mut pixels, width, height)?;
-        pixels.resize(count, [0.0; 3]);
+        let count = memory::reserve(&mut Vec::<[f64; 3]>::new(), width, height)?;
+        // The system has zeros at hand, so that a page is touched only when something is put there.
         Ok(Self {
             width,
             height,
-            pixels,
+            pixels: vec![[0.0; 3]; count],
         })
     }
 
@@ -141,7 +140,12 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
             *sum = sum.plus(&two_product(count as f64, channel));
         }
     }
-    sums.map(|sum| sum.over(&Double::from_f64(samples as f64)).to_f64())
+    let count = samples as f64;
+    if samples.is_power_of_two() {
+        // As the division below has it, which is then exact.
+        return sums.map(|sum| sum.to_f64() / count);
+    }
+    sums.map(|sum| sum.over(&Double::from_f64(count)).to_f64())
 }
 
 #[cfg(test)]

@@ -60,27 +60,43 @@ fn pascal(mut bits: u64) -> u64 {
 /// The scrambling of one axis of one pixel.
 struct Tree {
     key: Key,
-    /// The flips of the topmost levels.
-    top: u64,
     depth: u32,
+    /// How many levels the first hash decides.
+    levels: u32,
+    /// What becomes of the bits on them.
+    top: [u8; 1 << LEVELS],
 }
 
 impl Tree {
     fn new(key: Key, depth: u32) -> Self {
+        let levels = depth.min(LEVELS);
+        let flips = key.bits(1);
+        let mut top = [0; 1 << LEVELS];
+        for level in 0..levels {
+            // Each node makes way for its two children, from the last on.
+            for node in (0..1 << level).rev() {
+                let scrambled = top[node] << 1;
+                let flip = (flips >> (1 << level | node) & 1) as u8;
+                (top[2 * node], top[2 * node + 1]) = (scrambled | flip, scrambled | (flip ^ 1));
+            }
+        }
         Self {
             key,
-            top: key.bits(1),
             depth,
+            levels,
+            top,
         }
     }
 
     /// Scrambles a fraction, in units of 2^−64.
+    #[inline]
     fn scramble(&self, fraction: u64) -> u64 {
-        let mut scrambled = 0;
-        let mut flips = self.top;
-        let mut above = 0;
-        loop {
-            // A node is named by the bits that lead to it, behind a one.
+        // A node is named by the bits that lead to it, behind a one.
+        let mut above = self.levels;
+        let part = high_bits(fraction, above);
+        let mut scrambled = u64::from(self.top[part as usize]);
+        let mut flips = self.key.bits(1 << above | part);
+        while above < self.depth {
             let levels = (self.depth - above).min(LEVELS);
             let below = above + levels;
             let part = high_bits(fraction << above, levels);
@@ -88,9 +104,6 @@ impl Tree {
             let node = 1 << below | high_bits(fraction, below);
             flips = self.key.bits(node);
             above = below;
-            if above == self.depth {
-                break;
-            }
         }
         // The remaining bits of a point are its own, so the last hash has them all.
         match self.depth {

@@ -5,8 +5,6 @@
 
 use std::ops::ControlFlow;
 
-use glam::DVec2;
-
 use super::{outlook::Live, world::World};
 use crate::area::Area;
 
@@ -99,10 +97,9 @@ impl<'a> Quartering<'a> {
                 let [first, second] = world.slots(only.object);
                 if first == second {
                     Some(first)
-                } else if world.is_one_square(area, only.object) {
-                    Some(world.slot_at(area.x, area.y, DVec2::ZERO))
                 } else {
-                    None
+                    let odd = world.only_square(area, only.object)?;
+                    Some(if odd { second } else { first })
                 }
             }
             _ => None,

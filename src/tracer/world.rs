@@ -9,6 +9,7 @@ use super::{
     crossing::{Crossing, Part},
     form::Form,
     object::Object,
+    outlook::Live,
 };
 use crate::{
     color::Color,
@@ -128,6 +129,23 @@ impl World {
         }
     }
 
+    /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may be seen.
+    pub fn slot_among<'a>(
+        &self,
+        x: u32,
+        y: u32,
+        offset: DVec2,
+        among: impl Iterator<Item = &'a Live> + Clone,
+    ) -> usize {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        let among = || among.clone().map(|live| live.object);
+        let seen = self.seen_among::<f64>(&point, among());
+        let seen = seen.or_else(|Doubt| self.seen_among::<Double>(&point, among()));
+        let seen = seen.or_else(|Doubt| self.seen_among::<Big>(&point, among()));
+        // The last precision is never in doubt.
+        self.slot(seen.unwrap_or_default())
+    }
+
     /// What [`slot_at`](World::slot_at) answers in one precision alone, or `None` if that is in doubt.
     pub fn slot_in(&self, precision: Precision, x: u32, y: u32, offset: DVec2) -> Option<usize> {
         let point = self.fast.camera.sample_point(x, y, offset);
@@ -236,10 +254,32 @@ impl World {
         self.seen_in_direction(&T::frame(self).camera.direction(point))
     }
 
+    #[inline]
+    fn seen_among<T: Level>(
+        &self,
+        point: &Point,
+        among: impl Iterator<Item = usize>,
+    ) -> Result<Option<Seen>, Doubt> {
+        let r = T::frame(self).camera.direction(point);
+        let nearest = self.nearest(&r, among)?;
+        self.with_color(&r, nearest)
+    }
+
     /// The nearest crossing between the near and the far plane; of equal ones the object's that comes first in the file.
     #[inline]
     fn seen_in_direction<T: Level>(&self, r: &Direction<T>) -> Result<Option<Seen>, Doubt> {
-        let Some((index, second)) = self.nearest(r, 0..self.shapes.len())? else {
+        let nearest = self.nearest(r, 0..self.shapes.len())?;
+        self.with_color(r, nearest)
+    }
+
+    /// Adds which of an object's colours is seen.
+    #[inline]
+    fn with_color<T: Level>(
+        &self,
+        r: &Direction<T>,
+        nearest: Option<(usize, bool)>,
+    ) -> Result<Option<Seen>, Doubt> {
+        let Some((index, second)) = nearest else {
             return Ok(None);
         };
         let odd = T::object(self, index).is_odd(r)?;
