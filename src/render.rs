@@ -37,6 +37,10 @@ const TILE_SAMPLES: u64 = 1 << 18;
 /// A pixel's samples are taken so many at a time; a pixel with more is shared by the threads.
 const CHUNK: u64 = 1 << 12;
 
+/// Up to so many samples a pixel, so many pixels are traced rather than looked at one by one.
+const FEW: u64 = 2;
+const GRAIN: u64 = 4;
+
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
 const THREADS: usize = 1024;
 
@@ -115,13 +119,17 @@ pub fn render_in_a_way(
         .iter()
         .map(|color| color.to_linear())
         .collect();
+    let grain = match sampling.samples_per_pixel() {
+        0..=FEW => GRAIN,
+        _ => 1,
+    };
     let frame = Frame {
         world,
         sampling,
         colors: &colors,
         control,
         way,
-        quartering: Quartering::new(world),
+        quartering: Quartering::new(world).down_to(grain),
         everything: world.everything(),
     };
     let side = tile_side(sampling, part);

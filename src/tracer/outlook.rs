@@ -93,7 +93,7 @@ impl World {
             object,
             is_whole: false,
             inverse_depth: Range::ALL,
-            is_cut: false,
+            is_cut: self.fast.near.is_some(),
         };
         (0..self.len()).map(live).collect()
     }

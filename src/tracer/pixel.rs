@@ -294,8 +294,15 @@ impl World {
         };
         let here = Here::new(&f64::frame(self).camera, part);
         let squares = Squares::new(board, &here);
-        let [(x0, x1), (z0, z1)] = squares.ranges()?;
-        (x0 == x1 && z0 == z1).then(|| squares.odd ^ is_odd(x0) ^ is_odd(z0))
+        let mut odd = squares.odd;
+        for across in &squares.across {
+            let (first, last) = squares.range(across)?;
+            if first != last {
+                return None;
+            }
+            odd ^= is_odd(first);
+        }
+        Some(odd)
     }
 
     /// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of the palette, each any number
@@ -661,27 +668,28 @@ impl Squares {
         }
     }
 
-    /// From which to which square there are any in the pixel, in x and in z: perhaps one more than there are. `None` if that is not
-    /// certain.
+    /// From which to which square there are any in the pixel, in x and in z.
     fn ranges(&self) -> Option<[(f64, f64); 2]> {
+        let [x, z] = &self.across;
+        Some([self.range(x)?, self.range(z)?])
+    }
+
+    /// The same along one axis: perhaps one square more than there are. `None` if that is not certain.
+    fn range(&self, across: &Local) -> Option<(f64, f64)> {
         const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
         let least = self.below.factors[2] - self.below.spread() * UP;
         if least <= 4.0 * self.below.rad {
             return None;
         }
-        let range = |across: &Local| {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            // A ratio of linear forms is the greatest and the least at corners.
-            for (x, y) in CORNERS {
-                let value = across.at(x, y) / self.below.at(x, y);
-                (low, high) = (low.min(value), high.max(value));
-            }
-            let size = low.abs().max(high.abs());
-            let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
-            (slack < 0.25).then(|| ((low - slack).floor(), (high + slack).floor()))
-        };
-        let [x, z] = &self.across;
-        Some([range(x)?, range(z)?])
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        // A ratio of linear forms is the greatest and the least at corners.
+        for (x, y) in CORNERS {
+            let value = across.at(x, y) / self.below.at(x, y);
+            (low, high) = (low.min(value), high.max(value));
+        }
+        let size = low.abs().max(high.abs());
+        let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
+        (slack < 0.25).then(|| ((low - slack).floor(), (high + slack).floor()))
     }
 }
 

@@ -13,6 +13,8 @@ use crate::area::Area;
 pub struct Quartering<'a> {
     world: &'a World,
     everything: Vec<Live>,
+    /// Parts of so few pixels are not cut.
+    grain: u64,
 }
 
 /// A part of the picture.
@@ -25,7 +27,7 @@ pub enum Part<'a> {
         /// The colour's slot in the palette.
         slot: usize,
     },
-    /// A pixel in which more than one colour may be seen.
+    /// A pixel in which more than one colour may be seen; or one of a few together in which that is so.
     Open {
         /// Its column.
         x: u32,
@@ -46,6 +48,15 @@ impl<'a> Quartering<'a> {
         Self {
             world,
             everything: world.everything(),
+            grain: 1,
+        }
+    }
+
+    /// The same, but parts of so few pixels are not cut any more: it would cost more than it saves.
+    pub fn down_to(self, pixels: u64) -> Self {
+        Self {
+            grain: pixels,
+            ..self
         }
     }
 
@@ -74,12 +85,9 @@ impl<'a> Quartering<'a> {
         self.world.live(area, among, &mut live);
         let flow = if let Some(slot) = self.only_slot(area, &live) {
             visit(Part::Flat { area, slot })
-        } else if area.pixels() == 1 {
-            visit(Part::Open {
-                x: area.x,
-                y: area.y,
-                live: &live,
-            })
+        } else if area.pixels() <= self.grain {
+            area.iter()
+                .try_for_each(|(x, y)| visit(Part::Open { x, y, live: &live }))
         } else {
             area.quarters()
                 .try_for_each(|quarter| self.quarter(quarter, &live, depth + 1, room, visit))
