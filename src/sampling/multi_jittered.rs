@@ -49,37 +49,18 @@ impl MultiJittered {
         }
         let sigma = Shuffle::new(self.rows, key.part(0));
         let tau = Shuffle::new(self.columns, key.part(1));
-        let mut index = range.start;
-        while index < range.end {
-            // The cells of one row.
-            let (first, j) = (index % self.columns, index / self.columns);
-            let cells = (self.columns - first).min(range.end - index);
-            let (sigma, row) = (sigma.get(j), j * self.columns);
-            let point = |i: u64, tau: u64, index: u64| {
-                DVec2::new(
-                    self.strata
-                        .choose(i * self.rows + sigma, key.bits(2 * index)),
-                    self.strata.choose(row + tau, key.bits(2 * index + 1)),
-                )
-            };
-            match tau.entries() {
-                Some(entries) => {
-                    let entries = &entries[first as usize..(first + cells) as usize];
-                    let numbers = (first..).zip(index..);
-                    out.extend(
-                        entries
-                            .iter()
-                            .zip(numbers)
-                            .map(|(&tau, (i, index))| point(i, u64::from(tau), index)),
-                    );
-                }
-                None => out.extend(
-                    (first..first + cells)
-                        .zip(index..)
-                        .map(|(i, index)| point(i, tau.get(i), index)),
-                ),
+        let (mut i, mut j) = (range.start % self.columns, range.start / self.columns);
+        out.extend(range.map(|index| {
+            let column = i * self.rows + sigma.get(j);
+            let row = j * self.columns + tau.get(i);
+            i += 1;
+            if i == self.columns {
+                (i, j) = (0, j + 1);
             }
-            index += cells;
-        }
+            DVec2::new(
+                self.strata.choose(column, key.bits(2 * index)),
+                self.strata.choose(row, key.bits(2 * index + 1)),
+            )
+        }));
     }
 }

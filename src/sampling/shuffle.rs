@@ -40,15 +40,6 @@ impl Shuffle {
         }
     }
 
-    /// All entries, where they are stored; perhaps more than there are.
-    pub fn entries(&self) -> Option<&[u16]> {
-        match self {
-            Self::Short(entries) => Some(entries),
-            Self::Stored(entries) => Some(entries),
-            Self::Hashed { .. } => None,
-        }
-    }
-
     /// The entry at `index` < n.
     #[inline]
     pub fn get(&self, index: u64) -> u64 {
