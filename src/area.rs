@@ -26,6 +26,16 @@ impl Area {
         }
     }
 
+    /// A single pixel.
+    pub fn pixel(x: u32, y: u32) -> Self {
+        Self {
+            x,
+            y,
+            width: 1,
+            height: 1,
+        }
+    }
+
     /// How many pixels it has.
     pub fn pixels(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)

@@ -24,7 +24,7 @@
 //! - [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
 //!   resolved.
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
-//!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see.
+//!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
 //!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
@@ -46,6 +46,7 @@ pub mod sampling;
 
 pub mod exact;
 
+pub mod refine;
 pub mod render;
 
 pub mod film;

@@ -3,9 +3,13 @@
 //! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the means of its pixels. The part is
 //! cut into tiles, which the threads take as they come. A pixel's samples are counted by colour, and counts know no order: neither the
 //! number of threads nor the tiles nor the part asked for can change a bit of a pixel.
+//!
+//! Where it is certain that one colour is seen, samples are neither placed nor traced: the mean of equal colours is that colour. In the
+//! other pixels they are traced many at a time, and against those objects alone that may be seen there.
 
 use std::{
     num::NonZero,
+    ops::ControlFlow,
     sync::{
         Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -21,17 +25,21 @@ use crate::{
     exact::Integrator,
     film::{Film, TooLarge, mean},
     sampling::Sampling,
-    tracer::World,
+    tracer::{Live, Part, Pixel, Quartering, Room, World},
 };
 
 /// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
 const TILE: u32 = 64;
 
 /// A tile has about so many samples, where that takes fewer pixels.
-const TILE_SAMPLES: u64 = 1 << 17;
+const TILE_SAMPLES: u64 = 1 << 18;
 
 /// A pixel's samples are taken so many at a time; a pixel with more is shared by the threads.
 const CHUNK: u64 = 1 << 12;
+
+/// Up to so many samples a pixel, so many pixels are traced rather than looked at one by one.
+const FEW: u64 = 2;
+const GRAIN: u64 = 4;
 
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
 const THREADS: usize = 1024;
@@ -44,6 +52,17 @@ pub struct Control<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
+}
+
+/// How samples are traced. All ways make the same picture, to the bit: the slower ones are there to be compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// None where one colour is certain, else many at a time, against what may be seen in their pixel.
+    Culled,
+    /// All of them, many at a time, against all objects.
+    Together,
+    /// All of them, one by one, against all objects.
+    OneByOne,
 }
 
 /// Why there is no picture.
@@ -83,24 +102,42 @@ pub fn render(
     part: Area,
     control: &Control,
 ) -> Result<Film, RenderError> {
+    render_in_a_way(world, sampling, part, control, Way::Culled)
+}
+
+/// The same, for tests and measurements of how it is done.
+pub fn render_in_a_way(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+    way: Way,
+) -> Result<Film, RenderError> {
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors: Vec<_> = world
         .palette()
         .iter()
         .map(|color| color.to_linear())
         .collect();
+    let grain = match sampling.samples_per_pixel() {
+        0..=FEW => GRAIN,
+        _ => 1,
+    };
     let frame = Frame {
         world,
         sampling,
         colors: &colors,
         control,
+        way,
+        quartering: Quartering::new(world).down_to(grain),
+        everything: world.everything(),
     };
     let side = tile_side(sampling, part);
     pool(control.threads)?.install(|| {
         part.tiles(side).par_bridge().for_each_init(
-            || Tally::new(colors.len()),
-            |tally, tile| {
-                let Some(pixels) = frame.tile(tile, tally) else {
+            || (Tally::new(colors.len()), Room::default()),
+            |(tally, room), tile| {
+                let Some(pixels) = frame.tile(tile, tally, room) else {
                     return;
                 };
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
@@ -159,8 +196,9 @@ pub(crate) fn pool(
 fn tile_side(sampling: &Sampling, part: Area) -> u32 {
     let samples = sampling.samples_per_pixel().max(1);
     let pixels = (TILE_SAMPLES / samples).min(part.pixels() / 64).max(1);
-    // A square root of a number that fits.
-    (pixels.isqrt() as u32).min(TILE)
+    // A square root of a number that fits; and a power of two, whose quarters are squares.
+    let side = (pixels.isqrt() as u32).min(TILE);
+    1 << side.ilog2()
 }
 
 /// What all tiles have in common.
@@ -170,32 +208,72 @@ struct Frame<'a> {
     /// Of the palette, in linear light.
     colors: &'a [[f64; 3]],
     control: &'a Control<'a>,
+    way: Way,
+    quartering: Quartering<'a>,
+    /// For the ways that cull nothing.
+    everything: Vec<Live>,
 }
 
 impl Frame<'_> {
     /// The pixels of a tile, row by row; none once the render is cancelled.
-    fn tile(&self, tile: Area, tally: &mut Tally) -> Option<Vec<[f64; 3]>> {
-        let counts = self.sampling.counts(tile);
-        let mut unreported = 0;
-        let mut pixels = Vec::with_capacity(counts.len());
-        for ((x, y), samples) in tile.iter().zip(counts) {
+    fn tile(&self, tile: Area, tally: &mut Tally, room: &mut Room) -> Option<Vec<[f64; 3]>> {
+        let background = self.colors[self.world.background()];
+        let mut film = Tile {
+            area: tile,
+            samples: self.sampling.counts(tile),
+            // A pixel without a sample shows the background.
+            pixels: vec![background; tile.pixels() as usize],
+            unreported: 0,
+        };
+        let mut visit = |part: Part| {
             if self.control.cancel.load(Ordering::Relaxed) {
-                return None;
+                return ControlFlow::Break(());
             }
-            if samples <= CHUNK {
-                self.chunk(x, y, samples, 0, tally);
-                unreported += samples;
-            } else {
-                self.many(x, y, samples, tally);
+            match part {
+                Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
+                Part::Open { x, y, live } => self.pixel(x, y, live, &mut film, tally),
             }
-            pixels.push(self.finish(tally));
+            ControlFlow::Continue(())
+        };
+        let flow = match self.way {
+            Way::Culled => self.quartering.parts(tile, room, &mut visit),
+            Way::Together | Way::OneByOne => tile.iter().try_for_each(|(x, y)| {
+                visit(Part::Open {
+                    x,
+                    y,
+                    live: &self.everything,
+                })
+            }),
+        };
+        (self.control.progress)(film.unreported);
+        flow.is_continue().then_some(film.pixels)
+    }
+
+    /// Takes the samples of a pixel.
+    fn pixel(&self, x: u32, y: u32, live: &[Live], film: &mut Tile, tally: &mut Tally) {
+        let index = film.area.index(x, y);
+        let samples = film.samples[index];
+        if samples == 0 {
+            return;
         }
-        (self.control.progress)(unreported);
-        Some(pixels)
+        if samples <= CHUNK {
+            self.look(x, y, live, &mut tally.pixel);
+            self.chunk(x, y, samples, 0, tally);
+            film.unreported += samples;
+        } else {
+            self.many(x, y, samples, live, tally);
+        }
+        film.pixels[index] = self.finish(&mut tally.counts);
+    }
+
+    fn look(&self, x: u32, y: u32, live: &[Live], pixel: &mut Pixel) {
+        if self.way != Way::OneByOne {
+            self.world.look(x, y, live, pixel);
+        }
     }
 
     /// All samples of a pixel that has many, on all threads.
-    fn many(&self, x: u32, y: u32, samples: u64, tally: &mut Tally) {
+    fn many(&self, x: u32, y: u32, samples: u64, live: &[Live], tally: &mut Tally) {
         // A few thousand chunks at a time, so that what is gathered from the threads stays small.
         const BATCH: u64 = CHUNK << 10;
         let mut first = 0;
@@ -206,7 +284,11 @@ impl Frame<'_> {
             let sums = (0..chunks)
                 .into_par_iter()
                 .fold(
-                    || Tally::new(slots),
+                    || {
+                        let mut tally = Tally::new(slots);
+                        self.look(x, y, live, &mut tally.pixel);
+                        tally
+                    },
                     |mut tally, chunk| {
                         if !self.control.cancel.load(Ordering::Relaxed) {
                             self.chunk(x, y, samples, first + chunk * CHUNK, &mut tally);
@@ -214,12 +296,13 @@ impl Frame<'_> {
                         tally
                     },
                 )
+                .map(|tally| tally.counts)
                 .reduce(
-                    || Tally::new(0),
+                    || Counts::new(0),
                     |a, b| if a.seen.is_empty() { b } else { a.plus(&b) },
                 );
             for &slot in &sums.seen {
-                tally.add(slot, sums.counts[slot]);
+                tally.counts.add(slot, sums.of[slot]);
             }
             (self.control.progress)(end - first);
             first = end;
@@ -229,40 +312,72 @@ impl Frame<'_> {
     /// Counts up to [`CHUNK`] samples of a pixel that has `samples`, from the one with index `first` on.
     fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, tally: &mut Tally) {
         let end = samples.min(first + CHUNK);
-        let mut points = std::mem::take(&mut tally.points);
+        let Tally {
+            counts,
+            pixel,
+            points,
+        } = tally;
         points.clear();
-        self.sampling.points(x, y, samples, first..end, &mut points);
-        for &offset in &points {
-            tally.add(self.world.slot_at(x, y, offset), 1);
+        self.sampling.points(x, y, samples, first..end, points);
+        if self.way == Way::OneByOne {
+            for &offset in &*points {
+                counts.add(self.world.slot_at(x, y, offset), 1);
+            }
+        } else {
+            self.world
+                .count(pixel, points, |slot, samples| counts.add(slot, samples));
         }
-        tally.points = points;
     }
 
-    /// The mean of what was counted, which is forgotten. A pixel without a sample shows the background.
-    fn finish(&self, tally: &mut Tally) -> [f64; 3] {
-        let color = match tally.seen.as_mut_slice() {
-            [] => *self.colors.last().unwrap_or(&[0.0; 3]),
+    /// The mean of what was counted, which is forgotten.
+    fn finish(&self, counts: &mut Counts) -> [f64; 3] {
+        let color = match counts.seen.as_mut_slice() {
             [slot] => self.colors[*slot],
             slots => {
                 slots.sort_unstable();
                 mean(
                     slots
                         .iter()
-                        .map(|&slot| (tally.counts[slot], self.colors[slot])),
+                        .map(|&slot| (counts.of[slot], self.colors[slot])),
                 )
             }
         };
-        tally.clear();
+        counts.clear();
         color
     }
 }
 
-/// How often each colour was seen in a pixel.
+/// The pixels of a tile, row by row.
+struct Tile {
+    area: Area,
+    /// How many samples each has.
+    samples: Vec<u64>,
+    pixels: Vec<[f64; 3]>,
+    /// How many samples are done that progress has not been told of.
+    unreported: u64,
+}
+
+impl Tile {
+    /// Fills a part with the mean of samples that all see one colour.
+    fn fill(&mut self, part: Area, color: [f64; 3]) {
+        for y in part.y..part.y + part.height {
+            let start = self.area.index(part.x, y);
+            let row = start..start + part.width as usize;
+            for (pixel, &samples) in self.pixels[row.clone()].iter_mut().zip(&self.samples[row]) {
+                if samples > 0 {
+                    *pixel = color;
+                }
+                self.unreported += samples;
+            }
+        }
+    }
+}
+
+/// What a thread counts with.
 struct Tally {
-    /// By slot of the palette.
-    counts: Vec<u64>,
-    /// The slots whose count is not 0, in any order. A palette may be long, and a pixel sees little of it.
-    seen: Vec<usize>,
+    counts: Counts,
+    /// The pixel, prepared.
+    pixel: Pixel,
     /// Room for the points.
     points: Vec<DVec2>,
 }
@@ -270,29 +385,46 @@ struct Tally {
 impl Tally {
     fn new(slots: usize) -> Self {
         Self {
-            counts: vec![0; slots],
-            seen: Vec::new(),
+            counts: Counts::new(slots),
+            pixel: Pixel::default(),
             points: Vec::new(),
+        }
+    }
+}
+
+/// How often each colour was seen in a pixel.
+struct Counts {
+    /// By slot of the palette.
+    of: Vec<u64>,
+    /// The slots whose count is not 0, in any order. A palette may be long, and a pixel sees little of it.
+    seen: Vec<usize>,
+}
+
+impl Counts {
+    fn new(slots: usize) -> Self {
+        Self {
+            of: vec![0; slots],
+            seen: Vec::new(),
         }
     }
 
     fn add(&mut self, slot: usize, count: u64) {
-        if self.counts[slot] == 0 {
+        if self.of[slot] == 0 {
             self.seen.push(slot);
         }
-        self.counts[slot] += count;
+        self.of[slot] += count;
     }
 
     fn plus(mut self, other: &Self) -> Self {
         for &slot in &other.seen {
-            self.add(slot, other.counts[slot]);
+            self.add(slot, other.of[slot]);
         }
         self
     }
 
     fn clear(&mut self) {
         for slot in self.seen.drain(..) {
-            self.counts[slot] = 0;
+            self.of[slot] = 0;
         }
     }
 }

@@ -29,11 +29,14 @@ mod sweep;
 mod tests;
 mod track;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use crate::{
     area::Area,
-    tracer::{Curve, Live, Spot, World},
+    tracer::{Curve, Live, Part, Quartering, Room, Spot, World},
 };
 
 use self::{
@@ -60,18 +63,16 @@ pub struct Pixel {
 #[derive(Debug)]
 pub struct Integrator<'a> {
     world: &'a World,
+    quartering: Quartering<'a>,
     /// Of the palette, in linear light.
     colors: Vec<[f64; 3]>,
 }
 
-/// Room for what a tile needs, kept from tile to tile.
-#[derive(Debug)]
-struct Scratch<'a> {
-    /// The candidates at each depth of the quartering.
-    live: Vec<Vec<Live>>,
+/// Room for what a pixel needs, kept from pixel to pixel.
+#[derive(Debug, Default)]
+struct Scratch {
     curves: Vec<Curve>,
     sides: Sides,
-    cancel: &'a AtomicBool,
 }
 
 impl<'a> Integrator<'a> {
@@ -79,6 +80,7 @@ impl<'a> Integrator<'a> {
     pub fn new(world: &'a World) -> Self {
         Self {
             world,
+            quartering: Quartering::new(world),
             colors: world
                 .palette()
                 .iter()
@@ -97,57 +99,22 @@ impl<'a> Integrator<'a> {
             part,
             pixels: vec![black; part.pixels() as usize],
         };
-        let mut scratch = Scratch {
-            live: Vec::new(),
-            curves: Vec::new(),
-            sides: Sides::default(),
-            cancel,
-        };
-        let mut live = Vec::new();
-        self.world.live_in(part, &mut live);
-        self.fill(part, &live, 0, &mut scratch, &mut film);
-        (!cancel.load(Ordering::Relaxed)).then_some(film.pixels)
-    }
-
-    /// Fills a part of the picture, given the objects that may be seen there.
-    fn fill(
-        &self,
-        part: Area,
-        live: &[Live],
-        depth: usize,
-        scratch: &mut Scratch,
-        film: &mut Film,
-    ) {
-        if scratch.cancel.load(Ordering::Relaxed) {
-            return;
-        }
-        match live {
-            [] => film.fill(part, self.colors[self.colors.len() - 1]),
-            [only] if only.is_whole && self.is_one_color(part, *only) => {
-                let slot = self.world.slot_at(part.x, part.y, glam::DVec2::ZERO);
-                film.fill(part, self.colors[slot]);
+        let mut scratch = Scratch::default();
+        let mut room = Room::default();
+        let flow = self.quartering.parts(part, &mut room, &mut |part| {
+            if cancel.load(Ordering::Relaxed) {
+                return ControlFlow::Break(());
             }
-            _ if part.width == 1 && part.height == 1 => {
-                let spot = Spot::pixel(part.x, part.y);
-                film.set(part, self.mean(self.shares(spot, live, scratch)));
-            }
-            _ => {
-                if scratch.live.len() <= depth {
-                    scratch.live.push(Vec::new());
+            match part {
+                Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
+                Part::Open { x, y, live } => {
+                    let shares = self.shares(Spot::pixel(x, y), live, &mut scratch);
+                    film.set(x, y, self.mean(shares));
                 }
-                let mut below = std::mem::take(&mut scratch.live[depth]);
-                for quarter in part.quarters() {
-                    self.world.live(quarter, live, &mut below);
-                    self.fill(quarter, &below, depth + 1, scratch, film);
-                }
-                scratch.live[depth] = below;
             }
-        }
-    }
-
-    fn is_one_color(&self, part: Area, live: Live) -> bool {
-        let [first, second] = self.world.slots(live.object);
-        first == second || self.world.is_one_square(part, live.object)
+            ControlFlow::Continue(())
+        });
+        (flow.is_continue() && !cancel.load(Ordering::Relaxed)).then_some(film.pixels)
     }
 
     /// The shares of a spot; of its quarters together where the whole is not computed well enough.
@@ -223,8 +190,8 @@ impl Film {
         }
     }
 
-    fn set(&mut self, part: Area, pixel: Pixel) {
-        let index = self.part.index(part.x, part.y);
+    fn set(&mut self, x: u32, y: u32, pixel: Pixel) {
+        let index = self.part.index(x, y);
         self.pixels[index] = pixel;
     }
 }

@@ -41,13 +41,12 @@ pub struct Film {
 impl Film {
     /// A black picture, if the memory for it is there.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
-        let mut pixels = Vec::new();
-        let count = memory::reserve(&mut pixels, width, height)?;
-        pixels.resize(count, [0.0; 3]);
+        let count = memory::reserve(&mut Vec::<[f64; 3]>::new(), width, height)?;
+        // The system has zeros at hand, so that a page is touched only when something is put there.
         Ok(Self {
             width,
             height,
-            pixels,
+            pixels: vec![[0.0; 3]; count],
         })
     }
 
@@ -141,7 +140,25 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
             *sum = sum.plus(&two_product(count as f64, channel));
         }
     }
-    sums.map(|sum| sum.over(&Double::from_f64(samples as f64)).to_f64())
+    let count = samples as f64;
+    sums.map(|sum| quotient(&sum, count))
+}
+
+/// sum / count, rounded as the quotient of double-doubles is.
+fn quotient(sum: &Double, count: f64) -> f64 {
+    let first = sum.hi / count;
+    let product = two_product(first, count);
+    let rest = (sum.hi - product.hi) - product.lo + sum.lo;
+    let second = rest / count;
+    // `second` is off by a few roundings of the numbers that it is made of. Where that cannot matter, and it does so nowhere but
+    // close to the middle between two f64, there is no need for the long division.
+    let off = (first.abs() * f64::EPSILON + sum.lo.abs() / count) * 1e-9;
+    let (low, high) = (first + (second - off), first + (second + off));
+    if low == high {
+        low
+    } else {
+        sum.over(&Double::from_f64(count)).to_f64()
+    }
 }
 
 #[cfg(test)]
@@ -157,6 +174,29 @@ mod tests {
                 assert_eq!(mean([(count, color)].into_iter()), color);
             }
         }
+    }
+
+    #[test]
+    fn the_short_division_is_the_long_one() {
+        let mut bits = 1_u64;
+        let mut next = || {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            bits >> 11
+        };
+        for round in 0..200_000 {
+            let count = (next() >> (next() % 53)).max(1) as f64;
+            let hi = next() as f64 / (1_u64 << 53) as f64 * count;
+            let lo = (next() as f64 / (1_u64 << 53) as f64 - 0.5) * hi * f64::EPSILON / 2.0;
+            let sum = match round % 3 {
+                0 => Double::from_f64(hi),
+                // What lies in the middle between two f64, or is a whole multiple.
+                1 => two_product(hi.next_up(), count).plus(&two_product(hi, count)),
+                _ => Double::from_f64(hi).plus(&Double::from_f64(lo)),
+            };
+            let long = sum.over(&Double::from_f64(count)).to_f64();
+            assert_eq!(quotient(&sum, count), long, "{sum:?} / {count}");
+        }
+        assert_eq!(quotient(&Double::from_f64(0.0), 7.0), 0.0);
     }
 
     #[test]

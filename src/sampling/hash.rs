@@ -23,6 +23,7 @@ impl Key {
     }
 
     /// The 64 random bits with this index.
+    #[inline]
     pub fn bits(self, index: u64) -> u64 {
         mix(self
             .0
@@ -36,11 +37,13 @@ impl Key {
 }
 
 /// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1.
+#[inline]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
 
 /// The finaliser of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
+#[inline]
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

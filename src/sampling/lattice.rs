@@ -15,6 +15,7 @@ const PLACES: u64 = 1 << 53;
 const STORED: u64 = 1 << 16;
 
 /// The offset at a place, 0 to 2^53 − 1.
+#[inline]
 pub fn offset(place: u64) -> f64 {
     debug_assert!(place < PLACES);
     // An odd whole number below 2^53 in magnitude, times a power of two: exact.
@@ -22,11 +23,13 @@ pub fn offset(place: u64) -> f64 {
 }
 
 /// The offset that 64 bits, read as a fraction of the pixel from its left or top edge, fall on.
+#[inline]
 pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
 /// The offset of a place chosen among some by random bits.
+#[inline]
 pub fn choose(places: Range<u64>, bits: u64) -> f64 {
     offset(places.start + scale(bits, places.end - places.start))
 }
@@ -51,6 +54,7 @@ impl Strata {
     }
 
     /// The places in the strata from `first` to before `end`.
+    #[inline]
     pub fn places(&self, first: u64, end: u64) -> Range<u64> {
         if self.starts.is_empty() {
             start(first, self.n)..start(end, self.n)
@@ -60,6 +64,7 @@ impl Strata {
     }
 
     /// An offset chosen in one stratum by random bits.
+    #[inline]
     pub fn choose(&self, stratum: u64, bits: u64) -> f64 {
         choose(self.places(stratum, stratum + 1), bits)
     }

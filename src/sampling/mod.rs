@@ -130,13 +130,7 @@ impl Sampling {
 
     /// How many samples a pixel has.
     pub fn count(&self, x: u32, y: u32) -> u64 {
-        let pixel = Area {
-            x,
-            y,
-            width: 1,
-            height: 1,
-        };
-        self.counts(pixel)[0]
+        self.counts(Area::pixel(x, y))[0]
     }
 
     /// How many samples each pixel of a part of the picture has, row by row: much faster than asking pixel by pixel.

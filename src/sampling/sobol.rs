@@ -19,24 +19,45 @@ use super::{hash::Key, lattice};
 /// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
 const LEVELS: u32 = 6;
 
+/// So many points are stored, unscrambled.
+const STORED: u64 = 1 << LEVELS;
+
 /// A scrambled prefix of the sequence.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Sobol {
     /// The least m with n ≤ 2^m.
     depth: u32,
+    /// The m topmost bits of both coordinates of the points, where one hash decides all of them; else nothing.
+    tops: Vec<[u8; 2]>,
 }
 
 impl Sobol {
     /// The first `n` points.
     pub fn new(n: u64) -> Self {
+        let depth = u64::BITS - (n - 1).leading_zeros();
+        let top = |fraction: u64| high_bits(fraction, depth) as u8;
+        let stored = if n <= STORED { n } else { 0 };
         Self {
-            depth: u64::BITS - (n - 1).leading_zeros(),
+            depth,
+            tops: (0..stored)
+                .map(|i| [top(i.reverse_bits()), top(pascal(i).reverse_bits())])
+                .collect(),
         }
     }
 
     /// Appends the points with these indices.
     pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
         let axes = [0, 1].map(|axis| Tree::new(key.part(axis), self.depth));
+        if !self.tops.is_empty() {
+            let tops = &self.tops[range.start as usize..range.end as usize];
+            out.extend(tops.iter().map(|&[x, y]| {
+                DVec2::new(
+                    lattice::offset_of_bits(axes[0].leaf(x)),
+                    lattice::offset_of_bits(axes[1].leaf(y)),
+                )
+            }));
+            return;
+        }
         out.extend(range.map(|i| {
             DVec2::new(
                 lattice::offset_of_bits(axes[0].scramble(i.reverse_bits())),
@@ -60,27 +81,51 @@ fn pascal(mut bits: u64) -> u64 {
 /// The scrambling of one axis of one pixel.
 struct Tree {
     key: Key,
-    /// The flips of the topmost levels.
-    top: u64,
     depth: u32,
+    /// How many levels the first hash decides.
+    levels: u32,
+    /// What becomes of the bits on them.
+    top: [u8; 1 << LEVELS],
 }
 
 impl Tree {
     fn new(key: Key, depth: u32) -> Self {
+        let levels = depth.min(LEVELS);
+        let flips = key.bits(1);
+        let mut top = [0; 1 << LEVELS];
+        for level in 0..levels {
+            // Each node makes way for its two children, from the last on.
+            for node in (0..1 << level).rev() {
+                let scrambled = top[node] << 1;
+                let flip = (flips >> (1 << level | node) & 1) as u8;
+                (top[2 * node], top[2 * node + 1]) = (scrambled | flip, scrambled | (flip ^ 1));
+            }
+        }
         Self {
             key,
-            top: key.bits(1),
             depth,
+            levels,
+            top,
         }
+    }
+
+    /// Scrambles a fraction whose bits but for the topmost ones do not matter, where one hash decides all of these.
+    #[inline]
+    fn leaf(&self, part: u8) -> u64 {
+        let flips = self.key.bits(1 << self.depth | u64::from(part));
+        let scrambled = u64::from(self.top[usize::from(part)]);
+        // Two steps, as the depth may be 0.
+        scrambled << 1 << (u64::BITS - 1 - self.depth) | flips >> self.depth
     }
 
     /// Scrambles a fraction, in units of 2^−64.
     fn scramble(&self, fraction: u64) -> u64 {
-        let mut scrambled = 0;
-        let mut flips = self.top;
-        let mut above = 0;
-        loop {
-            // A node is named by the bits that lead to it, behind a one.
+        // A node is named by the bits that lead to it, behind a one.
+        let mut above = self.levels;
+        let part = high_bits(fraction, above);
+        let mut scrambled = u64::from(self.top[part as usize]);
+        let mut flips = self.key.bits(1 << above | part);
+        while above < self.depth {
             let levels = (self.depth - above).min(LEVELS);
             let below = above + levels;
             let part = high_bits(fraction << above, levels);
@@ -88,15 +133,9 @@ impl Tree {
             let node = 1 << below | high_bits(fraction, below);
             flips = self.key.bits(node);
             above = below;
-            if above == self.depth {
-                break;
-            }
         }
         // The remaining bits of a point are its own, so the last hash has them all.
-        match self.depth {
-            0 => flips,
-            depth => scrambled << (u64::BITS - depth) | flips >> depth,
-        }
+        scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }
 

@@ -20,6 +20,8 @@ mod form;
 mod hierarchy;
 mod object;
 mod outlook;
+mod pixel;
+mod quartering;
 mod sphere;
 #[cfg(test)]
 mod tests;
@@ -29,5 +31,7 @@ mod world;
 pub use camera::{Basis, Point};
 pub use curve::{Conic, Curve, Line};
 pub use outlook::{Board, Live, Spot};
+pub use pixel::Pixel;
+pub use quartering::{Part, Quartering, Room};
 pub use triangle::vertices;
 pub use world::{Hit, Precision, World};

@@ -1,8 +1,6 @@
 //! What may be seen in a part of the picture: the objects that are not certain to be missed or hidden there, and in a single
 //! pixel the curves that bound what is seen of them.
 
-use std::cmp::Ordering;
-
 use glam::DVec2;
 
 use crate::{
@@ -25,9 +23,9 @@ pub struct Live {
     /// Whether every ray through the part meets it, between the near and the far plane.
     pub is_whole: bool,
     /// Holds the inverse depths of what may be seen of it.
-    inverse_depth: Range,
+    pub(super) inverse_depth: Range,
     /// Whether the near plane may cut it there.
-    is_cut: bool,
+    pub(super) is_cut: bool,
 }
 
 /// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
@@ -95,7 +93,7 @@ impl World {
             object,
             is_whole: false,
             inverse_depth: Range::ALL,
-            is_cut: false,
+            is_cut: self.fast.near.is_some(),
         };
         (0..self.len()).map(live).collect()
     }
@@ -338,35 +336,6 @@ impl World {
             below,
             rad: lines.iter().fold(0.0, |rad, line| line.rad.max(rad)),
             odd: board.odd,
-        })
-    }
-
-    /// Whether a part of the picture in which a checkerboard is all that may be seen shows but one of its squares.
-    pub fn is_one_square(&self, part: Area, object: usize) -> bool {
-        let object = f64::object(self, object);
-        let Object::Checkerboard(board) = &*object else {
-            return false;
-        };
-        let camera = &self.fast.camera;
-        let corner = |x: u32, y: u32| {
-            let point = camera.picture_point(DVec2::new(f64::from(x), f64::from(y)));
-            let r = camera.direction(&point);
-            let below = board.below.at(&r);
-            board
-                .across
-                .each_ref()
-                .map(|across| (across.at(&r) / &below).floor())
-        };
-        let (right, bottom) = (part.x + part.width, part.y + part.height);
-        let first = corner(part.x, part.y);
-        let others = [(right, part.y), (part.x, bottom), (right, bottom)];
-        // A square is convex and seen as a convex quadrilateral, so four corners speak for the part.
-        others.iter().all(|&(x, y)| {
-            let other = corner(x, y);
-            first.iter().zip(&other).all(|(a, b)| match (a, b) {
-                (Ok((a, _)), Ok((b, _))) => a.compare(b) == Ok(Ordering::Equal),
-                _ => false,
-            })
         })
     }
 }

@@ -12,6 +12,7 @@ use super::{
     camera::{Camera, Direction, Window},
     cover::{Cover, Patch, Range},
     crossing::{Crossing, Part},
+    pixel::{Conic, Here, Local},
 };
 use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
 
@@ -242,6 +243,49 @@ impl Sphere<f64> {
                 f64::INFINITY
             },
         }
+    }
+
+    /// Q and c·r in a pixel.
+    ///
+    /// Q's own bound is generous enough for its value at the centre; its gradient and its second derivatives are made of the same
+    /// products as Q, and half a pixel is within the window. All of them together stay below so many times that bound.
+    pub fn local(&self, here: &Here) -> (Conic, Local) {
+        const TIMES: f64 = 16.0;
+        let [cx, cy, cz] = self.center;
+        let (r, [width, height]) = (&here.center, here.sides);
+        let (k, l, m) = (
+            cy * r.z - cz * r.y,
+            cz * r.x - cx * r.z,
+            cx * r.y - cy * r.x,
+        );
+        let q = self.square * r.square - (k * k + l * l + m * m);
+        let along_x = self.square * r.x - (l * cz - m * cy);
+        let along_y = self.square * r.y - (m * cx - k * cz);
+        let q = Conic::new(
+            [
+                q,
+                2.0 * along_x * width,
+                2.0 * along_y * height,
+                (self.square - cy * cy - cz * cz) * width * width,
+                2.0 * cx * cy * width * height,
+                (self.square - cx * cx - cz * cz) * height * height,
+            ],
+            TIMES * self.rad_q,
+        );
+        let b = [cx * width, cy * height, cx * r.x + cy * r.y + cz * r.z];
+        (q, Local::new(b, 2.0 * self.rad_b))
+    }
+
+    /// Whether the eye is outside, well away from the surface.
+    pub fn is_outside(&self) -> bool {
+        self.side == Ordering::Greater
+    }
+
+    /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
+    /// that is not outside.
+    pub fn depth_factor(&self) -> Option<(f64, f64)> {
+        let error = self.power.rad / self.power.size() + ROUNDINGS * f64::UNIT;
+        (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
     }
 
     /// In the world's unit, and wider than all the roundings on the way.

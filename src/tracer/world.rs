@@ -11,6 +11,7 @@ use super::{
     form::Form,
     hierarchy::{Grid, Hierarchy, Item, Nearness},
     object::Object,
+    outlook::Live,
     sphere::Sphere,
 };
 use crate::{
@@ -179,6 +180,23 @@ impl World {
         }
     }
 
+    /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may be seen.
+    pub fn slot_among<'a>(
+        &self,
+        x: u32,
+        y: u32,
+        offset: DVec2,
+        among: impl Iterator<Item = &'a Live> + Clone,
+    ) -> usize {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        let among = || among.clone().map(|live| live.object);
+        let seen = self.seen_among::<f64>(&point, among());
+        let seen = seen.or_else(|Doubt| self.seen_among::<Double>(&point, among()));
+        let seen = seen.or_else(|Doubt| self.seen_among::<Big>(&point, among()));
+        // The last precision is never in doubt.
+        self.slot(seen.unwrap_or_default())
+    }
+
     /// What [`slot_at`](World::slot_at) answers in one precision alone and without the hierarchy, or `None` if that is in doubt.
     pub fn slot_in(&self, precision: Precision, x: u32, y: u32, offset: DVec2) -> Option<usize> {
         let point = self.fast.camera.sample_point(x, y, offset);
@@ -193,6 +211,11 @@ impl World {
     /// The slots of the palette that an object's colour has, and a checkerboard's second one.
     pub fn slots(&self, object: usize) -> [usize; 2] {
         self.colors.pairs[self.colors.of_objects[object] as usize]
+    }
+
+    /// The slot of the background's colour.
+    pub fn background(&self) -> usize {
+        self.palette().len() - 1
     }
 
     /// How many objects there are.
@@ -339,6 +362,16 @@ impl World {
         self.seen_in_direction(&r, 0..self.len())
     }
 
+    #[inline]
+    fn seen_among<T: Level>(
+        &self,
+        point: &Point,
+        among: impl Iterator<Item = usize>,
+    ) -> Result<Option<Seen>, Doubt> {
+        let r = T::frame(self).camera.direction(point);
+        self.seen_in_direction(&r, among)
+    }
+
     /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
     #[inline]
     fn seen_in_direction<T: Level>(
@@ -350,6 +383,7 @@ impl World {
         self.with_color(r, nearest)
     }
 
+    /// Adds which of an object's colours is seen.
     #[inline]
     fn with_color<T: Level>(
         &self,
@@ -513,7 +547,7 @@ impl World {
     #[inline]
     fn slot(&self, seen: Option<Seen>) -> usize {
         match seen {
-            None => self.palette().len() - 1,
+            None => self.background(),
             Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],
         }
     }

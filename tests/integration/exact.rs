@@ -17,7 +17,7 @@ use pinhole::{
 
 use crate::tracer::Random;
 
-fn read(text: &str) -> Scene {
+pub fn read(text: &str) -> Scene {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let reading = scene::read(&sources);
     reading
@@ -25,14 +25,14 @@ fn read(text: &str) -> Scene {
         .unwrap_or_else(|| panic!("not a scene: {text}"))
 }
 
-fn example(name: &str, width: u32, height: u32) -> Scene {
+pub fn example(name: &str, width: u32, height: u32) -> Scene {
     let path = format!("{}/examples/{name}", env!("CARGO_MANIFEST_DIR"));
     let mut scene = read(&std::fs::read_to_string(path).unwrap());
     (scene.image.width, scene.image.height) = (width, height);
     scene
 }
 
-fn examples() -> Vec<String> {
+pub fn examples() -> Vec<String> {
     let folder = format!("{}/examples", env!("CARGO_MANIFEST_DIR"));
     let names = std::fs::read_dir(folder).unwrap();
     let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -56,7 +56,7 @@ fn part(scene: &Scene, area: Area) -> Exact {
 }
 
 /// Up to a dozen spheres, triangles and boxes in each other's way, seen from among them, cut by near and far planes at times.
-fn random_scene(random: &mut Random, floor: bool) -> Scene {
+pub fn random_scene(random: &mut Random, floor: bool) -> Scene {
     let mut text = String::from("image { width 24 height 18 background #123 }\n");
     let mut number = |low: f64, high: f64| (random.within(low, high) * 1000.0).round() / 1000.0;
     let mut vector = |x: (f64, f64), y: (f64, f64), z: (f64, f64)| {

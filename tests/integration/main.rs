@@ -5,6 +5,7 @@ mod answers;
 mod browser;
 mod camera;
 mod cli;
+mod culling;
 mod diagnostics;
 mod diff;
 mod exact;
@@ -19,6 +20,7 @@ mod numerics;
 mod overrides;
 mod parts;
 mod readme;
+mod refine;
 mod render;
 #[cfg(feature = "report")]
 mod report;

@@ -610,7 +610,7 @@ fn ctrl_c_before_the_first_run_keeps_the_warm_up() {
         "-o",
         "out",
         "--samples",
-        "100000",
+        "100000000",
         "--runs",
         "1",
         "--methods",

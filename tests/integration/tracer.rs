@@ -328,63 +328,69 @@ fn coincident_surfaces_agree_with_the_oracle() {
     assert_eq!(agrees(&scene(below, &reversed), 60), 60);
 }
 
+/// A scene of 8 × 8 pixels all of whose numbers are small multiples of 1/2, so that there are eyes on surfaces, rays in planes, through
+/// corners and along edges, faces in common planes and at the depth of the near and the far plane.
+pub fn scene_full_of_ties(random: &mut Random) -> Scene {
+    let (eye, direction, up) = (random.point(4), random.point(2), random.point(1));
+    let mut camera = camera(eye, DVec3::ZERO);
+    let direction = if direction == DVec3::ZERO {
+        DVec3::NEG_Z
+    } else {
+        direction
+    };
+    camera.view = View::Direction(direction);
+    camera.up = if up.cross(direction) == DVec3::ZERO {
+        direction.any_orthogonal_vector()
+    } else {
+        up
+    };
+    camera.roll = Angle::from_degrees(random.half(2) * 90.0);
+    camera.view_height = 4.0;
+    camera.near = random.half(2).abs();
+    camera.far = (random.half(1) > 0.0).then(|| camera.near + random.half(6).abs() + 0.5);
+    let mut shapes = Vec::new();
+    for _ in 0..2 {
+        let corner = random.point(4);
+        let size = dvec3(
+            random.half(2).abs() + 0.5,
+            random.half(2).abs() + 0.5,
+            random.half(2).abs() + 0.5,
+        );
+        shapes.push(cuboid(corner, corner + size));
+        shapes.push(sphere(random.point(4), random.half(3).abs() + 0.5));
+        let normal = random.point(1);
+        let normal = if normal == DVec3::ZERO {
+            DVec3::Y
+        } else {
+            normal
+        };
+        shapes.push(Shape::Triangle(Triangle {
+            centroid: random.point(3),
+            normal,
+            sides: dvec3(5.0, 5.0, 6.0),
+            spin: Angle::from_degrees(random.half(4) * 90.0),
+            color: Color::BLACK,
+        }));
+    }
+    shapes.insert(
+        2,
+        Shape::Checkerboard(Checkerboard {
+            y: random.half(2),
+            square: 0.5,
+            colors: [Color::BLACK; 2],
+        }),
+    );
+    let mut scene = scene(camera, &shapes);
+    (scene.image.width, scene.image.height) = (8, 8);
+    scene
+}
+
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
-    // All numbers are small multiples of 1/2, and all sample points of 1/8 pixel: eyes on surfaces, rays in planes, through
-    // corners and along edges, faces in common planes and at the depth of the near and the far plane.
+    // All sample points are multiples of 1/8 pixel.
     let mut random = Random(11);
     for _ in 0..150 {
-        let (eye, direction, up) = (random.point(4), random.point(2), random.point(1));
-        let mut camera = camera(eye, DVec3::ZERO);
-        let direction = if direction == DVec3::ZERO {
-            DVec3::NEG_Z
-        } else {
-            direction
-        };
-        camera.view = View::Direction(direction);
-        camera.up = if up.cross(direction) == DVec3::ZERO {
-            direction.any_orthogonal_vector()
-        } else {
-            up
-        };
-        camera.roll = Angle::from_degrees(random.half(2) * 90.0);
-        camera.view_height = 4.0;
-        camera.near = random.half(2).abs();
-        camera.far = (random.half(1) > 0.0).then(|| camera.near + random.half(6).abs() + 0.5);
-        let mut shapes = Vec::new();
-        for _ in 0..2 {
-            let corner = random.point(4);
-            let size = dvec3(
-                random.half(2).abs() + 0.5,
-                random.half(2).abs() + 0.5,
-                random.half(2).abs() + 0.5,
-            );
-            shapes.push(cuboid(corner, corner + size));
-            shapes.push(sphere(random.point(4), random.half(3).abs() + 0.5));
-            let normal = random.point(1);
-            let normal = if normal == DVec3::ZERO {
-                DVec3::Y
-            } else {
-                normal
-            };
-            shapes.push(Shape::Triangle(Triangle {
-                centroid: random.point(3),
-                normal,
-                sides: dvec3(5.0, 5.0, 6.0),
-                spin: Angle::from_degrees(random.half(4) * 90.0),
-                color: Color::BLACK,
-            }));
-        }
-        shapes.insert(
-            2,
-            Shape::Checkerboard(Checkerboard {
-                y: random.half(2),
-                square: 0.5,
-                colors: [Color::BLACK; 2],
-            }),
-        );
-        let mut scene = scene(camera, &shapes);
-        (scene.image.width, scene.image.height) = (8, 8);
+        let scene = scene_full_of_ties(&mut random);
         let world = World::new(&scene);
         let oracle = Oracle::new(&scene, ALL_SIZES);
         for _ in 0..30 {

@@ -1,0 +1,179 @@
+//! What culling and tracing many samples at a time gain: `cargo bench --bench culling`. See README.md beside this file.
+
+use std::{
+    env, fs,
+    hint::black_box,
+    num::NonZero,
+    sync::atomic::AtomicBool,
+    time::{Duration, Instant},
+};
+
+use criterion::{Criterion, Throughput};
+use pinhole::{
+    area::Area,
+    refine::coarse,
+    render::{Control, Way, render_in_a_way},
+    sampling::Sampling,
+    scene::{self, Count, Method, Scene},
+    source::{Source, Sources},
+    tracer::World,
+};
+
+/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
+const ROUNDS: usize = 3;
+
+const WAYS: [Way; 3] = [Way::OneByOne, Way::Together, Way::Culled];
+
+/// The scenes that are compared by one method: what culling likes, and what it does not.
+const SCENES: [&str; 5] = [
+    "scatter",
+    "near_and_far",
+    "in_a_faces_plane",
+    "inside_the_sphere",
+    "one_vanishing_point",
+];
+
+fn main() {
+    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    if !env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    println!(
+        "one thread; millions of samples a second one by one, and how many times as fast the other ways are"
+    );
+    println!(
+        "{:40} {:>10} {:>10} {:>10}",
+        "", "one by one", "together", "culled"
+    );
+    let figure = example("figure_9_9");
+    for method in Method::SAMPLED {
+        ratios(
+            &format!("figure 9.9, {}", method.name()),
+            &sized(&figure, 640, method, 64),
+        );
+    }
+    for per_pixel in [1, 4, 16] {
+        let scene = sized(&figure, 640, Method::Hammersley, per_pixel);
+        ratios(
+            &format!("figure 9.9, hammersley, {per_pixel} a pixel"),
+            &scene,
+        );
+    }
+    for name in SCENES {
+        ratios(name, &sized(&example(name), 640, Method::Hammersley, 16));
+    }
+    ratios(
+        "squares too small to be seen",
+        &sized(&read(DENSE), 640, Method::Hammersley, 16),
+    );
+    ratios(
+        "300 tiny spheres",
+        &sized(&read(&tiny(300)), 320, Method::Hammersley, 16),
+    );
+    ratios(
+        "3000 tiny spheres",
+        &sized(&read(&tiny(3000)), 96, Method::Hammersley, 4),
+    );
+
+    let mut criterion = Criterion::default().configure_from_args();
+    let scene = sized(&figure, 320, Method::MultiJittered, 64);
+    let mut group =
+        criterion.benchmark_group("figure 9.9, 320 × 180, 64 samples a pixel, 1 thread");
+    group.throughput(Throughput::Elements(320 * 180 * 64));
+    group.sample_size(10);
+    for way in WAYS {
+        group.bench_function(format!("{way:?}"), |bencher| {
+            bencher.iter(picture(&scene, way))
+        });
+    }
+    group.finish();
+    let large = sized(&figure, 1280, Method::MultiJittered, 1);
+    let world = World::new(&large);
+    criterion.bench_function("blocks of 16 of 1280 × 720, all threads", |bencher| {
+        bencher.iter(|| coarse(&world, Area::whole(1280, 720), 16, &control(None)));
+    });
+    criterion.final_summary();
+}
+
+/// A floor of which a pixel sees many squares nearly everywhere.
+const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
+
+/// Spheres of about a pixel in size, all over the picture.
+fn tiny(count: u32) -> String {
+    let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
+    for i in 0..count {
+        // Weyl's sequences in three irrational steps.
+        let place = |step: f64, size: f64| ((f64::from(i) * step).fract() - 0.5) * size;
+        let (x, y, z) = (
+            place(0.618_033_988_749_895, 12.0),
+            place(0.754_877_666_246_693, 7.0),
+            place(0.569_840_290_998_053, 4.0),
+        );
+        text += &format!("sphere {{ center ({x}, {y}, {z}) radius 0.02 }}\n");
+    }
+    text
+}
+
+fn read(text: &str) -> Scene {
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    scene::read(&sources)
+        .scene
+        .expect("a scene without mistakes")
+}
+
+fn example(name: &str) -> Scene {
+    let path = format!("{}/examples/{name}.scn", env!("CARGO_MANIFEST_DIR"));
+    read(&fs::read_to_string(path).expect("the example is there"))
+}
+
+/// A scene as a picture of a width, 16 to 9, with so many samples a pixel.
+fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
+    let mut scene = scene.clone();
+    (scene.image.width, scene.image.height) = (width, width * 9 / 16);
+    (scene.sampler.method, scene.sampler.count) = (method, Count::PerPixel(per_pixel));
+    scene
+}
+
+fn control(threads: Option<NonZero<usize>>) -> Control<'static> {
+    static CANCEL: AtomicBool = AtomicBool::new(false);
+    Control {
+        threads,
+        progress: &|_| {},
+        cancel: &CANCEL,
+    }
+}
+
+/// Renders a scene in a way, on one thread.
+fn picture(scene: &Scene, way: Way) -> impl Fn() {
+    let [width, height] = [scene.image.width, scene.image.height];
+    let (world, sampling) = (
+        World::new(scene),
+        Sampling::new(&scene.sampler, width, height),
+    );
+    move || {
+        let whole = Area::whole(width, height);
+        let film = render_in_a_way(&world, &sampling, whole, &control(NonZero::new(1)), way);
+        black_box(film.expect("there is memory for it"));
+    }
+}
+
+/// The ways compared in turns, so that a busy moment meets all of them.
+fn ratios(name: &str, scene: &Scene) {
+    let pictures = WAYS.map(|way| picture(scene, way));
+    let mut best = [Duration::MAX; 3];
+    for _ in 0..ROUNDS {
+        for (picture, best) in pictures.iter().zip(&mut best) {
+            let start = Instant::now();
+            picture();
+            *best = start.elapsed().min(*best);
+        }
+    }
+    let [one, together, culled] = best.map(|time| time.as_secs_f64());
+    let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
+    let rate = sampling.total() as f64 / one / 1e6;
+    println!(
+        "{name:40} {rate:10.1} {:10.2} {:10.2}",
+        one / together,
+        one / culled
+    );
+}

@@ -1,0 +1,103 @@
+//! A picture that comes in steps, for whoever is waiting for it.
+//!
+//! In: the prepared scene and where its samples lie. Out: pictures in coarse blocks, one after the other, and at last the picture
+//! itself. A block shows what is seen at its centre, so that nothing is shown that is not there. What a preview does with them, and
+//! when it gives up on a scene that has changed, is its own business.
+
+use std::sync::{PoisonError, atomic::Ordering};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::{
+    area::Area,
+    film::Film,
+    render::{Control, RenderError, pool, render},
+    sampling::Sampling,
+    tracer::World,
+};
+
+/// The sides of the blocks, in pixels, step by step: each step takes four times as long as the one before it, and all of them together less
+/// than a picture with a few samples per pixel.
+pub const SIDES: [u32; 4] = [16, 8, 4, 2];
+
+/// A picture in blocks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coarse {
+    /// The side of a block, in pixels.
+    pub side: u32,
+    /// A pixel for each block. The last column and the last row may stand for blocks that are cut off.
+    pub film: Film,
+}
+
+/// Renders a part of the picture, which lies in it, and shows coarse pictures of it on the way; progress counts the samples of the last
+/// step alone. Cancelled, it ends within a row of blocks or a tile.
+pub fn render_in_steps(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+    mut show: impl FnMut(Coarse),
+) -> Result<Film, RenderError> {
+    for side in SIDES {
+        show(coarse(world, part, side, control)?);
+    }
+    render(world, sampling, part, control)
+}
+
+/// A part of the picture in blocks of a side of 1 pixel or more, from the part's top left corner on.
+pub fn coarse(
+    world: &World,
+    part: Area,
+    side: u32,
+    control: &Control,
+) -> Result<Coarse, RenderError> {
+    let colors: Vec<_> = world
+        .palette()
+        .iter()
+        .map(|color| color.to_linear())
+        .collect();
+    let (width, height) = (part.width.div_ceil(side), part.height.div_ceil(side));
+    let film = std::sync::Mutex::new(Film::new(width, height)?);
+    pool(control.threads)?.install(|| {
+        (0..height).into_par_iter().for_each(|row| {
+            if control.cancel.load(Ordering::Relaxed) {
+                return;
+            }
+            let strip = Area {
+                y: part.y + row * side,
+                height: side.min(part.height - row * side),
+                ..part
+            };
+            let blocks: Vec<_> = strip
+                .tiles(side)
+                .map(|block| colors[at_center(world, block)])
+                .collect();
+            let place = Area {
+                x: 0,
+                y: row,
+                width,
+                height: 1,
+            };
+            let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+            film.put(place, &blocks);
+        });
+    });
+    if control.cancel.load(Ordering::Relaxed) {
+        return Err(RenderError::Cancelled);
+    }
+    let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(Coarse { side, film })
+}
+
+/// The slot of what is seen at the centre of a block.
+fn at_center(world: &World, block: Area) -> usize {
+    // In the middle of a pixel, or on the edge before one.
+    let place = |start: u32, length: u32| match length % 2 {
+        0 => (start + length / 2, -0.5),
+        _ => (start + length / 2, 0.0),
+    };
+    let ((x, offset_x), (y, offset_y)) =
+        (place(block.x, block.width), place(block.y, block.height));
+    world.slot_at(x, y, DVec2::new(offset_x, offset_y))
+}

@@ -1,0 +1,231 @@
+//! Whichever way samples are traced, a picture is the same to the bit: culled, many at a time, or one by one as the oracle has judged them.
+
+use std::{
+    num::NonZero,
+    sync::atomic::{AtomicBool, AtomicU64, Ordering},
+};
+
+use glam::{DVec3, dvec3};
+use pinhole::{
+    area::Area,
+    film::Film,
+    render::{Control, Way, render_in_a_way},
+    sampling::Sampling,
+    scene::{Count, Lens, Method, Sampler, Scene, View},
+    tracer::World,
+};
+
+use crate::{
+    exact::{example, examples, random_scene, read},
+    figure::figure,
+    tracer::{Random, camera, cuboid, floor, scene, scene_full_of_ties, sphere, triangle},
+};
+
+/// A part of a picture, and how many samples progress was told of.
+fn part(scene: &Scene, part: Area, threads: usize, way: Way) -> (Film, u64) {
+    let done = AtomicU64::new(0);
+    let control = Control {
+        threads: NonZero::new(threads),
+        progress: &|more| {
+            done.fetch_add(more, Ordering::Relaxed);
+        },
+        cancel: &AtomicBool::new(false),
+    };
+    let [width, height] = [scene.image.width, scene.image.height];
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    let film = render_in_a_way(&World::new(scene), &sampling, part, &control, way).unwrap();
+    (film, done.into_inner())
+}
+
+fn whole(scene: &Scene) -> Area {
+    Area::whole(scene.image.width, scene.image.height)
+}
+
+/// Compares the three ways; answers how many colours the picture has.
+#[track_caller]
+fn compare(scene: &Scene, what: &str) -> usize {
+    let (film, done) = part(scene, whole(scene), 1, Way::OneByOne);
+    for way in [Way::Culled, Way::Together] {
+        let (other, other_done) = part(scene, whole(scene), 2, way);
+        if let Some(at) = (0..film.pixels().len()).find(|&i| film.pixels()[i] != other.pixels()[i])
+        {
+            let (x, y) = (at as u32 % film.width(), at as u32 / film.width());
+            panic!("{what}: {way:?} has another pixel {x}, {y} than one by one in {scene:?}");
+        }
+        assert_eq!(done, other_done, "{what}: {way:?}");
+    }
+    let mut colors: Vec<_> = film
+        .pixels()
+        .iter()
+        .map(|pixel| pixel.map(f64::to_bits))
+        .collect();
+    colors.sort_unstable();
+    colors.dedup();
+    colors.len()
+}
+
+fn with_samples(scene: &Scene, method: Method, count: Count) -> Scene {
+    let sampler = Sampler {
+        method,
+        count,
+        seed: 5,
+    };
+    Scene {
+        sampler,
+        ..scene.clone()
+    }
+}
+
+#[test]
+fn every_example_by_every_method() {
+    for name in examples() {
+        let scene = example(&name, 43, 29);
+        for method in Method::SAMPLED {
+            let pixels = 43 * 29;
+            for count in [
+                Count::PerPixel(1),
+                Count::PerPixel(9),
+                Count::Total(7 * pixels + 400),
+                Count::Total(pixels / 3),
+            ] {
+                compare(&with_samples(&scene, method, count), &name);
+            }
+        }
+    }
+}
+
+#[test]
+fn many_samples_at_a_time_fill_their_chunks_and_end_them_early() {
+    for n in [3, 4, 5, 7, 8, 63, 64, 65, 130, 4095, 4096, 4097, 9000] {
+        let scene = figure(11, 7, Method::Sobol, Count::PerPixel(n));
+        assert!(compare(&scene, "figure") > 10);
+    }
+}
+
+#[test]
+fn scenes_of_all_kinds() {
+    let mut random = Random(2024);
+    let mut colors = 0;
+    for index in 0..300 {
+        let scene = random_scene(&mut random, index % 2 == 0);
+        let method = Method::SAMPLED[index % Method::SAMPLED.len()];
+        let scene = with_samples(&scene, method, Count::PerPixel(24));
+        colors += compare(&scene, "random");
+    }
+    // Most have something to see.
+    assert!(colors > 300 * 30, "{colors}");
+}
+
+#[test]
+fn scenes_full_of_ties() {
+    let mut random = Random(77);
+    for _ in 0..300 {
+        let scene = scene_full_of_ties(&mut random);
+        // Offsets of odd eighths, and with one sample the centres: on edges and in planes.
+        for n in [1, 4, 16] {
+            let scene = with_samples(&scene, Method::Regular, Count::PerPixel(n));
+            compare(&scene, "ties");
+        }
+    }
+}
+
+#[test]
+fn extreme_cameras() {
+    let shapes = [
+        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
+        cuboid(dvec3(1.5, 0.0, -1.5), dvec3(2.5, 1.5, 0.5)),
+        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
+        floor(),
+    ];
+    let eyes = [
+        dvec3(3.0, 3.5, 8.0),
+        dvec3(3.0, 1e-9, 8.0),
+        dvec3(3.0, 1e9, 8.0),
+        dvec3(1e9, 2.0, 1e9),
+        dvec3(0.0, 0.75, 0.0),
+        // Inside the box, the sphere; on the sphere.
+        dvec3(2.0, 0.5, -0.5),
+        dvec3(-1.6, 1.0, 0.0),
+        dvec3(-1.6, 2.0, 0.0),
+        dvec3(-1.6, 2.0 + 1e-13, 0.0),
+        dvec3(0.0, -4.0, 0.0),
+    ];
+    let lookats = [
+        dvec3(0.2, 0.8, 0.0),
+        dvec3(1e3, 0.0, -1e6),
+        dvec3(-1.6, 1.5, 0.1),
+    ];
+    for eye in eyes {
+        for lookat in lookats {
+            for fov in [1e-7, 1.0, 40.0, 120.0, 179.999] {
+                let mut camera = camera(eye, lookat);
+                camera.view = View::Lookat(lookat);
+                camera.lens = Lens::Fov(pinhole::math::Angle::from_degrees(fov));
+                for clips in [(0.0, None), (2.5, Some(9.0)), (0.0, Some(1e12))] {
+                    (camera.near, camera.far) = clips;
+                    let mut scene = scene(camera, &shapes);
+                    (scene.image.width, scene.image.height) = (20, 13);
+                    let scene = with_samples(&scene, Method::MultiJittered, Count::PerPixel(16));
+                    compare(&scene, "extreme");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn spheres_of_extreme_sizes() {
+    let mut random = Random(5);
+    let mut tiny: Vec<_> = (0..1500)
+        .map(|_| {
+            let center = random.vector(3.0);
+            sphere(center, random.within(1e-4, 0.05))
+        })
+        .collect();
+    tiny.push(sphere(dvec3(0.0, -1e7, 0.0), 1e7 - 2.0));
+    tiny.push(sphere(dvec3(0.0, 0.0, -1e12), 0.9e12));
+    // Two equal ones, of which the first is seen, and one that touches them.
+    tiny.push(sphere(DVec3::ZERO, 0.7));
+    tiny.push(sphere(DVec3::ZERO, 0.7));
+    tiny.push(sphere(dvec3(1.4, 0.0, 0.0), 0.7));
+    let camera = camera(dvec3(1.0, 2.0, 8.0), DVec3::ZERO);
+    let mut scenes = tiny.chunks(200).map(|shapes| scene(camera, shapes));
+    let mut scene = scenes.next().unwrap();
+    scene.objects.extend(scenes.flat_map(|scene| scene.objects));
+    (scene.image.width, scene.image.height) = (64, 40);
+    let scene = with_samples(&scene, Method::Halton, Count::PerPixel(8));
+    assert!(compare(&scene, "spheres") > 100);
+}
+
+#[test]
+fn dense_rows_of_squares() {
+    for (square, y) in [(1.0, 0.0), (0.001, 0.0), (1e-6, 1.0), (300.0, -5.0)] {
+        let text = format!(
+            "image {{ width 40 height 24 }} camera {{ eye (0.3, 2, 5) lookat (7, 1.8, -30) roll 3deg }}
+             checkerboard {{ y {y} square {square} }} sphere {{ center (2, 1, -1) }}"
+        );
+        let scene = with_samples(&read(&text), Method::Jittered, Count::PerPixel(40));
+        assert!(compare(&scene, "squares") > 10);
+    }
+}
+
+#[test]
+fn crops_on_any_number_of_threads() {
+    for method in [Method::Sobol, Method::Scatter] {
+        let scene = figure(150, 90, method, Count::Total(150 * 90 * 6 + 1));
+        let (film, _) = part(&scene, whole(&scene), 1, Way::OneByOne);
+        for (crop, threads) in [
+            ("0,0,150,90", 3),
+            ("1,1,148,88", 2),
+            ("63,20,2,60", 1),
+            ("77,41,1,1", 4),
+        ] {
+            let crop: Area = crop.parse().unwrap();
+            let (cropped, _) = part(&scene, crop, threads, Way::Culled);
+            for (x, y) in crop.iter() {
+                let (here, there) = (cropped.pixel(x - crop.x, y - crop.y), film.pixel(x, y));
+                assert_eq!(here, there, "{crop}: {x}, {y}");
+            }
+        }
+    }
+}
