@@ -19,6 +19,9 @@ use super::{
 /// Curves may be out of order by so much: the rounding of a y.
 const TIE: f64 = 16.0 * f64::UNIT;
 
+/// Curves that are nowhere farther apart are not told apart.
+const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
+
 /// So much area may be doubtful in a slab.
 const CRUMB: f64 = 1.0 / (1u64 << 54) as f64;
 
@@ -115,7 +118,7 @@ impl Sweep<'_> {
                 continue;
             }
             let distance = a.distance(b);
-            if distance <= TIE || is_last {
+            if distance <= CLOSE || is_last {
                 doubtful += overlap.min(distance) * width;
                 continue;
             }

@@ -629,7 +629,7 @@ fn a_horizon_anywhere_in_a_pixel() {
 /// Outlines of spheres that all but coincide are told apart, as closely as roundings allow.
 #[test]
 fn outlines_that_nearly_coincide() {
-    for gap in ["1e-6", "1e-8", "1e-10", "1e-12"] {
+    for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
         for center in ["(0, 0.3, 0)", &format!("({gap}, 0.3, 0)")] {
             let scene = read(&format!(
                 "image {{ width 24 height 16 }}
