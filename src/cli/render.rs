@@ -132,6 +132,9 @@ fn picture(
     })
 }
 
+/// A pixel with a greater bound on its error is worth a word.
+const VAGUE: f32 = 1e-6;
+
 /// What is certain of a computed picture, and of the numbers in its file.
 fn certificate(exact: &Exact, output: &Output) -> String {
     let (certified, what) = match output {
@@ -154,7 +157,24 @@ fn certificate(exact: &Exact, output: &Output) -> String {
         ),
     };
     let bound = numbers::at_most(exact.bound());
-    format!("exact: every channel is within {bound} of its true mean; {rounding}\n")
+    let mut text = format!("exact: every channel is within {bound} of its true mean; {rounding}\n");
+    let vague = |bound: &&f32| **bound > VAGUE;
+    let count = exact.bounds.iter().filter(vague).count() as u64;
+    if let Some(least) =
+        (0..exact.bounds.len()).max_by(|&a, &b| exact.bounds[a].total_cmp(&exact.bounds[b]))
+        && count > 0
+    {
+        let width = exact.film.width() as usize;
+        let (x, y) = (least % width, least / width);
+        let pixels = match count {
+            1 => "one pixel is".to_owned(),
+            more => format!("{} pixels are", numbers::grouped(more)),
+        };
+        text += &format!(
+            "exact: {pixels} known less well than to a millionth, least of all the one at column {x}, row {y}\n"
+        );
+    }
+    text
 }
 
 /// Where a picture goes, and as what.

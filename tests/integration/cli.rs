@@ -604,3 +604,26 @@ fn ctrl_c_leaves_the_old_file() {
     assert_eq!(read(&folder, "slow.png"), b"old");
     assert_eq!(names(&folder), ["a.scn", "slow.png", "slow.scn"]);
 }
+
+#[test]
+fn a_bound_that_is_worth_a_word_gets_one() {
+    let scene = "image { width 4 height 3 }
+                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-6 }
+                 sampler { method exact }
+                 checkerboard { y 0 square 1e-3 }";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wide.scn");
+    fs::write(&path, scene).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
+        .args(["render", "-o"])
+        .arg(folder.path().join("wide.png"))
+        .arg(&path)
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{told}");
+    assert!(
+        told.contains("known less well than to a millionth, least of all the one at column"),
+        "{told}"
+    );
+}
