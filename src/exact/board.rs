@@ -11,8 +11,8 @@ pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
 const FEW: f64 = 24.0;
 /// More short rows than this take too long, which only the widest of views have in a pixel.
 const MANY: f64 = 500_000.0;
-/// The part of the board that is further away than so many squares is summed along its boundary, by series in which each
-/// term is about n/π of this times smaller than the n-th before it.
+/// The part of the board that is further away than so many squares is summed along its boundary: there the n-th term of the
+/// series is at most n/π of its inverse times the one before.
 pub(super) const FAR: f64 = 18.0;
 
 /// A displacement of no more area than this is not looked at closely.
