@@ -130,7 +130,10 @@ pub fn render_in_a_way(
         control,
         way,
         quartering: Quartering::new(world).down_to(grain),
-        everything: world.everything(),
+        everything: match way {
+            Way::Culled => Vec::new(),
+            Way::Together | Way::OneByOne => world.everything(),
+        },
     };
     let side = tile_side(sampling, part);
     pool(control.threads)?.install(|| {
@@ -210,7 +213,7 @@ struct Frame<'a> {
     control: &'a Control<'a>,
     way: Way,
     quartering: Quartering<'a>,
-    /// For the ways that cull nothing.
+    /// All objects, for the ways that cull nothing.
     everything: Vec<Live>,
 }
 
