@@ -253,14 +253,7 @@ impl Sphere<f64> {
         const TIMES: f64 = 16.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&here.center, here.sides);
-        let (k, l, m) = (
-            cy * r.z - cz * r.y,
-            cz * r.x - cx * r.z,
-            cx * r.y - cy * r.x,
-        );
-        let q = self.square * r.square - (k * k + l * l + m * m);
-        let along_x = self.square * r.x - (l * cz - m * cy);
-        let along_y = self.square * r.y - (m * cx - k * cz);
+        let [q, along_x, along_y] = self.expanded(r);
         let q = Conic::new(
             [
                 q,
@@ -303,19 +296,27 @@ impl Sphere<f64> {
         }
     }
 
-    /// The ranges of Q and of c·r over a rectangle: Q's by its gradient at the centre and its second derivatives.
-    fn ranges(&self, patch: &Patch) -> (Range, Range) {
+    /// Q in a direction, and half its derivatives to the right and upwards.
+    fn expanded(&self, r: &Direction<f64>) -> [f64; 3] {
         let [cx, cy, cz] = self.center;
-        let r = &patch.center;
-        let [hx, hy] = patch.half;
         let (k, l, m) = (
             cy * r.z - cz * r.y,
             cz * r.x - cx * r.z,
             cx * r.y - cy * r.x,
         );
-        let q = self.square * r.square - (k * k + l * l + m * m);
-        let along_x = self.square * r.x - (l * cz - m * cy);
-        let along_y = self.square * r.y - (m * cx - k * cz);
+        [
+            self.square * r.square - (k * k + l * l + m * m),
+            self.square * r.x - (l * cz - m * cy),
+            self.square * r.y - (m * cx - k * cz),
+        ]
+    }
+
+    /// The ranges of Q and of c·r over a rectangle: Q's by its gradient at the centre and its second derivatives.
+    fn ranges(&self, patch: &Patch) -> (Range, Range) {
+        let [cx, cy, cz] = self.center;
+        let r = &patch.center;
+        let [hx, hy] = patch.half;
+        let [q, along_x, along_y] = self.expanded(r);
         let (xx, yy) = (
             self.square - cy * cy - cz * cz,
             self.square - cx * cx - cz * cz,
