@@ -300,7 +300,7 @@ impl fmt::Display for Inspection {
 }
 
 /// A shape in one line.
-fn summary(shape: &Shape) -> String {
+pub fn summary(shape: &Shape) -> String {
     match *shape {
         Shape::Sphere(Sphere {
             center,

@@ -55,3 +55,5 @@ pub mod grade;
 pub mod inspect;
 pub mod probe;
 pub mod report;
+
+pub mod editor;

@@ -24,7 +24,8 @@ mod survey;
 mod untangle;
 mod value;
 
-pub use lower::{read, read_in_parts, survey};
+pub use eval::{example_call, predefined};
+pub use lower::{example_value, read, read_in_parts, survey};
 pub use survey::{Parts, Survey};
 pub use value::Value;
 

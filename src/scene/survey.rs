@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     diagnostic::Diagnostic,
-    source::{Sources, Span},
+    source::Sources,
     syntax::{
         Parsed,
         tree::{self, Definition, Item, ValueKind},
@@ -104,25 +104,12 @@ impl<'s> Survey<'s> {
 
     /// Whether every name in a value is defined where it stands: evaluation knows the names of the end of the file.
     fn is_defined(&self, value: &tree::Value<'s>) -> bool {
-        let is_defined = |name: &str, span: Span| {
-            predefined(name).is_some() || self.definition_at(name, span.start).is_some()
-        };
-        let elements = |elements: &[tree::Element<'s>]| {
-            let mut values = elements.iter().map(|element| &element.value);
-            values.all(|value| self.is_defined(value))
-        };
         match &value.kind {
-            ValueKind::Number(_) | ValueKind::Angle { .. } | ValueKind::ColorCode(_) => true,
-            ValueKind::Name(name) => is_defined(name, value.span),
-            ValueKind::Call(call) => elements(&call.arguments),
-            ValueKind::Parentheses(inner) => self.is_defined(inner),
-            ValueKind::Tuple(values) => elements(values),
-            ValueKind::Negation { operand, .. } => self.is_defined(operand),
-            ValueKind::Chain { first, rest } => {
-                let mut operands = rest.iter().map(|step| &step.operand);
-                self.is_defined(first) && operands.all(|operand| self.is_defined(operand))
+            ValueKind::Name(name) => {
+                predefined(name).is_some() || self.definition_at(name, value.span.start).is_some()
             }
             ValueKind::Missing | ValueKind::Bad => false,
+            _ => value.parts().iter().all(|part| self.is_defined(part)),
         }
     }
 }

@@ -8,6 +8,7 @@ mod cli;
 mod culling;
 mod diagnostics;
 mod diff;
+mod editor;
 mod exact;
 mod figure;
 mod film;

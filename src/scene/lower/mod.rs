@@ -8,6 +8,8 @@ mod build;
 mod overriding;
 mod words;
 
+pub use words::example as example_value;
+
 use std::collections::{HashMap, hash_map::Entry};
 
 use glam::DVec3;
