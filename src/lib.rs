@@ -57,3 +57,5 @@ pub mod probe;
 pub mod report;
 
 pub mod editor;
+#[cfg(feature = "lsp")]
+pub mod lsp;

@@ -17,6 +17,8 @@ mod images;
 mod interrupt;
 mod language;
 mod laws;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod numerics;
 mod overrides;
 mod parts;

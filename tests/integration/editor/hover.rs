@@ -155,8 +155,8 @@ fn called(text: &str) -> Option<String> {
     let found = signature(&Analysis::new(&sources), at)?;
     let mut label = found.label;
     if let Some(parameter) = found.parameters.get(found.active) {
-        label.insert_str(parameter.end, "›");
-        label.insert_str(parameter.start, "‹");
+        label.insert(parameter.end, '›');
+        label.insert(parameter.start, '‹');
     }
     Some(label)
 }
