@@ -11,6 +11,8 @@ mod diff;
 mod exact;
 mod figure;
 mod film;
+mod fmt;
+mod format;
 mod images;
 #[cfg(unix)]
 mod interrupt;
