@@ -11,6 +11,7 @@ mod diff;
 mod exact;
 mod figure;
 mod film;
+mod fixes;
 mod fmt;
 mod format;
 mod images;
