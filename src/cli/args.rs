@@ -59,7 +59,11 @@ pub enum Command {
     /// Serve an editor: the Language Server Protocol on standard input and output
     #[cfg(feature = "lsp")]
     #[command(after_help = LSP_HELP)]
-    Lsp,
+    Lsp {
+        /// What it does in any case; some editors say it
+        #[arg(long)]
+        stdio: bool,
+    },
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {

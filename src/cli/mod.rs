@@ -46,7 +46,7 @@ pub fn run() -> ExitCode {
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]
-        Command::Lsp => lsp::run(),
+        Command::Lsp { .. } => lsp::run(),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });

@@ -4,11 +4,11 @@
 //! the text (the cursor, marks, folds) stays where it was.
 
 use super::{Analysis, words::file};
-use crate::{format::format, source::Span};
+use crate::{format::format_parsed, source::Span};
 
 /// What takes the place of what; nothing if the text has mistakes of syntax.
 pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<(Span, String)>> {
-    let formatted = format(analysis.source()).ok()?;
+    let formatted = format_parsed(analysis.source(), &analysis.survey.parsed)?;
     Some(changes(analysis.text(), &formatted))
 }
 

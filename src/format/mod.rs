@@ -21,7 +21,7 @@ use crate::{
     scene,
     source::{Source, SourceId, Sources},
     syntax::{
-        self,
+        self, Parsed,
         tree::{Item, Tree, ValueKind},
     },
 };
@@ -33,17 +33,22 @@ pub const WIDTH: usize = 100;
 /// The canonical layout of a scene's text; or, if it has mistakes of syntax, these.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     let parsed = syntax::parse(source, SourceId::File);
+    format_parsed(source, &parsed).ok_or_else(|| mistakes(source))
+}
+
+/// The canonical layout of a text that is parsed already; none if it has mistakes of syntax.
+pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     let right = parsed.problems.is_empty() && source.invalid_utf8().is_empty();
     if !right || !is_whole(&parsed.tree) {
-        return Err(mistakes(source));
+        return None;
     }
     let text = source.text();
-    let mut entries = entries::of_file(source, &parsed);
+    let mut entries = entries::of_file(source, parsed);
     columns::align(&mut entries);
     let page = page::written(&entries);
     let formatted = with_line_ends(&page, text, source.bom_len());
     debug_assert!(ink(text).eq(ink(&formatted)), "only white space changes");
-    Ok(formatted)
+    Some(formatted)
 }
 
 /// Whether every field has a value: where it is missing, nothing was reported yet.
