@@ -74,7 +74,7 @@ struct Server<'o, W> {
 /// Why a request gets no answer.
 struct Refusal(ErrorCode, String);
 
-/// A result as JSON. It is written once: making values of it first takes several times as long for thousands of tokens.
+/// A result as JSON, written at once: an answer of thousands of tokens needs no tree of values in between.
 type Answer = Result<String, Refusal>;
 
 impl<W: Write> Server<'_, W> {
