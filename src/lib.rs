@@ -20,7 +20,7 @@
 //! ```
 //!
 //! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the terminal, JSON and editors show
-//!   alike.
+//!   alike. [`explain`] has a page for each kind of mistake.
 //! - [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
 //!   resolved.
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
@@ -32,6 +32,7 @@
 pub mod area;
 pub mod color;
 pub mod diagnostic;
+pub mod explain;
 pub mod math;
 pub mod numbers;
 pub mod source;

@@ -52,6 +52,9 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Explain a kind of mistake: a wrong scene, the right one, and why
+    #[command(after_help = EXPLAIN_EXAMPLES)]
+    Explain(ExplainArgs),
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -120,6 +123,12 @@ Examples:
   pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
   pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
+
+const EXPLAIN_EXAMPLES: &str = "\
+Examples:
+  pinhole explain bare_angle
+  pinhole explain                                all codes, by subject
+  pinhole explain up_parallel | less             as Markdown";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -267,6 +276,13 @@ pub struct DiffArgs {
     pub threads: Option<u64>,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `explain`.
+#[derive(Debug, clap::Args)]
+pub struct ExplainArgs {
+    /// The code that stands in the brackets of a report, with `pinhole::` or without [default: list them all]
+    pub code: Option<String>,
 }
 
 /// For whom the answer is.

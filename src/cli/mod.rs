@@ -6,6 +6,7 @@
 mod args;
 mod check;
 mod diff;
+mod explain;
 mod input;
 mod inspect;
 mod interrupt;
@@ -38,6 +39,7 @@ pub fn run() -> ExitCode {
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        Command::Explain(args) => explain::run(&args),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });

@@ -9,6 +9,7 @@ mod culling;
 mod diagnostics;
 mod diff;
 mod exact;
+mod explain;
 mod figure;
 mod film;
 mod images;
