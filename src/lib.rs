@@ -27,7 +27,8 @@
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
-//!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
+//!   [`report`] about Pinhole itself: how right and how fast it is. `preview` tells when a file has
+//!   changed. The command line reads, calls these and prints.
 
 pub mod area;
 pub mod color;
@@ -56,3 +57,6 @@ pub mod grade;
 pub mod inspect;
 pub mod probe;
 pub mod report;
+
+#[cfg(feature = "preview")]
+pub mod preview;

@@ -23,6 +23,7 @@ const EXAMPLES: &str = "\
 Examples:
   pinhole render figure.scn                      writes figure.png beside it
   pinhole render figure.scn -o big.exr --set image.width=3840 --set image.height=2160
+  pinhole watch figure.scn                       and again whenever it is saved
   pinhole check *.scn
   pinhole inspect figure.scn --format json
   pinhole probe figure.scn 640.5 360.5
@@ -40,6 +41,10 @@ pub enum Command {
     /// Report the problems of scenes
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Render a scene whenever its file is saved
+    #[cfg(feature = "preview")]
+    #[command(after_help = WATCH_EXAMPLES)]
+    Watch(WatchArgs),
     /// Show what a scene means: camera, field of view, vanishing points, objects
     #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(InspectArgs),
@@ -78,6 +83,16 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
   pinhole check *.scn --format json              one line for each problem";
+
+#[cfg(feature = "preview")]
+const WATCH_EXAMPLES: &str = "\
+Examples:
+  pinhole watch figure.scn                       writes figure.png at once and after every save
+  pinhole watch figure.scn --show                and draws it in the terminal
+  pinhole watch figure.scn -o draft.png --set sampler.per_pixel=4
+
+While the text has mistakes, they are reported, and the last picture stays. A picture that is not done when \
+the text changes again is given up. Ctrl-C ends it, with status 130.";
 
 const INSPECT_EXAMPLES: &str = "\
 Examples:
@@ -179,6 +194,25 @@ pub struct CheckArgs {
     pub overrides: Overrides,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `watch`.
+#[cfg(feature = "preview")]
+#[derive(Debug, clap::Args)]
+pub struct WatchArgs {
+    /// The scene: a .scn file
+    pub scene: PathBuf,
+    /// Where the picture goes; its ending, .png or .exr, is the format [default: SCENE with the ending .png]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draw the picture in the terminal too
+    #[arg(long)]
+    pub show: bool,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
 }
 
 /// Arguments of `inspect`.

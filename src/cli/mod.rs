@@ -12,12 +12,17 @@ mod inspect;
 mod interrupt;
 mod manual;
 mod output;
+mod picture;
 mod probe;
 mod progress;
 mod render;
 mod report;
+#[cfg(feature = "preview")]
+mod show;
 #[cfg(feature = "report")]
 mod speed;
+#[cfg(feature = "preview")]
+mod watch;
 
 use std::{fmt, process::ExitCode};
 
@@ -35,6 +40,8 @@ pub fn run() -> ExitCode {
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args),
+        #[cfg(feature = "preview")]
+        Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),

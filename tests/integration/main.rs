@@ -29,3 +29,5 @@ mod robustness;
 mod sampling;
 mod syntax;
 mod tracer;
+#[cfg(all(unix, feature = "preview"))]
+mod watch;
