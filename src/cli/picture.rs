@@ -49,15 +49,19 @@ impl Picture {
     }
 }
 
+/// As many threads as are asked for.
+pub fn threads(wanted: Option<u64>) -> Option<NonZero<usize>> {
+    NonZero::new(usize::try_from(wanted?).unwrap_or(usize::MAX))
+}
+
 /// Renders a part of the scene's picture, and shows on a terminal how far it is.
 pub fn picture(
     scene: &Scene,
+    world: &World,
     part: Area,
-    threads: Option<u64>,
+    threads: Option<NonZero<usize>>,
     cancel: &AtomicBool,
 ) -> Result<Picture, RenderError> {
-    let threads =
-        threads.and_then(|threads| NonZero::new(usize::try_from(threads).unwrap_or(usize::MAX)));
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let is_exact = scene.sampler.method == Method::Exact;
@@ -77,10 +81,9 @@ pub fn picture(
             },
             cancel,
         };
-        let world = World::new(scene);
         match is_exact {
-            true => render::render_exact(&world, part, &control).map(Picture::Exact),
-            false => render::render(&world, &sampling, part, &control).map(Picture::Sampled),
+            true => render::render_exact(world, part, &control).map(Picture::Exact),
+            false => render::render(world, &sampling, part, &control).map(Picture::Sampled),
         }
     })
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use pinhole::{area::Area, render::RenderError};
+use pinhole::{area::Area, render::RenderError, tracer::World};
 
 use super::{
     Status, Trouble,
@@ -10,7 +10,7 @@ use super::{
     input::{Input, shown},
     interrupt::Interrupt,
     output,
-    picture::{Output, picture},
+    picture::{Output, picture, threads},
 };
 
 /// Renders a scene.
@@ -39,7 +39,8 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     }
     let cancel = interrupt.watch();
     let started = Instant::now();
-    let picture = match picture(&scene, part, args.threads, cancel) {
+    let world = World::new(&scene);
+    let picture = match picture(&scene, &world, part, threads(args.threads), cancel) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
         Err(error) => return Err(Trouble(error.to_string())),

@@ -9,7 +9,7 @@ use std::{
     io::{self, IsTerminal},
 };
 
-use pinhole::{color::linear_to_srgb, film::Film};
+use pinhole::{area::Area, color::linear_to_srgb, film::Film};
 use terminal_size::{Height, Width, terminal_size_of};
 
 use super::{Trouble, output};
@@ -50,6 +50,13 @@ impl Screen {
         output::to_people(text);
     }
 
+    /// The side in pixels of blocks about as coarse as the screen is for a picture of this size; `None` if pictures are not shown.
+    pub fn side(&self, whole: Area) -> Option<u32> {
+        let (columns, rows) = self.is_shown.then(size)?;
+        let scale = scale(whole.width as usize, whole.height as usize, columns, rows);
+        Some((scale as u32).max(1))
+    }
+
     /// Shows a picture, and below it what was said.
     pub fn draw(&mut self, film: &Film) {
         if self.is_shown {
@@ -85,8 +92,7 @@ fn has_all_colors() -> bool {
 /// A picture in so many cells at most, each line with its end.
 fn drawn(film: &Film, columns: usize, rows: usize, has_all_colors: bool) -> String {
     let (width, height) = (film.width() as usize, film.height() as usize);
-    // Pixels per dot: a cell has two dots, which are about square.
-    let scale = (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64);
+    let scale = scale(width, height, columns, rows);
     let dots =
         |pixels: usize, most: usize| ((pixels as f64 / scale).round() as usize).clamp(1, most);
     let (across, down) = (dots(width, columns), dots(height, 2 * rows));
@@ -106,6 +112,11 @@ fn drawn(film: &Film, columns: usize, rows: usize, has_all_colors: bool) -> Stri
         text.push_str("\x1b[0m\x1b[K\n");
     }
     text
+}
+
+/// Pixels per dot: a cell has two dots, which are about square.
+fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
+    (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }
 
 /// The pixels of one of `parts` parts: at least one.

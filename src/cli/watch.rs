@@ -2,15 +2,25 @@
 
 use std::{
     fs,
+    num::NonZero,
     path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
+        mpsc::{self, RecvTimeoutError},
     },
+    thread,
     time::{Duration, Instant},
 };
 
-use pinhole::{area::Area, film::SIGNATURE, preview, render::RenderError, scene};
+use pinhole::{
+    area::Area,
+    film::SIGNATURE,
+    preview, refine,
+    render::{Control, RenderError},
+    scene::{self, Scene},
+    tracer::World,
+};
 
 use super::{
     Status, Trouble,
@@ -18,7 +28,7 @@ use super::{
     input::{self, Input, shown},
     interrupt::Interrupt,
     output,
-    picture::{Output, picture},
+    picture::{Output, Picture, picture, threads},
     show::Screen,
 };
 
@@ -113,8 +123,7 @@ fn make(
     let Some(scene) = reading.scene else {
         return Ok(None);
     };
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    let picture = match picture(&scene, whole, args.threads, is_stale) {
+    let picture = match with_sketch(&scene, threads(args.threads), is_stale, screen) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(None),
         Err(error) => return Err(Trouble(error.to_string())),
@@ -133,6 +142,45 @@ fn make(
     output.warn_of_length(&recipe);
     screen.say(&picture.notes(output));
     Ok(Some(done))
+}
+
+/// A picture that takes longer is shown as a sketch first.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// Renders the scene, and shows a coarse picture where people would wait.
+fn with_sketch(
+    scene: &Scene,
+    threads: Option<NonZero<usize>>,
+    is_stale: &AtomicBool,
+    screen: &mut Screen,
+) -> Result<Picture, RenderError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let world = World::new(scene);
+    let Some(side) = screen.side(whole) else {
+        return picture(scene, &world, whole, threads, is_stale);
+    };
+    thread::scope(|scope| {
+        let (done, wait) = mpsc::channel::<()>();
+        scope.spawn({
+            let world = &world;
+            move || {
+                if wait.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+                    return;
+                }
+                let control = Control {
+                    threads,
+                    progress: &|_| {},
+                    cancel: is_stale,
+                };
+                if let Ok(sketch) = refine::coarse(world, whole, side, &control) {
+                    screen.draw(&sketch.film);
+                }
+            }
+        });
+        let picture = picture(scene, &world, whole, threads, is_stale);
+        drop(done);
+        picture
+    })
 }
 
 /// A time that somebody waited.
