@@ -6,17 +6,23 @@
 mod args;
 mod check;
 mod diff;
+mod explain;
 mod input;
 mod inspect;
 mod interrupt;
 mod manual;
 mod output;
+mod picture;
 mod probe;
 mod progress;
 mod render;
 mod report;
+#[cfg(feature = "preview")]
+mod show;
 #[cfg(feature = "report")]
 mod speed;
+#[cfg(feature = "preview")]
+mod watch;
 
 use std::{fmt, process::ExitCode};
 
@@ -34,10 +40,13 @@ pub fn run() -> ExitCode {
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args),
+        #[cfg(feature = "preview")]
+        Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        Command::Explain(args) => explain::run(&args),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });

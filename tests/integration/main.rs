@@ -9,6 +9,7 @@ mod culling;
 mod diagnostics;
 mod diff;
 mod exact;
+mod explain;
 mod figure;
 mod film;
 mod images;
@@ -28,3 +29,5 @@ mod robustness;
 mod sampling;
 mod syntax;
 mod tracer;
+#[cfg(all(unix, feature = "preview"))]
+mod watch;
