@@ -28,9 +28,10 @@ Examples:
   pinhole inspect figure.scn --format json
   pinhole probe figure.scn 640.5 360.5
   pinhole diff mine.png figure.scn               is it the right picture, and if not, why?
+  pinhole fmt *.scn
 
-Exit status: 0 done, warnings or not; 1 the scene has errors, or diff found more than its tolerance;
-2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
+Exit status: 0 done, warnings or not; 1 the scene has errors, diff found more than its tolerance, or
+fmt --check would change something; 2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -60,6 +61,9 @@ pub enum Command {
     /// Explain a kind of mistake: a wrong scene, the right one, and why
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainArgs),
+    /// Lay out scene files in the one canonical way
+    #[command(after_help = FMT_EXAMPLES)]
+    Fmt(FmtArgs),
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -82,7 +86,12 @@ Examples:
 const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
-  pinhole check *.scn --format json              one line for each problem";
+  pinhole check *.scn --format json              one line for each problem
+
+JSON, an object a line: file, severity, code, message, help, labels [{offset, length, line, column, end_line, \
+end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
+is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
+was. A label or an edit within a --set argument has a file of its own.";
 
 #[cfg(feature = "preview")]
 const WATCH_EXAMPLES: &str = "\
@@ -144,6 +153,18 @@ Examples:
   pinhole explain bare_angle
   pinhole explain                                all codes, by subject
   pinhole explain up_parallel | less             as Markdown";
+
+const FMT_EXAMPLES: &str = "\
+Replaces each file by its canonical layout, whole or not at all, and does not touch it where nothing would change. \
+Tokens, comments, and blank lines between groups stay; of line ends it matters whether a block stands on one line. A \
+file with errors of syntax is left as it is.
+
+Examples:
+  pinhole fmt figure.scn
+  pinhole fmt *.scn --check                      writes nothing, prints a diff of what would change
+  pinhole fmt - < figure.scn > tidy.scn          from standard input to standard output
+
+Exit status: 0 done; 1 a file has errors of syntax, or --check would change something; 2 trouble.";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -284,6 +305,17 @@ pub struct ReportArgs {
     /// How many threads to use [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
+}
+
+/// Arguments of `fmt`.
+#[derive(Debug, clap::Args)]
+pub struct FmtArgs {
+    /// The scenes: .scn files, or `-` for standard input, which is laid out to standard output
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Write nothing; print what would change as a diff, and end with status 1 if anything would
+    #[arg(long)]
+    pub check: bool,
 }
 
 /// Arguments of `diff`.

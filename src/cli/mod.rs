@@ -1,12 +1,13 @@
 //! The command line: reads, calls, prints. A command is a file.
 //!
 //! Pictures and JSON go to standard output, everything for people to standard error. The exit status is 0 when it is done, warnings
-//! or not, 1 when the scene has errors or pictures differ, 2 on any other trouble and 130 after Ctrl-C.
+//! or not, 1 when the scene has errors, pictures differ or `fmt --check` would change something, 2 on any other trouble and 130 after Ctrl-C.
 
 mod args;
 mod check;
 mod diff;
 mod explain;
+mod fmt;
 mod input;
 mod inspect;
 mod interrupt;
@@ -24,7 +25,10 @@ mod speed;
 #[cfg(feature = "preview")]
 mod watch;
 
-use std::{fmt, process::ExitCode};
+use std::{
+    fmt::{Display, Formatter},
+    process::ExitCode,
+};
 
 use clap::Parser;
 
@@ -47,6 +51,7 @@ pub fn run() -> ExitCode {
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Explain(args) => explain::run(&args),
+        Command::Fmt(args) => fmt::run(&args, &interrupt),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });
@@ -64,7 +69,7 @@ pub fn run() -> ExitCode {
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, or the pictures differ: it ran, and the answer is no.
+    /// The scene has errors, the pictures differ or the layout would change: it ran, and the answer is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,
@@ -82,8 +87,8 @@ impl From<Status> for ExitCode {
 #[derive(Debug)]
 struct Trouble(String);
 
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Display for Trouble {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.0)
     }
 }

@@ -12,6 +12,9 @@ mod exact;
 mod explain;
 mod figure;
 mod film;
+mod fixes;
+mod fmt;
+mod format;
 mod images;
 #[cfg(unix)]
 mod interrupt;

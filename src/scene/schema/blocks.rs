@@ -304,6 +304,7 @@ pub const BLOCKS: &[Block] = &[
                 preset: Preset::Alternative,
                 excludes: &["center", "size"],
                 help: "its corner of least coordinates, together with max",
+                example: "(-1, 0, -1)",
                 ..FIELD
             },
             Field {
@@ -312,6 +313,7 @@ pub const BLOCKS: &[Block] = &[
                 preset: Preset::Alternative,
                 excludes: &["center", "size"],
                 help: "its corner of greatest coordinates, together with min",
+                example: "(1, 1, 1)",
                 ..FIELD
             },
             color("orange"),
