@@ -1,6 +1,6 @@
-// Bundles the extension with what it uses, and the licences of that, into dist/.
+// Bundles the extension with what it uses, and the licences of that, into dist/; and fetches Pinhole's own licences.
 
-import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { build } from "esbuild";
 
@@ -24,3 +24,5 @@ const texts = [...folders].sort().map(folder => {
   return `${name} ${version}\n\n${readFileSync(path.join(folder, license), "utf8").trim()}\n`;
 });
 writeFileSync("dist/LICENSES.txt", `dist/extension.js contains the packages below, each under its licence.\n\n${texts.join("\n\n")}`);
+
+for (const name of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(`../../../${name}`, name);
