@@ -20,7 +20,6 @@ export const scopes = {
   number: "constant.numeric.pinhole",
   operator: "keyword.operator.pinhole",
   comment: "comment.pinhole",
-  string: "string.quoted.pinhole",
 };
 
 /** The colours that CSS names. */
@@ -45,7 +44,7 @@ const NUMBER =
   "(?:[0-9][0-9_]*(?:\\.[0-9_]*)?|\\.[0-9][0-9_]*)(?:[eE][-+]?[0-9][0-9_]*)?(?:deg|rad)?(?![A-Za-z0-9_.])";
 const ODD_NUMBER = "\\.?[0-9][A-Za-z0-9_.]*";
 const COLOR_CODE = "#[A-Za-z0-9_]*";
-const COLOR_NAME = `(?i:${colors.join("|")})\\b`;
+const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
 // With those that people try.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
@@ -71,8 +70,8 @@ function values(prefix, ...next) {
   return {
     [value]: { patterns: includes("sign", `${prefix}-parentheses`, `${prefix}-operand`) },
     [`${prefix}-operand`]: rule(
-      `(${NUMBER})|(${COLOR_CODE})|(${QUOTED})|(${COLOR_NAME})|(${NAME})|${ODD_NUMBER}`,
-      ["number", "enumMember", "string", "enumMember", "variable"],
+      `(${NUMBER})|(${COLOR_CODE})|(${WORD_OF_THE_LANGUAGE})|(${NAME})|${ODD_NUMBER}|${QUOTED}`,
+      ["number", "number", "enumMember", "variable"],
       VALUES_END,
       "comment", operation, ...next,
     ),
@@ -136,9 +135,9 @@ export const grammar = {
       patterns: [
         ...includes("comment", "parentheses"),
         scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
-        scoped(COLOR_CODE, "enumMember"),
-        scoped(QUOTED, "string"),
-        scoped(`\\b${COLOR_NAME}`, "enumMember"),
+        scoped(COLOR_CODE, "number"),
+        { match: QUOTED },
+        scoped(`\\b${WORD_OF_THE_LANGUAGE}`, "enumMember"),
         scoped(`\\b${NAME}`, "variable"),
         scoped(OPERATOR, "operator"),
       ],
