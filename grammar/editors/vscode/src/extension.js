@@ -43,7 +43,8 @@ async function start() {
     { command, args: ["lsp"] },
     { documentSelector: [{ language: "pinhole", scheme: "file" }, { language: "pinhole", scheme: "untitled" }] },
   );
-  await client.start();
+  // What goes wrong here the client has shown already.
+  await client.start().catch(() => {});
 }
 
 async function stop() {

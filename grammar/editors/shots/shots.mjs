@@ -1,0 +1,55 @@
+// The pictures: a scene, and what is done in the editor before each is taken.
+
+const mistaken = `// A ball and a crate. Two words are not quite right.
+let ball = (-1.6, 1, 0)
+
+image   { width 1280  height 720  background midnightblue }
+camera  {
+  eye    ball + 4 * (1, 0.6, 2)
+  lookat (0.2, 0.8, 0)
+  roll   30
+  d      2.75
+}
+sampler { method multi_jittered  per_pixel 16 }
+
+sphere Ball  { center ball  radus 1  color olive }
+box    Crate { center (2, 0.75, -0.5)  color #c60 }
+checkerboard { square 1  colors (gray, white) }
+`;
+
+const unfinished = `// A ball on a checkered floor.
+let ball = (-1.6, 1, 0)
+
+camera  { eye (3, 3.5, 8)  lookat ball  d 2.75 }
+
+sphere   Ball { center ball  radius 1  color olive }
+triangle Sail {
+  centroid (0.2, 1, 0.6)
+  
+}
+checkerboard { square 1  colors (gray, white) }
+`;
+
+export const shots = [
+  {
+    name: "fix",
+    width: 860,
+    height: 440,
+    scene: mistaken,
+    async prepare({ at, trigger }) {
+      await at("roll   3");
+      await trigger("editor.action.quickFix");
+    },
+  },
+  {
+    name: "complete",
+    width: 860,
+    height: 400,
+    scene: unfinished,
+    async prepare({ at, type, trigger }) {
+      await at("centroid (0.2, 1, 0.6)\n  ");
+      await type("s");
+      await trigger("editor.action.triggerSuggest");
+    },
+  },
+];
