@@ -35,7 +35,7 @@ try {
 async function bundle() {
   const common = { bundle: true, format: "iife", logLevel: "error", outdir: folder, loader: { ".ttf": "dataurl" }, absWorkingDir: here };
   await build({ ...common, entryPoints: { page: "page.js" } });
-  await build({ ...common, entryPoints: { worker: "monaco-editor/esm/vs/editor/editor.worker.js" } });
+  await build({ ...common, entryPoints: { worker: "monaco-editor/editor/editor.worker.js" } });
   const worker = JSON.stringify(readFileSync(path.join(folder, "worker.js"), "utf8")).replaceAll("</", "<\\/");
   writeFileSync(path.join(folder, "index.html"), `<!doctype html><meta charset="utf-8">
 <link rel="stylesheet" href="page.css">

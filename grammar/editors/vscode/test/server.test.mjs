@@ -20,7 +20,7 @@ before(async () => { server = await start(); });
 after(async () => assert.equal(await server.stop(), 0));
 
 for (const scene of scenes) {
-  test(`${scene} is scoped as its semantic tokens are`, async () => {
+  test(`${scene} is scoped as its semantic tokens are`, { timeout: 30_000 }, async () => {
     const source = readFileSync(root + scene, "utf8");
     const uri = pathToFileURL(root + scene).href;
     await server.open(uri, source);
@@ -30,7 +30,7 @@ for (const scene of scenes) {
 
 test("there are scenes to compare", () => assert.ok(scenes.length > 20));
 
-test("the grammar knows the colours that the language knows", async () => {
+test("the grammar knows the colours that the language knows", { timeout: 30_000 }, async () => {
   const text = "sphere { color  }";
   await server.open("file:///colors.scn", text);
   const answer = await server.ask("textDocument/completion", {
@@ -41,7 +41,7 @@ test("the grammar knows the colours that the language knows", async () => {
   assert.deepEqual(items.filter(({ kind, label }) => kind === COLOR && /^[a-z]+$/.test(label)).map(({ label }) => label).sort(), colors);
 });
 
-test("a scene is diagnosed, mended, explained and completed", async () => {
+test("a scene is diagnosed, mended, explained and completed", { timeout: 30_000 }, async () => {
   const uri = "file:///broken.scn";
   const textDocument = { uri };
   const text = "camera { eye (0, 1, 5)  lookat (0, 1, 0)  roll 30 }\nsphere { center (0, 1, 0)   }\n";

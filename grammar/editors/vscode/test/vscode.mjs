@@ -2,8 +2,7 @@
 // and shows is kept, for the tests to look at.
 
 import { createRequire } from "node:module";
-import path from "node:path";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 
 const disposable = () => ({ dispose() {} });
 
@@ -30,6 +29,10 @@ class Range {
   }
 }
 
+class Diagnostic {
+  constructor(range, message, severity) { Object.assign(this, { range, message, severity }); }
+}
+
 /** A namespace with these members, whose others are functions that answer with something to dispose of. */
 const partly = members => new Proxy(members, { get: (target, name) => (name in target ? target[name] : disposable) });
 
@@ -41,7 +44,7 @@ export function editor({ documents = [], setting = "" } = {}) {
   const seen = { messages: [], executed: [], terminals: [], providers: {}, diagnostics: new Map(), commands: new Map() };
   const show = kind => async (message, ...choices) => { seen.messages.push({ kind, message, choices }); };
   const members = {
-    Uri, Position, Range,
+    Uri, Position, Range, Diagnostic,
     version: "1.91.0",
     env: { appName: "test", language: "en", machineId: "test" },
     ViewColumn: { Beside: -2 },
@@ -90,7 +93,7 @@ export function load(vscode) {
   const require = createRequire(import.meta.url);
   const Module = require("node:module");
   const whole = Module._load;
-  const bundle = path.resolve(import.meta.dirname, "../dist/extension.js");
+  const bundle = fileURLToPath(new URL("../dist/extension.js", import.meta.url));
   delete require.cache[bundle];
   Module._load = (name, ...rest) => (name === "vscode" ? vscode : whole(name, ...rest));
   try {
