@@ -39,7 +39,9 @@ async function bundle() {
   const worker = JSON.stringify(readFileSync(path.join(folder, "worker.js"), "utf8")).replaceAll("</", "<\\/");
   writeFileSync(path.join(folder, "index.html"), `<!doctype html><meta charset="utf-8">
 <link rel="stylesheet" href="page.css">
-<style>body { margin: 0; background: #1F1F1F; } #editor { width: 100vw; height: 100vh; }</style>
+<style>body { margin: 0; background: #1F1F1F; } #editor { width: 100vw; height: 100vh; }
+/* The menu of fixes takes its width from its longest line before the fonts are there. */
+.action-widget, .action-widget .monaco-list { width: 280px !important; }</style>
 <div id="editor"></div>
 <script>
 const source = URL.createObjectURL(new Blob([${worker}], { type: "text/javascript" }));

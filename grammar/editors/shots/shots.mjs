@@ -4,13 +4,13 @@ const mistaken = `// A ball and a crate. Two words are not quite right.
 let ball = (-1.6, 1, 0)
 
 image   { width 1280  height 720  background midnightblue }
+sampler { method multi_jittered  per_pixel 16 }
 camera  {
   eye    ball + 4 * (1, 0.6, 2)
   lookat (0.2, 0.8, 0)
-  roll   30
   d      2.75
+  roll   30
 }
-sampler { method multi_jittered  per_pixel 16 }
 
 sphere Ball  { center ball  radus 1  color olive }
 box    Crate { center (2, 0.75, -0.5)  color #c60 }
@@ -34,9 +34,12 @@ export const shots = [
   {
     name: "fix",
     width: 860,
-    height: 440,
+    height: 530,
     scene: mistaken,
-    async prepare({ at, trigger }) {
+    async prepare({ at, trigger, pause }) {
+      await at("ball  rad");
+      await trigger("editor.action.marker.next");
+      await pause(500);
       await at("roll   3");
       await trigger("editor.action.quickFix");
     },
@@ -46,10 +49,11 @@ export const shots = [
     width: 860,
     height: 400,
     scene: unfinished,
-    async prepare({ at, type, trigger }) {
+    async prepare({ at, type, trigger, pause }) {
       await at("centroid (0.2, 1, 0.6)\n  ");
       await type("s");
-      await trigger("editor.action.triggerSuggest");
+      await pause(500);
+      await trigger("toggleSuggestionDetails");
     },
   },
 ];
