@@ -39,12 +39,15 @@ export const colors = `
   springgreen steelblue tan teal thistle tomato turquoise violet wheat white whitesmoke yellow yellowgreen
 `.trim().split(/\s+/);
 
+export const functions = "sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb".split(" ");
+
 const NAME = "[A-Za-z_][A-Za-z0-9_]*";
 const NUMBER =
   "(?:[0-9][0-9_]*(?:\\.[0-9_]*)?|\\.[0-9][0-9_]*)(?:[eE][-+]?[0-9][0-9_]*)?(?:deg|rad)?(?![A-Za-z0-9_.])";
 const ODD_NUMBER = "\\.?[0-9][A-Za-z0-9_.]*";
 const COLOR_CODE = "#[A-Za-z0-9_]*";
 const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
+const FUNCTION = `(?:${functions.join("|")})\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
 // With those that people try.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
@@ -67,17 +70,16 @@ const rule = (begin, types, end, ...names) => ({
 /** The rules of values behind which the rules `next` follow: fields, or items. */
 function values(prefix, ...next) {
   const [value, operation] = [`${prefix}-value`, `${prefix}-operation`];
+  const goesOn = ["comment", "parentheses", operation, ...next];
   return {
-    [value]: { patterns: includes("sign", `${prefix}-parentheses`, `${prefix}-operand`) },
+    [value]: { patterns: includes("sign", `${prefix}-group`, `${prefix}-operand`) },
     [`${prefix}-operand`]: rule(
-      `(${NUMBER})|(${COLOR_CODE})|(${WORD_OF_THE_LANGUAGE})|(${NAME})|${ODD_NUMBER}|${QUOTED}`,
-      ["number", "number", "enumMember", "variable"],
+      `(${NUMBER})|(${COLOR_CODE})|(${WORD_OF_THE_LANGUAGE})|(${FUNCTION})|(${NAME})|${ODD_NUMBER}|${QUOTED}`,
+      ["number", "number", "enumMember", "function", "variable"],
       VALUES_END,
-      "comment", operation, ...next,
+      ...goesOn,
     ),
-    [`${prefix}-parentheses`]: rule(
-      `(${NAME})?\\s*\\(`, ["function"], VALUES_END, "inner", "comment", operation, ...next,
-    ),
+    [`${prefix}-group`]: rule("\\(", [], VALUES_END, "inner", ...goesOn),
     [operation]: rule(`(${OPERATOR})`, ["operator"], VALUES_END, "comment", value),
   };
 }
@@ -138,11 +140,12 @@ export const grammar = {
         scoped(COLOR_CODE, "number"),
         { match: QUOTED },
         scoped(`\\b${WORD_OF_THE_LANGUAGE}`, "enumMember"),
+        scoped(`\\b${FUNCTION}`, "function"),
         scoped(`\\b${NAME}`, "variable"),
         scoped(OPERATOR, "operator"),
       ],
     },
-    parentheses: rule(`(?:\\b(${NAME}))?\\s*\\(`, ["function"], `(?<=\\))|(?=[{}])|${NEXT_ITEM}`, "inner"),
+    parentheses: rule("\\(", [], `(?<=\\))|(?=[{}])|${NEXT_ITEM}`, "inner"),
     sign: scoped("[-+−=:]", "operator"),
   },
 };

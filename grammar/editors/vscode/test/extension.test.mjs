@@ -38,7 +38,7 @@ async function started(t, options) {
   return { vscode, seen, diagnosed };
 }
 
-const timeout = 60_000;
+const timeout = 20_000;
 
 test("a scene that is open gets its diagnostics and every answer has a provider", { timeout }, async t => {
   const document = scene(SCENE.replace("eye", "eyes"));

@@ -39,17 +39,17 @@ test("values go on over lines and comments", () => {
 });
 
 test("words of the language are told from names", () => {
-  assert.deepEqual(typed("sphere { color #FA0 } let a = (pi * rad, Olive, olives, PI, f(1.5e-3deg, #abc))"), [
+  assert.deepEqual(typed("sphere { color #FA0 } let a = (pi * rad, Olive, olives, PI, dot(1.5e-3deg, #abc))"), [
     "sphere keyword", "color property", "#FA0 number",
     "let keyword", "a variable.declaration", "= operator", "pi enumMember", "* operator", "rad enumMember",
-    "Olive enumMember", "olives variable", "PI variable", "f function", "1.5e-3deg number", "#abc number",
+    "Olive enumMember", "olives variable", "PI variable", "dot function", "1.5e-3deg number", "#abc number",
   ]);
 });
 
 test("one line holds several items", () => {
-  assert.deepEqual(typed("let a = b sphere { radius a } let c = f(a) box B {} image{}"), [
+  assert.deepEqual(typed("let a = b sphere { radius a } let c = sin(a) box B {} image{}"), [
     "let keyword", "a variable.declaration", "= operator", "b variable", "sphere keyword", "radius property", "a variable",
-    "let keyword", "c variable.declaration", "= operator", "f function", "a variable",
+    "let keyword", "c variable.declaration", "= operator", "sin function", "a variable",
     "box keyword", "B class", "image keyword",
   ]);
 });

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { colors } from "../syntaxes/grammar.mjs";
+import { colors, functions } from "../syntaxes/grammar.mjs";
 import { scoped } from "./scoped.mjs";
 import { classified, start } from "./server.mjs";
 
@@ -30,15 +30,18 @@ for (const scene of scenes) {
 
 test("there are scenes to compare", () => assert.ok(scenes.length > 20));
 
-test("the grammar knows the colours that the language knows", { timeout: 30_000 }, async () => {
-  const text = "sphere { color  }";
-  await server.open("file:///colors.scn", text);
-  const answer = await server.ask("textDocument/completion", {
-    textDocument: { uri: "file:///colors.scn" }, position: { line: 0, character: 15 },
-  });
-  const items = answer.items ?? answer;
-  const COLOR = 16;
-  assert.deepEqual(items.filter(({ kind, label }) => kind === COLOR && /^[a-z]+$/.test(label)).map(({ label }) => label).sort(), colors);
+test("the grammar knows the colours and functions that the language knows", { timeout: 30_000 }, async () => {
+  const textDocument = { uri: "file:///words.scn" };
+  await server.open(textDocument.uri, "sphere { color  center  }");
+  const offered = async (character, kind) => {
+    const answer = await server.ask("textDocument/completion", { textDocument, position: { line: 0, character } });
+    return (answer.items ?? answer).filter(item => item.kind === kind).map(({ label }) => label);
+  };
+  const [FUNCTION, COLOR] = [3, 16];
+  assert.deepEqual((await offered(15, COLOR)).sort(), colors);
+  // Those that give a colour are offered for colours, those that give a vector for vectors, and so on.
+  const found = new Set([...await offered(15, FUNCTION), ...await offered(23, FUNCTION)]);
+  assert.deepEqual([...found].sort(), [...functions].sort());
 });
 
 test("a scene is diagnosed, mended, explained and completed", { timeout: 30_000 }, async () => {

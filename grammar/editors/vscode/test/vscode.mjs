@@ -36,15 +36,19 @@ class Diagnostic {
 /** A namespace with these members, whose others are functions that answer with something to dispose of. */
 const partly = members => new Proxy(members, { get: (target, name) => (name in target ? target[name] : disposable) });
 
+class TabInputText {
+  constructor(uri) { this.uri = uri; }
+}
+
 /** An enumeration or class of which only the existence matters. */
-const anything = () => new Proxy(class {}, { get: (target, name) => (name in target ? target[name] : name === "prototype" ? target.prototype : 0) });
+const anything = () => new Proxy(class {}, { get: (target, name) => (typeof name === "symbol" || name in target ? target[name] : 0) });
 
 /** A fresh editor with these documents. `path` is the setting `pinhole.path`. */
 export function editor({ documents = [], setting = "" } = {}) {
   const seen = { messages: [], executed: [], terminals: [], providers: {}, diagnostics: new Map(), commands: new Map() };
   const show = kind => async (message, ...choices) => { seen.messages.push({ kind, message, choices }); };
   const members = {
-    Uri, Position, Range, Diagnostic,
+    Uri, Position, Range, Diagnostic, TabInputText,
     version: "1.91.0",
     env: { appName: "test", language: "en", machineId: "test" },
     ViewColumn: { Beside: -2 },
@@ -64,7 +68,7 @@ export function editor({ documents = [], setting = "" } = {}) {
     }),
     window: partly({
       activeTextEditor: documents[0] && { document: documents[0] },
-      tabGroups: { all: [], onDidChangeTabs: disposable, onDidChangeTabGroups: disposable },
+      tabGroups: { all: [{ tabs: documents.map(({ uri }) => ({ input: new TabInputText(uri) })) }], onDidChangeTabs: disposable, onDidChangeTabGroups: disposable },
       visibleTextEditors: [], visibleNotebookEditors: [], terminals: seen.terminals,
       showErrorMessage: show("error"), showInformationMessage: show("information"), showWarningMessage: show("warning"),
       withProgress: (_, run) => run({ report() {} }, { isCancellationRequested: false, onCancellationRequested: disposable }),
