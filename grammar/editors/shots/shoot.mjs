@@ -41,7 +41,8 @@ async function bundle() {
 <link rel="stylesheet" href="page.css">
 <style>body { margin: 0; background: #1F1F1F; } #editor { width: 100vw; height: 100vh; }
 /* The menu of fixes takes its width from its longest line before the fonts are there. */
-.action-widget, .action-widget .monaco-list { width: 280px !important; }</style>
+.action-widget, .action-widget .monaco-list { width: 280px !important; }
+.suggest-details-container, .suggest-details { height: 150px !important; }</style>
 <div id="editor"></div>
 <script>
 const source = URL.createObjectURL(new Blob([${worker}], { type: "text/javascript" }));
@@ -105,13 +106,16 @@ function editing(page) {
     window.editor.focus();
   }, before);
   const trigger = id => page.evaluate(id => window.editor.trigger("shot", id, {}), id);
-  const type = text => page.keyboard.type(text, { delay: 30 });
-  const press = key => page.keyboard.press(key);
-  const hover = async before => {
-    await at(before);
-    await trigger("editor.action.showHover");
+  /** Goes down the list of completions to one. */
+  const choose = async label => {
+    const chosen = () => page.evaluate(() => document.querySelector(".suggest-widget .monaco-list-row.focused .label-name")?.textContent);
+    for (let tries = 0; (await chosen()) !== label; tries++) {
+      if (tries === 50) throw new Error(`${label} is not offered`);
+      await page.keyboard.press("ArrowDown");
+      await pause(50);
+    }
   };
-  return { at, trigger, type, press, hover, pause, page };
+  return { at, trigger, choose, pause };
 }
 
 function pause(ms) {

@@ -17,16 +17,16 @@ box    Crate { center (2, 0.75, -0.5)  color #c60 }
 checkerboard { square 1  colors (gray, white) }
 `;
 
-const unfinished = `// A ball on a checkered floor.
+const unfinished = `// A ball on a checkered floor, seen from a corner.
 let ball = (-1.6, 1, 0)
 
-camera  { eye (3, 3.5, 8)  lookat ball  d 2.75 }
-
-sphere   Ball { center ball  radius 1  color olive }
-triangle Sail {
-  centroid (0.2, 1, 0.6)
+camera {
+  eye    (3, 3.5, 8)
+  lookat ball
   
 }
+
+sphere Ball  { center ball  radius 1  color olive }
 checkerboard { square 1  colors (gray, white) }
 `;
 
@@ -47,12 +47,13 @@ export const shots = [
   {
     name: "complete",
     width: 860,
-    height: 400,
+    height: 340,
     scene: unfinished,
-    async prepare({ at, type, trigger, pause }) {
-      await at("centroid (0.2, 1, 0.6)\n  ");
-      await type("s");
-      await pause(500);
+    async prepare({ at, choose, trigger, pause }) {
+      await at("lookat ball\n  ");
+      await trigger("editor.action.triggerSuggest");
+      await pause(1000);
+      await choose("fov");
       await trigger("toggleSuggestionDetails");
     },
   },
