@@ -42,12 +42,14 @@ export const colors = `
 export const functions = "sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb".split(" ");
 
 const NAME = "[A-Za-z_][A-Za-z0-9_]*";
+// A unit may stand apart, which is a slip.
 const NUMBER =
-  "(?:[0-9][0-9_]*(?:\\.[0-9_]*)?|\\.[0-9][0-9_]*)(?:[eE][-+]?[0-9][0-9_]*)?(?:deg|rad)?(?![A-Za-z0-9_.])";
+  "(?:[0-9][0-9_]*(?:\\.[0-9_]*)?|\\.[0-9][0-9_]*)(?:[eE][-+]?[0-9][0-9_]*)?(?:[ \\t]*(?:deg|rad))?(?![A-Za-z0-9_.])";
 const ODD_NUMBER = "\\.?[0-9][A-Za-z0-9_.]*";
 const COLOR_CODE = "#[A-Za-z0-9_]*";
 const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
-const FUNCTION = `(?:${functions.join("|")})\\b`;
+// `tan` is a colour as well.
+const FUNCTION = `(?:${functions.map(name => (name === "tan" ? "tan(?=\\s*\\()" : name)).join("|")})\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
 // With those that people try.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
@@ -74,8 +76,8 @@ function values(prefix, ...next) {
   return {
     [value]: { patterns: includes("sign", `${prefix}-group`, `${prefix}-operand`) },
     [`${prefix}-operand`]: rule(
-      `(${NUMBER})|(${COLOR_CODE})|(${WORD_OF_THE_LANGUAGE})|(${FUNCTION})|(${NAME})|${ODD_NUMBER}|${QUOTED}`,
-      ["number", "number", "enumMember", "function", "variable"],
+      `(${NUMBER})|(${COLOR_CODE})|(${FUNCTION})|(${WORD_OF_THE_LANGUAGE})|(${NAME})|${ODD_NUMBER}|${QUOTED}`,
+      ["number", "number", "function", "enumMember", "variable"],
       VALUES_END,
       ...goesOn,
     ),
@@ -139,8 +141,8 @@ export const grammar = {
         scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
         scoped(COLOR_CODE, "number"),
         { match: QUOTED },
-        scoped(`\\b${WORD_OF_THE_LANGUAGE}`, "enumMember"),
         scoped(`\\b${FUNCTION}`, "function"),
+        scoped(`\\b${WORD_OF_THE_LANGUAGE}`, "enumMember"),
         scoped(`\\b${NAME}`, "variable"),
         scoped(OPERATOR, "operator"),
       ],

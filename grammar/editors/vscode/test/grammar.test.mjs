@@ -46,6 +46,15 @@ test("words of the language are told from names", () => {
   ]);
 });
 
+test("tan is a function where it is called, and a colour elsewhere", () => {
+  assert.deepEqual(typed("let a = tan(b) let c = 2 * (tan (b)) let d = tan let e = (tan, atan)"), [
+    "let keyword", "a variable.declaration", "= operator", "tan function", "b variable",
+    "let keyword", "c variable.declaration", "= operator", "2 number", "* operator", "tan function", "b variable",
+    "let keyword", "d variable.declaration", "= operator", "tan enumMember",
+    "let keyword", "e variable.declaration", "= operator", "tan enumMember", "atan function",
+  ]);
+});
+
 test("one line holds several items", () => {
   assert.deepEqual(typed("let a = b sphere { radius a } let c = sin(a) box B {} image{}"), [
     "let keyword", "a variable.declaration", "= operator", "b variable", "sphere keyword", "radius property", "a variable",
