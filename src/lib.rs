@@ -55,3 +55,7 @@ pub mod grade;
 pub mod inspect;
 pub mod probe;
 pub mod report;
+
+pub mod editor;
+#[cfg(feature = "lsp")]
+pub mod lsp;

@@ -52,6 +52,10 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Serve an editor: the Language Server Protocol on standard input and output
+    #[cfg(feature = "lsp")]
+    #[command(after_help = LSP_HELP)]
+    Lsp,
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -120,6 +124,12 @@ Examples:
   pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
   pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
+
+#[cfg(feature = "lsp")]
+const LSP_HELP: &str = "\
+Editors start it themselves; grammar/editors/ has what they need for that.
+
+Exit status: 0 after shutdown and exit; 1 if the editor left without; 2 trouble.";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:

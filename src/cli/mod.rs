@@ -9,6 +9,8 @@ mod diff;
 mod input;
 mod inspect;
 mod interrupt;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod manual;
 mod output;
 mod probe;
@@ -38,6 +40,8 @@ pub fn run() -> ExitCode {
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        #[cfg(feature = "lsp")]
+        Command::Lsp => lsp::run(),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });
@@ -55,7 +59,7 @@ pub fn run() -> ExitCode {
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, or the pictures differ: it ran, and the answer is no.
+    /// The scene has errors, the pictures differ, an editor left without a word: it ran, and the answer is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,

@@ -8,6 +8,7 @@ mod cli;
 mod culling;
 mod diagnostics;
 mod diff;
+mod editor;
 mod exact;
 mod figure;
 mod film;
@@ -16,6 +17,8 @@ mod images;
 mod interrupt;
 mod language;
 mod laws;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod numerics;
 mod overrides;
 mod parts;
