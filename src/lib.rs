@@ -26,6 +26,7 @@
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
 //! - [`film`] makes bytes of the means and files of the bytes.
+//! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
 //!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
 
@@ -51,6 +52,7 @@ pub mod render;
 
 pub mod film;
 
+pub mod format;
 pub mod grade;
 pub mod inspect;
 pub mod probe;

@@ -27,9 +27,10 @@ Examples:
   pinhole inspect figure.scn --format json
   pinhole probe figure.scn 640.5 360.5
   pinhole diff mine.png figure.scn               is it the right picture, and if not, why?
+  pinhole fmt *.scn
 
-Exit status: 0 done, warnings or not; 1 the scene has errors, or diff found more than its tolerance;
-2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
+Exit status: 0 done, warnings or not; 1 the scene has errors, diff found more than its tolerance, or
+fmt --check would change something; 2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -52,6 +53,9 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Lay out scene files in the one canonical way
+    #[command(after_help = FMT_EXAMPLES)]
+    Fmt(FmtArgs),
     /// Serve an editor: the Language Server Protocol on standard input and output
     #[cfg(feature = "lsp")]
     #[command(after_help = LSP_HELP)]
@@ -125,6 +129,17 @@ Examples:
   pinhole report --numerics
   pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
 
+const FMT_EXAMPLES: &str = "\
+Replaces each file by its canonical layout, whole or not at all, and does not touch it where nothing would change. \
+Tokens, comments, and blank lines between groups stay; of line ends it matters whether a block stands on one line. A \
+file with errors of syntax is left as it is.
+
+Examples:
+  pinhole fmt figure.scn
+  pinhole fmt *.scn --check                      writes nothing, prints a diff of what would change
+  pinhole fmt - < figure.scn > tidy.scn          from standard input to standard output
+
+Exit status: 0 done; 1 a file has errors of syntax, or --check would change something; 2 trouble.";
 #[cfg(feature = "lsp")]
 const LSP_HELP: &str = "\
 Editors start it themselves; grammar/editors/ has what they need for that.
@@ -251,6 +266,17 @@ pub struct ReportArgs {
     /// How many threads to use [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
+}
+
+/// Arguments of `fmt`.
+#[derive(Debug, clap::Args)]
+pub struct FmtArgs {
+    /// The scenes: .scn files, or `-` for standard input, which is laid out to standard output
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Write nothing; print what would change as a diff, and end with status 1 if anything would
+    #[arg(long)]
+    pub check: bool,
 }
 
 /// Arguments of `diff`.

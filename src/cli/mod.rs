@@ -1,11 +1,12 @@
 //! The command line: reads, calls, prints. A command is a file.
 //!
 //! Pictures and JSON go to standard output, everything for people to standard error. The exit status is 0 when it is done, warnings
-//! or not, 1 when the scene has errors or pictures differ, 2 on any other trouble and 130 after Ctrl-C.
+//! or not, 1 when the scene has errors, pictures differ or `fmt --check` would change something, 2 on any other trouble and 130 after Ctrl-C.
 
 mod args;
 mod check;
 mod diff;
+mod fmt;
 mod input;
 mod inspect;
 mod interrupt;
@@ -20,7 +21,10 @@ mod report;
 #[cfg(feature = "report")]
 mod speed;
 
-use std::{fmt, process::ExitCode};
+use std::{
+    fmt::{Display, Formatter},
+    process::ExitCode,
+};
 
 use clap::Parser;
 
@@ -40,6 +44,7 @@ pub fn run() -> ExitCode {
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]
         Command::Lsp => lsp::run(),
         Command::Completions { shell } => manual::completions(shell),
@@ -59,7 +64,8 @@ pub fn run() -> ExitCode {
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, the pictures differ, an editor left without a word: it ran, and the answer is no.
+    /// The scene has errors, the pictures differ, the layout would change, an editor left without a word: it ran, and the answer
+    /// is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,
@@ -77,8 +83,8 @@ impl From<Status> for ExitCode {
 #[derive(Debug)]
 struct Trouble(String);
 
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Display for Trouble {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.0)
     }
 }

@@ -12,6 +12,8 @@ mod editor;
 mod exact;
 mod figure;
 mod film;
+mod fmt;
+mod format;
 mod images;
 #[cfg(unix)]
 mod interrupt;

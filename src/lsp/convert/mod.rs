@@ -205,12 +205,20 @@ impl Page<'_> {
         }
     }
 
-    /// Texts that take the place of others, as one change of the document.
-    pub fn edit(&self, edits: impl IntoIterator<Item = (Span, String)>) -> lsp::WorkspaceEdit {
-        let edits = edits.into_iter().map(|(span, new_text)| lsp::TextEdit {
+    /// Texts that take the place of others.
+    pub fn text_edits(
+        &self,
+        edits: impl IntoIterator<Item = (Span, String)>,
+    ) -> impl Iterator<Item = lsp::TextEdit> {
+        edits.into_iter().map(|(span, new_text)| lsp::TextEdit {
             range: self.range(span),
             new_text,
-        });
+        })
+    }
+
+    /// The same as one change of the document.
+    pub fn edit(&self, edits: impl IntoIterator<Item = (Span, String)>) -> lsp::WorkspaceEdit {
+        let edits = self.text_edits(edits);
         if !self.client.versioned_edits {
             let changes = [(self.uri.clone(), edits.collect())];
             return lsp::WorkspaceEdit {

@@ -37,6 +37,7 @@ pub fn answer(
         "textDocument/inlayHint" => hints(known?, parsed(params)?),
         "textDocument/documentColor" => colors(known?),
         "textDocument/colorPresentation" => presentations(known?, parsed(params)?),
+        "textDocument/formatting" => formatting(known?),
         "textDocument/semanticTokens/full" => semantic_tokens(known?),
         "textDocument/diagnostic" => pulled_diagnostics(known?),
         method => Err(Refusal(
@@ -154,6 +155,14 @@ fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentation
     });
     let presentations: Vec<_> = presentations.collect();
     written(presentations)
+}
+
+/// Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not complain
+/// each time.
+fn formatting((page, analysis): Known<'_, '_>) -> Answer {
+    let changes = editor::formatting(analysis);
+    let edits: Option<Vec<_>> = changes.map(|changes| page.text_edits(changes).collect());
+    written(edits)
 }
 
 fn semantic_tokens((page, analysis): Known<'_, '_>) -> Answer {

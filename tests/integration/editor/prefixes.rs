@@ -5,9 +5,10 @@ use std::{fs, ops::Range, path::Path};
 use pinhole::{
     color::Color,
     editor::{
-        Analysis, completions, definition, folds, hints, hover, occurrences, presentations,
-        renamable, rename, selection, semantic_tokens, signature, swatches, symbols,
+        Analysis, completions, definition, folds, formatting, hints, hover, occurrences,
+        presentations, renamable, rename, selection, semantic_tokens, signature, swatches, symbols,
     },
+    format,
     source::{Source, Sources, Span},
 };
 
@@ -72,6 +73,13 @@ fn ask_of_all(analysis: &Analysis<'_>) {
         }
     }
     folds(analysis);
+    if let Some(changes) = formatting(analysis) {
+        let mut formatted = text.to_owned();
+        for (span, new) in changes.into_iter().rev() {
+            formatted.replace_range(span.range(), &new);
+        }
+        assert_eq!(Ok(formatted), format::format(analysis.source()));
+    }
     for swatch in swatches(analysis) {
         assert!(!presentations(analysis, swatch.span, Color::BLACK).is_empty());
     }

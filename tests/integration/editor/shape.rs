@@ -3,7 +3,8 @@
 use pinhole::{
     color::Color,
     editor::{
-        Analysis, FoldKind, Symbol, folds, hints, presentations, selection, swatches, symbols,
+        Analysis, FoldKind, Symbol, folds, formatting, hints, presentations, selection, swatches,
+        symbols,
     },
 };
 
@@ -192,4 +193,29 @@ fn remarks_say_what_the_text_does_not() {
         remarked("let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)"),
         "let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)‹= #010203›"
     );
+}
+
+#[test]
+fn the_layout_changes_white_space_only_where_it_must() {
+    let changes = |text: &str| {
+        let sources = sources(text);
+        let found = formatting(&Analysis::new(&sources));
+        found.map(|changes| {
+            let changes = changes.into_iter();
+            let shown = changes.map(|(span, new)| (span.start, span.end - span.start, new));
+            shown.collect::<Vec<_>>()
+        })
+    };
+    assert_eq!(changes("let a = 1\nlet b = 2\n"), Some(Vec::new()));
+    assert_eq!(
+        changes("let a  =  1+1\nlet b = 2"),
+        Some(vec![
+            (6, 1, String::new()),
+            (9, 1, String::new()),
+            (11, 0, " ".to_owned()),
+            (12, 0, " ".to_owned()),
+            (23, 0, "\n".to_owned()),
+        ])
+    );
+    assert_eq!(changes("let a = "), None);
 }
