@@ -9,11 +9,13 @@ use crate::math::{Double, Real, two_product};
 pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
 /// Up to about this many squares are cut out one by one.
 const FEW: f64 = 24.0;
-/// More short rows than this take too long, which only the widest of views have in a pixel.
-const MANY: f64 = 500_000.0;
 /// The part of the board that is further away than so many squares is summed along its boundary: there the n-th term of the
 /// series is at most n/π of its inverse times the one before.
 pub(super) const FAR: f64 = 18.0;
+
+/// Nothing is said of near squares beyond this m: there the horizon is a few roundings away. (The largest factor of L is
+/// about 1.)
+const DEEP: f64 = 1e13;
 
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
@@ -235,49 +237,18 @@ impl Board {
         if nearest >= depth {
             return edge::sum(self, corners, known);
         }
-        if furthest <= depth {
-            return self.near(corners, [nearest, furthest]);
+        if depth.min(furthest) > DEEP {
+            let [near, behind] = self.split(corners, DEEP);
+            let mut sum = cells::sum(self, &near);
+            sum.bound += measure(behind.iter().map(|c| c.at)).0.abs();
+            return sum;
         }
-        let [near, far] = self.split(corners, depth);
-        let mut sum = self.near(&near, [nearest, depth]);
-        sum.add(edge::sum(self, &far, known).within(far.iter().map(|c| c.at)));
-        sum
-    }
-
-    /// Near squares, as far as they are not too many: of those behind nothing is said.
-    fn near(&self, corners: &[Corner], depths: [f64; 2]) -> Sum {
-        let are_few = |corners: &[Corner]| {
-            let along = cells::along(self);
-            let spans = spans(corners);
-            // A long row takes as long as some short ones.
-            let length = (spans[along] / spans[1 - along]).min(cells::MANY);
-            spans[1 - along] * (1.0 + 0.25 * length) <= MANY
-                && corners.iter().all(|c| c.depth.is_finite())
-        };
-        if are_few(corners) {
+        if furthest <= depth {
             return cells::sum(self, corners);
         }
-        let [mut low, mut high] = depths.map(libm::log);
-        for _ in 0..24 {
-            let middle = 0.5 * (low + high);
-            let [near, _] = self.split(corners, libm::exp(middle));
-            if are_few(&near) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let [near, behind] = self.split(corners, libm::exp(low));
-        let nothing = Sum {
-            value: 0.0,
-            bound: f64::INFINITY,
-        };
-        let mut sum = if are_few(&near) {
-            cells::sum(self, &near)
-        } else {
-            nothing.within(near.iter().map(|c| c.at))
-        };
-        sum.add(nothing.within(behind.iter().map(|c| c.at)));
+        let [near, far] = self.split(corners, depth);
+        let mut sum = cells::sum(self, &near);
+        sum.add(edge::sum(self, &far, known).within(far.iter().map(|c| c.at)));
         sum
     }
 
@@ -292,7 +263,7 @@ impl Board {
     }
 
     /// The corners of the part of a convex polygon where L ≥ 0.
-    fn visible(&self, polygon: &[DVec2]) -> Vec<Corner> {
+    pub(super) fn visible(&self, polygon: &[DVec2]) -> Vec<Corner> {
         let mut corners = Vec::with_capacity(polygon.len() + 2);
         let Some(&last) = polygon.last() else {
             return corners;

@@ -4,9 +4,11 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
+use super::block::Block;
 use super::board::{Board, Corner, FAR, Sum, UNIT, form, measure};
 use super::edge::MAX_TERMS;
 use super::euler::{ORDERS, square_wave, waves};
+use super::modes::GRADUAL;
 use crate::math::two_sum;
 
 /// A row with fewer whole squares is cut square by square.
@@ -16,6 +18,10 @@ pub(super) const MANY: f64 = 32.0;
 
 /// More than this are left where points are too coarse to tell one line from the next: then nothing is said of them.
 const TOO_MANY: f64 = 1000.0;
+const TOO_MANY_ROWS: f64 = 1e6;
+
+/// More rows than this, between two vertices, are summed at once.
+const BLOCK: f64 = 3.0 * GRADUAL;
 
 /// Whole squares are only known as well as the forms' inverse is: they are cut out, too, where that is worse than this.
 const SOUND: f64 = 1e-10;
@@ -30,33 +36,36 @@ pub(super) fn along(board: &Board) -> usize {
 /// The squares of a row that lie wholly inside have a closed form each, and where a row is long most of it is summed at
 /// once; what is left of it at the polygon's sides is cut out of the picture square by square.
 pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
+    sum_with_blocks(board, corners, BLOCK)
+}
+
+/// The same with blocks of more rows than `least`.
+pub(super) fn sum_with_blocks(board: &Board, corners: &[Corner], least: f64) -> Sum {
     let along = along(board);
     let mut tally = Tally::default();
     let moved = board.displaced(corners.iter().map(|c| c.at));
-    let is_sound = moved <= SOUND;
-    let mut rows = Cutter::new(board, 1 - along);
-    rows.start(corners.iter().map(|c| c.at));
-    let [mut inside, mut squares] = [Cutter::new(board, along), Cutter::new(board, along)];
-    while let Some(number) = rows.next(&mut tally) {
-        let row = Row {
-            board,
-            along,
-            sign: square_wave(number),
-            number,
-        };
-        squares.start(rows.piece.iter().copied());
-        if squares.count() > MANY {
-            row.long(&rows.piece, &mut inside, &mut squares, &mut tally);
-        } else if is_sound && let Some(inner) = rows.whole(board, along) {
-            inside.start(rows.piece.iter().copied());
-            inside.cut(inner[0], &mut tally);
-            row.squares(&inside.piece, &mut squares, &mut tally);
-            inside.cut(inner[1], &mut tally);
-            row.whole(inner, &inside.piece, &mut tally);
-            row.squares(&inside.rest, &mut squares, &mut tally);
-        } else {
-            row.started(&mut squares, &mut tally);
-        }
+    let mut rows = Rows {
+        board,
+        along,
+        is_sound: moved <= SOUND,
+        lines: Cutter::new(board, 1 - along),
+        inside: Cutter::new(board, along),
+        squares: Cutter::new(board, along),
+    };
+    let polygon: Vec<DVec2> = corners.iter().map(|c| c.at).collect();
+    let mut blocks = Cutter::new(board, 1 - along);
+    blocks.start(polygon.iter().copied());
+    if blocks.count() <= least {
+        rows.add(&polygon, &mut tally);
+    } else {
+        in_bulk(
+            &mut blocks,
+            &vertices(board, 1 - along, &polygon),
+            least,
+            |ends, chords| Block::new(board, along, ends, chords),
+            |piece, tally| rows.add(piece, tally),
+            &mut tally,
+        );
     }
     let mut sum = tally.sum();
     if tally.has_inverse {
@@ -64,6 +73,124 @@ pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
         sum.bound += moved;
     }
     sum
+}
+
+/// What much of a polygon between two lines of the board is summed as, at once.
+pub(super) trait Bulk {
+    /// The part of it that can be.
+    fn smooth(&self) -> [f64; 2];
+    /// Adds its part between two lines, which is `piece`.
+    fn add(&self, ends: [f64; 2], piece: &[DVec2], tally: &mut Tally);
+}
+
+/// Where vertices lie along an axis of the board, in order, and how uncertain that is.
+fn vertices(board: &Board, axis: usize, points: &[DVec2]) -> Vec<(f64, f64)> {
+    // Far away a vertex is uncertain by more than a square, and which side a line there crosses.
+    let size = |[x, y, z]: [f64; 3]| 0.5 * (x.abs() + y.abs()) + z.abs();
+    let [across, below] = [board.across[axis], board.below].map(size);
+    let vertex = |&at: &DVec2| {
+        let level = form(&board.below, at);
+        let place = form(&board.across[axis], at) / level;
+        let roundings = 16.0 * UNIT / level;
+        (place, roundings * (across + place.abs() * below))
+    };
+    let mut ends: Vec<(f64, f64)> = points.iter().map(vertex).collect();
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ends
+}
+
+/// Adds the polygon with which a cutter has begun: in bulk what lies between two vertices with more than `least` lines
+/// between them, and the rest by another way.
+///
+/// Between two vertices it is bounded by one side above and by one below.
+fn in_bulk<B: Bulk>(
+    cutter: &mut Cutter,
+    vertices: &[(f64, f64)],
+    least: f64,
+    bulk: impl Fn([f64; 2], &[Chord; 2]) -> Option<B>,
+    mut add_rest: impl FnMut(&[DVec2], &mut Tally),
+    tally: &mut Tally,
+) {
+    for ends in vertices.windows(2) {
+        let [from, to] = [ends[0], ends[1]];
+        let first = (from.0 + from.1).ceil();
+        let last = (to.0 - to.1).floor();
+        let are_many = last - first > least;
+        if !are_many {
+            continue;
+        }
+        cutter.cut(first, tally);
+        add_rest(&cutter.piece, tally);
+        cutter.cut(last, tally);
+        let Some(bulk) = bulk([first, last], &cutter.chords) else {
+            add_rest(&cutter.piece, tally);
+            continue;
+        };
+        let [first, last] = bulk.smooth();
+        let are_many = last - first > least;
+        if !are_many {
+            add_rest(&cutter.piece, tally);
+            continue;
+        }
+        let mut parts = cutter.again();
+        parts.cut(first, tally);
+        add_rest(&parts.piece, tally);
+        parts.cut(last, tally);
+        bulk.add([first, last], &parts.piece, tally);
+        add_rest(&parts.rest, tally);
+    }
+    add_rest(&cutter.rest, tally);
+}
+
+/// Sums polygons row by row.
+struct Rows<'a> {
+    board: &'a Board,
+    along: usize,
+    /// Whether the forms' inverse is good enough for whole squares.
+    is_sound: bool,
+    lines: Cutter,
+    inside: Cutter,
+    squares: Cutter,
+}
+
+impl Rows<'_> {
+    fn add(&mut self, polygon: &[DVec2], tally: &mut Tally) {
+        let Rows {
+            board,
+            along,
+            is_sound,
+            lines,
+            inside,
+            squares,
+        } = self;
+        let (board, along) = (*board, *along);
+        lines.start(polygon.iter().copied());
+        if lines.count() > TOO_MANY_ROWS {
+            let (area, _) = measure(polygon.iter().copied());
+            return tally.add(0.0, area.abs());
+        }
+        while let Some(number) = lines.next(tally) {
+            let row = Row {
+                board,
+                along,
+                sign: square_wave(number),
+                number,
+            };
+            squares.start(lines.piece.iter().copied());
+            if squares.count() > MANY {
+                row.long(&lines.piece, inside, squares, tally);
+            } else if *is_sound && let Some(inner) = lines.whole(board, along) {
+                inside.start(lines.piece.iter().copied());
+                inside.cut(inner[0], tally);
+                row.squares(&inside.piece, squares, tally);
+                inside.cut(inner[1], tally);
+                row.whole(inner, &inside.piece, tally);
+                row.squares(&inside.rest, squares, tally);
+            } else {
+                row.started(squares, tally);
+            }
+        }
+    }
 }
 
 /// A row of the board.
@@ -137,49 +264,17 @@ impl Row<'_> {
         tally.has_inverse = true;
     }
 
-    /// Adds the part of a long row that a polygon shows.
-    ///
-    /// Between two vertices it is bounded by one side above and by one below: most of that is summed at once.
+    /// Adds the part of a long row that a polygon shows: most of it at once.
     fn long(&self, piece: &[DVec2], inside: &mut Cutter, squares: &mut Cutter, tally: &mut Tally) {
-        // Far away a vertex is uncertain by more than a square, and which side a line there crosses.
-        let size = |[x, y, z]: [f64; 3]| 0.5 * (x.abs() + y.abs()) + z.abs();
-        let [across, below] = [self.board.across[self.along], self.board.below].map(size);
-        let vertex = |&at: &DVec2| {
-            let place = self.place(at);
-            let roundings = 16.0 * UNIT / form(&self.board.below, at);
-            (place, roundings * (across + place.abs() * below))
-        };
-        let mut ends: Vec<(f64, f64)> = piece.iter().map(vertex).collect();
-        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         inside.start(piece.iter().copied());
-        for ends in ends.windows(2) {
-            let [from, to] = [ends[0], ends[1]];
-            let first = (from.0 + from.1).ceil();
-            let last = (to.0 - to.1).floor();
-            if last - first <= MANY {
-                continue;
-            }
-            inside.cut(first, tally);
-            self.squares(&inside.piece, squares, tally);
-            inside.cut(last, tally);
-            let Some(strip) = Strip::new(self, [first, last], &inside.chords) else {
-                self.squares(&inside.piece, squares, tally);
-                continue;
-            };
-            let [first, last] = strip.smooth();
-            if last - first <= MANY {
-                self.squares(&inside.piece, squares, tally);
-                continue;
-            }
-            let mut parts = Cutter::new(self.board, self.along);
-            parts.start(inside.piece.iter().copied());
-            parts.cut(first, tally);
-            self.squares(&parts.piece, squares, tally);
-            parts.cut(last, tally);
-            strip.sum([first, last], &parts.piece, tally);
-            self.squares(&parts.rest, squares, tally);
-        }
-        self.squares(&inside.rest, squares, tally);
+        in_bulk(
+            inside,
+            &vertices(self.board, self.along, piece),
+            MANY,
+            |ends, chords| Strip::new(self, ends, chords),
+            |piece, tally| self.squares(piece, squares, tally),
+            tally,
+        );
     }
 }
 
@@ -236,7 +331,9 @@ impl<'a> Strip<'a> {
             end[1] + slope * (i - end[0])
         }
     }
+}
 
+impl Bulk for Strip<'_> {
     /// The part of it in which m changes little from line to line.
     fn smooth(&self) -> [f64; 2] {
         let [mut first, mut last] = [self.first, self.last];
@@ -250,8 +347,7 @@ impl<'a> Strip<'a> {
         [first, last]
     }
 
-    /// Adds its part between two lines, which is `piece`.
-    fn sum(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
+    fn add(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
         let waves = waves::<MAX_TERMS>(0.0);
         let mut sum = 0.0;
         let mut bound = 0.0;
@@ -267,7 +363,9 @@ impl<'a> Strip<'a> {
         bound += 8.0 * UNIT * perimeter;
         tally.add(self.row.sign * sum, bound);
     }
+}
 
+impl Strip<'_> {
     /// Σ A_k+1(0)·(K/2|q|)·(k + 1)!·γ^k·m^(−2−k), with what it neglects: |A_n| ≤ ½π^(1−n), and G^(n−1) is monotonic.
     fn potential(&self, waves: &[f64; ORDERS], depth: f64, slope: f64) -> Sum {
         let board = self.row.board;
@@ -292,16 +390,16 @@ impl<'a> Strip<'a> {
 
 /// A sum of many numbers, and what it is off. The numbers' own rounding is kept and added in the end.
 #[derive(Default)]
-struct Tally {
+pub(super) struct Tally {
     value: f64,
     rest: f64,
     bound: f64,
     /// Whether anything was computed of the forms' inverse.
-    has_inverse: bool,
+    pub(super) has_inverse: bool,
 }
 
 impl Tally {
-    fn add(&mut self, value: f64, bound: f64) {
+    pub(super) fn add(&mut self, value: f64, bound: f64) {
         let sum = two_sum(self.value, value);
         self.value = sum.hi;
         self.rest += sum.lo;
@@ -329,7 +427,7 @@ struct Cutter {
 }
 
 /// What a line has of a polygon: its ends, if it was met.
-type Chord = Option<[DVec2; 2]>;
+pub(super) type Chord = Option<[DVec2; 2]>;
 
 impl Cutter {
     fn new(board: &Board, axis: usize) -> Self {
@@ -388,6 +486,21 @@ impl Cutter {
     fn count(&self) -> f64 {
         self.strips
             .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
+    }
+
+    /// Another cutter that begins with the piece.
+    fn again(&self) -> Self {
+        let mut again = Self {
+            across: self.across,
+            below: self.below,
+            rest: Vec::new(),
+            piece: Vec::new(),
+            spare: Vec::new(),
+            strips: None,
+            chords: [None; 2],
+        };
+        again.start(self.piece.iter().copied());
+        again
     }
 
     /// Makes `piece` the part of the rest before the line n.

@@ -167,7 +167,7 @@ pub(super) struct Edge {
     pub rho: f64,
     /// dm/dt, along the edge and on the floor.
     climb: f64,
-    slope: f64,
+    pub slope: f64,
     /// dt and dm for every line crossed, and the sense in which they are crossed.
     pub stride: f64,
     pub rise: f64,
@@ -292,7 +292,20 @@ impl Edge {
             s = self.climb * s + power;
             power *= self.slope;
         }
-        Series { terms, factors }
+        let across = usize::from(!self.is_by_b());
+        let Sum { value, bound } = board.per_slope[across];
+        let slope = board.slope[across];
+        let [off, size] = [self.climb - self.slope - self.rho * slope, self.rho * slope];
+        let per_slope = Sum {
+            value: value.copysign(slope),
+            // Roundings may have it that the slopes are not quite those of the edge.
+            bound: bound + (off / size).abs(),
+        };
+        Series {
+            terms,
+            factors,
+            per_slope,
+        }
     }
 }
 
@@ -300,6 +313,8 @@ impl Edge {
 pub(super) struct Series {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],
+    /// K by ∂m/∂c, with a bound relative to it that allows for the edge's own slopes, too.
+    pub per_slope: Sum,
 }
 
 impl Series {
@@ -380,6 +395,12 @@ impl Crossings<'_> {
             done += count;
         }
         sum
+    }
+
+    /// X where one line is crossed.
+    pub(super) fn line(&self, series: &Series, j: f64) -> f64 {
+        let edge = self.edge;
+        series.at(self.t + j * edge.stride, self.depth + j * edge.rise)
     }
 
     fn block<const TERMS: usize>(&self, series: &Series, done: f64, count: f64) -> f64 {

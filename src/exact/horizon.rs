@@ -11,17 +11,19 @@
 //! the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
 
 use super::board::{Sum, UNIT};
-use super::edge::{Crossings, Series};
+use super::complex::{Complex, phase, square, times, turn};
+use super::edge::{Crossings, Edge, Series};
+use super::exponential::integrals;
 use super::level;
-use std::f64::consts::{FRAC_PI_2, PI};
+use super::modes::{GRADUAL, Lines};
+use std::f64::consts::PI;
 
 /// Below so many crossings one by one is as good as by modes.
 const SHORT: f64 = 20_000.0;
 /// The same where m hardly grows; and so many are summed one by one where modes would need waves of high orders.
 const SHORT_LEVEL: f64 = 100_000.0;
-const LONG_LEVEL: f64 = 300_000.0;
-/// More take too long, which only the widest of views have in a pixel.
-const MOST: f64 = 1e6;
+/// More take longer than modes at any distance do.
+const MOST: f64 = 300_000.0;
 /// Where an edge crosses more lines than this, squares are so many that it may neglect the other, in square pixels.
 const DENSE: f64 = 512.0;
 const CRUMB: f64 = 2e-12;
@@ -50,23 +52,27 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
     if is_level {
         // Where m hardly grows the modes of the ends do not fall off.
         let sum = level::crossings(all, series, trivial);
-        if sum.bound > tolerance && all.lines <= LONG_LEVEL {
+        if sum.bound <= tolerance {
+            return sum;
+        }
+        if all.lines <= MOST {
             return all.one_by_one(series, all.lines);
         }
-        return sum;
+        let by_modes = by_modes(all, series, tolerance);
+        return if by_modes.bound < sum.bound {
+            by_modes
+        } else {
+            sum
+        };
     }
     let direct = ((start(all, series, tolerance) - all.depth) / all.edge.rise)
         .ceil()
         .max(0.0);
-    let is_short = direct <= MOST;
-    if all.lines > MOST && !is_short {
-        return Sum {
-            value: 0.0,
-            bound: trivial,
-        };
-    }
-    if direct + SHORT >= all.lines {
+    if direct + SHORT >= all.lines && all.lines <= MOST {
         return all.one_by_one(series, all.lines);
+    }
+    if direct > MOST {
+        return by_modes(all, series, tolerance);
     }
     let mut sum = all.one_by_one(series, direct);
     let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];
@@ -78,6 +84,35 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
     }
+    sum
+}
+
+/// Σ (−1)^j X over all crossings, where the series in the distance has too many terms that are not small.
+fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
+    let Edge { rise, rho, .. } = all.edge;
+    let direct = (GRADUAL - all.depth / rise).ceil().max(0.0);
+    if direct >= all.lines {
+        return all.one_by_one(series, all.lines);
+    }
+    let mut sum = all.one_by_one(series, direct);
+    let factor = series.per_slope.value / rho;
+    let lines = Lines {
+        t: all.t + direct * all.edge.stride,
+        stride: all.edge.stride,
+        depth: all.depth + direct * rise,
+        rise: *rise,
+        lines: all.lines - direct,
+        slope: all.edge.slope,
+    };
+    let modes = lines.sum(tolerance / factor.abs());
+    let alternating = |lines: f64, x: f64| if lines % 2.0 == 0.0 { x } else { -x };
+    // There the ends count half.
+    let mut rest = factor * modes.value + 0.5 * all.line(series, direct);
+    if all.lines.is_finite() {
+        rest -= 0.5 * alternating(lines.lines, all.line(series, all.lines));
+    }
+    sum.value += alternating(direct, rest);
+    sum.bound += factor.abs() * (modes.bound + series.per_slope.bound * modes.value.abs());
     sum
 }
 
@@ -199,37 +234,10 @@ fn rest(all: &Crossings, direct: f64, series: &Series, tolerance: f64) -> Sum {
     }
 }
 
-/// Less whole turns, in half turns: between −1 and 1.
-pub(super) fn turn(x: f64) -> f64 {
-    x - 2.0 * (0.5 * x).round_ties_even()
-}
-
-pub(super) type Complex = [f64; 2];
-
-pub(super) fn times(a: Complex, b: Complex) -> Complex {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
-}
-
-pub(super) fn square(a: Complex) -> Complex {
-    times(a, a)
-}
-
-fn over(a: Complex, b: Complex) -> Complex {
-    let norm = 1.0 / (b[0] * b[0] + b[1] * b[1]);
-    [
-        (a[0] * b[0] + a[1] * b[1]) * norm,
-        (a[1] * b[0] - a[0] * b[1]) * norm,
-    ]
-}
-
-pub(super) fn phase(x: f64) -> Complex {
-    [libm::cos(x), libm::sin(x)]
-}
-
 /// V_3, V_4 and V_5 at θ, |θ| ≤ π, of which e^iθ is given as well, up to R″.
 pub(super) fn lerch(theta: f64, turn: Complex, w: f64) -> [Complex; 3] {
     let (r, slope) = rest_of_pole(theta, turn);
-    let h = exponential_integrals(theta * w);
+    let h = integrals(theta * w);
     let u = 1.0 / w;
     let mut power = u * u;
     [0, 1, 2].map(|i| {
@@ -244,7 +252,7 @@ pub(super) fn lerch(theta: f64, turn: Complex, w: f64) -> [Complex; 3] {
 }
 
 /// R at −iθ is ½ + i(½ cot(θ/2) − 1/θ); this is the bracket, and R′ = 1/4sin²(θ/2) − 1/θ².
-fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
+pub(super) fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
     let square = theta * theta;
     if square < 0.04 {
         let r = -theta
@@ -256,85 +264,4 @@ fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
     let gap = 1.0 / (1.0 - turn[0]);
     let inverse = 1.0 / theta;
     (0.5 * turn[1] * gap - inverse, 0.5 * gap - inverse * inverse)
-}
-
-/// e^z E_s(z) = ∫_0^∞ e^(iyu) (1 + u)^(−s) du for z = −iy and s = 3, 4, 5.
-fn exponential_integrals(y: f64) -> [Complex; 3] {
-    let size = y.abs();
-    let mut third = if size >= 48.0 {
-        asymptotic(size)
-    } else if size >= 3.0 {
-        continued_fraction(size)
-    } else {
-        power_series(size)
-    };
-    if y < 0.0 {
-        third[1] = -third[1];
-    }
-    // E_s+1 = (e^−z − z·E_s)/s (DLMF 8.19.12).
-    let next = |h: Complex, s: f64| [(1.0 - y * h[1]) / s, y * h[0] / s];
-    let fourth = next(third, 3.0);
-    [third, fourth, next(fourth, 4.0)]
-}
-
-/// DLMF 8.20.2: (1/z)·Σ (−1)^k (3)_k z^−k, until the terms vanish; of the k-th the factor is k!/2·(k + 1)(k + 2).
-fn asymptotic(y: f64) -> Complex {
-    let u = 1.0 / y;
-    // 1/z = i/y, so that with every term the factor is −i(k + 2)/y.
-    let (mut term, mut sum) = (u, [0.0; 2]);
-    for k in 0..20 {
-        match k % 4 {
-            0 => sum[1] += term,
-            1 => sum[0] += term,
-            2 => sum[1] -= term,
-            _ => sum[0] -= term,
-        }
-        term *= (k + 3) as f64 * u;
-        if term < 1e-17 {
-            break;
-        }
-    }
-    sum
-}
-
-/// DLMF 8.19.17 contracted, as Lentz evaluates it: 1/(z+3 − 1·3/(z+5 − 2·4/(z+7 − …))).
-fn continued_fraction(y: f64) -> Complex {
-    const TINY: f64 = 1e-300;
-    let mut b = [3.0, -y];
-    let mut c = [1.0 / TINY, 0.0];
-    let mut d = over([1.0, 0.0], b);
-    let mut h = d;
-    for i in 1..200 {
-        let a = -f64::from(i) * f64::from(i + 2);
-        b[0] += 2.0;
-        d = over([1.0, 0.0], [b[0] + a * d[0], b[1] + a * d[1]]);
-        c = over([a, 0.0], c);
-        c = [c[0] + b[0], c[1] + b[1]];
-        let delta = times(c, d);
-        h = times(h, delta);
-        if (delta[0] - 1.0).abs() + delta[1].abs() < 1e-16 {
-            break;
-        }
-    }
-    h
-}
-
-/// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2), and twice the recurrence to E_3.
-fn power_series(y: f64) -> Complex {
-    const EULER: f64 = 0.577_215_664_901_532_9;
-    if y == 0.0 {
-        return [0.5, 0.0];
-    }
-    let mut first = [-EULER - libm::log(y), FRAC_PI_2];
-    let mut term = [1.0, 0.0];
-    for k in 1..40 {
-        let k = f64::from(k);
-        // −z/k = iy/k.
-        term = [-term[1] * y / k, term[0] * y / k];
-        first = [first[0] - term[0] / k, first[1] - term[1] / k];
-    }
-    let first = times(first, phase(-y));
-    // 1 − z·h with −z = iy.
-    let second = [1.0 - y * first[1], y * first[0]];
-    [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }

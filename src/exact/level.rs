@@ -9,8 +9,9 @@
 //! has more than another that begins where the edge ends; or a geometric sum, where m does not change.
 
 use super::board::{Sum, UNIT};
+use super::complex::{Complex, phase, square, times, turn};
 use super::edge::{Crossings, Series};
-use super::horizon::{Complex, lerch, phase, square, times, turn};
+use super::horizon::lerch;
 use std::f64::consts::PI;
 
 /// What is neglected of the modes, in square pixels.

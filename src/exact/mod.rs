@@ -15,12 +15,16 @@
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
 mod arc;
+mod block;
 mod board;
 mod cells;
+mod complex;
 mod edge;
 mod euler;
+mod exponential;
 mod horizon;
 mod level;
+mod modes;
 mod polygon;
 mod region;
 mod sides;

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use super::{
     arc::Arc,
     board::{Board, Sum},
+    cells,
 };
 
 const PIXEL: [DVec2; 4] = [
@@ -194,6 +195,50 @@ fn wide_views() {
 }
 
 /// Squares so small that an edge crosses a million lines, from above and aslant, beside the same in pieces that cross fewer.
+/// Blocks of rows, whose sums are of waves, against the same rows one by one, which are polygons of squares.
+#[test]
+fn blocks_of_rows() {
+    const ROWS: f64 = f64::INFINITY;
+    let directions = [30.0, 45.0, 71.565_051_177, 151.0, 224.9];
+    for (i, degrees) in directions.into_iter().enumerate() {
+        for slant in [0.0, 0.3] {
+            let view = View {
+                height: 1.7,
+                focal: 1e-4,
+                degrees,
+                place: DVec2::new(0.4 * i as f64 - 1.3, 0.5),
+                foot: DVec2::new(0.31, -0.77),
+            };
+            let board = view.board();
+            // From half a square to 18 squares away.
+            let nearest = 1.7 * view.focal;
+            let [low, high] = [nearest / 18.0, nearest * 2.0];
+            let corner = |x: f64, y: f64| DVec2::new(x, y - view.place.y);
+            let polygon = [
+                corner(-0.5, low),
+                corner(0.5, low * (1.0 + slant)),
+                corner(0.5, high),
+                corner(-0.5, high * (1.0 - slant)),
+            ];
+            let corners = board.visible(&polygon);
+            let found = cells::sum(&board, &corners);
+            let rows = cells::sum_with_blocks(&board, &corners, ROWS);
+            let error = (found.value - rows.value).abs();
+            assert!(found.value != rows.value, "{degrees}: no block");
+            assert!(
+                error <= found.bound + rows.bound && found.bound < 1e-9,
+                "{degrees}, {slant}: {found:?}, rows {rows:?}"
+            );
+            // Where the strip runs along diagonals, squares do not cancel.
+            let along_diagonals = degrees == 45.0 || degrees == 71.565_051_177;
+            assert!(
+                !along_diagonals || rows.value.abs() > 1e-6,
+                "{degrees}: {rows:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_million_lines() {
     for (turn, tilt) in [

@@ -208,6 +208,7 @@ fn four_quarters_are_the_pixel_of_extreme_cameras() {
         ("wide", wide(0.1)),
         ("very wide", wide(0.02)),
         ("much too wide", wide(1e-3)),
+        ("wider", wide(1e-5)),
         ("along an axis as wide as can be", along(1e-12)),
         ("narrow", wide(1e5)),
         ("tiny squares", squares(1e-3)),
