@@ -82,7 +82,12 @@ Examples:
 const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
-  pinhole check *.scn --format json              one line for each problem";
+  pinhole check *.scn --format json              one line for each problem
+
+JSON, an object a line: file, severity, code, message, help, labels [{offset, length, line, column, end_line, \
+end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
+is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
+was. A label or an edit within a --set argument has a file of its own.";
 
 const INSPECT_EXAMPLES: &str = "\
 Examples:

@@ -44,7 +44,7 @@ fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut 
         ValueKind::Call(call) => call.function.text == "rgb",
         _ => false,
     };
-    if let Some(Value::Color(color)) = analysis.survey.value(value, None).filter(|_| is_color) {
+    if is_color && let Some(Value::Color(color)) = analysis.survey.value(value, None) {
         let span = value.span;
         swatches.push(Swatch { span, color });
         return;

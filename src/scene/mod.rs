@@ -17,6 +17,7 @@
 pub mod css;
 mod error;
 mod eval;
+mod fixes;
 mod lower;
 mod overrides;
 pub mod schema;

@@ -12,6 +12,7 @@ mod editor;
 mod exact;
 mod figure;
 mod film;
+mod fixes;
 mod fmt;
 mod format;
 mod images;

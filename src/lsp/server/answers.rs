@@ -2,19 +2,16 @@
 
 use gen_lsp_types as lsp;
 use lsp_server::{ErrorCode, Request};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::{Refusal, parsed, written};
+use super::{Answer, Refusal, parsed, written};
 use crate::{
     editor::{self, Analysis},
     lsp::convert::{self, Page},
 };
 
 /// The answer to a request about a document.
-pub fn answer(
-    request: Request,
-    known: Option<(Page<'_>, &Analysis<'_>)>,
-) -> Result<Value, Refusal> {
+pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Answer {
     let params = request.params;
     let known = known.ok_or_else(|| {
         Refusal(
@@ -48,29 +45,28 @@ pub fn answer(
 }
 
 type Known<'a, 's> = (Page<'a>, &'a Analysis<'s>);
-type Answer = Result<Value, Refusal>;
 
 fn completion((page, analysis): Known<'_, '_>, params: lsp::CompletionParams) -> Answer {
     let at = page.offset(params.text_document_position_params.position);
     let completions = editor::completions(analysis, at).into_iter().enumerate();
     let items = completions.map(|(index, completion)| page.completion(index, completion));
     let items: Vec<_> = items.collect();
-    written(items)
+    written(&items)
 }
 
 fn hover((page, analysis): Known<'_, '_>, params: lsp::HoverParams) -> Answer {
     let at = page.offset(params.text_document_position_params.position);
-    written(editor::hover(analysis, at).map(|hover| page.hover(hover)))
+    written(&editor::hover(analysis, at).map(|hover| page.hover(hover)))
 }
 
 fn signature((page, analysis): Known<'_, '_>, params: lsp::SignatureHelpParams) -> Answer {
     let at = page.offset(params.text_document_position_params.position);
-    written(editor::signature(analysis, at).map(|signature| page.signature(signature)))
+    written(&editor::signature(analysis, at).map(|signature| page.signature(signature)))
 }
 
 fn definition((page, analysis): Known<'_, '_>, params: lsp::DefinitionParams) -> Answer {
     let at = page.offset(params.text_document_position_params.position);
-    written(editor::definition(analysis, at).map(|span| page.location(span)))
+    written(&editor::definition(analysis, at).map(|span| page.location(span)))
 }
 
 fn references((page, analysis): Known<'_, '_>, params: lsp::ReferenceParams) -> Answer {
@@ -78,20 +74,20 @@ fn references((page, analysis): Known<'_, '_>, params: lsp::ReferenceParams) -> 
     let found = editor::occurrences(analysis, at).into_iter();
     let found = found.filter(|found| params.context.include_declaration || !found.is_definition);
     let locations: Vec<_> = found.map(|found| page.location(found.span)).collect();
-    written(locations)
+    written(&locations)
 }
 
 fn highlights((page, analysis): Known<'_, '_>, params: lsp::DocumentHighlightParams) -> Answer {
     let at = page.offset(params.text_document_position_params.position);
     let found = editor::occurrences(analysis, at).into_iter();
     let highlights: Vec<_> = found.map(|found| page.highlight(found)).collect();
-    written(highlights)
+    written(&highlights)
 }
 
 fn prepare_rename((page, analysis): Known<'_, '_>, params: lsp::PrepareRenameParams) -> Answer {
     let at = page.offset(params.text_document_position_params.position);
     let span = editor::renamable(analysis, at).map_err(refused)?;
-    Ok(json!({ "range": page.range(span), "placeholder": analysis.slice(span) }))
+    written(&json!({ "range": page.range(span), "placeholder": analysis.slice(span) }))
 }
 
 fn rename((page, analysis): Known<'_, '_>, params: lsp::RenameParams) -> Answer {
@@ -100,7 +96,7 @@ fn rename((page, analysis): Known<'_, '_>, params: lsp::RenameParams) -> Answer 
     let edits = spans
         .into_iter()
         .map(|span| (span, params.new_name.clone()));
-    written(page.edit(edits))
+    written(&page.edit(edits))
 }
 
 /// A request that was right, and cannot be done; editors show the reason.
@@ -109,13 +105,13 @@ fn refused(reason: String) -> Refusal {
 }
 
 fn symbols((page, analysis): Known<'_, '_>) -> Answer {
-    written(page.symbols(editor::symbols(analysis)))
+    written(&page.symbols(editor::symbols(analysis)))
 }
 
 fn folds((page, analysis): Known<'_, '_>) -> Answer {
     let folds = editor::folds(analysis).into_iter();
     let folds: Vec<_> = folds.map(|fold| page.fold(fold)).collect();
-    written(folds)
+    written(&folds)
 }
 
 fn selections((page, analysis): Known<'_, '_>, params: lsp::SelectionRangeParams) -> Answer {
@@ -125,20 +121,20 @@ fn selections((page, analysis): Known<'_, '_>, params: lsp::SelectionRangeParams
         page.selection(editor::selection(analysis, at))
     });
     let selections: Vec<_> = selections.collect();
-    written(selections)
+    written(&selections)
 }
 
 fn hints((page, analysis): Known<'_, '_>, params: lsp::InlayHintParams) -> Answer {
     let within = page.span(params.range).range();
     let hints = editor::hints(analysis, within).into_iter();
     let hints: Vec<_> = hints.map(|hint| page.hint(hint)).collect();
-    written(hints)
+    written(&hints)
 }
 
 fn colors((page, analysis): Known<'_, '_>) -> Answer {
     let swatches = editor::swatches(analysis).into_iter();
     let colors: Vec<_> = swatches.map(|swatch| page.swatch(swatch)).collect();
-    written(colors)
+    written(&colors)
 }
 
 fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentationParams) -> Answer {
@@ -154,7 +150,7 @@ fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentation
         additional_text_edits: None,
     });
     let presentations: Vec<_> = presentations.collect();
-    written(presentations)
+    written(&presentations)
 }
 
 /// Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not complain
@@ -162,15 +158,15 @@ fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentation
 fn formatting((page, analysis): Known<'_, '_>) -> Answer {
     let changes = editor::formatting(analysis);
     let edits: Option<Vec<_>> = changes.map(|changes| page.text_edits(changes).collect());
-    written(edits)
+    written(&edits)
 }
 
 fn semantic_tokens((page, analysis): Known<'_, '_>) -> Answer {
-    written(page.semantic_tokens(&editor::semantic_tokens(analysis)))
+    written(&page.semantic_tokens(&editor::semantic_tokens(analysis)))
 }
 
 fn pulled_diagnostics((page, analysis): Known<'_, '_>) -> Answer {
-    Ok(json!({ "kind": "full", "items": diagnostics(page, analysis) }))
+    written(&json!({ "kind": "full", "items": diagnostics(page, analysis) }))
 }
 
 /// What is wrong with a document.

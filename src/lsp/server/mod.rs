@@ -1,24 +1,25 @@
 //! The loop: messages in, answers out, in their order and on one thread.
 //!
-//! A thread of its own does nothing but read, so that the loop sees all that has come before it answers the first: what was
-//! cancelled in the meantime is not computed, and of several states of a text only the last is judged. Answers are functions of
-//! the text at the moment of the request; nothing is kept but the texts.
+//! Answers are functions of a text at the moment of the request. What a text means is found once and kept as long as nothing but
+//! requests about it comes; of several states of a text that wait, only the last is judged.
 
 mod answers;
+mod inbox;
 
 use std::{
     collections::{BTreeSet, HashMap},
-    io::{self, BufReader, ErrorKind, Read, Write},
+    io::{self, Read, Write},
     panic::{self, AssertUnwindSafe},
-    sync::mpsc::{self, Receiver},
-    thread,
 };
 
 use gen_lsp_types as lsp;
-use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
-use serde_json::Value;
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
+use serde_json::{Value, json};
 
-use self::answers::{answer, diagnostics};
+use self::{
+    answers::{answer, diagnostics},
+    inbox::Inbox,
+};
 use super::{
     convert::{self, Client, Page},
     documents::{Document, Encoding},
@@ -40,7 +41,7 @@ pub fn serve(
     output: &mut impl Write,
     log: fn(&str),
 ) -> io::Result<Ended> {
-    let messages = listen(input, log);
+    let mut inbox = Inbox::read(input, log);
     let mut server = Server {
         output,
         log,
@@ -48,46 +49,7 @@ pub fn serve(
         documents: HashMap::new(),
         changed: BTreeSet::new(),
     };
-    // All that waits, from the first message on.
-    while let Ok(first) = messages.recv() {
-        let batch: Vec<Message> = [first].into_iter().chain(messages.try_iter()).collect();
-        if let Some(ended) = server.take(batch)? {
-            return Ok(ended);
-        }
-    }
-    // The client is gone.
-    Ok(match server.phase {
-        Phase::ShutDown => Ended::Properly,
-        Phase::Silent | Phase::Talking(_) => Ended::Abruptly,
-    })
-}
-
-/// Reads on a thread of its own.
-fn listen(input: impl Read + Send + 'static, log: fn(&str)) -> Receiver<Message> {
-    let (sender, receiver) = mpsc::channel();
-    thread::spawn(move || {
-        let mut input = BufReader::new(input);
-        loop {
-            match Message::read(&mut input) {
-                Ok(Some(message)) => {
-                    let is_exit =
-                        matches!(&message, Message::Notification(n) if n.method == "exit");
-                    // Behind `exit` nobody listens any more.
-                    if sender.send(message).is_err() || is_exit {
-                        return;
-                    }
-                }
-                Ok(None) => return,
-                // The next message may be a right one.
-                Err(error) if error.kind() == ErrorKind::InvalidData => log(&error.to_string()),
-                Err(error) => {
-                    log(&error.to_string());
-                    return;
-                }
-            }
-        }
-    });
-    receiver
+    server.run(&mut inbox)
 }
 
 /// What has been said so far.
@@ -112,76 +74,108 @@ struct Server<'o, W> {
 /// Why a request gets no answer.
 struct Refusal(ErrorCode, String);
 
+/// A result as JSON. It is written once: making values of it first takes several times as long for thousands of tokens.
+type Answer = Result<String, Refusal>;
+
 impl<W: Write> Server<'_, W> {
-    /// Takes messages in their order; answers with the end, if it comes.
-    fn take(&mut self, batch: Vec<Message>) -> io::Result<Option<Ended>> {
-        let cancelled: Vec<RequestId> = batch.iter().filter_map(cancelled).collect();
-        let mut requests = Vec::new();
-        for message in batch {
-            match message {
-                Message::Request(request) => requests.push(request),
-                Message::Notification(notification) => {
-                    // What was asked before a change is about the text before it.
-                    self.answer_all(std::mem::take(&mut requests), &cancelled)?;
-                    if notification.method == "exit" {
-                        return Ok(Some(match self.phase {
-                            Phase::ShutDown => Ended::Properly,
-                            Phase::Silent | Phase::Talking(_) => Ended::Abruptly,
-                        }));
+    /// Takes messages in their order until the end comes, or the client is gone.
+    fn run(&mut self, inbox: &mut Inbox) -> io::Result<Ended> {
+        loop {
+            self.publish(inbox)?;
+            match inbox.next() {
+                Some(Message::Request(request)) => match &self.phase {
+                    Phase::Talking(client) if !is_of_life(&request) => {
+                        let client = *client;
+                        let uri = uri(&request);
+                        self.dwell(&client, uri, Some(request), inbox)?;
                     }
+                    _ => self.answer_about_life(request)?,
+                },
+                Some(Message::Notification(notification)) if notification.method != "exit" => {
                     self.notice(notification);
                 }
                 // Nothing was asked of the client.
-                Message::Response(_) => {}
+                Some(Message::Response(_)) => {}
+                Some(Message::Notification(_)) | None => {
+                    return Ok(match self.phase {
+                        Phase::ShutDown => Ended::Properly,
+                        Phase::Silent | Phase::Talking(_) => Ended::Abruptly,
+                    });
+                }
             }
         }
-        self.answer_all(requests, &cancelled)?;
-        self.publish()?;
-        Ok(None)
     }
 
-    fn send(&mut self, message: impl Into<Message>) -> io::Result<()> {
-        message.into().write(self.output)
-    }
-
-    /// Answers requests between which no text changes: each text is read once.
-    fn answer_all(&mut self, requests: Vec<Request>, cancelled: &[RequestId]) -> io::Result<()> {
-        let mut requests = requests.into_iter().peekable();
-        while let Some(first) = requests.next() {
-            let client = match &self.phase {
-                Phase::Talking(client) if !is_of_life(&first) => *client,
-                _ => {
-                    let response = self.answer_about_life(first);
-                    self.send(response)?;
-                    continue;
-                }
-            };
-            let uri = uri(&first);
-            let document = uri.as_ref().and_then(|uri| self.documents.get(uri));
-            let page = uri.as_ref().zip(document);
-            let page = page.map(|(uri, document)| Page {
-                client: &client,
-                uri,
-                document,
-            });
-            let analysis = page.map(|page| Analysis::new(&page.document.sources));
-            let mut request = Some(first);
-            while let Some(asked) = request {
-                let id = asked.id.clone();
-                let answer = match cancelled.contains(&id) {
-                    true => Err(Refusal(ErrorCode::RequestCanceled, "cancelled".to_owned())),
-                    false => unharmed(|| answer(asked, page.zip(analysis.as_ref()))),
-                };
-                // Of this text, the next one too.
-                Message::from(response(id, answer)).write(self.output)?;
-                request = requests.next_if(|next| !is_of_life(next) && self::uri(next) == uri);
+    /// Tells the diagnostics of the texts that have changed, as soon as nothing else waits.
+    fn publish(&mut self, inbox: &mut Inbox) -> io::Result<()> {
+        let Phase::Talking(client) = self.phase else {
+            return Ok(());
+        };
+        if client.pulls_diagnostics {
+            self.changed.clear();
+        }
+        while inbox.is_empty()
+            && let Some(uri) = self.changed.first()
+        {
+            let uri = lsp::Uri(uri.clone());
+            if self.documents.contains_key(&uri) {
+                self.dwell(&client, Some(uri), None, inbox)?;
+            } else {
+                self.changed.remove(&uri.0);
+                publish(self.output, &uri, None, &[])?;
             }
         }
         Ok(())
     }
 
+    /// Stays with a document: finds out what it means, and answers until something comes that is about something else.
+    fn dwell(
+        &mut self,
+        client: &Client,
+        uri: Option<lsp::Uri>,
+        first: Option<Request>,
+        inbox: &mut Inbox,
+    ) -> io::Result<()> {
+        let document = uri.as_ref().and_then(|uri| self.documents.get(uri));
+        let page = uri.as_ref().zip(document).map(|(uri, document)| Page {
+            client,
+            uri,
+            document,
+        });
+        let analysis = page.map(|page| Analysis::new(&page.document.sources));
+        let known = page.zip(analysis.as_ref());
+        let mut next = first;
+        loop {
+            if let Some(request) = next {
+                let id = request.id.clone();
+                let answer = match inbox.is_cancelled(&id) {
+                    true => Err(Refusal(ErrorCode::RequestCanceled, "cancelled".to_owned())),
+                    false => unharmed(|| answer(request, known)),
+                };
+                respond(self.output, &id, answer)?;
+            }
+            if inbox.is_empty() {
+                if let Some((page, analysis)) = known
+                    && self.changed.remove(&page.uri.0)
+                {
+                    let found = diagnostics(page, analysis);
+                    publish(self.output, page.uri, Some(page.document.version), &found)?;
+                }
+                if !self.changed.is_empty() {
+                    // Other texts wait to be judged.
+                    return Ok(());
+                }
+            }
+            let is_about_it = |next: &Request| !is_of_life(next) && self::uri(next) == uri;
+            next = inbox.next_if(is_about_it);
+            if next.is_none() {
+                return Ok(());
+            }
+        }
+    }
+
     /// The requests that begin and end a conversation, and all others before and after it.
-    fn answer_about_life(&mut self, request: Request) -> Response {
+    fn answer_about_life(&mut self, request: Request) -> io::Result<()> {
         let id = request.id;
         let refuse = |code, message: &str| Err(Refusal(code, message.to_owned()));
         let answer = match (request.method.as_str(), &self.phase) {
@@ -193,17 +187,17 @@ impl<W: Write> Server<'_, W> {
             ("initialize", _) => refuse(ErrorCode::InvalidRequest, "`initialize` comes once"),
             ("shutdown", Phase::Talking(_)) => {
                 self.phase = Phase::ShutDown;
-                Ok(Value::Null)
+                Ok("null".to_owned())
             }
             _ => refuse(
                 ErrorCode::InvalidRequest,
                 "nothing but `exit` comes after `shutdown`",
             ),
         };
-        response(id, answer)
+        respond(self.output, &id, answer)
     }
 
-    fn initialize(&mut self, params: Value) -> Result<Value, Refusal> {
+    fn initialize(&mut self, params: Value) -> Answer {
         let params: lsp::InitializeParams = parsed(params)?;
         let client = Client::new(&params.capabilities);
         let result = lsp::InitializeResult {
@@ -214,7 +208,7 @@ impl<W: Write> Server<'_, W> {
             }),
         };
         self.phase = Phase::Talking(client);
-        written(result)
+        written(&result)
     }
 
     /// What the client tells: texts that are opened, changed and closed.
@@ -273,48 +267,42 @@ impl<W: Write> Server<'_, W> {
         self.documents.remove(&uri);
         self.changed.insert(uri.0);
     }
-
-    /// Tells the diagnostics of every text that has changed; none of one that was closed. A client that asks for them is
-    /// not told.
-    fn publish(&mut self) -> io::Result<()> {
-        let changed = std::mem::take(&mut self.changed);
-        let Phase::Talking(client) = &self.phase else {
-            return Ok(());
-        };
-        if client.pulls_diagnostics {
-            return Ok(());
-        }
-        for uri in changed {
-            let uri = lsp::Uri(uri);
-            let document = self.documents.get(&uri);
-            let diagnostics = document.map(|document| {
-                let page = Page {
-                    client,
-                    uri: &uri,
-                    document,
-                };
-                diagnostics(page, &Analysis::new(&document.sources))
-            });
-            let params = lsp::PublishDiagnosticsParams {
-                version: document.map(|document| document.version),
-                diagnostics: diagnostics.unwrap_or_default(),
-                uri,
-            };
-            let method = "textDocument/publishDiagnostics".to_owned();
-            Message::from(Notification::new(method, params)).write(self.output)?;
-        }
-        Ok(())
-    }
 }
 
-/// The request that a message cancels.
-fn cancelled(message: &Message) -> Option<RequestId> {
-    match message {
-        Message::Notification(notification) if notification.method == "$/cancelRequest" => {
-            serde_json::from_value(notification.params.get("id")?.clone()).ok()
-        }
-        _ => None,
+/// Writes a response.
+fn respond(output: &mut impl Write, id: &RequestId, answer: Answer) -> io::Result<()> {
+    let id = json!(id);
+    send(
+        output,
+        &match answer {
+            Ok(result) => format!("{{\"jsonrpc\":\"2.0\",\"id\":{id},\"result\":{result}}}"),
+            Err(Refusal(code, message)) => {
+                let error = json!({ "code": code as i32, "message": message });
+                json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string()
+            }
+        },
+    )
+}
+
+/// Writes what is wrong with a text; nothing is with one that was closed.
+fn publish(
+    output: &mut impl Write,
+    uri: &lsp::Uri,
+    version: Option<i32>,
+    diagnostics: &[lsp::Diagnostic],
+) -> io::Result<()> {
+    let mut params = json!({ "uri": uri, "diagnostics": diagnostics });
+    if let Some(version) = version {
+        params["version"] = version.into();
     }
+    let method = "textDocument/publishDiagnostics";
+    let message = json!({ "jsonrpc": "2.0", "method": method, "params": params });
+    send(output, &message.to_string())
+}
+
+fn send(output: &mut impl Write, message: &str) -> io::Result<()> {
+    write!(output, "Content-Length: {}\r\n\r\n{message}", message.len())?;
+    output.flush()
 }
 
 /// Whether a request is about the conversation itself.
@@ -329,18 +317,11 @@ fn uri(request: &Request) -> Option<lsp::Uri> {
 }
 
 /// An answer, or the refusal if giving it failed: the next request may fare better, and no text is touched by an answer.
-fn unharmed(answer: impl FnOnce() -> Result<Value, Refusal>) -> Result<Value, Refusal> {
+fn unharmed(answer: impl FnOnce() -> Answer) -> Answer {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();
         Err(Refusal(ErrorCode::InternalError, message))
     })
-}
-
-fn response(id: RequestId, answer: Result<Value, Refusal>) -> Response {
-    match answer {
-        Ok(result) => Response::new_ok(id, result),
-        Err(Refusal(code, message)) => Response::new_err(id, code as i32, message),
-    }
 }
 
 fn parsed<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Refusal> {
@@ -348,8 +329,8 @@ fn parsed<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Refusal> {
         .map_err(|error| Refusal(ErrorCode::InvalidParams, error.to_string()))
 }
 
-fn written(result: impl serde::Serialize) -> Result<Value, Refusal> {
-    serde_json::to_value(result)
+fn written(result: &impl serde::Serialize) -> Answer {
+    serde_json::to_string(result)
         .map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
 }
 
@@ -394,6 +375,12 @@ mod tests {
 
     /// What is answered to messages that have all come before the first is taken.
     fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
+        for message in [hello].into_iter().chain(messages) {
+            sender.send(message).expect("it is kept");
+        }
+        drop(sender);
         let mut output = Vec::new();
         let mut server = Server {
             output: &mut output,
@@ -402,10 +389,8 @@ mod tests {
             documents: HashMap::new(),
             changed: BTreeSet::new(),
         };
-        let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
-        for batch in [vec![hello], messages] {
-            server.take(batch).expect("a vector takes everything");
-        }
+        let ended = server.run(&mut Inbox::new(receiver));
+        assert_eq!(ended.expect("a vector takes everything"), Ended::Abruptly);
         let mut output = output.as_slice();
         let mut answers = Vec::new();
         while let Some(message) = Message::read(&mut output).expect("a message") {
@@ -475,7 +460,8 @@ mod tests {
 
     #[test]
     fn an_answer_that_fails_is_an_answer() {
-        let refusal = unharmed(|| panic!("on purpose")).expect_err("it failed");
-        assert_eq!(refusal.0 as i32, ErrorCode::InternalError as i32);
+        let answer = unharmed(|| panic!("on purpose"));
+        let code = answer.err().map(|Refusal(code, _)| code as i32);
+        assert_eq!(code, Some(ErrorCode::InternalError as i32));
     }
 }

@@ -246,10 +246,12 @@ impl<'s> Evaluator<'_, 's> {
                 help,
                 span,
                 more: Vec::new(),
+                near: near.map(str::to_owned),
             };
         }
+        let is_object = self.names.is_object(&name);
         let help = match near {
-            _ if self.names.is_object(&name) => {
+            _ if is_object => {
                 "an object is no value: define its place with `let`, and use that in both"
                     .to_owned()
             }
@@ -261,6 +263,7 @@ impl<'s> Evaluator<'_, 's> {
             help,
             span,
             more: Vec::new(),
+            near: near.filter(|_| !is_object).map(str::to_owned),
         }
     }
 

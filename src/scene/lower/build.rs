@@ -3,11 +3,14 @@
 use glam::DVec3;
 
 use super::{
-    Block, Given, Lowering, mentions,
-    words::{axis_name, axis_vector, example},
+    Block, Given, Lowering,
+    fixing::{examples, quoted},
+    mentions,
+    words::{axis_name, axis_vector},
 };
 use crate::{
     color::Color,
+    diagnostic::{Edit, Fix},
     math::{Angle, exact},
     numbers,
     scene::{
@@ -71,33 +74,40 @@ impl<'s> Lowering<'s> {
         }
         let has = |name: &str| block.given(name).is_some() || block.meant.contains(&name);
         let mut missing: Vec<String> = Vec::new();
-        let mut examples: Vec<String> = Vec::new();
+        let mut needed: Vec<&'static str> = Vec::new();
         let mut half = None;
         for row in block.row.fields {
             if row.preset == Preset::Required && !has(row.name) {
                 missing.push(format!("`{}`", row.name));
-                examples.push(format!("{} {}", row.name, example(row)));
+                needed.push(row.name);
             }
         }
+        // The other ways to give what is missing, each with the last of what is needed in its place.
+        let mut others: &[&[&'static str]] = &[];
         if block.row.kind == Kind::Camera && !has("lookat") && !has("direction") {
             missing.push("`lookat` or `direction`".to_owned());
-            examples.push("lookat (0, 1, 0)".to_owned());
+            needed.push("lookat");
+            others = &[&["direction"]];
         }
         if block.row.kind == Kind::Box && !has("center") {
             match (has("min"), has("max")) {
                 (true, true) => {}
                 (false, false) => {
                     missing.push("`center`, or `min` and `max`".to_owned());
-                    examples.push("center (0, 1, 0)".to_owned());
+                    needed.push("center");
+                    others = match has("size") {
+                        true => &[],
+                        false => &[&["min", "max"]],
+                    };
                 }
                 (true, false) => {
                     missing.push("`max` beside its `min`".to_owned());
-                    examples.push("max (1, 1, 1)".to_owned());
+                    needed.push("max");
                     half = block.given("min").map(|given| given.name);
                 }
                 (false, true) => {
                     missing.push("`min` beside its `max`".to_owned());
-                    examples.push("min (-1, 0, -1)".to_owned());
+                    needed.push("min");
                     half = block.given("max").map(|given| given.name);
                 }
             }
@@ -105,10 +115,25 @@ impl<'s> Lowering<'s> {
         if missing.is_empty() {
             return;
         }
-        let needed = suggest::list(missing.iter().map(String::as_str));
+        let all = suggest::list(missing.iter().map(String::as_str));
+        let kept = needed.len().saturating_sub(1);
+        let other = |other: &&[&'static str]| {
+            let kept = needed.iter().take(kept);
+            kept.chain(other.iter()).copied().collect()
+        };
+        let ways: Vec<Vec<&str>> = [needed.clone()]
+            .into_iter()
+            .chain(others.iter().map(other))
+            .collect();
+        let fixes = ways.iter().filter_map(|names| {
+            let title = format!("add {}", quoted(names));
+            self.add_fields(block, title, &examples(block, names))
+        });
+        let fixes = fixes.collect();
         self.problems.push(Problem::MissingField {
-            message: format!("{} needs {needed}", block.row.noun),
-            help: format!("write `{}`", examples.join("  ")),
+            message: format!("{} needs {all}", block.row.noun),
+            help: format!("write `{}`", examples(block, &needed).join("  ")),
+            fixes,
             span: block.keyword,
             label: match missing.len() {
                 1 => "it is not given".to_owned(),
@@ -270,7 +295,16 @@ impl<'s> Lowering<'s> {
                 numbers::short_vector(up)
             ),
         };
+        let up = match given {
+            Some(given) => Some(Fix::write(given.span, &suggested)),
+            None => self.add_fields(
+                block,
+                format!("add `up {suggested}`"),
+                &[format!("up {suggested}")],
+            ),
+        };
         self.problems.push(Problem::UpParallel {
+            fixes: up.into_iter().collect(),
             help: format!(
                 "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
             ),
@@ -283,7 +317,19 @@ impl<'s> Lowering<'s> {
         let near_given = block.given("near");
         let (shown_near, shown_far) =
             (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
+        let text = |given: Given| self.sources.text(given.span);
+        let fix = match near_given {
+            Some(near_given) if far > 0.0 && near > far => Fix::new(
+                "exchange `near` and `far`",
+                [
+                    Edit::new(near_given.span, text(given)),
+                    Edit::new(given.span, text(near_given)),
+                ],
+            ),
+            _ => Fix::remove("leave `far` out", given.field(), self.sources),
+        };
         self.problems.push(Problem::EmptyDepth {
+            fixes: vec![fix],
             help: match near_given {
                 Some(_) if far > 0.0 && near > far => {
                     format!("exchange them: `near {shown_far}  far {shown_near}`")

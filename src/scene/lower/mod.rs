@@ -5,6 +5,7 @@
 //! all names; then each block is built. A problem of one field never hides one of another.
 
 mod build;
+mod fixing;
 mod overriding;
 mod words;
 
@@ -14,7 +15,7 @@ use std::collections::{HashMap, hash_map::Entry};
 
 use glam::DVec3;
 
-use self::words::{missing_value, range_words, shown, type_help, unknown_field};
+use self::words::{missing_value, of_right_type, range_words, shown, type_help, unknown_field};
 use super::{
     Object, Reading,
     error::Problem,
@@ -90,7 +91,7 @@ fn whole<'s>(
     mut diagnostics: Vec<Diagnostic>,
 ) -> Lowering<'s> {
     let problems = parsed.problems.iter();
-    let mut found: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
+    let mut found: Vec<_> = problems.map(|p| Diagnostic::fixable(p, sources)).collect();
     found.append(&mut diagnostics);
     let tree = &parsed.tree;
     let names = Names::new(definitions(tree), names_of_objects(tree));
@@ -264,9 +265,9 @@ impl<'s> Lowering<'s> {
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let problems = self.problems.iter();
-        diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
+        diagnostics.extend(problems.map(|p| Diagnostic::fixable(p, self.sources)));
         let slips = self.slips.iter();
-        diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
+        diagnostics.extend(slips.map(|p| Diagnostic::fixable(p, self.sources)));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
@@ -304,6 +305,7 @@ impl<'s> Lowering<'s> {
                 name: name.text.to_owned(),
                 second: name.span,
                 first,
+                definition: definition.span,
             });
         } else {
             self.names.define(name, value, set.map(|set| set.id));
@@ -342,6 +344,7 @@ impl<'s> Lowering<'s> {
                 name: row.name,
                 second: block.keyword(),
                 first: earlier.keyword,
+                blocks: [earlier.span, block.span],
             });
         }
         let mut lowered = Block {
@@ -408,6 +411,7 @@ impl<'s> Lowering<'s> {
             written: kind.text.to_owned(),
             help,
             span: kind.span,
+            near: near.map(|near| near.name.to_owned()),
         });
         near
     }
@@ -437,6 +441,7 @@ impl<'s> Lowering<'s> {
                 name: row.name.to_owned(),
                 second: field.name.span,
                 first: first.name,
+                fields: [first.field(), given.field()],
             }),
             Some(free) => *free = Some(given),
             None => {}
@@ -483,6 +488,7 @@ impl<'s> Lowering<'s> {
                     why: why.to_owned(),
                     second: given.name,
                     first: earlier.name,
+                    fixes: self.one_of(block, [other, row]),
                 });
             }
         }
@@ -539,6 +545,7 @@ impl<'s> Lowering<'s> {
                     help: format!("the methods are {list}"),
                     span: tree.span,
                     label: found.noun().to_owned(),
+                    instead: Vec::new(),
                 };
                 self.problems.push(problem);
             }
@@ -547,7 +554,8 @@ impl<'s> Lowering<'s> {
         if let Some(method) = schema::method(written) {
             return Some(Value::Method(method));
         }
-        let help = match suggest::nearest(written, schema::method_names()) {
+        let near = suggest::nearest(written, schema::method_names());
+        let help = match near {
             Some(near) => format!("did you mean `{near}`? The methods are {list}."),
             None => format!("the methods are {list}"),
         };
@@ -555,6 +563,7 @@ impl<'s> Lowering<'s> {
             written: written.to_owned(),
             help,
             span: tree.span,
+            near: near.map(str::to_owned),
         });
         None
     }
@@ -563,7 +572,8 @@ impl<'s> Lowering<'s> {
         let evaluator = self.evaluator();
         let label = evaluator.described(tree, value.kind());
         let written = evaluator.quoted(tree.span);
-        let text = shorten(evaluator.sources.text(tree.span));
+        let whole = evaluator.sources.text(tree.span);
+        let text = shorten(whole);
         let problem = if (row.takes, value.kind()) == (Type::Angle, Type::Number) {
             let [degrees, radians] = evaluator.with_units(tree);
             Problem::BareAngle {
@@ -572,6 +582,7 @@ impl<'s> Lowering<'s> {
                 help: format!("write `{degrees}` (or `{radians}`)"),
                 span: tree.span,
                 label,
+                instead: evaluator.as_angle(tree).to_vec(),
             }
         } else {
             Problem::WrongType {
@@ -582,6 +593,7 @@ impl<'s> Lowering<'s> {
                 help: type_help(row, tree, value.kind(), &text),
                 span: tree.span,
                 label,
+                instead: of_right_type(row, tree, value.kind(), whole),
             }
         };
         self.problems.push(problem);
@@ -595,7 +607,7 @@ impl<'s> Lowering<'s> {
         value: Value,
         found: &str,
     ) {
-        let (label, help) = range_words(row, condition, value);
+        let (label, help, instead) = range_words(row, condition, value);
         let message = match condition {
             Condition::NotZero => format!("`{}` must not be zero", row.name),
             _ => format!("`{}` must be {condition}, and it is {found}", row.name),
@@ -609,6 +621,8 @@ impl<'s> Lowering<'s> {
             help,
             span,
             label: label.to_owned(),
+            whole: tree.span,
+            instead,
         });
     }
 
@@ -655,6 +669,16 @@ impl<'s> Lowering<'s> {
             Entry::Vacant(free) => {
                 free.insert(name.span);
             }
+        }
+    }
+}
+
+impl Given {
+    /// Name and value; of an argument's, that is the value alone.
+    fn field(self) -> Span {
+        match self.name.source == self.span.source {
+            true => self.name.to(self.span),
+            false => self.span,
         }
     }
 }

@@ -74,6 +74,22 @@ pub struct Field {
     pub example: &'static str,
 }
 
+impl Field {
+    /// A value that it can have: for messages, and to type over.
+    pub fn example(&self) -> String {
+        match (self.preset, self.takes) {
+            _ if !self.example.is_empty() => self.example.to_owned(),
+            (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
+            (_, Type::Number) => "100".to_owned(),
+            (_, Type::Angle) => "30deg".to_owned(),
+            (_, Type::Vector) => "(0, 1, 0)".to_owned(),
+            (_, Type::Color) => "olive".to_owned(),
+            (_, Type::Colors) => "(gray, white)".to_owned(),
+            (_, Type::Method) => "jittered".to_owned(),
+        }
+    }
+}
+
 /// What a value can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Type {
