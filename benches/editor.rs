@@ -91,6 +91,10 @@ fn main() {
             json!({ "color": teal, "range": everything }),
         ),
         (
+            "codeAction",
+            json!({ "range": everything, "context": { "diagnostics": [] } }),
+        ),
+        (
             "formatting",
             json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
         ),

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     color::Color,
     scene::{
-        Value, css, example_call, example_value,
+        Value, css, example_call,
         schema::{self, Field, Function, Kind, Preset, Type},
     },
     source::Span,
@@ -154,7 +154,7 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
 
 /// The parts of a vector are typed over one by one.
 fn value_to_type_over(field: &Field) -> Vec<Piece> {
-    let example = example_value(field);
+    let example = field.example();
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     let Some(inner) = inner else {
         return vec![hole(example)];
@@ -259,7 +259,7 @@ fn written_out(situation: &Situation) -> Option<Completion> {
     if !situation.word.range().is_empty() {
         return None;
     }
-    let example = example_value(field);
+    let example = field.example();
     Some(Completion {
         label: example,
         kind: CompletionKind::Value,

@@ -5,6 +5,7 @@
 //! page in a browser could as well. Everything reads the one table of facts and the one lowering, which fill in what they
 //! can of a broken text; nothing is computed a second time in another way.
 
+mod actions;
 mod analysis;
 mod colors;
 mod completion;
@@ -19,6 +20,7 @@ mod signature;
 mod symbols;
 mod words;
 
+pub use actions::fixes;
 pub use analysis::Analysis;
 pub use colors::{Swatch, presentations, swatches};
 pub use completion::{Completion, CompletionKind, Piece, completions};

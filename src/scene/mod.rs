@@ -26,7 +26,7 @@ mod untangle;
 mod value;
 
 pub use eval::{example_call, predefined};
-pub use lower::{example_value, read, read_in_parts, survey};
+pub use lower::{read, read_in_parts, survey};
 pub use survey::{Parts, Survey};
 pub use value::Value;
 

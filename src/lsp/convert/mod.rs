@@ -9,7 +9,7 @@ use gen_lsp_types as lsp;
 use super::documents::{Change, Document, Encoding};
 use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Severity},
+    diagnostic::{Diagnostic, Fix, Severity},
     editor::{
         Completion, CompletionKind, Fold, FoldKind, Hint, Hover, Occurrence, Piece, SemanticKind,
         SemanticToken, Signature, Swatch, Symbol, SymbolKind,
@@ -238,6 +238,20 @@ impl Page<'_> {
         };
         lsp::WorkspaceEdit {
             document_changes: Some(vec![lsp::DocumentChange::TextDocumentEdit(edit)]),
+            ..Default::default()
+        }
+    }
+
+    /// A way out of a diagnostic.
+    pub fn action(&self, diagnostic: &Diagnostic, fix: &Fix) -> lsp::CodeAction {
+        let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
+        lsp::CodeAction {
+            title: fix.title.clone(),
+            kind: Some(lsp::CodeActionKind::QuickFix),
+            diagnostics: Some(vec![self.diagnostic(diagnostic)]),
+            // The only way out is the one to take without asking.
+            is_preferred: Some(diagnostic.fixes.len() == 1),
+            edit: Some(self.edit(edits)),
             ..Default::default()
         }
     }

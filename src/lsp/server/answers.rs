@@ -34,6 +34,7 @@ pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Ans
         "textDocument/inlayHint" => hints(known?, parsed(params)?),
         "textDocument/documentColor" => colors(known?),
         "textDocument/colorPresentation" => presentations(known?, parsed(params)?),
+        "textDocument/codeAction" => code_actions(known?, parsed(params)?),
         "textDocument/formatting" => formatting(known?),
         "textDocument/semanticTokens/full" => semantic_tokens(known?),
         "textDocument/diagnostic" => pulled_diagnostics(known?),
@@ -151,6 +152,26 @@ fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentation
     });
     let presentations: Vec<_> = presentations.collect();
     written(&presentations)
+}
+
+fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) -> Answer {
+    let is_wanted = |kinds: Vec<lsp::CodeActionKind>| {
+        let mut kinds = kinds.iter();
+        kinds.any(|kind| {
+            matches!(
+                kind,
+                lsp::CodeActionKind::QuickFix | lsp::CodeActionKind::Empty
+            )
+        })
+    };
+    if !params.context.only.is_none_or(is_wanted) {
+        return written(&json!([]));
+    }
+    let fixes = editor::fixes(analysis, page.span(params.range)).into_iter();
+    let actions: Vec<_> = fixes
+        .map(|(diagnostic, fix)| page.action(diagnostic, fix))
+        .collect();
+    written(&actions)
 }
 
 /// Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not complain

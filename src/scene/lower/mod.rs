@@ -9,8 +9,6 @@ mod fixing;
 mod overriding;
 mod words;
 
-pub use words::example as example_value;
-
 use std::collections::{HashMap, hash_map::Entry};
 
 use glam::DVec3;

@@ -5,34 +5,35 @@ use std::{fs, ops::Range, path::Path};
 use pinhole::{
     color::Color,
     editor::{
-        Analysis, completions, definition, folds, formatting, hints, hover, occurrences,
+        Analysis, completions, definition, fixes, folds, formatting, hints, hover, occurrences,
         presentations, renamable, rename, selection, semantic_tokens, signature, swatches, symbols,
     },
     format,
-    source::{Source, Sources, Span},
+    source::{Source, SourceId, Sources, Span},
 };
+
+/// Whether a span is one of whole characters.
+fn is_place(text: &str, span: Span) -> bool {
+    let [start, end] = [span.start, span.end].map(|at| text.is_char_boundary(at));
+    span.start <= span.end && start && end
+}
 
 /// Asks everything there is at a place, and looks at what any client relies on.
 fn ask(analysis: &Analysis<'_>, at: usize) {
     let text = analysis.text();
-    let is_place = |span: Span| {
-        span.start <= span.end
-            && text.is_char_boundary(span.start)
-            && text.is_char_boundary(span.end)
-    };
     for completion in completions(analysis, at) {
         assert!(
-            is_place(completion.replaces)
+            is_place(text, completion.replaces)
                 && completion.replaces.start <= at
                 && at <= completion.replaces.end
         );
     }
     if let Some(hover) = hover(analysis, at) {
-        assert!(is_place(hover.span) && !hover.markdown.is_empty());
+        assert!(is_place(text, hover.span) && !hover.markdown.is_empty());
     }
     signature(analysis, at);
     let found = occurrences(analysis, at);
-    assert!(found.iter().all(|found| is_place(found.span)));
+    assert!(found.iter().all(|found| is_place(text, found.span)));
     assert_eq!(definition(analysis, at).is_some(), !found.is_empty());
     assert_eq!(renamable(analysis, at).is_ok(), !found.is_empty());
     assert_eq!(
@@ -73,6 +74,12 @@ fn ask_of_all(analysis: &Analysis<'_>) {
         }
     }
     folds(analysis);
+    for (_, fix) in fixes(analysis, Span::new(SourceId::File, 0, text.len())) {
+        assert!(
+            fix.edits.iter().all(|edit| is_place(text, edit.span)),
+            "{fix:?}"
+        );
+    }
     if let Some(changes) = formatting(analysis) {
         let mut formatted = text.to_owned();
         for (span, new) in changes.into_iter().rev() {

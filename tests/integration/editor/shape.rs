@@ -3,9 +3,10 @@
 use pinhole::{
     color::Color,
     editor::{
-        Analysis, FoldKind, Symbol, folds, formatting, hints, presentations, selection, swatches,
-        symbols,
+        Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, selection,
+        swatches, symbols,
     },
+    source::{SourceId, Span},
 };
 
 use super::{cursor, sources, under};
@@ -218,4 +219,33 @@ fn the_layout_changes_white_space_only_where_it_must() {
         ])
     );
     assert_eq!(changes("let a = "), None);
+}
+
+#[test]
+fn fixes_are_offered_where_the_problem_is() {
+    let offered = |text: &str| {
+        let (sources, at) = cursor(text);
+        let analysis = Analysis::new(&sources);
+        let found = fixes(&analysis, Span::new(SourceId::File, at, at));
+        let shown = found.into_iter().map(|(diagnostic, fix)| {
+            let mut text = analysis.text().to_owned();
+            for edit in fix.edits.iter().rev() {
+                text.replace_range(edit.span.range(), &edit.text);
+            }
+            format!("{}: {text}", diagnostic.code)
+        });
+        shown.collect::<Vec<_>>()
+    };
+    assert_eq!(
+        offered("sphere { center (0, 1, 0) rad$0us 2 }"),
+        ["pinhole::unknown_field: sphere { center (0, 1, 0) radius 2 }"]
+    );
+    assert_eq!(
+        offered("camera { eye (0, 0, 0) lookat (1, 0, 0) roll 3$00 }"),
+        [
+            "pinhole::bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30deg }",
+            "pinhole::bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30rad }",
+        ]
+    );
+    assert!(offered("sphere { $0center (0, 1, 0) radus 2 }").is_empty());
 }

@@ -109,6 +109,8 @@ fn a_scene_is_written_with_every_answer() {
         .collect();
     assert_eq!(hints, ["= (0, 1, 0)", "fov 90deg"]);
 
+    let options = json!({ "options": { "tabSize": 2, "insertSpaces": true } });
+    assert_eq!(client.about("formatting", options), json!([]));
     let colors = client.about("documentColor", json!({}));
     assert_eq!(colors[0]["range"], range(2, 33, 38));
     let teal = json!({ "red": 0.0, "green": 0.5, "blue": 0.5, "alpha": 1.0 });
@@ -161,6 +163,28 @@ fn texts_change_while_one_types() {
         radus["message"],
         "a sphere has no field `radus`\nhelp: did you mean `radius`? A sphere takes center, radius and color."
     );
+
+    let actions = client.about(
+        "codeAction",
+        json!({ "range": range(2, 53, 53), "context": { "diagnostics": [] } }),
+    );
+    assert_eq!(actions[0]["title"], "write `radius`");
+    assert_eq!(actions[0]["isPreferred"], true);
+    assert_eq!(
+        actions[0]["diagnostics"][0]["code"],
+        "pinhole::unknown_field"
+    );
+    let edit = &actions[0]["edit"]["documentChanges"][0];
+    assert_eq!(edit["textDocument"]["version"], 2);
+    assert_eq!(
+        edit["edits"],
+        json!([{ "range": range(2, 51, 56), "newText": "radius" }])
+    );
+    let others = client.about(
+        "codeAction",
+        json!({ "range": range(2, 53, 53), "context": { "diagnostics": [], "only": ["refactor"] } }),
+    );
+    assert_eq!(others, json!([]));
 
     let completions = client.at("completion", 2, 50 + 11);
     let labels: Vec<&str> = completions
