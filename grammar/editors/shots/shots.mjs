@@ -5,16 +5,16 @@ let ball = (-1.6, 1, 0)
 
 image   { width 1280  height 720  background midnightblue }
 sampler { method multi_jittered  per_pixel 16 }
-camera  {
-  eye    ball + 4 * (1, 0.6, 2)
-  lookat (0.2, 0.8, 0)
-  d      2.75
-  roll   30
-}
 
 sphere Ball  { center ball  radus 1  color olive }
 box    Crate { center (2, 0.75, -0.5)  color #c60 }
 checkerboard { square 1  colors (gray, white) }
+
+camera {
+  eye    ball + 4 * (1, 0.6, 2)
+  lookat (0.2, 0.8, 0)
+  roll   30
+}
 `;
 
 const unfinished = `// A ball on a checkered floor, seen from a corner.
@@ -33,8 +33,8 @@ checkerboard { square 1  colors (gray, white) }
 export const shots = [
   {
     name: "fix",
-    width: 860,
-    height: 530,
+    width: 940,
+    height: 550,
     scene: mistaken,
     async prepare({ at, trigger, pause }) {
       await at("ball  rad");
@@ -46,7 +46,7 @@ export const shots = [
   },
   {
     name: "complete",
-    width: 860,
+    width: 940,
     height: 340,
     scene: unfinished,
     async prepare({ at, choose, trigger, pause }) {

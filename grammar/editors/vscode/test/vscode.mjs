@@ -36,6 +36,14 @@ class Diagnostic {
 /** A namespace with these members, whose others are functions that answer with something to dispose of. */
 const partly = members => new Proxy(members, { get: (target, name) => (name in target ? target[name] : disposable) });
 
+class CodeActionKind {
+  constructor(value) { this.value = value; }
+  append(part) { return new CodeActionKind(this.value === "" ? part : `${this.value}.${part}`); }
+}
+for (const [name, value] of [["Empty", ""], ["QuickFix", "quickfix"], ["Refactor", "refactor"], ["Source", "source"]]) {
+  CodeActionKind[name] = new CodeActionKind(value);
+}
+
 class TabInputText {
   constructor(uri) { this.uri = uri; }
 }
@@ -48,7 +56,7 @@ export function editor({ documents = [], setting = "" } = {}) {
   const seen = { messages: [], executed: [], terminals: [], providers: {}, diagnostics: new Map(), commands: new Map() };
   const show = kind => async (message, ...choices) => { seen.messages.push({ kind, message, choices }); };
   const members = {
-    Uri, Position, Range, Diagnostic, TabInputText,
+    Uri, Position, Range, Diagnostic, TabInputText, CodeActionKind,
     version: "1.91.0",
     env: { appName: "test", language: "en", machineId: "test" },
     ViewColumn: { Beside: -2 },
