@@ -29,6 +29,8 @@
 //! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
 //!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
+//! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
+//!   to editors in the Language Server Protocol.
 
 pub mod area;
 pub mod color;

@@ -14,6 +14,8 @@ pub struct Client {
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
     requests: i32,
+    /// The last diagnostics that came before a response.
+    told: Value,
 }
 
 impl Client {
@@ -33,6 +35,7 @@ impl Client {
             input,
             output: BufReader::new(output),
             requests: 0,
+            told: Value::Null,
         }
     }
 
@@ -87,7 +90,11 @@ impl Client {
         self.requests += 1;
         let id = self.requests;
         self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
-        let response = self.read();
+        let mut response = self.read();
+        while response["method"] == "textDocument/publishDiagnostics" {
+            self.told = response["params"].clone();
+            response = self.read();
+        }
         assert_eq!(
             (&response["id"], &response["jsonrpc"]),
             (&id.into(), &"2.0".into()),
@@ -116,6 +123,16 @@ impl Client {
             method,
             json!({ "position": { "line": line, "character": character } }),
         )
+    }
+
+    /// What is wrong with a version of the text, as soon as it is said.
+    pub fn diagnostics(&mut self, version: usize) -> Value {
+        while self.told["version"] != version {
+            let message = self.read();
+            assert_eq!(message["method"], "textDocument/publishDiagnostics");
+            self.told = message["params"].clone();
+        }
+        self.told["diagnostics"].clone()
     }
 
     /// Takes its leave, as it should be.

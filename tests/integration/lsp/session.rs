@@ -211,6 +211,31 @@ fn texts_change_while_one_types() {
     client.leave();
 }
 
+/// Letter by letter, with what an editor asks after each.
+#[test]
+fn an_example_is_typed_letter_by_letter() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/figure_9_9.scn");
+    let example = std::fs::read_to_string(path).expect("the example is there");
+    let (mut client, _) = Client::open(editor(), "");
+    let (mut line, mut character) = (0, 0);
+    for (index, letter) in example.chars().enumerate() {
+        let document = json!({ "uri": URI, "version": index + 2 });
+        let change = json!({ "range": { "start": { "line": line, "character": character }, "end": { "line": line, "character": character } }, "text": letter.to_string() });
+        client.tell(
+            "textDocument/didChange",
+            json!({ "textDocument": document, "contentChanges": [change] }),
+        );
+        match letter {
+            '\n' => (line, character) = (line + 1, 0),
+            _ => character += 1,
+        }
+        client.at("completion", line, character);
+        client.about("semanticTokens/full", json!({}));
+    }
+    assert_eq!(client.diagnostics(example.chars().count() + 1), json!([]));
+    client.leave();
+}
+
 #[test]
 fn a_client_of_few_words_gets_plain_answers() {
     let (mut client, diagnostics) = Client::open(
