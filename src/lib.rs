@@ -28,8 +28,9 @@
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
-//!   [`report`] about Pinhole itself: how right and how fast it is. `preview` tells when a file has
-//!   changed. The command line reads, calls these and prints.
+//!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
+//! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
+//!   to editors in the Language Server Protocol, and `preview` tells when a file has changed.
 
 pub mod area;
 pub mod color;
@@ -60,5 +61,8 @@ pub mod inspect;
 pub mod probe;
 pub mod report;
 
+pub mod editor;
+#[cfg(feature = "lsp")]
+pub mod lsp;
 #[cfg(feature = "preview")]
 pub mod preview;

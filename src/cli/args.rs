@@ -64,6 +64,10 @@ pub enum Command {
     /// Lay out scene files in the one canonical way
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtArgs),
+    /// Serve an editor: the Language Server Protocol on standard input and output
+    #[cfg(feature = "lsp")]
+    #[command(after_help = LSP_HELP)]
+    Lsp,
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -165,6 +169,11 @@ Examples:
   pinhole fmt - < figure.scn > tidy.scn          from standard input to standard output
 
 Exit status: 0 done; 1 a file has errors of syntax, or --check would change something; 2 trouble.";
+#[cfg(feature = "lsp")]
+const LSP_HELP: &str = "\
+Editors start it themselves; grammar/editors/ has what they need for that.
+
+Exit status: 0 after shutdown and exit; 1 if the editor left without; 2 trouble.";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:

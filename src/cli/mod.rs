@@ -11,6 +11,8 @@ mod fmt;
 mod input;
 mod inspect;
 mod interrupt;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod manual;
 mod output;
 mod picture;
@@ -52,6 +54,8 @@ pub fn run() -> ExitCode {
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, &interrupt),
+        #[cfg(feature = "lsp")]
+        Command::Lsp => lsp::run(),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });
@@ -69,7 +73,8 @@ pub fn run() -> ExitCode {
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, the pictures differ or the layout would change: it ran, and the answer is no.
+    /// The scene has errors, the pictures differ, the layout would change, an editor left without a word: it ran, and the answer
+    /// is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,

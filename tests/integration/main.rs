@@ -8,6 +8,7 @@ mod cli;
 mod culling;
 mod diagnostics;
 mod diff;
+mod editor;
 mod exact;
 mod explain;
 mod figure;
@@ -20,6 +21,8 @@ mod images;
 mod interrupt;
 mod language;
 mod laws;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod numerics;
 mod overrides;
 mod parts;

@@ -275,7 +275,7 @@ pub(super) fn is_whole(shortened: &str) -> bool {
 }
 
 /// How a function is called.
-pub(super) fn example(function: &Function) -> String {
+pub fn example(function: &Function) -> String {
     let arguments = match function.takes {
         [Type::Angle] => "30deg",
         [Type::Vector] => "(1, 2, 3)",

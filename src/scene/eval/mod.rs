@@ -10,6 +10,7 @@ mod lists;
 mod names;
 mod operators;
 
+pub use calls::example as example_call;
 pub use names::{Names, predefined};
 
 use super::{error::Problem, schema::Type, value::Value};

@@ -104,6 +104,11 @@ impl<'s> Names<'s> {
         self.defined.get(name).map(|defined| defined.place)
     }
 
+    /// The value of a name that was defined; none if it failed.
+    pub fn value(&self, name: &str) -> Option<Value> {
+        self.defined.get(name)?.value
+    }
+
     /// The first `let` of the file that defines it.
     fn definition(&self, name: &str) -> Option<Span> {
         self.whole()?.definitions.get(name).copied()

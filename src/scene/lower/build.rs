@@ -14,10 +14,11 @@ use crate::{
     math::{Angle, exact},
     numbers,
     scene::{
-        self, Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View, css,
+        self, Camera, Count, Image, Lens, Method, Object, Sampler, Shape, View, css,
         error::Problem,
         level_direction,
         schema::{self, Kind, Literal, Preset},
+        survey::Parts,
         value::Value,
     },
     source::{SourceId, Span},
@@ -25,8 +26,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// The scene, or nothing if a part of it failed.
-    pub(super) fn build(&mut self) -> Option<Scene> {
+    /// The parts of the scene; what failed is missing.
+    pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
             self.missing_fields(block);
@@ -52,12 +53,12 @@ impl<'s> Lowering<'s> {
         if !self.has_objects && self.bad.is_empty() && !self.cut {
             self.problems.push(Problem::NoObjects { span: start });
         }
-        Some(Scene {
-            image: image?,
-            camera: camera?,
-            sampler: sampler?,
+        Parts {
+            image,
+            camera,
+            sampler,
             objects,
-        })
+        }
     }
 
     /// Builds an object at once.
@@ -208,6 +209,7 @@ impl<'s> Lowering<'s> {
         let eye = fields.vector("eye");
         let up = fields.vector("up");
         let direction = block.given("direction");
+        let mut view_is_defined = true;
         let view = match direction {
             Some(_) => fields.vector("direction").map(View::Direction),
             None => fields.vector("lookat").map(View::Lookat),
@@ -215,10 +217,14 @@ impl<'s> Lowering<'s> {
         let seen = block.given("lookat").or(direction);
         if let (Some(eye), Some(view), Some(seen)) = (eye, view, seen) {
             match view {
-                View::Lookat(point) if point == eye => self.problems.push(Problem::ViewUndefined {
-                    lookat: seen.span,
-                    eye: block.given("eye").map_or(block.keyword, |given| given.span),
-                }),
+                View::Lookat(point) if point == eye => {
+                    self.problems.push(Problem::ViewUndefined {
+                        lookat: seen.span,
+                        eye: block.given("eye").map_or(block.keyword, |given| given.span),
+                    });
+                    // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
+                    view_is_defined = false;
+                }
                 _ => self.up_parallel(block, eye, view, up, seen),
             }
         }
@@ -237,7 +243,7 @@ impl<'s> Lowering<'s> {
         };
         Some(Camera {
             eye: eye?,
-            view: view?,
+            view: view.filter(|_| view_is_defined)?,
             up: up?,
             roll: fields.angle("roll")?,
             lens: lens?,

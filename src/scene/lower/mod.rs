@@ -20,6 +20,7 @@ use super::{
     eval::{Evaluator, Names, predefined},
     overrides::{self, Override},
     schema::{self, Condition, Field, Kind, Type},
+    survey::{Parts, Survey},
     untangle::untangle,
     value::Value,
 };
@@ -51,26 +52,54 @@ pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     if !lowering.sets_by_name {
         lowering.keep_last_overrides(&[]);
         let all = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |items| {
-            lowering.items(items);
+            lowering.items(&items);
             !lowering.names.were_asked_early()
         });
         lowering.override_blocks();
         if all && !lowering.names.were_asked_early() {
-            return lowering.finish(diagnostics);
+            lowering.found = diagnostics;
+            return lowering.reading();
         }
     }
     let parsed = syntax::parse(&sources.file, SourceId::File);
+    whole(sources, &parsed, overrides, diagnostics).reading()
+}
+
+/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
+pub fn survey(sources: &Sources) -> Survey<'_> {
+    let mut diagnostics = Vec::new();
+    let overrides = overrides::read(sources, &mut diagnostics);
+    let parsed = syntax::parse(&sources.file, SourceId::File);
+    let lowering = whole(sources, &parsed, overrides, diagnostics);
+    let (parts, diagnostics, names) = lowering.finish();
+    Survey {
+        sources,
+        parsed,
+        diagnostics,
+        parts,
+        names,
+    }
+}
+
+/// Makes sense of the tree of a whole file; `diagnostics` are those of the overrides' syntax.
+fn whole<'s>(
+    sources: &'s Sources,
+    parsed: &syntax::Parsed<'s>,
+    overrides: Vec<Override<'s>>,
+    mut diagnostics: Vec<Diagnostic>,
+) -> Lowering<'s> {
     let problems = parsed.problems.iter();
     let mut found: Vec<_> = problems.map(|p| Diagnostic::fixable(p, sources)).collect();
     found.append(&mut diagnostics);
-    let tree = parsed.tree;
-    let names = Names::new(definitions(&tree), names_of_objects(&tree));
+    let tree = &parsed.tree;
+    let names = Names::new(definitions(tree), names_of_objects(tree));
     let mut lowering = Lowering::new(sources, overrides, names);
+    lowering.found = found;
     lowering.cut = parsed.cut.is_some();
     lowering.keep_last_overrides(&tree.items);
-    lowering.items(tree.items);
+    lowering.items(&tree.items);
     lowering.override_blocks();
-    lowering.finish(found)
+    lowering
 }
 
 /// Whether a problem stands in one of some places, which are in the order of the text.
@@ -148,6 +177,8 @@ struct Lowering<'s> {
     first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be understood.
     bad: Vec<&'s str>,
+    /// What is wrong with the syntax.
+    found: Vec<Diagnostic>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
@@ -196,6 +227,7 @@ impl<'s> Lowering<'s> {
             has_objects: false,
             first_names: HashMap::new(),
             bad: Vec::new(),
+            found: Vec::new(),
             problems: Vec::new(),
             slips: Vec::new(),
             unknown: Vec::new(),
@@ -203,20 +235,31 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Makes sense of the next items of the file. Each one's tree is dropped then.
-    fn items(&mut self, items: Vec<Item<'s>>) {
+    /// Makes sense of the next items of the file.
+    fn items(&mut self, items: &[Item<'s>]) {
         for item in items {
             match item {
-                Item::Definition(definition) => self.definition(&definition),
-                Item::Block(block) => self.block(&block),
-                Item::Bad(span) => self.bad.push(self.sources.text(span)),
+                Item::Definition(definition) => self.definition(definition),
+                Item::Block(block) => self.block(block),
+                Item::Bad(span) => self.bad.push(self.sources.text(*span)),
             }
         }
     }
 
-    /// Makes the scene of what was read; `diagnostics` are those of syntax.
-    fn finish(mut self, mut diagnostics: Vec<Diagnostic>) -> Reading {
-        let scene = self.build();
+    /// Makes the scene of what was read.
+    fn reading(self) -> Reading {
+        let (parts, diagnostics, _) = self.finish();
+        let failed = diagnostics.iter().any(Diagnostic::is_error);
+        Reading {
+            scene: parts.into_scene().filter(|_| !failed),
+            diagnostics,
+        }
+    }
+
+    /// What there is of a scene, errors or not, and the names that were defined.
+    fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
+        let parts = self.build();
+        let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let problems = self.problems.iter();
@@ -225,11 +268,7 @@ impl<'s> Lowering<'s> {
         diagnostics.extend(slips.map(|p| Diagnostic::fixable(p, self.sources)));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
-        let failed = diagnostics.iter().any(Diagnostic::is_error);
-        Reading {
-            scene: scene.filter(|_| !failed),
-            diagnostics,
-        }
+        (parts, diagnostics, self.names)
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {

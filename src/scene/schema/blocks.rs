@@ -183,6 +183,7 @@ pub const BLOCKS: &[Block] = &[
                 ],
                 excludes: &["per_pixel"],
                 help: "the samples in the whole picture, instead of per_pixel",
+                example: "1_000_000",
                 ..FIELD
             },
             Field {

@@ -229,6 +229,21 @@ impl Block {
         self.fields.iter().map(|field| field.name)
     }
 
+    /// The fields without which there is no such block: those that have no default, and of alternatives the first.
+    pub fn least_fields(&self) -> Vec<&'static Field> {
+        let mut least: Vec<&Field> = Vec::new();
+        for field in self.fields {
+            let is_excluded = least
+                .iter()
+                .any(|other| other.excludes.contains(&field.name));
+            let is_needed = matches!(field.preset, Preset::Required | Preset::Alternative);
+            if is_needed && !is_excluded {
+                least.push(field);
+            }
+        }
+        least
+    }
+
     /// The field that was probably meant, if any is near.
     pub fn nearest_field(&self, written: &str) -> Option<&'static str> {
         let tried = |field: &&Field| also(written, field.also_tried);
