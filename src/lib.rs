@@ -20,7 +20,7 @@
 //! ```
 //!
 //! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the terminal, JSON and editors show
-//!   alike.
+//!   alike. [`explain`] has a page for each kind of mistake.
 //! - [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
 //!   resolved.
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
@@ -30,11 +30,12 @@
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
 //!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
 //! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
-//!   to editors in the Language Server Protocol.
+//!   to editors in the Language Server Protocol, and `preview` tells when a file has changed.
 
 pub mod area;
 pub mod color;
 pub mod diagnostic;
+pub mod explain;
 pub mod math;
 pub mod numbers;
 pub mod source;
@@ -63,3 +64,5 @@ pub mod report;
 pub mod editor;
 #[cfg(feature = "lsp")]
 pub mod lsp;
+#[cfg(feature = "preview")]
+pub mod preview;

@@ -23,6 +23,7 @@ const EXAMPLES: &str = "\
 Examples:
   pinhole render figure.scn                      writes figure.png beside it
   pinhole render figure.scn -o big.exr --set image.width=3840 --set image.height=2160
+  pinhole watch figure.scn                       and again whenever it is saved
   pinhole check *.scn
   pinhole inspect figure.scn --format json
   pinhole probe figure.scn 640.5 360.5
@@ -41,6 +42,10 @@ pub enum Command {
     /// Report the problems of scenes
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Render a scene whenever its file is saved
+    #[cfg(feature = "preview")]
+    #[command(after_help = WATCH_EXAMPLES)]
+    Watch(WatchArgs),
     /// Show what a scene means: camera, field of view, vanishing points, objects
     #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(InspectArgs),
@@ -53,6 +58,9 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Explain a kind of mistake: a wrong scene, the right one, and why
+    #[command(after_help = EXPLAIN_EXAMPLES)]
+    Explain(ExplainArgs),
     /// Lay out scene files in the one canonical way
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtArgs),
@@ -92,6 +100,16 @@ JSON, an object a line: file, severity, code, message, help, labels [{offset, le
 end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
 is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
 was. A label or an edit within a --set argument has a file of its own.";
+
+#[cfg(feature = "preview")]
+const WATCH_EXAMPLES: &str = "\
+Examples:
+  pinhole watch figure.scn                       writes figure.png at once and after every save
+  pinhole watch figure.scn --show                and draws it in the terminal
+  pinhole watch figure.scn -o draft.png --set sampler.per_pixel=4
+
+While the text has mistakes, they are reported, and the last picture stays. A picture that is not done when \
+the text changes again is given up. Ctrl-C ends it, with status 130.";
 
 const INSPECT_EXAMPLES: &str = "\
 Examples:
@@ -137,6 +155,12 @@ Examples:
   pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
   pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
+
+const EXPLAIN_EXAMPLES: &str = "\
+Examples:
+  pinhole explain bare_angle
+  pinhole explain                                all codes, by subject
+  pinhole explain up_parallel | less             as Markdown";
 
 const FMT_EXAMPLES: &str = "\
 Replaces each file by its canonical layout, whole or not at all, and does not touch it where nothing would change. \
@@ -204,6 +228,25 @@ pub struct CheckArgs {
     pub overrides: Overrides,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `watch`.
+#[cfg(feature = "preview")]
+#[derive(Debug, clap::Args)]
+pub struct WatchArgs {
+    /// The scene: a .scn file
+    pub scene: PathBuf,
+    /// Where the picture goes; its ending, .png or .exr, is the format [default: SCENE with the ending .png]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draw the picture in the terminal too
+    #[arg(long)]
+    pub show: bool,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
 }
 
 /// Arguments of `inspect`.
@@ -312,6 +355,13 @@ pub struct DiffArgs {
     pub threads: Option<u64>,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `explain`.
+#[derive(Debug, clap::Args)]
+pub struct ExplainArgs {
+    /// The code that stands in the brackets of a report, with `pinhole::` or without [default: list them all]
+    pub code: Option<String>,
 }
 
 /// For whom the answer is.

@@ -6,6 +6,7 @@
 mod args;
 mod check;
 mod diff;
+mod explain;
 mod fmt;
 mod input;
 mod inspect;
@@ -14,12 +15,17 @@ mod interrupt;
 mod lsp;
 mod manual;
 mod output;
+mod picture;
 mod probe;
 mod progress;
 mod render;
 mod report;
+#[cfg(feature = "preview")]
+mod show;
 #[cfg(feature = "report")]
 mod speed;
+#[cfg(feature = "preview")]
+mod watch;
 
 use std::{
     fmt::{Display, Formatter},
@@ -40,10 +46,13 @@ pub fn run() -> ExitCode {
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args),
+        #[cfg(feature = "preview")]
+        Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]
         Command::Lsp { .. } => lsp::run(),

@@ -190,7 +190,11 @@ impl Board {
             let points = corners.iter().map(|c| c.at);
             return Sum {
                 value: sign * measure(points.clone()).0.abs(),
-                bound: self.displaced(points),
+                bound: if self.is_certain(&corners) {
+                    2.0 * UNIT
+                } else {
+                    self.displaced(points)
+                },
             };
         }
         if squares(&corners).min(spans[0] * spans[1]) <= FEW {
@@ -283,6 +287,14 @@ impl Board {
         corners
     }
 
+    /// Where along an axis the floor is that a point shows, where L has a value above 0, and by how much roundings may be off.
+    pub(super) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
+        let size = |[x, y, z]: [f64; 3]| 0.5 * (x.abs() + y.abs()) + z.abs();
+        let place = form(&self.across[axis], at) / level;
+        let terms = size(self.across[axis]) + place.abs() * size(self.below);
+        (place, 16.0 * UNIT / level * terms)
+    }
+
     /// The corner at a point where L has a value; on the horizon, where it is 0.
     pub(super) fn corner(&self, at: DVec2, level: f64) -> Corner {
         let floor = [form(&self.across[0], at), form(&self.across[1], at)];
@@ -301,6 +313,16 @@ impl Board {
                 depth: f64::INFINITY,
             }
         }
+    }
+
+    /// Whether all corners are in the same square whatever roundings do.
+    fn is_certain(&self, corners: &[Corner]) -> bool {
+        corners.iter().all(|corner| {
+            (0..2).all(|axis| {
+                let (place, off) = self.place(axis, corner.at, form(&self.below, corner.at));
+                (place - off).floor() == (place + off).floor()
+            })
+        })
     }
 
     /// The part where a form of the picture is not negative.

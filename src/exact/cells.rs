@@ -86,14 +86,7 @@ pub(super) trait Bulk {
 /// Where vertices lie along an axis of the board, in order, and how uncertain that is.
 fn vertices(board: &Board, axis: usize, points: &[DVec2]) -> Vec<(f64, f64)> {
     // Far away a vertex is uncertain by more than a square, and which side a line there crosses.
-    let size = |[x, y, z]: [f64; 3]| 0.5 * (x.abs() + y.abs()) + z.abs();
-    let [across, below] = [board.across[axis], board.below].map(size);
-    let vertex = |&at: &DVec2| {
-        let level = form(&board.below, at);
-        let place = form(&board.across[axis], at) / level;
-        let roundings = 16.0 * UNIT / level;
-        (place, roundings * (across + place.abs() * below))
-    };
+    let vertex = |&at: &DVec2| board.place(axis, at, form(&board.below, at));
     let mut ends: Vec<(f64, f64)> = points.iter().map(vertex).collect();
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     ends

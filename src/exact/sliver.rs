@@ -20,7 +20,7 @@ impl Board {
     /// their slivers may be neglected.
     pub(crate) fn sliver(&self, arc: &Arc) -> Sum {
         if let Some(sign) = self.one_square(arc) {
-            return self.single(arc, sign);
+            return within_a_square(arc, sign);
         }
         let mut chords = Chords {
             points: vec![arc.start],
@@ -42,7 +42,7 @@ impl Board {
     /// Adds the slivers of an arc, and the points at which it was cut.
     fn cut(&self, arc: &Arc, chords: &mut Chords) {
         if let Some(sign) = self.one_square(arc) {
-            chords.sum.add(self.single(arc, sign));
+            chords.sum.add(within_a_square(arc, sign));
             chords.points.push(arc.end);
             return;
         }
@@ -90,23 +90,18 @@ impl Board {
                 let [a, b] = self
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
-                chords.sum.add(self.single(&piece, a * b));
+                chords.sum.add(self.between_lines(&piece, a * b));
                 chords.points.push(piece.end);
             }
             before = cut;
         }
     }
 
-    /// The sliver of an arc within a square.
-    fn single(&self, arc: &Arc, sign: f64) -> Sum {
-        let area = arc.area();
-        let reach = arc.end - arc.start;
-        let rise = arc.control - arc.start;
-        let perimeter = 2.0 * (reach.x.abs() + reach.y.abs() + rise.x.abs() + rise.y.abs());
-        Sum {
-            value: sign * area,
-            bound: self.displacement * perimeter + 16.0 * UNIT * area,
-        }
+    /// The sliver of an arc within a square between whose lines it was cut, wherever those are to within roundings.
+    fn between_lines(&self, arc: &Arc, sign: f64) -> Sum {
+        let mut sum = within_a_square(arc, sign);
+        sum.bound += self.displaced([arc.start, arc.control, arc.end].into_iter());
+        sum
     }
 
     /// The sign of the square that an arc's triangle lies in, if it is one.
@@ -130,11 +125,19 @@ impl Board {
             if level <= 0.0 {
                 return None;
             }
-            let t = form(&self.across[family], p) / level;
-            low = low.min(t);
-            high = high.max(t);
+            let (t, off) = self.place(family, p, level);
+            low = low.min(t - off);
+            high = high.max(t + off);
         }
         Some((low.floor() + 1.0, high.floor()))
+    }
+}
+
+fn within_a_square(arc: &Arc, sign: f64) -> Sum {
+    let area = arc.area();
+    Sum {
+        value: sign * area,
+        bound: 16.0 * UNIT * area,
     }
 }
 

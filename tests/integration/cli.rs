@@ -608,7 +608,7 @@ fn ctrl_c_leaves_the_old_file() {
 #[test]
 fn a_bound_that_is_worth_a_word_gets_one() {
     let scene = "image { width 4 height 3 }
-                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-6 }
+                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-14 }
                  sampler { method exact }
                  checkerboard { y 0 square 1e-3 }";
     let folder = tempfile::tempdir().unwrap();

@@ -10,6 +10,7 @@ mod diagnostics;
 mod diff;
 mod editor;
 mod exact;
+mod explain;
 mod figure;
 mod film;
 mod fixes;
@@ -34,3 +35,5 @@ mod robustness;
 mod sampling;
 mod syntax;
 mod tracer;
+#[cfg(all(unix, feature = "preview"))]
+mod watch;
