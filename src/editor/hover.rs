@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     color::Color,
-    inspect,
+    explain, inspect,
     math::Angle,
     numbers::{short, short_vector},
     scene::{
@@ -34,8 +34,37 @@ pub struct Hover {
     pub colors: Vec<Color>,
 }
 
-/// What the word at a place means.
+/// What the word at a place means; and where something is wrong with it, which page says more about that.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
+    let meaning = meaning(analysis, at);
+    let Some((span, more)) = mistake(analysis, at) else {
+        return meaning;
+    };
+    let mut hover = meaning.unwrap_or(Hover {
+        span,
+        markdown: String::new(),
+        colors: Vec::new(),
+    });
+    if !hover.markdown.is_empty() {
+        hover.markdown.push_str("\n\n");
+    }
+    hover.markdown.push_str(&more);
+    Some(hover)
+}
+
+/// The place of a problem, and the command that explains it.
+fn mistake(analysis: &Analysis<'_>, at: usize) -> Option<(Span, String)> {
+    let mut found = analysis.diagnostics().iter().filter_map(|diagnostic| {
+        let span = diagnostic.labels.first()?.span;
+        let holds = span.start <= at && at <= span.end && !span.range().is_empty();
+        holds.then_some((span, explain::page(&diagnostic.code)?))
+    });
+    let (span, page) = found.next()?;
+    let code = explain::short(page.code);
+    Some((span, format!("{}: `pinhole explain {code}`", page.title())))
+}
+
+fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let token = analysis.token_at(at)?;
     let path = analysis.path(at);
     let word = analysis.slice(token.span);

@@ -55,7 +55,7 @@ fn definitions_say_their_value() {
         hovered("let a = 2 * (1, 2, 3)\nsphere { center a$0 }"),
         ("a".into(), about.into())
     );
-    assert_eq!(markdown("let a = b$0 let b = 1"), "");
+    assert_eq!(markdown("let a = 2 $0 let b = 1"), "");
     assert_eq!(
         markdown("let $0a = 1 + olive"),
         "`let a = 1 + olive` (line 1)\n\nit has no value: see what is reported there"
@@ -147,6 +147,19 @@ fn objects_say_what_they_are() {
         )
     );
     assert_eq!(markdown("sphere Ba$0ll { radius 0 }"), "sphere `Ball`");
+}
+
+#[test]
+fn mistakes_say_where_they_are_explained() {
+    let (about, text) = hovered("sphere { center (0, 1, 0) rad$0us 2 }");
+    assert_eq!(about, "radus");
+    assert!(
+        text.ends_with(": `pinhole explain unknown_field`"),
+        "{text}"
+    );
+    let text = markdown("camera { eye (0, 0, 0) lookat (1, 0, 0) roll $030 }");
+    assert!(text.starts_with("`roll` of a camera: "), "{text}");
+    assert!(text.ends_with(": `pinhole explain bare_angle`"), "{text}");
 }
 
 /// The label with the active parameter in `‹›`.
