@@ -90,7 +90,7 @@ fn area(polygon: &[DVec2]) -> f64 {
 
 /// Every square on its own: its corners brought to the picture, and what is left of it between the polygon's sides.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
-    let m = glam::DMat3::from_cols_array_2d(&forms).transpose();
+    let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
     let inside = area(polygon).signum();
     let floor: Vec<DVec2> = polygon
