@@ -18,6 +18,7 @@ pub(super) const MANY: f64 = 32.0;
 
 /// More than this are left where points are too coarse to tell one line from the next: then nothing is said of them.
 const TOO_MANY: f64 = 1000.0;
+/// More rows than this, of a square each, take too long, which only the widest of views have in a pixel.
 const TOO_MANY_ROWS: f64 = 1e6;
 
 /// More rows than this, between two vertices, are summed at once.
@@ -158,7 +159,11 @@ impl Rows<'_> {
         } = self;
         let (board, along) = (*board, *along);
         lines.start(polygon.iter().copied());
-        if lines.count() > TOO_MANY_ROWS {
+        squares.start(polygon.iter().copied());
+        // A row takes as long as its squares, up to many.
+        let length = (squares.count() / lines.count()).min(MANY);
+        let takes_too_long = lines.count() * (1.0 + 0.25 * length) > TOO_MANY_ROWS;
+        if takes_too_long || lines.count().is_infinite() {
             let (area, _) = measure(polygon.iter().copied());
             return tally.add(0.0, area.abs());
         }
