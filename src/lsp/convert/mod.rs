@@ -36,7 +36,7 @@ impl Page<'_> {
     /// The offset of a position.
     pub fn offset(&self, position: lsp::Position) -> usize {
         let (line, column) = (position.line as usize, position.character as usize);
-        self.document.offset(line, column, self.client.encoding)
+        self.document.offset(line, column)
     }
 
     /// A span of the text from a range.
@@ -46,7 +46,7 @@ impl Page<'_> {
     }
 
     pub fn position(&self, offset: usize) -> lsp::Position {
-        let (line, column) = self.document.place(offset, self.client.encoding);
+        let (line, column) = self.document.place(offset);
         lsp::Position {
             line: count(line),
             character: count(column),

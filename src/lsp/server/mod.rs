@@ -219,9 +219,11 @@ impl<W: Write> Server<'_, W> {
         let encoding = client.encoding;
         let method = notification.method.clone();
         let noticed = match method.as_str() {
-            "textDocument/didOpen" => parsed(notification.params).map(|params| self.open(params)),
+            "textDocument/didOpen" => {
+                parsed(notification.params).map(|params| self.open(params, encoding))
+            }
             "textDocument/didChange" => {
-                parsed(notification.params).map(|params| self.change(params, encoding))
+                parsed(notification.params).map(|params| self.change(params))
             }
             "textDocument/didClose" => parsed(notification.params).map(|params| self.close(params)),
             // Others are for servers that know more.
@@ -232,17 +234,17 @@ impl<W: Write> Server<'_, W> {
         }
     }
 
-    fn open(&mut self, params: lsp::DidOpenTextDocumentParams) {
+    fn open(&mut self, params: lsp::DidOpenTextDocumentParams, encoding: Encoding) {
         let lsp::TextDocumentItem {
             uri, version, text, ..
         } = params.text_document;
         let name = uri.0.rsplit('/').next().unwrap_or_default().to_owned();
         self.changed.insert(uri.0.clone());
-        self.documents
-            .insert(uri, Document::new(&name, version, text));
+        let document = Document::new(&name, version, text, encoding);
+        self.documents.insert(uri, document);
     }
 
-    fn change(&mut self, params: lsp::DidChangeTextDocumentParams, encoding: Encoding) {
+    fn change(&mut self, params: lsp::DidChangeTextDocumentParams) {
         let lsp::VersionedTextDocumentIdentifier {
             version,
             text_document_identifier,
@@ -255,7 +257,7 @@ impl<W: Write> Server<'_, W> {
             }
             Some(document) => {
                 let changes = params.content_changes.into_iter().map(convert::change);
-                document.change(version, changes.collect(), encoding);
+                document.change(version, changes.collect());
                 self.changed.insert(uri.0);
             }
             None => (self.log)(&format!("{} is not open", uri.0)),
