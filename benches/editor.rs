@@ -101,19 +101,85 @@ fn main() {
         ("semanticTokens/full", json!({})),
     ];
     for (method, params) in questions {
-        show(method, || server.ask(method, params.clone()));
+        show(method, || {
+            server.ask(method, params.clone());
+        });
+    }
+    formatted();
+    in_one_line();
+}
+
+/// Formatting a text of a block a line, and what is said of the text when the editor has done it: its edits are sent back as the
+/// changes that they are, against the order of the text, so that none moves the place of another.
+fn formatted() {
+    let text = spheres(OBJECTS, Layout::Lines);
+    let mut server = Server::start(&text);
+    let options = json!({ "options": { "tabSize": 2, "insertSpaces": true } });
+    let answer = server.ask("formatting", options.clone());
+    let answer: Value = serde_json::from_slice(&answer).expect("JSON");
+    let edits = answer["result"].as_array().expect("edits");
+    let changes = edits
+        .iter()
+        .rev()
+        .map(|edit| json!({ "range": edit["range"], "text": edit["newText"] }));
+    let changes: Vec<Value> = changes.collect();
+    println!("a block a line: {} edits of formatting", changes.len());
+    show("formatting", || {
+        server.ask("formatting", options.clone());
+    });
+    let mut version = 1;
+    let mut change = |server: &mut Server, changes: Value| {
+        version += 1;
+        let document = json!({ "uri": URI, "version": version });
+        let params = json!({ "textDocument": document, "contentChanges": changes });
+        let start = Instant::now();
+        server.tell("textDocument/didChange", params);
+        server.read();
+        start.elapsed()
+    };
+    let times = (0..ROUNDS).map(|_| {
+        let time = change(&mut server, changes.clone().into());
+        change(&mut server, json!([{ "text": text }]));
+        time
+    });
+    print("its edits, and their diagnostics", times.collect());
+}
+
+/// A text that is one line.
+fn in_one_line() {
+    let text = spheres(OBJECTS, Layout::Lines);
+    // Comments that end with their line would take all the rest.
+    let lines = text.lines().filter(|line| !line.contains("//"));
+    let line = lines.collect::<Vec<_>>().join(" ");
+    let mut server = Server::start(&line);
+    println!("all of it in one line of {} bytes", line.len());
+    let methods = [
+        "documentSymbol",
+        "documentColor",
+        "formatting",
+        "semanticTokens/full",
+    ];
+    for method in methods {
+        show(method, || {
+            server.ask(
+                method,
+                json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
+            );
+        });
     }
 }
 
 /// The time of a thing, done over and over.
 fn show(name: &str, mut done: impl FnMut()) {
-    let mut times: Vec<Duration> = (0..ROUNDS)
-        .map(|_| {
-            let start = Instant::now();
-            done();
-            start.elapsed()
-        })
-        .collect();
+    let times = (0..ROUNDS).map(|_| {
+        let start = Instant::now();
+        done();
+        start.elapsed()
+    });
+    print(name, times.collect());
+}
+
+fn print(name: &str, mut times: Vec<Duration>) {
     times.sort_unstable();
     let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     let median = milliseconds(times[times.len() / 2]);
@@ -175,13 +241,13 @@ impl Server {
         message
     }
 
-    /// Asks about the document.
-    fn ask(&mut self, method: &str, mut params: Value) {
+    /// Asks about the document, for the bytes of the answer.
+    fn ask(&mut self, method: &str, mut params: Value) -> Vec<u8> {
         params["textDocument"] = json!({ "uri": URI });
-        self.request(&format!("textDocument/{method}"), params);
+        self.request(&format!("textDocument/{method}"), params)
     }
 
-    fn request(&mut self, method: &str, params: Value) {
+    fn request(&mut self, method: &str, params: Value) -> Vec<u8> {
         self.requests += 1;
         let request = Request::new(self.requests.into(), method.to_owned(), params);
         Message::from(request)
@@ -190,6 +256,7 @@ impl Server {
         let answer = self.read();
         let is_error = answer.windows(8).take(60).any(|part| part == b"\"error\":");
         assert!(!is_error, "{method}: {}", String::from_utf8_lossy(&answer));
+        answer
     }
 }
 

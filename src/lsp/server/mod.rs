@@ -13,12 +13,12 @@ use std::{
 };
 
 use gen_lsp_types as lsp;
-use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
+use lsp_server::{ErrorCode, Message, Notification, Request};
 use serde_json::{Value, json};
 
 use self::{
     answers::{answer, diagnostics},
-    inbox::Inbox,
+    inbox::{Inbox, Malformed},
 };
 use super::{
     convert::{self, Client, Page},
@@ -82,7 +82,16 @@ impl<W: Write> Server<'_, W> {
     fn run(&mut self, inbox: &mut Inbox) -> io::Result<Ended> {
         loop {
             self.publish(inbox)?;
-            match inbox.next() {
+            let message = match inbox.next() {
+                Some(Ok(message)) => Some(message),
+                Some(Err(malformed)) => {
+                    let Malformed { id, code, message } = malformed;
+                    respond(self.output, &id, Err(Refusal(code, message)))?;
+                    continue;
+                }
+                None => None,
+            };
+            match message {
                 Some(Message::Request(request)) => match &self.phase {
                     Phase::Talking(client) if !is_of_life(&request) => {
                         let client = *client;
@@ -272,7 +281,7 @@ impl<W: Write> Server<'_, W> {
 }
 
 /// Writes a response.
-fn respond(output: &mut impl Write, id: &RequestId, answer: Answer) -> io::Result<()> {
+fn respond(output: &mut impl Write, id: &impl serde::Serialize, answer: Answer) -> io::Result<()> {
     let id = json!(id);
     send(
         output,
@@ -380,7 +389,7 @@ mod tests {
         let (sender, receiver) = std::sync::mpsc::channel();
         let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
         for message in [hello].into_iter().chain(messages) {
-            sender.send(message).expect("it is kept");
+            sender.send(Ok(message)).expect("it is kept");
         }
         drop(sender);
         let mut output = Vec::new();

@@ -345,8 +345,8 @@ fn who_leaves_without_a_word_is_remembered() {
 fn nonsense_is_passed_over() {
     let mut client = Client::start();
     client.write("hello\r\n\r\n");
-    client.write("Content-Length: 9\r\n\r\nnot JSON!");
-    client.write("Content-Length: 2\r\n\r\n{}");
+    // A response to nothing is not answered.
+    client.send(&json!({ "jsonrpc": "2.0", "id": null, "error": { "code": 1, "message": "" } }));
     client.ask("initialize", json!({ "capabilities": {} }));
     client.tell(
         "textDocument/didChange",
@@ -359,4 +359,60 @@ fn nonsense_is_passed_over() {
     assert_eq!(status, Some(0));
     assert!(log.contains("malformed"), "{log}");
     assert!(log.contains("is not open"), "{log}");
+}
+
+#[test]
+fn what_is_no_request_is_refused() {
+    let mut client = Client::start();
+    let refused = |answer: Value| {
+        assert_eq!(answer["jsonrpc"], "2.0");
+        assert!(answer.get("result").is_none(), "{answer}");
+        (answer["id"].clone(), answer["error"]["code"].clone())
+    };
+    client.write("Content-Length: 9\r\n\r\nnot JSON!");
+    assert_eq!(refused(client.read()), (Value::Null, json!(-32700)));
+    // A header's name is known whatever its letters.
+    client.write("content-length: 13\r\n\r\n{\"id\":1,\"a\":}");
+    assert_eq!(refused(client.read()), (Value::Null, json!(-32700)));
+    let shutdown = json!({ "jsonrpc": "2.0", "id": 7, "method": "shutdown" });
+    for (message, id) in [
+        (json!({}), Value::Null),
+        (json!([]), Value::Null),
+        (json!([shutdown]), Value::Null),
+        (json!({ "jsonrpc": "2.0", "id": 8 }), json!(8)),
+        (
+            json!({ "jsonrpc": "2.0", "id": "a", "method": 5 }),
+            json!("a"),
+        ),
+        (
+            json!({ "jsonrpc": "2.0", "id": 1.5, "method": "shutdown" }),
+            json!(1.5),
+        ),
+        (
+            json!({ "jsonrpc": "2.0", "id": {}, "method": [] }),
+            Value::Null,
+        ),
+    ] {
+        client.send(&message);
+        assert_eq!(refused(client.read()), (id, json!(-32600)), "{message}");
+    }
+    client.ask("initialize", json!({ "capabilities": {} }));
+    client.leave();
+}
+
+#[test]
+fn memory_is_not_taken_for_what_is_only_announced() {
+    for length in ["99999999999999", "2000000000"] {
+        let mut client = Client::start();
+        client.write(&format!("Content-Length: {length}\r\n\r\n{{}}"));
+        let (status, log) = client.end();
+        assert_eq!(status, Some(1));
+        assert!(log.contains("is announced"), "{log}");
+    }
+    // It is as long as may be, and ends early.
+    let mut client = Client::start();
+    client.write("Content-Length: 1000000000\r\n\r\n{}");
+    let (status, log) = client.end();
+    assert_eq!(status, Some(1));
+    assert!(log.contains("after 2 of 1000000000 bytes"), "{log}");
 }

@@ -3,19 +3,27 @@
 //! A thread of its own does nothing but read, so that the loop sees all that waits before it answers the first: what was
 //! cancelled in the meantime is not computed.
 
+mod reading;
+
 use std::{
     collections::{HashSet, VecDeque},
-    io::{BufReader, ErrorKind, Read},
+    io::{BufReader, Read},
     sync::mpsc::{self, Receiver, Sender},
     thread,
 };
 
 use lsp_server::{Message, Request, RequestId};
 
+pub use self::reading::Malformed;
+use self::reading::{Failed, next};
+
+/// A message, or something that came in its place.
+pub type Incoming = Result<Message, Malformed>;
+
 /// The messages that have come and are not taken yet.
 pub struct Inbox {
-    messages: Receiver<Message>,
-    waiting: VecDeque<Message>,
+    messages: Receiver<Incoming>,
+    waiting: VecDeque<Incoming>,
     /// The requests that waiting messages cancel.
     cancelled: HashSet<RequestId>,
 }
@@ -29,7 +37,7 @@ impl Inbox {
     }
 
     /// Takes messages from a channel.
-    pub fn new(messages: Receiver<Message>) -> Self {
+    pub fn new(messages: Receiver<Incoming>) -> Self {
         Self {
             messages,
             waiting: VecDeque::new(),
@@ -50,7 +58,7 @@ impl Inbox {
     }
 
     /// The next message, as soon as there is one; none if no more will come.
-    pub fn next(&mut self) -> Option<Message> {
+    pub fn next(&mut self) -> Option<Incoming> {
         self.wait();
         let message = self.waiting.pop_front()?;
         if let Some(id) = cancelled(&message) {
@@ -63,7 +71,7 @@ impl Inbox {
     pub fn next_if(&mut self, wanted: impl FnOnce(&Request) -> bool) -> Option<Request> {
         self.wait();
         match self.waiting.pop_front()? {
-            Message::Request(request) if wanted(&request) => Some(request),
+            Ok(Message::Request(request)) if wanted(&request) => Some(request),
             other => {
                 self.waiting.push_front(other);
                 None
@@ -86,38 +94,38 @@ impl Inbox {
         }
     }
 
-    fn push(&mut self, message: Message) {
+    fn push(&mut self, message: Incoming) {
         self.cancelled.extend(cancelled(&message));
         self.waiting.push_back(message);
     }
 }
 
 /// The request that a message cancels.
-fn cancelled(message: &Message) -> Option<RequestId> {
+fn cancelled(message: &Incoming) -> Option<RequestId> {
     match message {
-        Message::Notification(notification) if notification.method == "$/cancelRequest" => {
+        Ok(Message::Notification(notification)) if notification.method == "$/cancelRequest" => {
             serde_json::from_value(notification.params.get("id")?.clone()).ok()
         }
         _ => None,
     }
 }
 
-fn read(input: impl Read, sender: &Sender<Message>, log: fn(&str)) {
+fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     let mut input = BufReader::new(input);
     loop {
-        match Message::read(&mut input) {
+        match next(&mut input) {
             Ok(Some(message)) => {
-                let is_exit = matches!(&message, Message::Notification(n) if n.method == "exit");
+                let is_exit =
+                    matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
                 // Behind `exit` nobody listens any more.
                 if sender.send(message).is_err() || is_exit {
                     return;
                 }
             }
             Ok(None) => return,
-            // The next message may be a right one.
-            Err(error) if error.kind() == ErrorKind::InvalidData => log(&error.to_string()),
-            Err(error) => {
-                log(&error.to_string());
+            Err(Failed::Once(what)) => log(&what),
+            Err(Failed::ForGood(what)) => {
+                log(&what);
                 return;
             }
         }
