@@ -52,6 +52,8 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// The ways out that are edits, the likeliest first.
     pub fixes: Vec<Fix>,
+    /// Whether what stands at the place to jump to could be left out without any change of meaning.
+    pub is_needless: bool,
 }
 
 /// A place with a few words.
@@ -80,6 +82,7 @@ impl Diagnostic {
             help: problem.help().map(|help| help.to_string()),
             labels: labels.collect(),
             fixes: Vec::new(),
+            is_needless: false,
         }
     }
 
@@ -87,6 +90,7 @@ impl Diagnostic {
     pub fn fixable(problem: &impl Fixable, sources: &Sources) -> Self {
         Self {
             fixes: problem.fixes(sources),
+            is_needless: problem.is_needless(),
             ..Self::from_problem(problem)
         }
     }

@@ -162,6 +162,15 @@ impl Source {
         }
     }
 
+    /// What ends the text's lines: CRLF if it ends the first of them, or else LF.
+    pub fn line_end(&self) -> &'static str {
+        let first = self.text.find('\n').and_then(|at| self.text.get(..at));
+        match first.is_some_and(|line| line.ends_with('\r')) {
+            true => "\r\n",
+            false => "\n",
+        }
+    }
+
     /// How many lines the text has; the end of the last line need not be written.
     pub fn line_count(&self) -> usize {
         self.table().line_starts.len()

@@ -6,6 +6,11 @@ use crate::source::{SourceId, Sources, Span};
 pub trait Fixable: miette::Diagnostic {
     /// The ways out that are edits, the likeliest first. None of them needs another one.
     fn fixes(&self, sources: &Sources) -> Vec<Fix>;
+
+    /// Whether what stands at the first label could be left out without any change of meaning.
+    fn is_needless(&self) -> bool {
+        false
+    }
 }
 
 /// One way out.

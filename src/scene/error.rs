@@ -235,6 +235,8 @@ pub enum Problem {
         label: String,
         /// The name that was probably meant.
         near: Option<String>,
+        /// Where an operator can stand before the parenthesis, if that was meant.
+        arguments: Option<Span>,
     },
 
     #[error("`{name}` is a function, and stands here without its arguments")]
@@ -363,6 +365,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("the number {written} is too large")]
@@ -475,6 +479,8 @@ pub enum Problem {
         #[label("{other_label}")]
         other: Option<Span>,
         other_label: String,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("the box reaches beyond the largest number")]

@@ -9,6 +9,14 @@ use crate::{
 impl Fixable for Problem {
     fn fixes(&self, sources: &Sources) -> Vec<Fix> {
         match self {
+            Self::UnknownFunction {
+                name,
+                arguments: Some(arguments),
+                ..
+            } => vec![Fix::new(
+                format!("write `{name} * (…)`"),
+                [Edit::new(*arguments, " * ")],
+            )],
             Self::UnknownKind { span, near, .. }
             | Self::UnknownField { span, near, .. }
             | Self::UnknownFunction { span, near, .. }
@@ -24,6 +32,8 @@ impl Fixable for Problem {
             | Self::ConflictingFields { fixes, .. }
             | Self::UpParallel { fixes, .. }
             | Self::EmptyDepth { fixes, .. }
+            | Self::EmptyBox { fixes, .. }
+            | Self::NotFinite { fixes, .. }
             | Self::OperandTypes { fixes, .. } => fixes.clone(),
             Self::BareAngle { span, instead, .. }
             | Self::WrongType { span, instead, .. }
@@ -90,11 +100,9 @@ impl Fixable for Problem {
             | Self::UsedBeforeDefinition { .. }
             | Self::ArgumentType { .. }
             | Self::PartType { .. }
-            | Self::NotFinite { .. }
             | Self::NumberTooLarge { .. }
             | Self::ViewUndefined { .. }
             | Self::NotATriangle { .. }
-            | Self::EmptyBox { .. }
             | Self::BoxTooLarge { .. }
             | Self::TooManySamples { .. }
             | Self::SetWithoutEquals { .. }
@@ -134,11 +142,12 @@ fn add(block: &str, fields: &[&str], sources: &Sources) -> Vec<Fix> {
         .map(|field| format!("{} {}", field.name, field.example()))
         .collect();
     let text = sources.file.text();
+    let line_end = sources.file.line_end();
     let apart = match text.ends_with('\n') || text.len() == sources.file.bom_len() {
         true => "",
-        false => "\n",
+        false => line_end,
     };
-    let added = format!("{apart}{block} {{ {} }}\n", fields.join("  "));
+    let added = format!("{apart}{block} {{ {} }}{line_end}", fields.join("  "));
     vec![Fix::new(
         format!("add {}", row.noun),
         [Edit::insert(SourceId::File, text.len(), added)],

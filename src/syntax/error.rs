@@ -271,6 +271,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What was meant, as a whole and what of it stands in this place.
+        instead: Option<[String; 2]>,
     },
 
     #[error("a unit stands right behind its number")]
@@ -330,6 +332,8 @@ pub enum Problem {
         help: String,
         #[label("this does not belong here")]
         span: Span,
+        /// What can stand before the `{`, and in place of what.
+        instead: Option<(Span, String)>,
     },
 
     #[error("braces within a block")]

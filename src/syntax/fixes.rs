@@ -7,20 +7,31 @@ use crate::{
 };
 
 impl Fixable for Problem {
+    fn is_needless(&self) -> bool {
+        matches!(
+            self,
+            Self::NeedlessEquals { .. }
+                | Self::NeedlessSeparator { .. }
+                | Self::NeedlessComma { .. }
+                | Self::PlusSign { .. }
+        )
+    }
+
     fn fixes(&self, sources: &Sources) -> Vec<Fix> {
         match self {
             Self::OddSpace { places, span, .. } => odd_spaces(places, sources.text(*span)),
-            Self::UnclosedComment { span } => {
-                vec![Fix::new("begin it with `//`", [Edit::new(*span, "//")])]
-            }
+            Self::UnclosedComment { span } => unclosed_comment(*span, sources),
             Self::UnclosedBlock {
                 kind, open, end, ..
             } => {
                 let written = sources.text(open.to(*end));
-                let close = if written.contains('\n') { "\n}" } else { " }" };
+                let apart = match written.contains('\n') {
+                    true => sources.get(open.source).line_end(),
+                    false => " ",
+                };
                 vec![Fix::new(
                     format!("close the block of `{kind}`"),
-                    [Edit::new(*end, close)],
+                    [Edit::new(*end, format!("{apart}}}"))],
                 )]
             }
             Self::StrayClosing {
@@ -116,6 +127,24 @@ impl Fixable for Problem {
             Self::BadNumber { span, .. } if sources.text(*span) == "°" => {
                 vec![Fix::write(*span, "deg")]
             }
+            Self::BadNumber {
+                instead: Some([whole, part]),
+                span,
+                ..
+            } => {
+                let place = match whole == part {
+                    true => *span,
+                    // The number stands before it, perhaps apart.
+                    false => gap_before(*span, sources).to(*span),
+                };
+                let title = format!("write `{whole}`");
+                vec![Fix::new(title, [Edit::new(place, part)])]
+            }
+            Self::BadHead { help, instead, .. } => {
+                let fix = instead.as_ref();
+                let fix = fix.map(|(span, text)| Fix::new(help, [Edit::new(*span, text)]));
+                fix.into_iter().collect()
+            }
             Self::SpacedUnit { joined, span } => spaced_unit(joined, *span, sources),
             Self::BadColorCode { span, .. } => {
                 let written = sources.text(*span);
@@ -131,7 +160,8 @@ impl Fixable for Problem {
                 let before = before.unwrap_or_default();
                 let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
                 let indent = if line.trim().is_empty() { line } else { "" };
-                let text = format!("{}\n{indent}", sources.text(*definitions));
+                let line_end = sources.get(block.source).line_end();
+                let text = format!("{}{line_end}{indent}", sources.text(*definitions));
                 vec![Fix::new(
                     "move it before the block",
                     [
@@ -171,12 +201,24 @@ impl Fixable for Problem {
             | Self::BadName { .. }
             | Self::BadNumber { .. }
             | Self::MissingKind { .. }
-            | Self::BadHead { .. }
             | Self::NestedBraces { .. }
             | Self::OutsideBlock { .. }
             | Self::Unexpected { .. } => Vec::new(),
         }
     }
+}
+
+/// A comment of one line may have been meant by what has no end. Of several lines it took the rest of the text, which may
+/// stay so, or become what it was.
+fn unclosed_comment(span: Span, sources: &Sources) -> Vec<Fix> {
+    let text = sources.get(span.source).text();
+    let taken = text.get(span.start..).unwrap_or_default().trim_end();
+    let line = Fix::new("begin it with `//`", [Edit::new(span, "//")]);
+    if !taken.contains('\n') {
+        return vec![line];
+    }
+    let close = Edit::insert(span.source, span.start + taken.len(), " */");
+    vec![Fix::new("close it at the end of the text", [close]), line]
 }
 
 /// What has no width, as a rule, is not meant to keep words apart.

@@ -325,6 +325,7 @@ fn labels_at_and_past_the_end_are_drawn() {
                 message: "here it is".to_owned(),
             }],
             fixes: Vec::new(),
+            is_needless: false,
         };
         for drawing in [Drawing::Unicode, Drawing::Ascii, Drawing::Narrated] {
             let style = Style {

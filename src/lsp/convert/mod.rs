@@ -97,17 +97,22 @@ impl Page<'_> {
             Some(help) => format!("{}\nhelp: {help}", diagnostic.message),
             None => diagnostic.message.clone(),
         };
+        // The source says whose code it is.
+        let code = diagnostic.code.trim_start_matches("pinhole::");
         lsp::Diagnostic {
             range: place.map(|span| self.range(span)).unwrap_or_default(),
             severity: Some(match diagnostic.severity {
                 Severity::Error => lsp::DiagnosticSeverity::Error,
                 Severity::Warning => lsp::DiagnosticSeverity::Warning,
             }),
-            code: Some(lsp::Code::String(diagnostic.code.clone())),
+            code: Some(lsp::Code::String(code.to_owned())),
             code_description: None,
             source: Some("pinhole".to_owned()),
             message: lsp::Message::String(message),
-            tags: is_unnecessary(&diagnostic.code).then(|| vec![lsp::DiagnosticTag::Unnecessary]),
+            // An editor shows it in grey.
+            tags: diagnostic
+                .is_needless
+                .then(|| vec![lsp::DiagnosticTag::Unnecessary]),
             related_information: Some(related).filter(|related| !related.is_empty()),
             data: None,
         }
@@ -148,7 +153,10 @@ impl Page<'_> {
             }),
             text_edit: Some(lsp::CompletionItemTextEdit::TextEdit(lsp::TextEdit {
                 range: self.range(completion.replaces),
-                new_text: inserted(&completion.insert, is_snippet),
+                new_text: match is_snippet {
+                    true => snippet(&completion.insert),
+                    false => plain(&completion.insert),
+                },
             })),
             ..Default::default()
         }
@@ -407,11 +415,6 @@ pub fn color(color: &lsp::Color) -> Color {
     Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
 }
 
-/// What can be left out without any change of meaning is shown in grey.
-fn is_unnecessary(code: &str) -> bool {
-    code.contains("needless") || code.ends_with("plus_sign")
-}
-
 fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
     match kind {
         SymbolKind::Definition => lsp::SymbolKind::Variable,
@@ -421,13 +424,20 @@ fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
     }
 }
 
-/// What is put in, as a snippet or as plain text.
-fn inserted(pieces: &[Piece], is_snippet: bool) -> String {
+/// What is put in, as it is.
+fn plain(pieces: &[Piece]) -> String {
+    let texts = pieces.iter().map(|piece| match piece {
+        Piece::Text(text) | Piece::Hole(text) => text.as_str(),
+    });
+    texts.collect()
+}
+
+/// What is put in, with holes to type over.
+fn snippet(pieces: &[Piece]) -> String {
     let mut text = String::new();
     let mut holes = 0;
     for piece in pieces {
         match piece {
-            Piece::Text(piece) | Piece::Hole(piece) if !is_snippet => text.push_str(piece),
             Piece::Text(piece) => text.push_str(&escaped(piece)),
             Piece::Hole(value) => {
                 holes += 1;

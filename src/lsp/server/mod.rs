@@ -452,7 +452,7 @@ mod tests {
             .iter()
             .map(|diagnostic| &diagnostic["code"])
             .collect();
-        assert_eq!(codes, ["pinhole::missing_camera", "pinhole::no_objects"]);
+        assert_eq!(codes, ["missing_camera", "no_objects"]);
     }
 
     #[test]
@@ -463,10 +463,7 @@ mod tests {
         let found = answers(capabilities, vec![open("let a = oops"), ask]);
         assert_eq!(found.len(), 1);
         assert_eq!(found[0]["result"]["kind"], "full");
-        assert_eq!(
-            found[0]["result"]["items"][2]["code"],
-            "pinhole::unknown_name"
-        );
+        assert_eq!(found[0]["result"]["items"][2]["code"], "unknown_name");
     }
 
     #[test]

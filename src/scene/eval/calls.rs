@@ -3,6 +3,7 @@
 use super::{Evaluator, predefined};
 use crate::{
     color::Color,
+    diagnostic::{Edit, Fix},
     numbers,
     scene::{
         error::Problem,
@@ -95,7 +96,19 @@ impl<'s> Evaluator<'_, 's> {
             span: function.span,
             label,
             near: near.filter(|_| !is_value).map(str::to_owned),
+            arguments: match arguments.len() {
+                1 | 3 if is_let => self.before_parenthesis(function.span),
+                _ => None,
+            },
         });
+    }
+
+    /// What stands between a name and the `(` behind it, if that is nothing but white space.
+    fn before_parenthesis(&self, name: Span) -> Option<Span> {
+        let after = self.sources.get(name.source).text().get(name.end..)?;
+        let blank = after.len() - after.trim_start().len();
+        let is_next = after.get(blank..)?.starts_with('(');
+        is_next.then(|| Span::new(name.source, name.end, name.end + blank))
     }
 
     fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
@@ -259,11 +272,26 @@ impl<'s> Evaluator<'_, 's> {
                 "too large".to_owned(),
             ),
         };
+        let kept = match (row.name, arguments) {
+            ("sqrt", [only]) => Some(("abs(", ")", only.value.span)),
+            ("asin" | "acos", [only]) => Some(("max(-1, min(1, ", "))", only.value.span)),
+            _ => None,
+        };
+        let fix = kept.map(|(before, after, place)| {
+            Fix::new(
+                format!("write `{}({before}{written}{after})`", row.name),
+                [
+                    Edit::insert(place.source, place.start, before),
+                    Edit::insert(place.source, place.end, after),
+                ],
+            )
+        });
         self.problems.push(Problem::NotFinite {
             message,
             help,
             span,
             label,
+            fixes: fix.into_iter().collect(),
         });
         None
     }

@@ -102,6 +102,7 @@ impl<'s> Evaluator<'_, 's> {
                 },
                 span: step.sign,
                 label: "the right side is 0".to_owned(),
+                fixes: Vec::new(),
             }
         } else {
             Problem::NotFinite {
@@ -109,6 +110,7 @@ impl<'s> Evaluator<'_, 's> {
                 help: "numbers go up to 1.7976931348623157e308".to_owned(),
                 span: step.sign,
                 label: "too large from here on".to_owned(),
+                fixes: Vec::new(),
             }
         };
         self.problems.push(problem);

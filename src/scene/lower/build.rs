@@ -445,6 +445,10 @@ impl<'s> Lowering<'s> {
                     label: format!("{high} along {axis}"),
                     other: Some(span("min")),
                     other_label: format!("{low} along {axis}"),
+                    fixes: match axes.iter().all(|(_, low, high)| low > high) {
+                        true => vec![self.swapped(span("min"), span("max"))],
+                        false => Vec::new(),
+                    },
                 },
                 None => Problem::EmptyBox {
                     axis,
@@ -453,6 +457,7 @@ impl<'s> Lowering<'s> {
                     label: format!("lost in rounding beside {low}"),
                     other: None,
                     other_label: String::new(),
+                    fixes: Vec::new(),
                 },
             });
             return None;

@@ -3,7 +3,11 @@
 use super::{Block, Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
-    scene::schema::{Field, Preset},
+    numbers,
+    scene::{
+        schema::{Field, Preset},
+        value::Value,
+    },
     source::{SourceId, Span},
     suggest,
 };
@@ -26,7 +30,11 @@ impl Lowering<'_> {
         let (place, added) = match gap.rsplit_once('\n') {
             Some((before, indent)) => {
                 let end = if before.ends_with('\r') { "\r\n" } else { "\n" };
-                let lines = fields.iter().map(|f| format!("{indent}  {f}{end}"));
+                let deeper = match first_indent(tight.get(block.span.start..)?) {
+                    Some(deeper) => deeper.to_owned(),
+                    None => format!("{indent}  "),
+                };
+                let lines = fields.iter().map(|f| format!("{deeper}{f}{end}"));
                 let at = inside.len() - indent.len();
                 (at..at, lines.collect())
             }
@@ -38,6 +46,15 @@ impl Lowering<'_> {
         };
         let span = Span::new(block.span.source, place.start, place.end);
         Some(Fix::new(title, [Edit::new(span, added)]))
+    }
+
+    /// Writes each of two corners in the place of the other.
+    pub(super) fn swapped(&self, min: Span, max: Span) -> Fix {
+        let edits = [(min, max), (max, min)];
+        Fix::new(
+            "swap `min` and `max`",
+            edits.map(|(place, other)| Edit::new(place, self.sources.text(other))),
+        )
     }
 
     /// Of two fields that exclude each other, keeps either one: what it excludes is removed. One that would not be enough
@@ -104,6 +121,37 @@ pub(super) fn quoted(names: &[&str]) -> String {
 /// Fields with values that they can have.
 pub(super) fn examples(block: &Block<'_>, names: &[&str]) -> Vec<String> {
     let rows = names.iter().filter_map(|name| block.row.field(name));
-    rows.map(|row| format!("{} {}", row.name, row.example()))
-        .collect()
+    rows.map(|row| {
+        let value = corner(block, row.name).unwrap_or_else(|| row.example());
+        format!("{} {value}", row.name)
+    })
+    .collect()
+}
+
+/// A corner of a box whose other one is given: 1 away from it on every axis.
+fn corner(block: &Block<'_>, name: &str) -> Option<String> {
+    let (other, away) = match name {
+        "min" => ("max", -1.0),
+        "max" => ("min", 1.0),
+        _ => return None,
+    };
+    let Value::Vector(other) = block.given(other)?.value? else {
+        return None;
+    };
+    let parts = other.to_array().map(|x| (x, numbers::short(x + away)));
+    // So far from the origin that 1 is lost in rounding, the example is as good as any.
+    let is_away = |(x, text): &(f64, String)| {
+        let part: Option<f64> = text.parse().ok();
+        part.is_some_and(|part| (part - x) * away > 0.0)
+    };
+    let is_corner = parts.iter().all(is_away);
+    let [x, y, z] = parts.map(|(_, text)| text);
+    is_corner.then(|| format!("({x}, {y}, {z})"))
+}
+
+/// What stands before the first text of a block's lines behind that of its `{`.
+fn first_indent(block: &str) -> Option<&str> {
+    let mut lines = block.lines().skip(1).filter(|line| !line.trim().is_empty());
+    let line = lines.next()?;
+    line.get(..line.len() - line.trim_start().len())
 }

@@ -454,7 +454,8 @@ impl<'s> Lowering<'s> {
         let near = block.row.nearest_field(field.name.text);
         let joined = block.row.joined_field(field.name.text);
         block.meant.extend(near.or(joined));
-        self.problems.push(unknown_field(block.row, &field.name));
+        self.problems
+            .push(unknown_field(block.row, &field.name, &field.value));
     }
 
     /// Two fields that exclude each other: the later one is labelled first.

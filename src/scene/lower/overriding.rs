@@ -104,7 +104,8 @@ impl<'s> Lowering<'s> {
                 .iter()
                 .position(|field| field.name == set.name.text);
             let Some((at, field)) = at.and_then(|at| Some((at, row.fields.get(at)?))) else {
-                self.problems.push(unknown_field(row, &set.name));
+                self.problems
+                    .push(unknown_field(row, &set.name, &set.value));
                 continue;
             };
             let value = self.typed(field, &set.value);

@@ -34,24 +34,31 @@ pub fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
 }
 
 /// A field that the block does not have.
-pub fn unknown_field(row: &'static schema::Block, name: &Name<'_>) -> Problem {
+pub fn unknown_field(
+    row: &'static schema::Block,
+    name: &Name<'_>,
+    value: &tree::Value<'_>,
+) -> Problem {
     let mut fields: Vec<&str> = row.field_names().collect();
     let noun = capital(row.noun);
     let all = suggest::list(fields.drain(..));
-    let help = match (row.nearest_field(name.text), row.joined_field(name.text)) {
-        (Some(near), _) => format!("did you mean `{near}`? {noun} takes {all}."),
-        (None, Some(joined)) => {
-            let rest = name.text.get(joined.len()..).unwrap_or_default();
-            format!("did you mean `{joined} {rest}`? {noun} takes {all}.")
-        }
-        (None, None) => format!("{} takes {all}", row.noun),
+    // A field and its value that were written as one word.
+    let apart = row.joined_field(name.text).map(|joined| {
+        let rest = name.text.get(joined.len()..).unwrap_or_default();
+        format!("{joined} {rest}")
+    });
+    let near = row.nearest_field(name.text).map(str::to_owned);
+    let help = match near.as_ref().or(apart.as_ref()) {
+        Some(meant) => format!("did you mean `{meant}`? {noun} takes {all}."),
+        None => format!("{} takes {all}", row.noun),
     };
+    let has_value = !value.span.range().is_empty();
     Problem::UnknownField {
         noun: row.noun,
         written: name.text.to_owned(),
         help,
         span: name.span,
-        near: row.nearest_field(name.text).map(str::to_owned),
+        near: near.or(apart.filter(|_| !has_value)),
     }
 }
 

@@ -46,10 +46,16 @@ pub fn head<'s>(
         && name.kind == Kind::Word
         && kind.kind == Kind::Word
     {
-        let help = format!("write `{} {} {{`", kind.text, name.text);
-        let span = name.span(odd).to(equals.span(odd));
+        let problem = Problem::BadHead {
+            help: format!("write `{} {} {{`", kind.text, name.text),
+            span: name.span(odd).to(equals.span(odd)),
+            instead: Some((
+                name.span(odd).to(kind.span(odd)),
+                format!("{} {}", kind.text, name.text),
+            )),
+        };
         let (kind, name) = (kind.name(text, odd), name.name(text, odd));
-        return (Some(kind), Some(name), Problem::BadHead { help, span });
+        return (Some(kind), Some(name), problem);
     }
     if let (Some(kind), Some(first), Some(last)) = (kind, rest.first(), rest.last())
         && rest.len() > 1
@@ -63,12 +69,13 @@ pub fn head<'s>(
     {
         let span = first.span(odd).to(last.span(odd));
         let joined = text.get(span.range()).unwrap_or_default();
-        let help = format!(
-            "write `{} {} {{`",
-            kind.text,
-            shorten(&joined.replace(['-', '.'], "_"))
-        );
-        return (Some(kind), name, Problem::BadHead { help, span });
+        let joined = joined.replace(['-', '.'], "_");
+        let problem = Problem::BadHead {
+            help: format!("write `{} {} {{`", kind.text, shorten(&joined)),
+            span,
+            instead: Some((span, joined)),
+        };
+        return (Some(kind), name, problem);
     }
     let wrong = match (kind, name) {
         (None, _) => Some(first),
@@ -81,8 +88,16 @@ pub fn head<'s>(
         "" => "write the block's kind before it, such as `sphere {`".to_owned(),
         right => format!("write `{right}{{`"),
     };
-    let span = from.to(to);
-    (kind, name, Problem::BadHead { help, span })
+    // Numbers may be a field's value, which is not to be lost.
+    let is_lossless = tokens.iter().all(|token| token.kind != Kind::Number);
+    let instead = (is_lossless && !right.is_empty())
+        .then(|| (first.span(odd).to(to), right.trim_end().to_owned()));
+    let problem = Problem::BadHead {
+        help,
+        span: from.to(to),
+        instead,
+    };
+    (kind, name, problem)
 }
 
 /// Lines outside of blocks that are no items.

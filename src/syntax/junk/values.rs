@@ -295,6 +295,8 @@ fn degree_sign(before: Option<&Token<'_>>, sign: &Token<'_>, span: Span) -> Prob
         help: format!("write `{}deg`", shorten(number)),
         span: sign.span(span),
         label: "the unit is written `deg`".to_owned(),
+        // The sign itself says it.
+        instead: None,
     }
 }
 
@@ -364,10 +366,21 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
     } else {
         span.start + at
     };
+    let is_unit = |unit: &str| help.starts_with(&format!("write `{number}{unit}`"));
+    let units = ["", "deg", "rad"].into_iter().find(|unit| is_unit(unit));
+    let instead = match units {
+        _ if word.is_empty() && number.matches('.').count() < 2 => {
+            let digits = number.replace('_', "");
+            Some([digits.clone(), digits])
+        }
+        Some(unit) if !word.is_empty() => Some([format!("{number}{unit}"), unit.to_owned()]),
+        _ => None,
+    };
     Problem::BadNumber {
         written: shorten(written),
         help,
         span: Span::new(span.source, start, span.end),
         label,
+        instead,
     }
 }

@@ -311,6 +311,10 @@ impl<'s> Parser<'s> {
             let problem = Problem::BadHead {
                 help: format!("write `{} {} {{`", self.short(kind), self.short(name.span)),
                 span: before.keyword.to(*span),
+                instead: Some((
+                    before.keyword.to(kind),
+                    format!("{} {}", self.written(kind), name.text),
+                )),
             };
             self.problems.pop();
             self.problems.push(problem);

@@ -118,7 +118,7 @@ fn neovim_writes_a_scene() {
     assert_eq!(found["wrong"], json!([]), "{what}");
     let message = "a sphere has no field `radus`\nhelp: did you mean `radius`? A sphere takes center, radius and color.";
     let radus = json!({
-        "line": 3, "column": 38, "stop": 43, "code": "pinhole::unknown_field", "message": message,
+        "line": 3, "column": 38, "stop": 43, "code": "unknown_field", "message": message,
     });
     assert_eq!(found["broken"], json!([radus]), "{what}");
     assert_eq!(found["mended"], json!([]), "{what}");
@@ -149,10 +149,7 @@ fn neovim_writes_a_scene() {
         last, "sphere Ball { center middle  /* 🎱 */ radius 0.5  colour olive }",
         "{what}"
     );
-    assert_eq!(
-        found["after"][0]["code"], "pinhole::unknown_field",
-        "{what}"
-    );
+    assert_eq!(found["after"][0]["code"], "unknown_field", "{what}");
     assert_eq!(
         (&found["after"][0]["line"], &found["after"][0]["column"]),
         (&3.into(), &52.into()),

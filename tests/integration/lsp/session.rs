@@ -153,7 +153,7 @@ fn texts_change_while_one_types() {
         .clone();
     let radus = diagnostics
         .iter()
-        .find(|found| found["code"] == "pinhole::unknown_field")
+        .find(|found| found["code"] == "unknown_field")
         .expect("it is wrong");
     // Columns are bytes here.
     assert_eq!(radus["range"], range(2, 51, 56));
@@ -170,10 +170,7 @@ fn texts_change_while_one_types() {
     );
     assert_eq!(actions[0]["title"], "write `radius`");
     assert_eq!(actions[0]["isPreferred"], true);
-    assert_eq!(
-        actions[0]["diagnostics"][0]["code"],
-        "pinhole::unknown_field"
-    );
+    assert_eq!(actions[0]["diagnostics"][0]["code"], "unknown_field");
     let edit = &actions[0]["edit"]["documentChanges"][0];
     assert_eq!(edit["textDocument"]["version"], 2);
     assert_eq!(
@@ -246,7 +243,7 @@ fn a_client_of_few_words_gets_plain_answers() {
         .as_array()
         .expect("a list")
         .iter()
-        .find(|found| found["code"] == "pinhole::duplicate_field");
+        .find(|found| found["code"] == "duplicate_field");
     let twice = twice.expect("it is given twice");
     // Columns are units of UTF-16, and the other place stays untold.
     assert_eq!(twice["range"], range(0, 28, 34));
@@ -275,7 +272,7 @@ fn other_places_are_told_to_whom_can_show_them() {
     let found = diagnostics["diagnostics"].as_array().expect("a list");
     let twice = found
         .iter()
-        .find(|found| found["code"] == "pinhole::duplicate_field")
+        .find(|found| found["code"] == "duplicate_field")
         .expect("it is given twice");
     let first =
         json!([{ "location": { "uri": URI, "range": range(0, 9, 15) }, "message": "first here" }]);
