@@ -1,13 +1,14 @@
 //! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
 
 use glam::DVec2;
+use multiversion::multiversion;
 
 use super::{
     Depth, Pattern, Pixel,
     local::{Conic, Line, Local, ROUNDINGS},
     squares::Squares,
 };
-use crate::math::UP;
+use crate::math::{UP, Vectors};
 
 /// So many samples are evaluated at a time.
 pub(super) const CHUNK: usize = 64;
@@ -54,9 +55,22 @@ impl Default for Lanes {
     }
 }
 
+#[multiversion(targets = "simd")]
+fn see_widely(pixel: &mut Pixel, points: &[DVec2]) {
+    pixel.see(points);
+}
+
 impl Pixel {
     /// What the samples of a chunk see.
-    pub(super) fn chunk(&mut self, points: &[DVec2]) {
+    pub(super) fn chunk(&mut self, points: &[DVec2], vectors: Vectors) {
+        match vectors {
+            Vectors::Widest => see_widely(self, points),
+            Vectors::Baseline => self.see(points),
+        }
+    }
+
+    #[inline(always)]
+    fn see(&mut self, points: &[DVec2]) {
         let length = points.len().next_multiple_of(LANES).min(CHUNK);
         let lanes = &mut self.lanes;
         for ((x, y), point) in lanes.x.iter_mut().zip(&mut lanes.y).zip(points) {
@@ -98,6 +112,7 @@ impl Pixel {
 
 impl Lanes {
     /// The least of the boundaries' values, in units of their errors.
+    #[inline(always)]
     fn margin(&mut self, edges: &[Line], conic: Option<&Conic>, length: usize) {
         let (x, y) = (&self.x[..length], &self.y[..length]);
         let margin = &mut self.margin[..length];
@@ -118,6 +133,7 @@ impl Lanes {
     }
 
     /// Which side of an odd number of lines a sample is on.
+    #[inline(always)]
     fn between(&mut self, lines: &[Line], [even, odd]: [f64; 2], length: usize) {
         let (x, y) = (&self.x[..length], &self.y[..length]);
         let (sign, least) = (&mut self.sign[..length], &mut self.shown[..length]);
@@ -139,6 +155,7 @@ impl Lanes {
     }
 
     /// In which squares of a board the samples lie.
+    #[inline(always)]
     fn squares(&mut self, squares: &Squares, [even, odd]: [f64; 2], length: usize) {
         /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
         const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
@@ -175,6 +192,7 @@ impl Lanes {
     }
 
     /// Puts a surface in front of all so far.
+    #[inline(always)]
     fn cover(&mut self, length: usize) {
         let surface = self.margin[..length].iter().zip(&self.shown[..length]);
         for (seen, (&margin, &shown)) in self.seen[..length].iter_mut().zip(surface) {
@@ -184,6 +202,7 @@ impl Lanes {
     }
 
     /// The inverse depths of a surface.
+    #[inline(always)]
     fn depths(&mut self, depth: &Depth, planes: &[Local], length: usize) {
         let (x, y) = (&self.x[..length], &self.y[..length]);
         let out = &mut self.depth[..length];
@@ -218,6 +237,7 @@ impl Lanes {
     }
 
     /// Puts a surface before or behind what is seen so far, `apart` being how far depths must differ for that to be certain.
+    #[inline(always)]
     fn merge(&mut self, apart: f64, length: usize) {
         let surface = self.margin[..length]
             .iter()

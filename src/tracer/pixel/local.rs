@@ -72,6 +72,7 @@ impl Local {
         Line(self.factors.map(|factor| factor / self.rad))
     }
 
+    #[inline(always)]
     pub(super) fn at(&self, x: f64, y: f64) -> f64 {
         let [a, b, c] = self.factors;
         a * x + b * y + c

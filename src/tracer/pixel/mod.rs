@@ -19,6 +19,7 @@ use self::{
     squares::Squares,
 };
 use super::{outlook::Live, world::World};
+use crate::math::Vectors;
 
 pub use self::local::{Conic, Here, Local};
 
@@ -92,7 +93,13 @@ impl World {
 
     /// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of the palette, each any number
     /// of times.
-    pub fn count(&self, pixel: &mut Pixel, points: &[DVec2], mut count: impl FnMut(usize, u64)) {
+    pub fn count(
+        &self,
+        pixel: &mut Pixel,
+        points: &[DVec2],
+        vectors: Vectors,
+        mut count: impl FnMut(usize, u64),
+    ) {
         if pixel.is_hard || points.len() < FEW {
             for &point in points {
                 count(
@@ -103,7 +110,7 @@ impl World {
             return;
         }
         for points in points.chunks(CHUNK) {
-            pixel.chunk(points);
+            pixel.chunk(points, vectors);
             let seen = &pixel.lanes.seen[..points.len()];
             let mut left = points.len() as u64;
             let mut tell = |code: f64, slot: usize| {

@@ -1,5 +1,7 @@
 //! What a pixel shows of its candidates, written down as forms.
 
+use std::borrow::Borrow;
+
 use super::{
     super::{
         checkerboard::Checkerboard,
@@ -54,12 +56,9 @@ impl Pixel {
         let met = match object {
             Object::EdgeOn => Met::No,
             _ if live.is_whole => Met::Yes,
-            Object::Triangle(triangle) => self.edges(triangle.edges.iter(), here)?,
-            Object::Checkerboard(board) => self.edges([&board.plane].into_iter(), here)?,
-            Object::Cuboid(cuboid) => {
-                let sides: Vec<_> = cuboid.sides().collect();
-                self.edges(sides.iter(), here)?
-            }
+            Object::Triangle(triangle) => self.edges(&triangle.edges, here)?,
+            Object::Checkerboard(board) => self.edges([&board.plane], here)?,
+            Object::Cuboid(cuboid) => self.edges(cuboid.sides(), here)?,
             Object::Sphere(sphere) => self.silhouette(sphere, here, &mut surface)?,
         };
         if matches!(met, Met::No) {
@@ -83,17 +82,17 @@ impl Pixel {
     }
 
     /// Adds forms that are all ≥ 0 where an object is hit.
-    fn edges<'a>(
+    fn edges(
         &mut self,
-        mut forms: impl Iterator<Item = &'a Form<f64>>,
+        forms: impl IntoIterator<Item: Borrow<Form<f64>>>,
         here: &Here,
     ) -> Result<Met, Hard> {
-        forms.try_fold(Met::Yes, |met, form| {
-            Ok(match (met, self.edge(form.local(here))?) {
-                (Met::Yes, Met::Yes) => Met::Yes,
-                _ => Met::No,
-            })
-        })
+        for form in forms {
+            if let Met::No = self.edge(form.borrow().local(here))? {
+                return Ok(Met::No);
+            }
+        }
+        Ok(Met::Yes)
     }
 
     fn edge(&mut self, local: Local) -> Result<Met, Hard> {
