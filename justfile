@@ -15,3 +15,9 @@ bench:
 # Licences, sources and duplicates of the dependencies (wants cargo-deny).
 deny:
     cargo deny check
+
+# The README's pictures of an editor at work (wants Node.js and Chromium).
+shots:
+    cargo build --release
+    npm --prefix grammar/editors/shots ci
+    PINHOLE="$PWD/target/release/pinhole" npm --prefix grammar/editors/shots run shoot

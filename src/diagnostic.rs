@@ -1,12 +1,14 @@
 //! The list of problems, and its two forms: for people and for programs.
 //!
 //! In: the problems of the stages, each an enum whose variants carry code, message, labels and help by miette's derive.
-//! Out: [`Diagnostic`]s in the order of the text, as a terminal shows them or as lines of JSON. Where to print them, and in
+//! Out: [`Diagnostic`]s with the edits that may help, in the order of the text, as a terminal shows them or as lines of JSON. Where to print them, and in
 //! which style, is the caller's decision.
 
+mod fix;
 #[cfg(feature = "cli")]
 mod report;
 
+pub use fix::{Edit, Fix, Fixable, apply};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 
@@ -48,6 +50,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// The places that explain it; the first one is the place to jump to.
     pub labels: Vec<Label>,
+    /// The ways out that are edits, the likeliest first.
+    pub fixes: Vec<Fix>,
 }
 
 /// A place with a few words.
@@ -75,6 +79,15 @@ impl Diagnostic {
             message: problem.to_string(),
             help: problem.help().map(|help| help.to_string()),
             labels: labels.collect(),
+            fixes: Vec::new(),
+        }
+    }
+
+    /// Reads a stage's problem together with its fixes.
+    pub fn fixable(problem: &impl Fixable, sources: &Sources) -> Self {
+        Self {
+            fixes: problem.fixes(sources),
+            ..Self::from_problem(problem)
         }
     }
 
@@ -152,6 +165,33 @@ fn push_json(line: &mut String, diagnostic: &Diagnostic, sources: &Sources) {
             line.push(',');
         }
         push_label(line, label, sources);
+    }
+    line.push_str("],\"fixes\":[");
+    for (index, fix) in diagnostic.fixes.iter().enumerate() {
+        if index > 0 {
+            line.push(',');
+        }
+        push_fix(line, fix, sources);
+    }
+    line.push_str("]}");
+}
+
+fn push_fix(line: &mut String, fix: &Fix, sources: &Sources) {
+    push_field(line, "{\"title\":", &fix.title);
+    line.push_str(",\"edits\":[");
+    for (index, edit) in fix.edits.iter().enumerate() {
+        line.push_str(if index > 0 { ",{" } else { "{" });
+        let source = sources.get(edit.span.source);
+        let span = clamp(edit.span, source);
+        if span.source != SourceId::File {
+            push_field(line, "\"file\":", source.name());
+            line.push(',');
+        }
+        // Writing to a string does not fail.
+        let (start, length) = (span.start, span.end - span.start);
+        let _ = write!(line, "\"offset\":{start},\"length\":{length}");
+        push_field(line, ",\"text\":", &edit.text);
+        line.push('}');
     }
     line.push_str("]}");
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::{
     math::{Big, Real},
     numbers::{grouped, short, short_vector},
-    scene::{Checkerboard, Count, Cuboid, Method, Scene, Shape, Sphere},
+    scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Scene, Shape, Sphere},
     source::Source,
     tracer::{Basis, vertices},
 };
@@ -73,10 +73,9 @@ pub struct ObjectFacts {
 
 /// Says what a scene means; `source` is the file that it was read from.
 pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
-    let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
-    let (per_pixel, total) = match scene.sampler.count {
-        Count::PerPixel(count) => (Some(count), count * pixels),
-        Count::Total(total) => (None, total),
+    let per_pixel = match scene.sampler.count {
+        Count::PerPixel(count) => Some(count),
+        Count::Total(_) => None,
     };
     let basis = Basis::new(&scene.camera, &scene.image);
     let objects = scene.objects.iter().map(|object| ObjectFacts {
@@ -86,30 +85,47 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     });
     Inspection {
         size: [scene.image.width, scene.image.height],
-        vanishing_points: [0, 1, 2].map(|axis| vanishing_point(scene, &basis, axis)),
-        camera: camera_facts(scene, &basis),
+        vanishing_points: [0, 1, 2].map(|axis| vanishing_point(&scene.image, &basis, axis)),
+        camera: camera_facts(&scene.camera, &basis),
         method: scene.sampler.method,
         per_pixel,
-        total,
+        total: total_samples(scene.sampler.count, &scene.image),
         seed: scene.sampler.seed,
         objects: objects.collect(),
     }
 }
 
-fn camera_facts(scene: &Scene, basis: &Basis) -> CameraFacts {
+/// The samples in the whole picture.
+pub fn total_samples(count: Count, image: &Image) -> u64 {
+    match count {
+        Count::PerPixel(count) => {
+            count.saturating_mul(u64::from(image.width) * u64::from(image.height))
+        }
+        Count::Total(total) => total,
+    }
+}
+
+/// A camera by itself, and where the parallels of each axis meet: what [`inspect`] says of a whole scene.
+pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
+    let basis = Basis::new(camera, image);
+    let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));
+    (camera_facts(camera, &basis), points)
+}
+
+fn camera_facts(camera: &Camera, basis: &Basis) -> CameraFacts {
     let vector = |v: &[Big; 3]| v.each_ref().map(rounded).into();
-    let view_height = Big::from_f64(scene.camera.view_height);
+    let view_height = Big::from_f64(camera.view_height);
     let slope = view_height.over(&basis.d).scaled(-1);
     CameraFacts {
-        eye: scene.camera.eye,
+        eye: camera.eye,
         u: vector(&basis.u),
         v: vector(&basis.v),
         w: vector(&basis.w),
         d: rounded(&basis.d),
-        view_height: scene.camera.view_height,
+        view_height: camera.view_height,
         fov_deg: rounded(&slope.atan_degrees().scaled(1)),
-        near: scene.camera.near,
-        far: scene.camera.far,
+        near: camera.near,
+        far: camera.far,
         looks: match basis.looks {
             Ordering::Greater => "up",
             Ordering::Less => "down",
@@ -120,15 +136,15 @@ fn camera_facts(scene: &Scene, basis: &Basis) -> CameraFacts {
 
 /// Where the lines parallel to an axis meet. The ray along the axis a has the direction (a·u, a·v, −a·w) in the camera's
 /// axes, and meets the view plane where that is scaled to depth 1.
-fn vanishing_point(scene: &Scene, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
+fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
     // w is −f/|f|, so this is zero exactly where the axis is parallel to the view plane.
     if basis.w[axis].is_zero() {
         return None;
     }
     let depth = basis.w[axis].negated().times(&basis.pitch);
     let half = |pixels: u32| Big::from_f64(f64::from(pixels)).scaled(-1);
-    let x = half(scene.image.width).plus(&basis.u[axis].over(&depth));
-    let y = half(scene.image.height).minus(&basis.v[axis].over(&depth));
+    let x = half(image.width).plus(&basis.u[axis].over(&depth));
+    let y = half(image.height).minus(&basis.v[axis].over(&depth));
     Some([rounded(&x), rounded(&y)])
 }
 
@@ -284,7 +300,7 @@ impl fmt::Display for Inspection {
 }
 
 /// A shape in one line.
-fn summary(shape: &Shape) -> String {
+pub fn summary(shape: &Shape) -> String {
     match *shape {
         Shape::Sphere(Sphere {
             center,

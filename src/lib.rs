@@ -20,18 +20,22 @@
 //! ```
 //!
 //! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the terminal, JSON and editors show
-//!   alike.
+//!   alike. [`explain`] has a page for each kind of mistake.
 //! - [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
 //!   resolved.
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
 //! - [`film`] makes bytes of the means and files of the bytes.
+//! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
 //!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
+//! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
+//!   to editors in the Language Server Protocol, and `preview` tells when a file has changed.
 
 pub mod area;
 pub mod color;
 pub mod diagnostic;
+pub mod explain;
 pub mod math;
 pub mod numbers;
 pub mod source;
@@ -51,7 +55,14 @@ pub mod render;
 
 pub mod film;
 
+pub mod format;
 pub mod grade;
 pub mod inspect;
 pub mod probe;
 pub mod report;
+
+pub mod editor;
+#[cfg(feature = "lsp")]
+pub mod lsp;
+#[cfg(feature = "preview")]
+pub mod preview;

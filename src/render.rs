@@ -137,16 +137,18 @@ pub fn render_in_a_way(
     };
     let side = tile_side(sampling, part);
     pool(control.threads)?.install(|| {
-        part.tiles(side).par_bridge().for_each_init(
-            || (Tally::new(colors.len()), Room::default()),
-            |(tally, room), tile| {
-                let Some(pixels) = frame.tile(tile, tally, room) else {
-                    return;
-                };
-                let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
-                film.put(tile.within(part), &pixels);
-            },
-        );
+        wanted(part.tiles(side), control)
+            .par_bridge()
+            .for_each_init(
+                || (Tally::new(colors.len()), Room::default()),
+                |(tally, room), tile| {
+                    let Some(pixels) = frame.tile(tile, tally, room) else {
+                        return;
+                    };
+                    let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+                    film.put(tile.within(part), &pixels);
+                },
+            );
     });
     finished(film, control)
 }
@@ -158,24 +160,34 @@ pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exac
     let exact = Mutex::new(Exact { film, bounds });
     let integrator = Integrator::new(world);
     pool(control.threads)?.install(|| {
-        part.tiles(TILE).par_bridge().for_each(|tile| {
-            let Some(pixels) = integrator.pixels(tile, control.cancel) else {
-                return;
-            };
-            let means: Vec<_> = pixels.iter().map(|pixel| pixel.mean).collect();
-            let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
-            exact.film.put(tile.within(part), &means);
-            for ((x, y), pixel) in tile.iter().zip(&pixels) {
-                exact.bounds[part.index(x, y)] = match pixel.bound {
-                    0.0 => 0.0,
-                    // Rounded up; light is from 0 to 1.
-                    bound => (bound as f32).next_up().min(1.0),
+        wanted(part.tiles(TILE), control)
+            .par_bridge()
+            .for_each(|tile| {
+                let Some(pixels) = integrator.pixels(tile, control.cancel) else {
+                    return;
                 };
-            }
-            (control.progress)(tile.pixels());
-        });
+                let means: Vec<_> = pixels.iter().map(|pixel| pixel.mean).collect();
+                let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
+                exact.film.put(tile.within(part), &means);
+                for ((x, y), pixel) in tile.iter().zip(&pixels) {
+                    exact.bounds[part.index(x, y)] = match pixel.bound {
+                        0.0 => 0.0,
+                        // Rounded up; light is from 0 to 1.
+                        bound => (bound as f32).next_up().min(1.0),
+                    };
+                }
+                (control.progress)(tile.pixels());
+            });
     });
     finished(exact, control)
+}
+
+/// Tiles as long as they are wanted: to hand out millions that nobody renders would take a second.
+fn wanted(
+    tiles: impl Iterator<Item = Area> + Send,
+    control: &Control,
+) -> impl Iterator<Item = Area> + Send {
+    tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
 /// What was made, if it was wanted to the end.

@@ -23,13 +23,15 @@ const EXAMPLES: &str = "\
 Examples:
   pinhole render figure.scn                      writes figure.png beside it
   pinhole render figure.scn -o big.exr --set image.width=3840 --set image.height=2160
+  pinhole watch figure.scn                       and again whenever it is saved
   pinhole check *.scn
   pinhole inspect figure.scn --format json
   pinhole probe figure.scn 640.5 360.5
   pinhole diff mine.png figure.scn               is it the right picture, and if not, why?
+  pinhole fmt *.scn
 
-Exit status: 0 done, warnings or not; 1 the scene has errors, or diff found more than its tolerance;
-2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
+Exit status: 0 done, warnings or not; 1 the scene has errors, diff found more than its tolerance, or
+fmt --check would change something; 2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -40,6 +42,10 @@ pub enum Command {
     /// Report the problems of scenes
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Render a scene whenever its file is saved
+    #[cfg(feature = "preview")]
+    #[command(after_help = WATCH_EXAMPLES)]
+    Watch(WatchArgs),
     /// Show what a scene means: camera, field of view, vanishing points, objects
     #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(InspectArgs),
@@ -52,6 +58,20 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Explain a kind of mistake: a wrong scene, the right one, and why
+    #[command(after_help = EXPLAIN_EXAMPLES)]
+    Explain(ExplainArgs),
+    /// Lay out scene files in the one canonical way
+    #[command(after_help = FMT_EXAMPLES)]
+    Fmt(FmtArgs),
+    /// Serve an editor: the Language Server Protocol on standard input and output
+    #[cfg(feature = "lsp")]
+    #[command(after_help = LSP_HELP)]
+    Lsp {
+        /// What it does in any case; some editors say it
+        #[arg(long)]
+        stdio: bool,
+    },
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -74,7 +94,22 @@ Examples:
 const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
-  pinhole check *.scn --format json              one line for each problem";
+  pinhole check *.scn --format json              one line for each problem
+
+JSON, an object a line: file, severity, code, message, help, labels [{offset, length, line, column, end_line, \
+end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
+is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
+was. A label or an edit within a --set argument has a file of its own.";
+
+#[cfg(feature = "preview")]
+const WATCH_EXAMPLES: &str = "\
+Examples:
+  pinhole watch figure.scn                       writes figure.png at once and after every save
+  pinhole watch figure.scn --show                and draws it in the terminal
+  pinhole watch figure.scn -o draft.png --set sampler.per_pixel=4
+
+While the text has mistakes, they are reported, and the last picture stays. A picture that is not done when \
+the text changes again is given up. Ctrl-C ends it, with status 130.";
 
 const INSPECT_EXAMPLES: &str = "\
 Examples:
@@ -120,6 +155,29 @@ Examples:
   pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
   pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
+
+const EXPLAIN_EXAMPLES: &str = "\
+Examples:
+  pinhole explain bare_angle
+  pinhole explain                                all codes, by subject
+  pinhole explain up_parallel | less             as Markdown";
+
+const FMT_EXAMPLES: &str = "\
+Replaces each file by its canonical layout, whole or not at all, and does not touch it where nothing would change. \
+Tokens, comments, and blank lines between groups stay; of line ends it matters whether a block stands on one line. A \
+file with errors of syntax is left as it is.
+
+Examples:
+  pinhole fmt figure.scn
+  pinhole fmt *.scn --check                      writes nothing, prints a diff of what would change
+  pinhole fmt - < figure.scn > tidy.scn          from standard input to standard output
+
+Exit status: 0 done; 1 a file has errors of syntax, or --check would change something; 2 trouble.";
+#[cfg(feature = "lsp")]
+const LSP_HELP: &str = "\
+Editors start it themselves; grammar/editors/ has what they need for that.
+
+Exit status: 0 after shutdown and exit; 1 if the editor left without; 2 trouble.";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -170,6 +228,25 @@ pub struct CheckArgs {
     pub overrides: Overrides,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `watch`.
+#[cfg(feature = "preview")]
+#[derive(Debug, clap::Args)]
+pub struct WatchArgs {
+    /// The scene: a .scn file
+    pub scene: PathBuf,
+    /// Where the picture goes; its ending, .png or .exr, is the format [default: SCENE with the ending .png]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draw the picture in the terminal too
+    #[arg(long)]
+    pub show: bool,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
 }
 
 /// Arguments of `inspect`.
@@ -243,6 +320,17 @@ pub struct ReportArgs {
     pub threads: Option<u64>,
 }
 
+/// Arguments of `fmt`.
+#[derive(Debug, clap::Args)]
+pub struct FmtArgs {
+    /// The scenes: .scn files, or `-` for standard input, which is laid out to standard output
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Write nothing; print what would change as a diff, and end with status 1 if anything would
+    #[arg(long)]
+    pub check: bool,
+}
+
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
 pub struct DiffArgs {
@@ -267,6 +355,13 @@ pub struct DiffArgs {
     pub threads: Option<u64>,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `explain`.
+#[derive(Debug, clap::Args)]
+pub struct ExplainArgs {
+    /// The code that stands in the brackets of a report, with `pinhole::` or without [default: list them all]
+    pub code: Option<String>,
 }
 
 /// For whom the answer is.

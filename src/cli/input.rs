@@ -105,9 +105,13 @@ impl Input {
     /// Reads the scene, and reports its problems to people.
     pub fn scene(&self) -> Reading {
         let reading = scene::read(&self.sources);
-        let report = Report::new(&self.sources, output::style());
-        output::to_people(&report.human(&reading.diagnostics));
+        output::to_people(&self.report(&reading));
         reading
+    }
+
+    /// The problems of the scene, for people.
+    pub fn report(&self, reading: &Reading) -> String {
+        Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
     /// The scene's text with the overrides, for a picture to carry.
@@ -149,7 +153,8 @@ pub fn whole(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+/// The bytes of a scene, or as much of a picture as can matter.
+pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     if is_standard(path) {
         return limited(io::stdin().lock());
     }

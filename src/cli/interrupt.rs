@@ -24,6 +24,7 @@ struct Flags {
     watched: AtomicBool,
     pressed: AtomicBool,
     first: OnceLock<Instant>,
+    then: OnceLock<Box<dyn Fn() + Send + Sync>>,
 }
 
 /// What has to be put away (a temporary file, threads) takes a small part of this.
@@ -36,6 +37,9 @@ impl Interrupt {
         let interrupt = Self(Arc::clone(&flags));
         ctrlc::set_handler(move || {
             flags.pressed.store(true, Ordering::SeqCst);
+            if let Some(then) = flags.then.get() {
+                then();
+            }
             let again = flags.first.get_or_init(Instant::now).elapsed() > GRACE;
             if again || !flags.watched.load(Ordering::SeqCst) {
                 process::exit(Status::Interrupted as i32);
@@ -49,6 +53,18 @@ impl Interrupt {
     pub fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed
+    }
+
+    /// Has this done when Ctrl-C is pressed, whereupon somebody ends the process.
+    #[cfg(feature = "preview")]
+    pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
+        let _ = self.0.then.set(Box::new(what));
+        // Pressed before, and nobody was told.
+        if self.watch().load(Ordering::SeqCst)
+            && let Some(then) = self.0.then.get()
+        {
+            then();
+        }
     }
 
     /// Whether Ctrl-C was pressed.

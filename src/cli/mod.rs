@@ -1,24 +1,36 @@
 //! The command line: reads, calls, prints. A command is a file.
 //!
 //! Pictures and JSON go to standard output, everything for people to standard error. The exit status is 0 when it is done, warnings
-//! or not, 1 when the scene has errors or pictures differ, 2 on any other trouble and 130 after Ctrl-C.
+//! or not, 1 when the scene has errors, pictures differ or `fmt --check` would change something, 2 on any other trouble and 130 after Ctrl-C.
 
 mod args;
 mod check;
 mod diff;
+mod explain;
+mod fmt;
 mod input;
 mod inspect;
 mod interrupt;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod manual;
 mod output;
+mod picture;
 mod probe;
 mod progress;
 mod render;
 mod report;
+#[cfg(feature = "preview")]
+mod show;
 #[cfg(feature = "report")]
 mod speed;
+#[cfg(feature = "preview")]
+mod watch;
 
-use std::{fmt, process::ExitCode};
+use std::{
+    fmt::{Display, Formatter},
+    process::ExitCode,
+};
 
 use clap::Parser;
 
@@ -34,10 +46,16 @@ pub fn run() -> ExitCode {
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args),
+        #[cfg(feature = "preview")]
+        Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        Command::Explain(args) => explain::run(&args),
+        Command::Fmt(args) => fmt::run(&args, &interrupt),
+        #[cfg(feature = "lsp")]
+        Command::Lsp { .. } => lsp::run(),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });
@@ -55,7 +73,8 @@ pub fn run() -> ExitCode {
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, or the pictures differ: it ran, and the answer is no.
+    /// The scene has errors, the pictures differ, the layout would change, an editor left without a word: it ran, and the answer
+    /// is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,
@@ -73,8 +92,8 @@ impl From<Status> for ExitCode {
 #[derive(Debug)]
 struct Trouble(String);
 
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Display for Trouble {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.0)
     }
 }

@@ -53,7 +53,6 @@ pub fn is_watched() -> bool {
 /// is not one of UTF-8; in sentences if `NO_GRAPHICS` is set, for screen readers.
 pub fn style() -> Style {
     let plain = Style::default();
-    let dumb = env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
     Style {
         drawing: if is_set("NO_GRAPHICS") {
             Drawing::Narrated
@@ -62,10 +61,29 @@ pub fn style() -> Style {
         } else {
             Drawing::Ascii
         },
-        color: is_watched() && !dumb && !is_set("NO_COLOR"),
+        color: is_watched() && has_color(),
         width: terminal_size_of(io::stderr())
             .map_or(plain.width, |(Width(columns), _)| usize::from(columns)),
     }
+}
+
+/// How a page is drawn on standard output, if that is a terminal.
+pub fn page_style() -> Option<Style> {
+    let out = io::stdout();
+    out.is_terminal().then(|| {
+        let plain = Style::default();
+        Style {
+            color: has_color(),
+            width: terminal_size_of(out).map_or(plain.width, |(Width(columns), _)| columns.into()),
+            ..plain
+        }
+    })
+}
+
+/// Whether a terminal may be written to in colour.
+fn has_color() -> bool {
+    let dumb = env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
+    !dumb && !is_set("NO_COLOR")
 }
 
 /// As no-color.org says: present and not empty.

@@ -11,7 +11,10 @@ use miette::{
 };
 
 use super::{Diagnostic, Label, Severity, clamp, summary};
-use crate::source::{Source, SourceId, Sources, Span};
+use crate::{
+    explain::short,
+    source::{Source, SourceId, Sources, Span},
+};
 
 /// How reports for people are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +84,14 @@ impl<'s> Report<'s> {
             );
         }
         text.push('\n');
+        if let Some(first) = diagnostics.first() {
+            let which = match diagnostics.len() {
+                1 => "it",
+                _ => "the first",
+            };
+            let code = short(&first.code);
+            let _ = writeln!(text, "more about {which}: pinhole explain {code}");
+        }
         text
     }
 

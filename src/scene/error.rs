@@ -3,7 +3,7 @@
 use miette::Diagnostic;
 use thiserror::Error;
 
-use crate::source::Span;
+use crate::{diagnostic::Fix, source::Span};
 
 /// A problem of meaning. The first label is the place to jump to.
 #[allow(
@@ -19,6 +19,8 @@ pub enum Problem {
         help: String,
         #[label("not a kind of block")]
         span: Span,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 
     #[error("{noun} has no field `{written}`")]
@@ -29,6 +31,8 @@ pub enum Problem {
         help: String,
         #[label("not a field of {noun}")]
         span: Span,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 
     #[error("`{name}` has no value")]
@@ -38,6 +42,8 @@ pub enum Problem {
         help: String,
         #[label("a value should follow this")]
         span: Span,
+        /// A value that it can have.
+        example: Option<String>,
     },
 
     #[error("{message}")]
@@ -50,6 +56,8 @@ pub enum Problem {
         label: String,
         #[label("not enough by itself")]
         half: Option<Span>,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("`{name}` is given twice")]
@@ -60,6 +68,8 @@ pub enum Problem {
         second: Span,
         #[label("first here")]
         first: Span,
+        /// Both, with their values.
+        fields: [Span; 2],
     },
 
     #[error("`{later}` and `{earlier}` exclude each other")]
@@ -72,6 +82,8 @@ pub enum Problem {
         second: Span,
         #[label("this says it already")]
         first: Span,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("there are two `{name}` blocks")]
@@ -85,6 +97,8 @@ pub enum Problem {
         second: Span,
         #[label("first here")]
         first: Span,
+        /// Both, as a whole.
+        blocks: [Span; 2],
     },
 
     #[error("the scene has no camera")]
@@ -155,6 +169,8 @@ pub enum Problem {
         second: Span,
         #[label("first here")]
         first: Span,
+        /// The second one, as a whole.
+        definition: Span,
     },
 
     #[error("`{name}` is {what} already")]
@@ -178,6 +194,8 @@ pub enum Problem {
         span: Span,
         #[label(collection, "and here")]
         more: Vec<Span>,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 
     #[error("there is no colour named `{name}`")]
@@ -189,6 +207,8 @@ pub enum Problem {
         span: Span,
         #[label(collection, "and here")]
         more: Vec<Span>,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 
     #[error("`{name}` is used before it is defined")]
@@ -213,6 +233,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 
     #[error("`{name}` is a function, and stands here without its arguments")]
@@ -234,6 +256,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What can stand in its place.
+        instead: Vec<String>,
     },
 
     #[error("`{name}` takes {takes}, and {written} is {found}")]
@@ -258,6 +282,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What can stand in its place.
+        instead: Vec<String>,
     },
 
     #[error("`{name}` is {takes}, and {written} is {found}")]
@@ -271,6 +297,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What can stand in its place.
+        instead: Vec<String>,
     },
 
     #[error("there is no method `{written}`")]
@@ -280,6 +308,8 @@ pub enum Problem {
         help: String,
         #[label("not a method")]
         span: Span,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 
     #[error("{whole}, and this has {count}")]
@@ -291,6 +321,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What can stand in its place.
+        instead: Vec<String>,
     },
 
     #[error("the parts of {whole} are {parts}, and {written} is {found}")]
@@ -319,6 +351,8 @@ pub enum Problem {
         #[label("{right_label}")]
         right: Span,
         right_label: String,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("{message}")]
@@ -363,6 +397,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: &'static str,
+        /// What can stand in its place.
+        instead: Vec<String>,
     },
 
     #[error("{message}")]
@@ -373,6 +409,10 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// The whole value.
+        whole: Span,
+        /// What can stand in its place.
+        instead: Vec<String>,
     },
 
     #[error("`far` must be more than `near`")]
@@ -385,6 +425,8 @@ pub enum Problem {
         #[label("{near_label}")]
         near: Option<Span>,
         near_label: String,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("the camera stands on the point that it looks at")]
@@ -406,6 +448,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("sides of {a}, {b} and {c} do not form a triangle")]
@@ -505,6 +549,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: &'static str,
+        /// The name that was probably meant.
+        near: Option<String>,
     },
 }
 

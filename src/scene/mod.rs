@@ -14,16 +14,21 @@
     )
 )]
 
-mod css;
+pub mod css;
 mod error;
 mod eval;
+mod fixes;
 mod lower;
 mod overrides;
 pub mod schema;
+mod survey;
 mod untangle;
 mod value;
 
-pub use lower::{read, read_in_parts};
+pub use eval::{example_call, predefined};
+pub use lower::{read, read_in_parts, survey};
+pub use survey::{Parts, Survey};
+pub use value::Value;
 
 use glam::DVec3;
 

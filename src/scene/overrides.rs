@@ -33,10 +33,10 @@ pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<
     for (index, source) in sources.sets.iter().enumerate() {
         let id = SourceId::Set(u32::try_from(index).unwrap_or(u32::MAX));
         match one(source.text(), id) {
-            Err(problem) => diagnostics.push(Diagnostic::from_problem(problem.as_ref())),
+            Err(problem) => diagnostics.push(Diagnostic::fixable(problem.as_ref(), sources)),
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
-                let read = problems.iter().map(|p| Diagnostic::from_problem(p));
+                let read = problems.iter().map(|p| Diagnostic::fixable(p, sources));
                 diagnostics.extend(read);
                 overrides.push(Override {
                     id,
@@ -129,6 +129,7 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Pro
         help,
         span: block.span,
         label: "no object, and not image, camera or sampler",
+        near: near.filter(|_| kind.is_none()).map(str::to_owned),
     }
 }
 
@@ -142,6 +143,10 @@ pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budg
     let near = match budget.spend(lets.len()) {
         true => suggest::nearest(name.text, lets.iter().copied()),
         false => None,
+    };
+    let meant = match of_block {
+        Some(block) => Some(format!("{block}.{}", name.text)),
+        None => near.map(str::to_owned),
     };
     let help = match (near, of_block) {
         _ if is_block => format!("name a field of it as well: `{}.FIELD=…`", name.text),
@@ -158,5 +163,6 @@ pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budg
         help,
         span: name.span,
         label: "no `let` of this name",
+        near: meant.filter(|_| !is_block),
     }
 }

@@ -218,9 +218,11 @@ impl<'s> Dealt<'_, 's> {
             },
             (Some(Type::Vector), [_, _, _]) | (Some(Type::Colors), [_, _]) => {
                 let texts = self.values.iter().map(|value| sources.text(value.span));
+                let values = texts.collect::<Vec<_>>().join(", ");
                 syntax::Problem::MissingParentheses {
-                    values: syntax::shorten(&texts.collect::<Vec<_>>().join(", ")),
+                    values: syntax::shorten(&values),
                     span,
+                    together: format!("({values})"),
                 }
             }
             (_, [left, right, ..]) => {

@@ -3,12 +3,15 @@
 //! Operators and functions know no places in a text: they say what comes out, or that the types do not go together, and
 //! the caller adds the place. What is not finite comes out as it is; the caller reports it.
 
+use std::fmt;
+
 use glam::DVec3;
 
 use super::{Method, schema::Type};
 use crate::{
     color::Color,
     math::{Angle, trig},
+    numbers,
     syntax::tree::Operator,
 };
 
@@ -49,6 +52,27 @@ impl Value {
             Self::Angle(angle) => angle.is_finite(),
             Self::Vector(vector) => vector.is_finite(),
             Self::Color(_) | Self::Colors(_) | Self::Method(_) => true,
+        }
+    }
+}
+
+/// As people read it, in the language's notation: six digits of each number.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => f.write_str(&numbers::short(*number)),
+            Self::Angle(Angle {
+                degrees: 0.0,
+                radians,
+            }) if *radians != 0.0 => write!(f, "{}rad", numbers::short(*radians)),
+            Self::Angle(angle) => {
+                let degrees = angle.degrees + angle.radians.to_degrees();
+                write!(f, "{}deg", numbers::short(degrees))
+            }
+            Self::Vector(vector) => f.write_str(&numbers::short_vector(*vector)),
+            Self::Color(color) => write!(f, "{color}"),
+            Self::Colors([first, second]) => write!(f, "({first}, {second})"),
+            Self::Method(method) => f.write_str(method.name()),
         }
     }
 }

@@ -38,6 +38,8 @@ pub enum Problem {
         more: usize,
         #[label("it cannot be seen")]
         span: Span,
+        /// All of its sort.
+        places: Vec<Span>,
     },
 
     #[error("a comment is never closed")]
@@ -66,6 +68,8 @@ pub enum Problem {
         kind: String,
         #[label("opened here")]
         open: Span,
+        /// Where what was read of it ends.
+        end: Span,
         #[label("it should be closed before this")]
         before: Option<Span>,
     },
@@ -83,6 +87,8 @@ pub enum Problem {
         sign: String,
         #[label("nothing is open here")]
         span: Span,
+        /// It, and others of its kind right behind it.
+        all: Span,
         help: String,
     },
 
@@ -178,6 +184,8 @@ pub enum Problem {
         help: String,
         #[label("what is to be done with this?")]
         span: Span,
+        /// What may be meant.
+        meant: Meant,
     },
 
     #[error("a comma is missing between `{left}` and `{right}`")]
@@ -188,6 +196,8 @@ pub enum Problem {
         whole: String,
         #[label("a comma should stand before this")]
         span: Span,
+        /// Where commas should stand.
+        places: Vec<Span>,
     },
 
     #[error("this comma is one too many")]
@@ -215,6 +225,8 @@ pub enum Problem {
         values: String,
         #[label("these belong together")]
         span: Span,
+        /// How they are written together.
+        together: String,
     },
 
     #[error("a vector stands in round parentheses")]
@@ -284,6 +296,10 @@ pub enum Problem {
     MisplacedLet {
         #[label("only fields stand here")]
         span: Span,
+        /// All definitions in this place.
+        definitions: Span,
+        /// Where the block starts.
+        block: Span,
     },
 
     #[error("{block} lacks its `{{`")]
@@ -358,6 +374,17 @@ pub enum Problem {
         #[label("not here")]
         span: Span,
     },
+}
+
+/// What may be meant by two values with nothing between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meant {
+    /// Their product.
+    Product,
+    /// The call of a function.
+    Call,
+    /// One of these.
+    Either,
 }
 
 fn times(more: usize) -> String {

@@ -17,6 +17,7 @@
 
 mod comments;
 mod error;
+mod fixes;
 mod grammar;
 mod junk;
 mod parser;

@@ -122,6 +122,28 @@ pub struct Value<'s> {
     pub span: Span,
 }
 
+impl<'s> Value<'s> {
+    /// The values that it is made of, in order.
+    pub fn parts(&self) -> Vec<&Self> {
+        match &self.kind {
+            ValueKind::Call(call) => call.arguments.iter().map(|e| &e.value).collect(),
+            ValueKind::Tuple(elements) => elements.iter().map(|e| &e.value).collect(),
+            ValueKind::Parentheses(inner) => vec![inner],
+            ValueKind::Negation { operand, .. } => vec![operand],
+            ValueKind::Chain { first, rest } => {
+                let operands = rest.iter().map(|step| &step.operand);
+                std::iter::once(&**first).chain(operands).collect()
+            }
+            ValueKind::Number(_)
+            | ValueKind::Angle { .. }
+            | ValueKind::ColorCode(_)
+            | ValueKind::Name(_)
+            | ValueKind::Missing
+            | ValueKind::Bad => Vec::new(),
+        }
+    }
+}
+
 /// The ways to write a value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ValueKind<'s> {

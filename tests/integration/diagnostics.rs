@@ -157,8 +157,8 @@ fn fixtures_say_what_they_produce() {
     }
 }
 
-#[test]
-fn every_code_has_its_fixture_and_every_fixture_its_code() {
+/// The codes that the stages have, without `pinhole::`.
+pub fn codes() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
     for stage in ["src/syntax/error.rs", "src/scene/error.rs"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(stage);
@@ -168,6 +168,11 @@ fn every_code_has_its_fixture_and_every_fixture_its_code() {
             codes.insert(code.to_owned());
         }
     }
+    codes
+}
+
+#[test]
+fn every_code_has_its_fixture_and_every_fixture_its_code() {
     let mut fixtures = BTreeSet::new();
     for path in scenes(&folder("diagnostics")) {
         let name = path.file_stem().expect("a name").to_string_lossy();
@@ -180,7 +185,7 @@ fn every_code_has_its_fixture_and_every_fixture_its_code() {
         );
         fixtures.insert(name.into_owned());
     }
-    assert_eq!(codes, fixtures);
+    assert_eq!(codes(), fixtures);
 }
 
 #[test]
@@ -289,13 +294,21 @@ fn json_is_as_the_contract_says() {
             r#""message":"a sphere has no field `radus`","#,
             r#""help":"did you mean `radius`? A sphere takes center, radius and color.","#,
             r#""labels":[{"offset":22,"length":5,"line":3,"column":3,"end_line":3,"end_column":8,"#,
-            r#""message":"not a field of a sphere"}]}"#
+            r#""message":"not a field of a sphere"}],"#,
+            r#""fixes":[{"title":"write `radius`","edits":[{"offset":22,"length":5,"text":"radius"}]}]}"#
         )
     );
     let label = &values[4]["labels"][0];
     assert_eq!(label["file"], "--set #2");
     assert_eq!((&label["offset"], &label["length"]), (&0.into(), &3.into()));
     assert_eq!(values[4]["file"], "a.scn");
+    let sources = Sources::new(Source::from_text("a.scn", text)).with_sets(["image.widht=1"]);
+    let diagnostics = scene::read(&sources).diagnostics;
+    let of_argument = diagnostic::to_json(&diagnostics[3], &sources);
+    assert_eq!(
+        of_argument["fixes"].to_string(),
+        r#"[{"title":"write `width`","edits":[{"file":"--set #1","offset":6,"length":5,"text":"width"}]}]"#
+    );
 }
 
 #[test]
@@ -311,6 +324,7 @@ fn labels_at_and_past_the_end_are_drawn() {
                 span: Span::new(SourceId::File, start, end),
                 message: "here it is".to_owned(),
             }],
+            fixes: Vec::new(),
         };
         for drawing in [Drawing::Unicode, Drawing::Ascii, Drawing::Narrated] {
             let style = Style {

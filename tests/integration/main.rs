@@ -8,14 +8,21 @@ mod cli;
 mod culling;
 mod diagnostics;
 mod diff;
+mod editor;
 mod exact;
+mod explain;
 mod figure;
 mod film;
+mod fixes;
+mod fmt;
+mod format;
 mod images;
 #[cfg(unix)]
 mod interrupt;
 mod language;
 mod laws;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod numerics;
 mod overrides;
 mod parts;
@@ -28,3 +35,5 @@ mod robustness;
 mod sampling;
 mod syntax;
 mod tracer;
+#[cfg(all(unix, feature = "preview"))]
+mod watch;

@@ -94,6 +94,7 @@ impl<'s> Evaluator<'_, 's> {
             help,
             span: function.span,
             label,
+            near: near.filter(|_| !is_value).map(str::to_owned),
         });
     }
 
@@ -115,11 +116,17 @@ impl<'s> Evaluator<'_, 's> {
             2 => "there are two".to_owned(),
             count => format!("there are {count}"),
         };
+        let written = self.argument_example(row, arguments);
         self.problems.push(Problem::ArgumentCount {
             name: row.name.to_owned(),
             takes,
             are,
-            example: self.argument_example(row, arguments),
+            // What is written is not to be lost.
+            instead: match is_whole(&written) && (found == 0 || written != example(row)) {
+                true => vec![written.clone()],
+                false => Vec::new(),
+            },
+            example: written,
             span,
             label: match found {
                 0 => "no value".to_owned(),
@@ -163,6 +170,7 @@ impl<'s> Evaluator<'_, 's> {
                 help: format!("write `{0}({degrees})` (or `{0}({radians})`)", row.name),
                 span: argument.span,
                 label,
+                instead: self.as_angle(argument).to_vec(),
             });
             return;
         }
@@ -200,6 +208,7 @@ impl<'s> Evaluator<'_, 's> {
                 help: format!("write `{bound}`, or a number that lies between"),
                 span: argument.value.span,
                 label,
+                instead: vec![bound.to_owned()],
             });
         }
         fits
@@ -260,8 +269,13 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
+/// Whether a text that was made for a message can be written as it is.
+pub(super) fn is_whole(shortened: &str) -> bool {
+    !shortened.contains('…') && !shortened.contains("//")
+}
+
 /// How a function is called.
-pub(super) fn example(function: &Function) -> String {
+pub fn example(function: &Function) -> String {
     let arguments = match function.takes {
         [Type::Angle] => "30deg",
         [Type::Vector] => "(1, 2, 3)",

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Evaluator;
+use super::{Evaluator, calls::is_whole};
 use crate::{
     scene::{error::Problem, schema::Type, value::Value},
     source::Span,
@@ -97,6 +97,13 @@ impl<'s> Evaluator<'_, 's> {
             .iter()
             .map(|element| shorten(self.sources.text(element.value.span)))
             .collect();
+        let wanted = if pair { 2 } else { 3 };
+        let instead = match texts.get(..wanted) {
+            Some(kept) if kept.iter().all(|text| is_whole(text)) => {
+                vec![format!("({})", kept.join(", "))]
+            }
+            _ => Vec::new(),
+        };
         if pair {
             self.problems.push(Problem::PartCount {
                 whole: "a pair of colours has two parts",
@@ -107,6 +114,7 @@ impl<'s> Evaluator<'_, 's> {
                 },
                 span,
                 label: format!("{} colours", parts(elements.len())),
+                instead,
             });
             return;
         }
@@ -125,6 +133,7 @@ impl<'s> Evaluator<'_, 's> {
                 0 => "nothing".to_owned(),
                 count => format!("{} numbers", parts(count)),
             },
+            instead,
         });
     }
 }

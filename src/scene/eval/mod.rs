@@ -10,6 +10,7 @@ mod lists;
 mod names;
 mod operators;
 
+pub use calls::example as example_call;
 pub use names::{Names, predefined};
 
 use super::{error::Problem, schema::Type, value::Value};
@@ -78,9 +79,17 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// A number's spelling as an angle, in degrees and in radians.
+    /// A number's spelling as an angle, in degrees and in radians, for a message.
     pub fn with_units(&self, value: &tree::Value<'s>) -> [String; 2] {
-        let written = shorten(self.sources.text(value.span));
+        self.units_behind(value, &shorten(self.sources.text(value.span)))
+    }
+
+    /// The same for an edit, which keeps all that is written.
+    pub fn as_angle(&self, value: &tree::Value<'s>) -> [String; 2] {
+        self.units_behind(value, self.sources.text(value.span))
+    }
+
+    fn units_behind(&self, value: &tree::Value<'s>, written: &str) -> [String; 2] {
         let literal = match &value.kind {
             ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
             kind => matches!(kind, ValueKind::Number(_)),

@@ -104,6 +104,11 @@ impl<'s> Names<'s> {
         self.defined.get(name).map(|defined| defined.place)
     }
 
+    /// The value of a name that was defined; none if it failed.
+    pub fn value(&self, name: &str) -> Option<Value> {
+        self.defined.get(name)?.value
+    }
+
     /// The first `let` of the file that defines it.
     fn definition(&self, name: &str) -> Option<Span> {
         self.whole()?.definitions.get(name).copied()
@@ -241,10 +246,12 @@ impl<'s> Evaluator<'_, 's> {
                 help,
                 span,
                 more: Vec::new(),
+                near: near.map(str::to_owned),
             };
         }
+        let is_object = self.names.is_object(&name);
         let help = match near {
-            _ if self.names.is_object(&name) => {
+            _ if is_object => {
                 "an object is no value: define its place with `let`, and use that in both"
                     .to_owned()
             }
@@ -256,6 +263,7 @@ impl<'s> Evaluator<'_, 's> {
             help,
             span,
             more: Vec::new(),
+            near: near.filter(|_| !is_object).map(str::to_owned),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::Evaluator;
 use crate::{
+    diagnostic::Fix,
     math::Angle,
     scene::{
         error::Problem,
@@ -29,6 +30,7 @@ impl<'s> Evaluator<'_, 's> {
                 left_label: String::new(),
                 right: operand.span,
                 right_label,
+                fixes: vec![Fix::remove("take the `-` away", sign, self.sources)],
             });
         }
         negative
@@ -73,6 +75,7 @@ impl<'s> Evaluator<'_, 's> {
                 left_label,
                 right: step.operand.span,
                 right_label,
+                fixes: self.operand_fixes(step, (left, left_tree), right),
             });
             return None;
         };
@@ -149,6 +152,26 @@ impl<'s> Evaluator<'_, 's> {
             }
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         }
+    }
+
+    /// In a sum with an angle a number gets a unit.
+    fn operand_fixes(
+        &self,
+        step: &Step<'s>,
+        (left, left_tree): (Value, Option<&tree::Value<'s>>),
+        right: Value,
+    ) -> Vec<Fix> {
+        let sum = matches!(step.operator, Operator::Add | Operator::Subtract);
+        let number = match (left.kind(), right.kind()) {
+            (Type::Angle, Type::Number) if sum => Some(&step.operand),
+            (Type::Number, Type::Angle) if sum => left_tree,
+            _ => None,
+        };
+        let with_units = number.map(|number| {
+            let units = self.as_angle(number);
+            units.map(|angle| Fix::write(number.span, angle)).to_vec()
+        });
+        with_units.unwrap_or_default()
     }
 }
 

@@ -3,18 +3,22 @@
 use glam::DVec3;
 
 use super::{
-    Block, Given, Lowering, mentions,
-    words::{axis_name, axis_vector, example},
+    Block, Given, Lowering,
+    fixing::{examples, quoted},
+    mentions,
+    words::{axis_name, axis_vector},
 };
 use crate::{
     color::Color,
+    diagnostic::{Edit, Fix},
     math::{Angle, exact},
     numbers,
     scene::{
-        self, Camera, Count, Image, Lens, Method, Object, Sampler, Scene, Shape, View, css,
+        self, Camera, Count, Image, Lens, Method, Object, Sampler, Shape, View, css,
         error::Problem,
         level_direction,
         schema::{self, Kind, Literal, Preset},
+        survey::Parts,
         value::Value,
     },
     source::{SourceId, Span},
@@ -22,8 +26,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// The scene, or nothing if a part of it failed.
-    pub(super) fn build(&mut self) -> Option<Scene> {
+    /// The parts of the scene; what failed is missing.
+    pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
             self.missing_fields(block);
@@ -49,12 +53,12 @@ impl<'s> Lowering<'s> {
         if !self.has_objects && self.bad.is_empty() && !self.cut {
             self.problems.push(Problem::NoObjects { span: start });
         }
-        Some(Scene {
-            image: image?,
-            camera: camera?,
-            sampler: sampler?,
+        Parts {
+            image,
+            camera,
+            sampler,
             objects,
-        })
+        }
     }
 
     /// Builds an object at once.
@@ -70,33 +74,40 @@ impl<'s> Lowering<'s> {
         }
         let has = |name: &str| block.given(name).is_some() || block.meant.contains(&name);
         let mut missing: Vec<String> = Vec::new();
-        let mut examples: Vec<String> = Vec::new();
+        let mut needed: Vec<&'static str> = Vec::new();
         let mut half = None;
         for row in block.row.fields {
             if row.preset == Preset::Required && !has(row.name) {
                 missing.push(format!("`{}`", row.name));
-                examples.push(format!("{} {}", row.name, example(row)));
+                needed.push(row.name);
             }
         }
+        // The other ways to give what is missing, each with the last of what is needed in its place.
+        let mut others: &[&[&'static str]] = &[];
         if block.row.kind == Kind::Camera && !has("lookat") && !has("direction") {
             missing.push("`lookat` or `direction`".to_owned());
-            examples.push("lookat (0, 1, 0)".to_owned());
+            needed.push("lookat");
+            others = &[&["direction"]];
         }
         if block.row.kind == Kind::Box && !has("center") {
             match (has("min"), has("max")) {
                 (true, true) => {}
                 (false, false) => {
                     missing.push("`center`, or `min` and `max`".to_owned());
-                    examples.push("center (0, 1, 0)".to_owned());
+                    needed.push("center");
+                    others = match has("size") {
+                        true => &[],
+                        false => &[&["min", "max"]],
+                    };
                 }
                 (true, false) => {
                     missing.push("`max` beside its `min`".to_owned());
-                    examples.push("max (1, 1, 1)".to_owned());
+                    needed.push("max");
                     half = block.given("min").map(|given| given.name);
                 }
                 (false, true) => {
                     missing.push("`min` beside its `max`".to_owned());
-                    examples.push("min (-1, 0, -1)".to_owned());
+                    needed.push("min");
                     half = block.given("max").map(|given| given.name);
                 }
             }
@@ -104,10 +115,25 @@ impl<'s> Lowering<'s> {
         if missing.is_empty() {
             return;
         }
-        let needed = suggest::list(missing.iter().map(String::as_str));
+        let all = suggest::list(missing.iter().map(String::as_str));
+        let kept = needed.len().saturating_sub(1);
+        let other = |other: &&[&'static str]| {
+            let kept = needed.iter().take(kept);
+            kept.chain(other.iter()).copied().collect()
+        };
+        let ways: Vec<Vec<&str>> = [needed.clone()]
+            .into_iter()
+            .chain(others.iter().map(other))
+            .collect();
+        let fixes = ways.iter().filter_map(|names| {
+            let title = format!("add {}", quoted(names));
+            self.add_fields(block, title, &examples(block, names))
+        });
+        let fixes = fixes.collect();
         self.problems.push(Problem::MissingField {
-            message: format!("{} needs {needed}", block.row.noun),
-            help: format!("write `{}`", examples.join("  ")),
+            message: format!("{} needs {all}", block.row.noun),
+            help: format!("write `{}`", examples(block, &needed).join("  ")),
+            fixes,
             span: block.keyword,
             label: match missing.len() {
                 1 => "it is not given".to_owned(),
@@ -183,6 +209,7 @@ impl<'s> Lowering<'s> {
         let eye = fields.vector("eye");
         let up = fields.vector("up");
         let direction = block.given("direction");
+        let mut view_is_defined = true;
         let view = match direction {
             Some(_) => fields.vector("direction").map(View::Direction),
             None => fields.vector("lookat").map(View::Lookat),
@@ -190,10 +217,14 @@ impl<'s> Lowering<'s> {
         let seen = block.given("lookat").or(direction);
         if let (Some(eye), Some(view), Some(seen)) = (eye, view, seen) {
             match view {
-                View::Lookat(point) if point == eye => self.problems.push(Problem::ViewUndefined {
-                    lookat: seen.span,
-                    eye: block.given("eye").map_or(block.keyword, |given| given.span),
-                }),
+                View::Lookat(point) if point == eye => {
+                    self.problems.push(Problem::ViewUndefined {
+                        lookat: seen.span,
+                        eye: block.given("eye").map_or(block.keyword, |given| given.span),
+                    });
+                    // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
+                    view_is_defined = false;
+                }
                 _ => self.up_parallel(block, eye, view, up, seen),
             }
         }
@@ -212,7 +243,7 @@ impl<'s> Lowering<'s> {
         };
         Some(Camera {
             eye: eye?,
-            view: view?,
+            view: view.filter(|_| view_is_defined)?,
             up: up?,
             roll: fields.angle("roll")?,
             lens: lens?,
@@ -264,7 +295,16 @@ impl<'s> Lowering<'s> {
                 numbers::short_vector(up)
             ),
         };
+        let up = match given {
+            Some(given) => Some(Fix::write(given.span, &suggested)),
+            None => self.add_fields(
+                block,
+                format!("add `up {suggested}`"),
+                &[format!("up {suggested}")],
+            ),
+        };
         self.problems.push(Problem::UpParallel {
+            fixes: up.into_iter().collect(),
             help: format!(
                 "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
             ),
@@ -277,7 +317,19 @@ impl<'s> Lowering<'s> {
         let near_given = block.given("near");
         let (shown_near, shown_far) =
             (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
+        let text = |given: Given| self.sources.text(given.span);
+        let fix = match near_given {
+            Some(near_given) if far > 0.0 && near > far => Fix::new(
+                "exchange `near` and `far`",
+                [
+                    Edit::new(near_given.span, text(given)),
+                    Edit::new(given.span, text(near_given)),
+                ],
+            ),
+            _ => Fix::remove("leave `far` out", given.field(), self.sources),
+        };
         self.problems.push(Problem::EmptyDepth {
+            fixes: vec![fix],
             help: match near_given {
                 Some(_) if far > 0.0 && near > far => {
                     format!("exchange them: `near {shown_far}  far {shown_near}`")

@@ -5,6 +5,7 @@
 //! all names; then each block is built. A problem of one field never hides one of another.
 
 mod build;
+mod fixing;
 mod overriding;
 mod words;
 
@@ -12,13 +13,14 @@ use std::collections::{HashMap, hash_map::Entry};
 
 use glam::DVec3;
 
-use self::words::{missing_value, range_words, shown, type_help, unknown_field};
+use self::words::{missing_value, of_right_type, range_words, shown, type_help, unknown_field};
 use super::{
     Object, Reading,
     error::Problem,
     eval::{Evaluator, Names, predefined},
     overrides::{self, Override},
     schema::{self, Condition, Field, Kind, Type},
+    survey::{Parts, Survey},
     untangle::untangle,
     value::Value,
 };
@@ -50,26 +52,54 @@ pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     if !lowering.sets_by_name {
         lowering.keep_last_overrides(&[]);
         let all = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |items| {
-            lowering.items(items);
+            lowering.items(&items);
             !lowering.names.were_asked_early()
         });
         lowering.override_blocks();
         if all && !lowering.names.were_asked_early() {
-            return lowering.finish(diagnostics);
+            lowering.found = diagnostics;
+            return lowering.reading();
         }
     }
     let parsed = syntax::parse(&sources.file, SourceId::File);
+    whole(sources, &parsed, overrides, diagnostics).reading()
+}
+
+/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
+pub fn survey(sources: &Sources) -> Survey<'_> {
+    let mut diagnostics = Vec::new();
+    let overrides = overrides::read(sources, &mut diagnostics);
+    let parsed = syntax::parse(&sources.file, SourceId::File);
+    let lowering = whole(sources, &parsed, overrides, diagnostics);
+    let (parts, diagnostics, names) = lowering.finish();
+    Survey {
+        sources,
+        parsed,
+        diagnostics,
+        parts,
+        names,
+    }
+}
+
+/// Makes sense of the tree of a whole file; `diagnostics` are those of the overrides' syntax.
+fn whole<'s>(
+    sources: &'s Sources,
+    parsed: &syntax::Parsed<'s>,
+    overrides: Vec<Override<'s>>,
+    mut diagnostics: Vec<Diagnostic>,
+) -> Lowering<'s> {
     let problems = parsed.problems.iter();
-    let mut found: Vec<_> = problems.map(|p| Diagnostic::from_problem(p)).collect();
+    let mut found: Vec<_> = problems.map(|p| Diagnostic::fixable(p, sources)).collect();
     found.append(&mut diagnostics);
-    let tree = parsed.tree;
-    let names = Names::new(definitions(&tree), names_of_objects(&tree));
+    let tree = &parsed.tree;
+    let names = Names::new(definitions(tree), names_of_objects(tree));
     let mut lowering = Lowering::new(sources, overrides, names);
+    lowering.found = found;
     lowering.cut = parsed.cut.is_some();
     lowering.keep_last_overrides(&tree.items);
-    lowering.items(tree.items);
+    lowering.items(&tree.items);
     lowering.override_blocks();
-    lowering.finish(found)
+    lowering
 }
 
 /// Whether a problem stands in one of some places, which are in the order of the text.
@@ -147,6 +177,8 @@ struct Lowering<'s> {
     first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be understood.
     bad: Vec<&'s str>,
+    /// What is wrong with the syntax.
+    found: Vec<Diagnostic>,
     problems: Vec<Problem>,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
@@ -195,6 +227,7 @@ impl<'s> Lowering<'s> {
             has_objects: false,
             first_names: HashMap::new(),
             bad: Vec::new(),
+            found: Vec::new(),
             problems: Vec::new(),
             slips: Vec::new(),
             unknown: Vec::new(),
@@ -202,33 +235,40 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Makes sense of the next items of the file. Each one's tree is dropped then.
-    fn items(&mut self, items: Vec<Item<'s>>) {
+    /// Makes sense of the next items of the file.
+    fn items(&mut self, items: &[Item<'s>]) {
         for item in items {
             match item {
-                Item::Definition(definition) => self.definition(&definition),
-                Item::Block(block) => self.block(&block),
-                Item::Bad(span) => self.bad.push(self.sources.text(span)),
+                Item::Definition(definition) => self.definition(definition),
+                Item::Block(block) => self.block(block),
+                Item::Bad(span) => self.bad.push(self.sources.text(*span)),
             }
         }
     }
 
-    /// Makes the scene of what was read; `diagnostics` are those of syntax.
-    fn finish(mut self, mut diagnostics: Vec<Diagnostic>) -> Reading {
-        let scene = self.build();
+    /// Makes the scene of what was read.
+    fn reading(self) -> Reading {
+        let (parts, diagnostics, _) = self.finish();
+        let failed = diagnostics.iter().any(Diagnostic::is_error);
+        Reading {
+            scene: parts.into_scene().filter(|_| !failed),
+            diagnostics,
+        }
+    }
+
+    /// What there is of a scene, errors or not, and the names that were defined.
+    fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
+        let parts = self.build();
+        let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let problems = self.problems.iter();
-        diagnostics.extend(problems.map(|p| Diagnostic::from_problem(p)));
+        diagnostics.extend(problems.map(|p| Diagnostic::fixable(p, self.sources)));
         let slips = self.slips.iter();
-        diagnostics.extend(slips.map(|p| Diagnostic::from_problem(p)));
+        diagnostics.extend(slips.map(|p| Diagnostic::fixable(p, self.sources)));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
-        let failed = diagnostics.iter().any(Diagnostic::is_error);
-        Reading {
-            scene: scene.filter(|_| !failed),
-            diagnostics,
-        }
+        (parts, diagnostics, self.names)
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {
@@ -263,6 +303,7 @@ impl<'s> Lowering<'s> {
                 name: name.text.to_owned(),
                 second: name.span,
                 first,
+                definition: definition.span,
             });
         } else {
             self.names.define(name, value, set.map(|set| set.id));
@@ -301,6 +342,7 @@ impl<'s> Lowering<'s> {
                 name: row.name,
                 second: block.keyword(),
                 first: earlier.keyword,
+                blocks: [earlier.span, block.span],
             });
         }
         let mut lowered = Block {
@@ -367,6 +409,7 @@ impl<'s> Lowering<'s> {
             written: kind.text.to_owned(),
             help,
             span: kind.span,
+            near: near.map(|near| near.name.to_owned()),
         });
         near
     }
@@ -396,6 +439,7 @@ impl<'s> Lowering<'s> {
                 name: row.name.to_owned(),
                 second: field.name.span,
                 first: first.name,
+                fields: [first.field(), given.field()],
             }),
             Some(free) => *free = Some(given),
             None => {}
@@ -442,6 +486,7 @@ impl<'s> Lowering<'s> {
                     why: why.to_owned(),
                     second: given.name,
                     first: earlier.name,
+                    fixes: self.one_of(block, [other, row]),
                 });
             }
         }
@@ -498,6 +543,7 @@ impl<'s> Lowering<'s> {
                     help: format!("the methods are {list}"),
                     span: tree.span,
                     label: found.noun().to_owned(),
+                    instead: Vec::new(),
                 };
                 self.problems.push(problem);
             }
@@ -506,7 +552,8 @@ impl<'s> Lowering<'s> {
         if let Some(method) = schema::method(written) {
             return Some(Value::Method(method));
         }
-        let help = match suggest::nearest(written, schema::method_names()) {
+        let near = suggest::nearest(written, schema::method_names());
+        let help = match near {
             Some(near) => format!("did you mean `{near}`? The methods are {list}."),
             None => format!("the methods are {list}"),
         };
@@ -514,6 +561,7 @@ impl<'s> Lowering<'s> {
             written: written.to_owned(),
             help,
             span: tree.span,
+            near: near.map(str::to_owned),
         });
         None
     }
@@ -522,7 +570,8 @@ impl<'s> Lowering<'s> {
         let evaluator = self.evaluator();
         let label = evaluator.described(tree, value.kind());
         let written = evaluator.quoted(tree.span);
-        let text = shorten(evaluator.sources.text(tree.span));
+        let whole = evaluator.sources.text(tree.span);
+        let text = shorten(whole);
         let problem = if (row.takes, value.kind()) == (Type::Angle, Type::Number) {
             let [degrees, radians] = evaluator.with_units(tree);
             Problem::BareAngle {
@@ -531,6 +580,7 @@ impl<'s> Lowering<'s> {
                 help: format!("write `{degrees}` (or `{radians}`)"),
                 span: tree.span,
                 label,
+                instead: evaluator.as_angle(tree).to_vec(),
             }
         } else {
             Problem::WrongType {
@@ -541,6 +591,7 @@ impl<'s> Lowering<'s> {
                 help: type_help(row, tree, value.kind(), &text),
                 span: tree.span,
                 label,
+                instead: of_right_type(row, tree, value.kind(), whole),
             }
         };
         self.problems.push(problem);
@@ -554,7 +605,7 @@ impl<'s> Lowering<'s> {
         value: Value,
         found: &str,
     ) {
-        let (label, help) = range_words(row, condition, value);
+        let (label, help, instead) = range_words(row, condition, value);
         let message = match condition {
             Condition::NotZero => format!("`{}` must not be zero", row.name),
             _ => format!("`{}` must be {condition}, and it is {found}", row.name),
@@ -568,6 +619,8 @@ impl<'s> Lowering<'s> {
             help,
             span,
             label: label.to_owned(),
+            whole: tree.span,
+            instead,
         });
     }
 
@@ -614,6 +667,16 @@ impl<'s> Lowering<'s> {
             Entry::Vacant(free) => {
                 free.insert(name.span);
             }
+        }
+    }
+}
+
+impl Given {
+    /// Name and value; of an argument's, that is the value alone.
+    fn field(self) -> Span {
+        match self.name.source == self.span.source {
+            true => self.name.to(self.span),
+            false => self.span,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     numbers,
     scene::{
         error::Problem,
-        schema::{self, Condition, Field, Literal, Preset, Type},
+        schema::{self, Condition, Field, Type},
         value::Value,
     },
     suggest,
@@ -21,7 +21,7 @@ pub fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
             "write {} after it, such as `{} {}`",
             row.takes.noun(),
             row.name,
-            example(row)
+            row.example()
         ),
         None => "write a value after it".to_owned(),
     };
@@ -29,6 +29,7 @@ pub fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
         name: name.text.to_owned(),
         help,
         span: name.span,
+        example: row.map(Field::example),
     }
 }
 
@@ -50,6 +51,7 @@ pub fn unknown_field(row: &'static schema::Block, name: &Name<'_>) -> Problem {
         written: name.text.to_owned(),
         help,
         span: name.span,
+        near: row.nearest_field(name.text).map(str::to_owned),
     }
 }
 
@@ -59,23 +61,13 @@ fn capital(text: &str) -> String {
     first.into_iter().chain(letters).collect()
 }
 
-/// A value that a field can have.
-pub fn example(row: &Field) -> String {
-    match (row.preset, row.takes) {
-        _ if !row.example.is_empty() => row.example.to_owned(),
-        (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
-        (_, Type::Number) => "100".to_owned(),
-        (_, Type::Angle) => "30deg".to_owned(),
-        (_, Type::Vector) => "(0, 1, 0)".to_owned(),
-        (_, Type::Color) => "olive".to_owned(),
-        (_, Type::Colors) => "(gray, white)".to_owned(),
-        (_, Type::Method) => "jittered".to_owned(),
-    }
-}
-
-/// The label and the help for a condition that does not hold.
-pub fn range_words(row: &Field, condition: Condition, value: Value) -> (&'static str, String) {
-    let example = example(row);
+/// The label and the help for a condition that does not hold, and what can stand in the value's place.
+pub fn range_words(
+    row: &Field,
+    condition: Condition,
+    value: Value,
+) -> (&'static str, String, Vec<String>) {
+    let example = row.example();
     let number = match value {
         Value::Number(number) => number,
         _ => 0.0,
@@ -83,43 +75,82 @@ pub fn range_words(row: &Field, condition: Condition, value: Value) -> (&'static
     match condition {
         Condition::Whole => {
             let (below, above) = (number.floor(), number.ceil());
-            let help = match below >= 1.0 && above < 1e15 {
-                true => format!("write `{below}` or `{above}`"),
-                false => format!("write a whole number, such as `{example}`"),
-            };
-            ("not whole", help)
+            match below >= 1.0 && above < 1e15 {
+                true => (
+                    "not whole",
+                    format!("write `{below}` or `{above}`"),
+                    vec![below.to_string(), above.to_string()],
+                ),
+                false => (
+                    "not whole",
+                    format!("write a whole number, such as `{example}`"),
+                    vec![example],
+                ),
+            }
         }
-        Condition::MoreThan(bound) if number < bound => (
-            "too small",
-            format!(
-                "write `{}`, or another number above {bound}",
-                numbers::short(-number)
-            ),
-        ),
+        Condition::MoreThan(bound) if number < bound => {
+            let opposite = numbers::short(-number);
+            (
+                "too small",
+                format!("write `{opposite}`, or another number above {bound}"),
+                vec![opposite],
+            )
+        }
         Condition::MoreThan(bound) => (
             "too small",
             format!("write a number above {bound}, such as `{example}`"),
+            vec![example],
         ),
-        Condition::AtLeast(bound) => ("too small", format!("write `{bound}` or more")),
-        Condition::AtMostTwoTo(power) => {
-            ("too large", format!("write `{}` or less", 1_u64 << power))
-        }
-        Condition::LessThanTwoTo(power) => (
-            "too large",
-            format!("write `{}` or less", (1_u64 << power) - 1),
+        Condition::AtLeast(bound) => (
+            "too small",
+            format!("write `{bound}` or more"),
+            vec![bound.to_string()],
         ),
+        Condition::AtMostTwoTo(power) => at_most(1_u64 << power),
+        Condition::LessThanTwoTo(power) => at_most((1_u64 << power) - 1),
         Condition::LessThanHalfTurn => (
             "no field of view",
             "write an angle that lies between, such as `40deg`".to_owned(),
+            vec!["40deg".to_owned()],
         ),
         Condition::NotZero => (
             "zero has no direction",
             format!("write a vector that points somewhere, such as `{example}`"),
+            vec![example],
         ),
         Condition::EachMoreThanZero => (
             "not all of these are above 0",
             format!("write three numbers above 0, such as `{example}`"),
+            vec![example],
         ),
+    }
+}
+
+fn at_most(bound: u64) -> (&'static str, String, Vec<String>) {
+    (
+        "too large",
+        format!("write `{bound}` or less"),
+        vec![bound.to_string()],
+    )
+}
+
+/// What can stand in place of a value of the wrong type.
+pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -> Vec<String> {
+    let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
+    match (row.takes, found, &tree.kind) {
+        (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => vec![(*number).to_owned()],
+        (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
+            vec![format!("length({text})")]
+        }
+        (Type::Vector, Type::Number, _) if literal && matches!(row.name, "size" | "sides") => {
+            vec![format!("({text}, {text}, {text})")]
+        }
+        (Type::Color, Type::Vector, _) if literal => vec![format!("rgb{text}")],
+        (Type::Colors, Type::Color, _) => {
+            let other = if text == "white" { "gray" } else { "white" };
+            vec![format!("({text}, {other})")]
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -142,7 +173,7 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
         (Type::Vector, Type::Number, _) => {
             format!(
                 "write three numbers in parentheses, such as `{}`",
-                example(row)
+                row.example()
             )
         }
         (Type::Color, Type::Vector, _) if literal => {
@@ -153,7 +184,7 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
         }
         (Type::Color, ..) => format!(
             "write a colour, such as `{}`, `#808000` or `rgb(128, 128, 0)`",
-            example(row)
+            row.example()
         ),
         (Type::Colors, Type::Color, _) => {
             let other = match text {
@@ -162,7 +193,7 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
             };
             format!("write two colours: `({text}, {other})`")
         }
-        _ => format!("write {}, such as `{}`", row.takes.noun(), example(row)),
+        _ => format!("write {}, such as `{}`", row.takes.noun(), row.example()),
     }
 }
 

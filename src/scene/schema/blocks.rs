@@ -183,6 +183,7 @@ pub const BLOCKS: &[Block] = &[
                 ],
                 excludes: &["per_pixel"],
                 help: "the samples in the whole picture, instead of per_pixel",
+                example: "1_000_000",
                 ..FIELD
             },
             Field {
@@ -304,6 +305,7 @@ pub const BLOCKS: &[Block] = &[
                 preset: Preset::Alternative,
                 excludes: &["center", "size"],
                 help: "its corner of least coordinates, together with max",
+                example: "(-1, 0, -1)",
                 ..FIELD
             },
             Field {
@@ -312,6 +314,7 @@ pub const BLOCKS: &[Block] = &[
                 preset: Preset::Alternative,
                 excludes: &["center", "size"],
                 help: "its corner of greatest coordinates, together with min",
+                example: "(1, 1, 1)",
                 ..FIELD
             },
             color("orange"),

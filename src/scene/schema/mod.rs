@@ -74,6 +74,22 @@ pub struct Field {
     pub example: &'static str,
 }
 
+impl Field {
+    /// A value that it can have: for messages, and to type over.
+    pub fn example(&self) -> String {
+        match (self.preset, self.takes) {
+            _ if !self.example.is_empty() => self.example.to_owned(),
+            (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
+            (_, Type::Number) => "100".to_owned(),
+            (_, Type::Angle) => "30deg".to_owned(),
+            (_, Type::Vector) => "(0, 1, 0)".to_owned(),
+            (_, Type::Color) => "olive".to_owned(),
+            (_, Type::Colors) => "(gray, white)".to_owned(),
+            (_, Type::Method) => "jittered".to_owned(),
+        }
+    }
+}
+
 /// What a value can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Type {
@@ -211,6 +227,21 @@ impl Block {
     /// The names of its fields.
     pub fn field_names(&self) -> impl Iterator<Item = &'static str> + use<> {
         self.fields.iter().map(|field| field.name)
+    }
+
+    /// The fields without which there is no such block: those that have no default, and of alternatives the first.
+    pub fn least_fields(&self) -> Vec<&'static Field> {
+        let mut least: Vec<&Field> = Vec::new();
+        for field in self.fields {
+            let is_excluded = least
+                .iter()
+                .any(|other| other.excludes.contains(&field.name));
+            let is_needed = matches!(field.preset, Preset::Required | Preset::Alternative);
+            if is_needed && !is_excluded {
+                least.push(field);
+            }
+        }
+        least
     }
 
     /// The field that was probably meant, if any is near.

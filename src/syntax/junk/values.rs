@@ -4,7 +4,10 @@ use super::{
     shorten,
     tokens::{Kind, Token, tokens},
 };
-use crate::{source::Span, syntax::Problem};
+use crate::{
+    source::Span,
+    syntax::{Problem, error::Meant},
+};
 
 /// A value of a `--set` argument that could not be understood.
 pub fn value(text: &str, span: Span) -> Problem {
@@ -38,6 +41,7 @@ pub(super) fn stray_parenthesis(token: &Token<'_>, span: Span) -> Problem {
     Problem::StrayClosing {
         sign: token.text.to_owned(),
         span: token.span(span),
+        all: token.span(span),
         help: "take it away, or write the `(` that it is to close".to_owned(),
     }
 }
@@ -82,6 +86,7 @@ fn separated(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem> {
     Some(Problem::MissingParentheses {
         values: shorten(values),
         span: whole,
+        together: format!("({values})"),
     })
 }
 
@@ -112,6 +117,7 @@ fn side_by_side(text: &str, span: Span, tokens: &[Token<'_>]) -> Option<Problem>
     (values.len() == 3 && sign.is_none()).then(|| Problem::MissingParentheses {
         values: shorten(&values.join(", ")),
         span: whole,
+        together: format!("({})", values.join(", ")),
     })
 }
 
@@ -181,6 +187,7 @@ pub fn call_without_parentheses(function: &str, argument: &str, span: Span) -> P
         left,
         right,
         span,
+        meant: Meant::Call,
     }
 }
 
@@ -194,17 +201,24 @@ pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
     let (left, right) = (shorten(left), shorten(right));
     let word = left.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let number = right.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    let help = match word && number {
-        true => format!(
-            "write `{left} * {right}` to multiply them, or `{left}({right})` if `{left}` is a function"
+    let (help, meant) = match word && number {
+        true => (
+            format!(
+                "write `{left} * {right}` to multiply them, or `{left}({right})` if `{left}` is a function"
+            ),
+            Meant::Either,
         ),
-        false => format!("write `{left} * {right}` to multiply them"),
+        false => (
+            format!("write `{left} * {right}` to multiply them"),
+            Meant::Product,
+        ),
     };
     Problem::MissingOperator {
         left,
         right,
         help,
         span,
+        meant,
     }
 }
 

@@ -134,6 +134,7 @@ impl<'s> Parser<'s> {
         self.problems.push(Problem::StrayClosing {
             sign: "}".to_owned(),
             span,
+            all: self.trimmed(start, whole.end),
             help: "take it away, or write the `{` that it is to close".to_owned(),
         });
         self.items.push(Item::Bad(span));

@@ -150,17 +150,20 @@ impl<'s> Parser<'s> {
 
     /// One report for each sort of character, at the first one.
     fn odd_spaces(&mut self, places: &[Range<usize>]) {
-        let mut sorts: BTreeMap<&str, (Span, usize)> = BTreeMap::new();
+        let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in places {
             let span = Span::new(self.id, place.start, place.end);
-            let (_, count) = sorts.entry(self.written(span)).or_insert((span, 0));
-            *count += 1;
+            sorts.entry(self.written(span)).or_default().push(span);
         }
-        for (text, (span, count)) in sorts {
+        for (text, places) in sorts {
+            let Some(&span) = places.first() else {
+                continue;
+            };
             self.problems.push(Problem::OddSpace {
                 what: junk::name_of_space(text),
-                more: count - 1,
+                more: places.len() - 1,
                 span,
+                places,
             });
         }
     }
@@ -342,7 +345,7 @@ impl<'s> Parser<'s> {
                 let field = self.field(part);
                 block.fields.push(field);
             }
-            Rule::lets_in_block => self.lets_in_block(part),
+            Rule::lets_in_block => self.lets_in_block(part, block.span),
             Rule::bad_field => self.bad_field(part, block),
             _ => {}
         }
@@ -372,6 +375,7 @@ impl<'s> Parser<'s> {
         self.problems.push(Problem::UnclosedBlock {
             kind: kind.to_owned(),
             open,
+            end: Span::new(self.id, block.span.end, block.span.end),
             before,
         });
     }
@@ -410,12 +414,18 @@ impl<'s> Parser<'s> {
         }
     }
 
-    fn lets_in_block(&mut self, pair: Pairs<'_>) {
+    fn lets_in_block(&mut self, pair: Pairs<'_>, block: Span) {
         let mut first = true;
+        let whole = self.span(&pair);
+        let definitions = self.trimmed(whole.start, whole.end);
         for part in pair.into_inner() {
             if first {
                 let span = self.word_at(self.span(&part).start);
-                self.problems.push(Problem::MisplacedLet { span });
+                self.problems.push(Problem::MisplacedLet {
+                    span,
+                    definitions,
+                    block,
+                });
                 first = false;
             }
             match part.as_rule() {

@@ -292,11 +292,15 @@ impl<'s> Parser<'s> {
                 0..=60 if self.written(whole).starts_with('(') => format!("{function}{all}"),
                 _ => format!("{left_text}, {right_text}"),
             };
+            let ends = elements.iter().zip(elements.iter().skip(1));
+            let missing = ends.filter(|(before, _)| before.comma.is_none());
+            let place = |end| Span::new(self.id, end, end);
             Problem::MissingComma {
                 left: left_text,
                 right: right_text,
                 whole,
                 span,
+                places: missing.map(|(e, _)| place(e.value.span.end)).collect(),
             }
         };
         self.problems.push(problem);

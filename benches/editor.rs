@@ -1,0 +1,202 @@
+//! How long an editor waits: `cargo bench --bench editor`. See README.md beside this file.
+//!
+//! The server runs as it does for an editor, and time is taken from before a message is written until its answer is read.
+
+use std::{
+    env,
+    io::{BufRead, BufReader, Read},
+    process::{Child, ChildStdin, ChildStdout, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use lsp_server::{Message, Notification, Request};
+use serde_json::{Value, json};
+
+use self::spheres::{Layout, spheres};
+
+mod spheres;
+
+const OBJECTS: usize = 1000;
+
+/// How often each thing is asked.
+const ROUNDS: u32 = 200;
+
+const URI: &str = "file:///spheres.scn";
+
+fn main() {
+    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    if !env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    let text = spheres(OBJECTS, Layout::Blocks);
+    let lines = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
+    println!(
+        "{OBJECTS} spheres, {} bytes, {lines} lines; {ROUNDS} times each",
+        text.len()
+    );
+    println!("{:32} {:>9} {:>9}", "", "median", "longest");
+    let mut server = Server::start(&text);
+
+    // A letter more, a letter less, in the middle of the text: what is said of that.
+    let mut version = 1;
+    let mut type_a_letter = |server: &mut Server| {
+        version += 1;
+        let place = json!({ "line": lines / 2, "character": 0 });
+        let after = json!({ "line": lines / 2, "character": 1 });
+        let change = match version % 2 {
+            0 => json!({ "range": { "start": place, "end": place }, "text": "x" }),
+            _ => json!({ "range": { "start": place, "end": after }, "text": "" }),
+        };
+        let document = json!({ "uri": URI, "version": version });
+        let params = json!({ "textDocument": document, "contentChanges": [change] });
+        server.tell("textDocument/didChange", params);
+        server.read();
+    };
+    show("a letter, and its diagnostics", || {
+        type_a_letter(&mut server)
+    });
+
+    let middle = json!({ "line": lines / 2, "character": 4 });
+    let everything =
+        json!({ "start": { "line": 0, "character": 0 }, "end": { "line": lines, "character": 0 } });
+    let teal = json!({ "red": 0.0, "green": 0.5, "blue": 0.5, "alpha": 1.0 });
+    let name = json!({ "line": 1, "character": 5 });
+    let questions = [
+        ("completion", json!({ "position": middle })),
+        (
+            "completion",
+            json!({ "position": { "line": lines, "character": 0 } }),
+        ),
+        ("hover", json!({ "position": middle })),
+        (
+            "hover",
+            json!({ "position": { "line": 3, "character": 2 } }),
+        ),
+        ("signatureHelp", json!({ "position": middle })),
+        ("definition", json!({ "position": name })),
+        (
+            "references",
+            json!({ "position": name, "context": { "includeDeclaration": true } }),
+        ),
+        ("documentHighlight", json!({ "position": name })),
+        ("prepareRename", json!({ "position": name })),
+        ("rename", json!({ "position": name, "newName": "other" })),
+        ("documentSymbol", json!({})),
+        ("foldingRange", json!({})),
+        ("selectionRange", json!({ "positions": [middle] })),
+        ("inlayHint", json!({ "range": everything })),
+        ("documentColor", json!({})),
+        (
+            "colorPresentation",
+            json!({ "color": teal, "range": everything }),
+        ),
+        (
+            "codeAction",
+            json!({ "range": everything, "context": { "diagnostics": [] } }),
+        ),
+        (
+            "formatting",
+            json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
+        ),
+        ("semanticTokens/full", json!({})),
+    ];
+    for (method, params) in questions {
+        show(method, || server.ask(method, params.clone()));
+    }
+}
+
+/// The time of a thing, done over and over.
+fn show(name: &str, mut done: impl FnMut()) {
+    let mut times: Vec<Duration> = (0..ROUNDS)
+        .map(|_| {
+            let start = Instant::now();
+            done();
+            start.elapsed()
+        })
+        .collect();
+    times.sort_unstable();
+    let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
+    let median = milliseconds(times[times.len() / 2]);
+    let longest = milliseconds(times[times.len() - 1]);
+    println!("{name:32} {median:6.2} ms {longest:6.2} ms");
+}
+
+struct Server {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+    requests: i32,
+}
+
+impl Server {
+    /// The server with a text open.
+    fn start(text: &str) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
+            .arg("lsp")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the server starts");
+        let input = child.stdin.take().expect("it was asked for");
+        let output = BufReader::new(child.stdout.take().expect("it was asked for"));
+        let mut server = Self {
+            child,
+            input,
+            output,
+            requests: 0,
+        };
+        let capabilities = json!({ "textDocument": {
+            "completion": { "completionItem": { "snippetSupport": true } },
+            "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
+        } });
+        server.request("initialize", json!({ "capabilities": capabilities }));
+        let document = json!({ "uri": URI, "languageId": "scn", "version": 1, "text": text });
+        server.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        server.read();
+        server
+    }
+
+    fn tell(&mut self, method: &str, params: Value) {
+        let message = Message::from(Notification::new(method.to_owned(), params));
+        message.write(&mut self.input).expect("the server reads");
+    }
+
+    /// The bytes of the next message: what a client makes of them takes its own time.
+    fn read(&mut self) -> Vec<u8> {
+        let mut header = String::new();
+        while !header.ends_with("\r\n\r\n") {
+            let read = self.output.read_line(&mut header);
+            assert_ne!(read.expect("a header"), 0, "the server is there");
+        }
+        let length = header.trim().strip_prefix("Content-Length: ");
+        let length = length.and_then(|length| length.parse().ok());
+        let mut message = vec![0; length.expect("a length")];
+        self.output.read_exact(&mut message).expect("a message");
+        message
+    }
+
+    /// Asks about the document.
+    fn ask(&mut self, method: &str, mut params: Value) {
+        params["textDocument"] = json!({ "uri": URI });
+        self.request(&format!("textDocument/{method}"), params);
+    }
+
+    fn request(&mut self, method: &str, params: Value) {
+        self.requests += 1;
+        let request = Request::new(self.requests.into(), method.to_owned(), params);
+        Message::from(request)
+            .write(&mut self.input)
+            .expect("the server reads");
+        let answer = self.read();
+        let is_error = answer.windows(8).take(60).any(|part| part == b"\"error\":");
+        assert!(!is_error, "{method}: {}", String::from_utf8_lossy(&answer));
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        // It has nothing to lose.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

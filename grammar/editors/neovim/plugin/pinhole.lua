@@ -1,0 +1,34 @@
+-- Starts the language server for scenes. To start it in another way, set vim.g.pinhole_no_lsp before this is read.
+if vim.g.pinhole_no_lsp then
+  return
+end
+
+if vim.lsp.enable then -- Neovim 0.11 and newer: lsp/pinhole.lua says how.
+  vim.lsp.enable("pinhole")
+  return
+end
+
+-- One server for all scenes.
+local client
+
+vim.api.nvim_create_autocmd("FileType", {
+  pattern = "pinhole",
+  callback = function(event)
+    if vim.fn.executable("pinhole") == 0 then
+      vim.notify_once("The program pinhole is not on PATH: scenes are highlighted, and no more.", vim.log.levels.WARN)
+      return
+    end
+    client = client
+      or vim.lsp.start_client({
+        name = "pinhole",
+        cmd = { "pinhole", "lsp" },
+        root_dir = vim.fn.fnamemodify(event.file, ":p:h"),
+        on_exit = function()
+          client = nil
+        end,
+      })
+    if client then
+      vim.lsp.buf_attach_client(event.buf, client)
+    end
+  end,
+})

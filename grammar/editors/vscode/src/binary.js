@@ -1,0 +1,40 @@
+// Where the program is.
+
+const fs = require("node:fs");
+const os = require("node:os");
+const path = require("node:path");
+
+/**
+ * The path of the program `pinhole`: the setting, if there is one, else the first on PATH or where `cargo install` puts it.
+ * Undefined if no file is there.
+ *
+ * @param {string} setting `pinhole.path`: `~/` is the home folder, and a relative path starts at `folder`.
+ * @param {string | undefined} folder The workspace's folder.
+ * @param {{ PATH?: string, CARGO_HOME?: string }} env
+ */
+function findBinary(setting, folder, env = process.env) {
+  const home = os.homedir();
+  const wanted = setting.trim();
+  if (wanted !== "") {
+    const whole = wanted.startsWith("~/") ? path.join(home, wanted.slice(2)) : wanted;
+    return existing(path.resolve(folder ?? home, whole));
+  }
+  const cargo = path.join(env.CARGO_HOME || path.join(home, ".cargo"), "bin");
+  const folders = (env.PATH ?? "").split(path.delimiter).filter(folder => path.isAbsolute(folder));
+  return [...folders, cargo].map(folder => existing(path.join(folder, "pinhole"))).find(Boolean);
+}
+
+/** The file of this name, which on Windows may leave out its ending. */
+function existing(file) {
+  const names = process.platform === "win32" && !file.toLowerCase().endsWith(".exe") ? [`${file}.exe`] : [file];
+  return names.find(name => {
+    try {
+      fs.accessSync(name, fs.constants.X_OK);
+      return fs.statSync(name).isFile();
+    } catch {
+      return false;
+    }
+  });
+}
+
+module.exports = { findBinary };

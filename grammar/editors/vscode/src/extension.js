@@ -1,0 +1,152 @@
+// The extension: it finds the program, keeps its language server running, and has the pictures drawn.
+
+const { execFile } = require("node:child_process");
+const path = require("node:path");
+const vscode = require("vscode");
+const { LanguageClient } = require("vscode-languageclient/node");
+const { findBinary } = require("./binary");
+
+/** The server's client while it runs. */
+let client;
+
+/** Starts and stops follow each other, so that two quick changes of a setting do not leave two servers. */
+let turn = Promise.resolve();
+
+function activate(context) {
+  context.subscriptions.push(
+    vscode.commands.registerCommand("pinhole.render", render),
+    vscode.commands.registerCommand("pinhole.watch", watch),
+    vscode.commands.registerCommand("pinhole.restart", () => next(restart)),
+    vscode.workspace.onDidChangeConfiguration(change => {
+      if (change.affectsConfiguration("pinhole.path")) next(restart);
+    }),
+    vscode.workspace.onDidGrantWorkspaceTrust(() => next(restart)),
+  );
+  return next(start);
+}
+
+function deactivate() {
+  return next(stop);
+}
+
+function next(step) {
+  turn = turn.then(step).catch(error => void vscode.window.showErrorMessage(`Pinhole: ${error.message ?? error}`));
+  return turn;
+}
+
+async function start() {
+  const command = binary();
+  if (command === undefined) return;
+  client = new LanguageClient(
+    "pinhole",
+    "Pinhole",
+    { command, args: ["lsp"] },
+    { documentSelector: [{ language: "pinhole", scheme: "file" }, { language: "pinhole", scheme: "untitled" }] },
+  );
+  // What goes wrong here the client has shown already.
+  await client.start().catch(() => {});
+}
+
+async function stop() {
+  const running = client;
+  client = undefined;
+  if (running?.needsStop()) await running.stop();
+}
+
+async function restart() {
+  await stop();
+  await start();
+}
+
+/** The program, or undefined after a message that says what to do. */
+function binary() {
+  const setting = vscode.workspace.getConfiguration("pinhole").get("path", "");
+  const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath);
+  if (found === undefined) {
+    const where = setting.trim() === "" ? "on PATH and in ~/.cargo/bin" : `at ${setting}, where the setting pinhole.path says`;
+    const message = `Pinhole's program was sought ${where}, and is not there. Install it by "cargo install --path ." from Pinhole's folder, or set pinhole.path.`;
+    vscode.window.showErrorMessage(message, "Open Setting").then(answer => {
+      if (answer !== undefined) vscode.commands.executeCommand("workbench.action.openSettings", "pinhole.path");
+    });
+  }
+  return found;
+}
+
+/** The file of the scene that is being edited, saved; or undefined after a message. */
+async function savedScene() {
+  const document = vscode.window.activeTextEditor?.document;
+  if (document?.languageId !== "pinhole") {
+    vscode.window.showInformationMessage("Open a scene (.scn) to render it.");
+    return undefined;
+  }
+  // One that is not saved because it has no name yet, or by the user's choice, is not rendered.
+  if (document.uri.scheme !== "file" || (document.isDirty && !(await document.save()))) {
+    vscode.window.showInformationMessage("Save the scene to render it: the picture is written beside it.");
+    return undefined;
+  }
+  return document.uri.fsPath;
+}
+
+const pictureOf = scene => path.format({ ...path.parse(scene), base: undefined, ext: ".png" });
+
+const openBeside = picture =>
+  vscode.commands.executeCommand("vscode.open", vscode.Uri.file(picture), {
+    viewColumn: vscode.ViewColumn.Beside,
+    preserveFocus: true,
+  });
+
+/** Renders the scene to the PNG beside it, and shows that. */
+async function render() {
+  const [command, scene] = [binary(), await savedScene()];
+  if (command === undefined || scene === undefined) return;
+  const picture = pictureOf(scene);
+  const options = { location: vscode.ProgressLocation.Notification, title: `Rendering ${path.basename(scene)}`, cancellable: true };
+  const problem = await vscode.window.withProgress(options, (_, cancellation) => run(command, ["render", scene, "-o", picture], cancellation));
+  if (problem === undefined) await openBeside(picture);
+  else if (problem !== "") vscode.window.showErrorMessage(problem);
+}
+
+/** Runs the program: undefined when all went well, "" when the user cancelled, or what it said. */
+function run(command, args, cancellation) {
+  return new Promise(resolve => {
+    let cancelled = false;
+    const env = { ...process.env, NO_COLOR: "1" };
+    const child = execFile(command, args, { cwd: path.dirname(args[1]), env }, (error, _, said) => {
+      resolve(cancelled ? "" : error === null ? undefined : summary(said) || error.message);
+    });
+    cancellation.onCancellationRequested(() => {
+      cancelled = true;
+      child.kill("SIGINT");
+    });
+  });
+}
+
+/** Of a report, the first line of each problem: where it is, the editor shows in the text. */
+function summary(said) {
+  const heads = said.split("\n").filter(line => /^error\b/.test(line));
+  return (heads.length > 0 ? heads : said.trim().split("\n")).map(line => line.replace(/^error(\[[\w:]+\])?: /, "")).join("\n");
+}
+
+/** Renders the scene now and on every save, in a terminal, and shows the picture, which the editor reads anew as it changes. */
+async function watch() {
+  const [command, scene] = [binary(), await savedScene()];
+  if (command === undefined || scene === undefined) return;
+  const name = `Pinhole: ${path.basename(scene)}`;
+  vscode.window.terminals.find(terminal => terminal.name === name)?.dispose();
+  const terminal = vscode.window.createTerminal({ name, shellPath: command, shellArgs: ["watch", scene], cwd: path.dirname(scene) });
+  terminal.show(true);
+  const picture = pictureOf(scene);
+  await appears(picture);
+  await openBeside(picture);
+}
+
+/** Waits until the file is there, for some seconds at most. */
+async function appears(file) {
+  for (let tries = 0; tries < 50; tries++) {
+    const isThere = await vscode.workspace.fs.stat(vscode.Uri.file(file)).then(() => true, () => false);
+    if (isThere) return;
+    await new Promise(resolve => setTimeout(resolve, 200));
+  }
+}
+
+module.exports = { activate, deactivate };

@@ -1,0 +1,71 @@
+// The language server, driven as an editor does.
+
+import { spawn } from "node:child_process";
+import { createRequire } from "node:module";
+
+const require = createRequire(import.meta.url);
+const { createProtocolConnection, StreamMessageReader, StreamMessageWriter } = require("vscode-languageserver-protocol/node");
+
+/** The program: what PINHOLE names, or else the one on the path. */
+export const program = process.env.PINHOLE ?? "pinhole";
+
+/** Starts a server: what it can do, how to ask it, and the diagnostics that it sends for a file. */
+export async function start() {
+  const server = spawn(program, ["lsp"], { stdio: ["pipe", "pipe", "inherit"] });
+  const exit = new Promise((resolve, reject) => server.on("error", reject).on("exit", resolve));
+  const connection = createProtocolConnection(new StreamMessageReader(server.stdout), new StreamMessageWriter(server.stdin));
+  const waiting = new Map();
+  connection.onNotification("textDocument/publishDiagnostics", ({ uri, diagnostics }) => waiting.get(uri)?.(diagnostics));
+  connection.listen();
+  const ask = (method, params) => connection.sendRequest(method, params);
+  const started = ask("initialize", {
+    processId: process.pid,
+    rootUri: null,
+    capabilities: {
+      general: { positionEncodings: ["utf-16"] },
+      textDocument: {
+        completion: { completionItem: { snippetSupport: true, documentationFormat: ["markdown"] } },
+        hover: { contentFormat: ["markdown"] },
+        codeAction: { codeActionLiteralSupport: { codeActionKind: { valueSet: ["quickfix"] } } },
+        semanticTokens: { requests: { full: true }, formats: ["relative"], tokenTypes: [], tokenModifiers: [] },
+      },
+    },
+  });
+  const { capabilities } = await Promise.race([started, exit.then(status => { throw new Error(`pinhole lsp ended with status ${status}`); })]);
+  await connection.sendNotification("initialized", {});
+  return {
+    capabilities,
+    ask,
+    /** Opens a text, and gives its diagnostics. */
+    async open(uri, text) {
+      const diagnostics = new Promise(resolve => waiting.set(uri, resolve));
+      await connection.sendNotification("textDocument/didOpen", { textDocument: { uri, languageId: "pinhole", version: 1, text } });
+      return diagnostics;
+    },
+    /** Ends it; its exit status. */
+    async stop() {
+      await ask("shutdown");
+      await connection.sendNotification("exit");
+      const status = await exit;
+      connection.dispose();
+      return status;
+    },
+  };
+}
+
+/** The words of a text that has been opened, with the types that the server gives them, in the form of `scoped`. */
+export async function classified({ ask, capabilities }, uri, source) {
+  const { tokenTypes, tokenModifiers } = capabilities.semanticTokensProvider.legend;
+  const lines = source.split(/\r?\n/);
+  const { data } = await ask("textDocument/semanticTokens/full", { textDocument: { uri } });
+  const words = [];
+  let [line, start] = [0, 0];
+  for (let i = 0; i < data.length; i += 5) {
+    start = data[i] === 0 ? start + data[i + 1] : data[i + 1];
+    line += data[i];
+    const modifiers = tokenModifiers.filter((_, bit) => data[i + 4] & (1 << bit));
+    const type = [tokenTypes[data[i + 3]], ...modifiers].join(".");
+    words.push({ line, start, text: lines[line].slice(start, start + data[i + 2]), type });
+  }
+  return words;
+}

@@ -1,0 +1,36 @@
+//! Tells Zed how to start Pinhole's language server. Zed builds this to WebAssembly when it installs the extension.
+
+use zed_extension_api::{
+    register_extension, settings::LspSettings, Command, Extension, LanguageServerId, Result,
+    Worktree,
+};
+
+struct Pinhole;
+
+impl Extension for Pinhole {
+    fn new() -> Self {
+        Self
+    }
+
+    /// The program that the settings name (`lsp.pinhole.binary.path`), or else the one on the path.
+    fn language_server_command(
+        &mut self,
+        id: &LanguageServerId,
+        worktree: &Worktree,
+    ) -> Result<Command> {
+        let binary = LspSettings::for_worktree(id.as_ref(), worktree)
+            .ok()
+            .and_then(|settings| settings.binary);
+        let command = binary
+            .and_then(|binary| binary.path)
+            .or_else(|| worktree.which("pinhole"))
+            .ok_or("pinhole is not on PATH: install it by `cargo install --path .` from Pinhole's folder")?;
+        Ok(Command {
+            command,
+            args: vec!["lsp".to_string()],
+            env: worktree.shell_env(),
+        })
+    }
+}
+
+register_extension!(Pinhole);

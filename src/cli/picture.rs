@@ -1,0 +1,238 @@
+//! Pictures: made of a scene, and written where they go.
+
+use std::{
+    io::{self, IsTerminal},
+    num::NonZero,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use pinhole::{
+    area::Area,
+    film::{self, Film, Recipe},
+    numbers,
+    render::{self, Control, Exact, RenderError},
+    sampling::Sampling,
+    scene::{Method, Scene},
+    tracer::World,
+};
+
+use super::{
+    Trouble,
+    input::{self, shown},
+    output, progress,
+};
+
+/// A picture, and what is known of it.
+pub enum Picture {
+    /// With samples.
+    Sampled(Film),
+    /// Computed.
+    Exact(Exact),
+}
+
+impl Picture {
+    /// Its means.
+    pub fn film(&self) -> &Film {
+        match self {
+            Self::Sampled(film) => film,
+            Self::Exact(exact) => &exact.film,
+        }
+    }
+
+    /// What is to be said of it: how exact a computed one is.
+    pub fn notes(&self, output: &Output) -> String {
+        match self {
+            Self::Sampled(_) => String::new(),
+            Self::Exact(exact) => certificate(exact, output),
+        }
+    }
+}
+
+/// As many threads as are asked for.
+pub fn threads(wanted: Option<u64>) -> Option<NonZero<usize>> {
+    NonZero::new(usize::try_from(wanted?).unwrap_or(usize::MAX))
+}
+
+/// Renders a part of the scene's picture, and shows on a terminal how far it is.
+pub fn picture(
+    scene: &Scene,
+    world: &World,
+    part: Area,
+    threads: Option<NonZero<usize>>,
+    cancel: &AtomicBool,
+) -> Result<Picture, RenderError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
+    let is_exact = scene.sampler.method == Method::Exact;
+    let expected = match is_exact {
+        true => part.pixels(),
+        // The samples of the part, but for how the extra ones of a total fall: near enough for a bar.
+        false => {
+            let share = part.pixels() as f64 / whole.pixels() as f64;
+            (sampling.total() as f64 * share) as u64
+        }
+    };
+    progress::watched(expected, |done| {
+        let control = Control {
+            threads,
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            },
+            cancel,
+        };
+        match is_exact {
+            true => render::render_exact(world, part, &control).map(Picture::Exact),
+            false => render::render(world, &sampling, part, &control).map(Picture::Sampled),
+        }
+    })
+}
+
+/// A pixel with a greater bound on its error is worth a word.
+const VAGUE: f32 = 1e-6;
+
+/// What is certain of a computed picture, and of the numbers in its file.
+fn certificate(exact: &Exact, output: &Output) -> String {
+    let (certified, what) = match output {
+        Output::File(_, Format::Exr) => (
+            film::certified_floats(&exact.film, &exact.bounds),
+            "the 32-bit rounding",
+        ),
+        _ => (
+            film::certified(&exact.film, &exact.bounds),
+            "the 8-bit rounding",
+        ),
+    };
+    let pixels = exact.bounds.len() as u64;
+    let rounding = match pixels - certified {
+        0 => format!("{what} of every pixel is certain"),
+        1 => format!("{what} of all pixels but one is certain"),
+        others => format!(
+            "{what} of all pixels but {} is certain",
+            numbers::grouped(others)
+        ),
+    };
+    let bound = numbers::at_most(exact.bound());
+    let mut text = format!("exact: every channel is within {bound} of its true mean; {rounding}\n");
+    let vague = |bound: &&f32| **bound > VAGUE;
+    let count = exact.bounds.iter().filter(vague).count() as u64;
+    if let Some(least) =
+        (0..exact.bounds.len()).max_by(|&a, &b| exact.bounds[a].total_cmp(&exact.bounds[b]))
+        && count > 0
+    {
+        let width = exact.film.width() as usize;
+        let (x, y) = (least % width, least / width);
+        let pixels = match count {
+            1 => "one pixel is".to_owned(),
+            more => format!("{} pixels are", numbers::grouped(more)),
+        };
+        text += &format!(
+            "exact: {pixels} known less well than to a millionth, least of all the one at column {x}, row {y}\n"
+        );
+    }
+    text
+}
+
+/// Where a picture goes, and as what.
+pub enum Output {
+    /// A file.
+    File(PathBuf, Format),
+    /// Standard output, as PNG.
+    Standard,
+}
+
+/// What a picture's file holds.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Bytes of sRGB, and the scene.
+    Png,
+    /// Linear light.
+    Exr,
+}
+
+impl Output {
+    /// What is asked for, or else the PNG file beside the scene.
+    pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, Trouble> {
+        let path = match output {
+            Some(path) if input::is_standard(path) => return Ok(Self::Standard),
+            Some(path) => path,
+            None if input::is_standard(scene) => {
+                return Err(Trouble(
+                    "the scene comes from standard input: say with `-o FILE` where the picture goes"
+                        .to_owned(),
+                ));
+            }
+            None => return Ok(Self::File(scene.with_extension("png"), Format::Png)),
+        };
+        let format = format(path)?;
+        Ok(Self::File(path.to_owned(), format))
+    }
+
+    /// Whether the picture can be written there, as far as that can be known before; not in the place of the text that it is made of.
+    pub fn check(&self, text: Option<&Path>) -> Result<(), Trouble> {
+        match self {
+            Self::Standard if io::stdout().is_terminal() => Err(Trouble(
+                "standard output is a terminal, which shows no pictures: use `-o FILE`, or a pipe"
+                    .to_owned(),
+            )),
+            Self::Standard => Ok(()),
+            Self::File(path, _) => {
+                if text.is_some_and(|text| input::is_same_file(path, text)) {
+                    return Err(Trouble(format!(
+                        "{} is the scene itself: say with `-o FILE` where the picture goes",
+                        shown(path)
+                    )));
+                }
+                film::check_writable(path)
+                    .map_err(|error| Trouble(format!("cannot write to {self}: {error}")))
+            }
+        }
+    }
+
+    /// Writes the picture, unless `cancel` is set.
+    pub fn write(&self, film: &Film, recipe: &Recipe, cancel: &AtomicBool) -> io::Result<()> {
+        match self {
+            Self::Standard => film::write_stream(io::stdout().lock(), cancel, |out| {
+                film::write_png(film, recipe, out)
+            }),
+            Self::File(path, format) => film::write_whole(path, cancel, |out| match format {
+                Format::Png => film::write_png(film, recipe, out),
+                Format::Exr => film::write_exr(film, out),
+            }),
+        }
+    }
+
+    /// Says so where the picture should carry its scene and cannot.
+    pub fn warn_of_length(&self, recipe: &Recipe) {
+        let carries = !matches!(self, Self::File(_, Format::Exr));
+        if carries && !recipe.fits() {
+            output::warning(&format!(
+                "the scene and its overrides have more than 1 MiB of text, so {self} does not carry them"
+            ));
+        }
+    }
+}
+
+impl std::fmt::Display for Output {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::File(path, _) => f.write_str(&shown(path)),
+            Self::Standard => f.write_str("standard output"),
+        }
+    }
+}
+
+/// The format that a file's ending stands for.
+fn format(path: &Path) -> Result<Format, Trouble> {
+    let name = path.to_string_lossy().to_ascii_lowercase();
+    if name.ends_with(".png") {
+        Ok(Format::Png)
+    } else if name.ends_with(".exr") {
+        Ok(Format::Exr)
+    } else {
+        Err(Trouble(format!(
+            "the ending of {} stands for no format: a picture's file ends in .png or .exr",
+            shown(path)
+        )))
+    }
+}

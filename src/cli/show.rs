@@ -1,0 +1,221 @@
+//! A picture in the terminal, above what was said of it.
+//!
+//! Each cell shows two pixels, one above the other: a half block in the colour of the upper one on the colour of the lower one. That is
+//! coarse, but every terminal with colours can do it.
+
+use std::{
+    env,
+    fmt::Write,
+    io::{self, IsTerminal},
+};
+
+use pinhole::{area::Area, color::linear_to_srgb, film::Film};
+use terminal_size::{Height, Width, terminal_size_of};
+
+use super::{Trouble, output};
+
+/// What people see on standard error.
+pub struct Screen {
+    is_shown: bool,
+    /// The last picture, drawn.
+    picture: String,
+    /// What was said since the last change.
+    said: String,
+}
+
+impl Screen {
+    /// Whether pictures are shown is the user's wish; without a terminal it cannot be granted.
+    pub fn new(is_shown: bool) -> Result<Self, Trouble> {
+        if is_shown && !io::stderr().is_terminal() {
+            return Err(Trouble(
+                "`--show` draws in a terminal, and standard error is none".to_owned(),
+            ));
+        }
+        Ok(Self {
+            is_shown,
+            picture: String::new(),
+            said: String::new(),
+        })
+    }
+
+    /// Leaves the last picture alone on the screen.
+    pub fn begin(&mut self) {
+        self.said.clear();
+        self.refresh();
+    }
+
+    /// Says something.
+    pub fn say(&mut self, text: &str) {
+        self.said.push_str(text);
+        output::to_people(text);
+    }
+
+    /// The side in pixels of blocks about as coarse as the screen is for a picture of this size; `None` if pictures are not shown.
+    pub fn side(&self, whole: Area) -> Option<u32> {
+        let (columns, rows) = self.is_shown.then(size)?;
+        let scale = scale(whole.width as usize, whole.height as usize, columns, rows);
+        Some((scale as u32).max(1))
+    }
+
+    /// Shows a picture, and below it what was said.
+    pub fn draw(&mut self, film: &Film) {
+        if self.is_shown {
+            let (columns, rows) = size();
+            self.picture = drawn(film, columns, rows, has_all_colors());
+            self.refresh();
+        }
+    }
+
+    fn refresh(&self) {
+        if self.is_shown {
+            // The screen is not cleared first: what is drawn over does not flicker.
+            let Self { picture, said, .. } = self;
+            output::to_people(&format!("\x1b[H{picture}\x1b[J{said}"));
+        }
+    }
+}
+
+/// How many columns and rows of cells a picture may take: what is said needs some too.
+fn size() -> (usize, usize) {
+    let (columns, rows) = terminal_size_of(io::stderr())
+        .map_or((80, 24), |(Width(columns), Height(rows))| {
+            (usize::from(columns), usize::from(rows))
+        });
+    (columns.max(1), (rows * 3 / 4).max(1))
+}
+
+/// Whether the terminal says that it shows all colours; else it gets those of the 256 that are near.
+fn has_all_colors() -> bool {
+    env::var("COLORTERM").is_ok_and(|value| value == "truecolor" || value == "24bit")
+}
+
+/// A picture in so many cells at most, each line with its end.
+fn drawn(film: &Film, columns: usize, rows: usize, has_all_colors: bool) -> String {
+    let (width, height) = (film.width() as usize, film.height() as usize);
+    let scale = scale(width, height, columns, rows);
+    let dots =
+        |pixels: usize, most: usize| ((pixels as f64 / scale).round() as usize).clamp(1, most);
+    let (across, down) = (dots(width, columns), dots(height, 2 * rows));
+    let dot = |x: usize, y: usize| {
+        let columns = share(x, across, width);
+        mean(film, columns, share(y, down, height))
+    };
+    let mut text = String::new();
+    for y in (0..down).step_by(2) {
+        for x in 0..across {
+            push_color(&mut text, 38, dot(x, y), has_all_colors);
+            if y + 1 < down {
+                push_color(&mut text, 48, dot(x, y + 1), has_all_colors);
+            }
+            text.push('▀');
+        }
+        text.push_str("\x1b[0m\x1b[K\n");
+    }
+    text
+}
+
+/// Pixels per dot: a cell has two dots, which are about square.
+fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
+    (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
+}
+
+/// The pixels of one of `parts` parts: at least one.
+fn share(index: usize, parts: usize, pixels: usize) -> std::ops::Range<usize> {
+    let start = (index * pixels / parts).min(pixels - 1);
+    let end = ((index + 1) * pixels / parts).max(start + 1);
+    start..end.min(pixels)
+}
+
+/// The mean of some pixels, as bytes of sRGB.
+fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> [u8; 3] {
+    let count = (columns.len() * rows.len()) as f64;
+    let mut sum = [0.0; 3];
+    for y in rows {
+        for pixel in &film.row(y as u32)[columns.clone()] {
+            for (sum, channel) in sum.iter_mut().zip(pixel) {
+                *sum += channel;
+            }
+        }
+    }
+    sum.map(|sum| (linear_to_srgb(sum / count) * 255.0).round() as u8)
+}
+
+/// Sets the colour of what is written (38) or of what is behind it (48).
+fn push_color(text: &mut String, which: u8, [r, g, b]: [u8; 3], has_all_colors: bool) {
+    // Writing to a string does not fail.
+    let _ = match has_all_colors {
+        true => write!(text, "\x1b[{which};2;{r};{g};{b}m"),
+        false => write!(text, "\x1b[{which};5;{}m", nearest_of_256([r, g, b])),
+    };
+}
+
+/// The nearest of the colours 16 to 255 of a terminal: a cube of six levels a channel, and 24 greys.
+fn nearest_of_256(color: [u8; 3]) -> u8 {
+    const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+    let distance = |other: [u8; 3]| -> u32 {
+        let squares = color
+            .iter()
+            .zip(other)
+            .map(|(a, b)| u32::from(a.abs_diff(b)).pow(2));
+        squares.sum()
+    };
+    let nearest = color.map(|channel| {
+        let levels = (0u8..6).min_by_key(|&index| LEVELS[usize::from(index)].abs_diff(channel));
+        levels.unwrap_or_default()
+    });
+    let [r, g, b] = nearest;
+    let of_cube = (
+        distance(nearest.map(|index| LEVELS[usize::from(index)])),
+        16 + 36 * r + 6 * g + b,
+    );
+    let greys = (0u8..24).map(|index| (distance([8 + 10 * index; 3]), 232 + index));
+    greys.fold(of_cube, |best, grey| best.min(grey)).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_fits_and_keeps_its_proportions() {
+        let film = |width, height| Film::from_fn(width, height, |_, _| [0.5; 3]).unwrap();
+        for (width, height, columns, rows, across, lines) in [
+            (1280, 720, 80, 24, 80, 23),
+            (1280, 720, 200, 20, 71, 20),
+            (100, 100, 80, 24, 48, 24),
+            (1, 1, 10, 10, 10, 5),
+            (1000, 1, 10, 10, 10, 1),
+            (1, 1000, 10, 10, 1, 10),
+        ] {
+            let text = drawn(&film(width, height), columns, rows, true);
+            assert_eq!(text.lines().count(), lines, "{width} × {height}");
+            for line in text.lines() {
+                assert_eq!(line.matches('▀').count(), across, "{width} × {height}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_dot_is_the_mean_of_its_pixels_in_linear_light() {
+        let film = Film::from_fn(4, 4, |x, y| match (x + y) % 2 {
+            0 => [1.0, 0.0, 1.0],
+            _ => [0.0; 3],
+        });
+        let text = drawn(&film.unwrap(), 2, 1, true);
+        let cell = "\x1b[38;2;188;0;188m\x1b[48;2;188;0;188m▀";
+        assert_eq!(text, format!("{cell}{cell}\x1b[0m\x1b[K\n"));
+    }
+
+    #[test]
+    fn the_nearest_of_256_colours() {
+        for (color, nearest) in [
+            ([0, 0, 0], 16),
+            ([255, 255, 255], 231),
+            ([255, 0, 0], 196),
+            ([128, 128, 128], 244),
+            ([128, 128, 0], 100),
+        ] {
+            assert_eq!(nearest_of_256(color), nearest, "{color:?}");
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! `watch`: a scene is rendered whenever its file is saved.
+
+use std::{
+    fs,
+    num::NonZero,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, RecvTimeoutError},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use pinhole::{
+    area::Area,
+    film::SIGNATURE,
+    preview, refine,
+    render::{Control, RenderError},
+    scene::{self, Scene},
+    tracer::World,
+};
+
+use super::{
+    Status, Trouble,
+    args::WatchArgs,
+    input::{self, Input, shown},
+    interrupt::Interrupt,
+    output,
+    picture::{Output, Picture, picture, threads},
+    show::Screen,
+};
+
+/// Renders at the start and after every save, until Ctrl-C.
+pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    let start = Instant::now();
+    let output = output(args)?;
+    check_scene(&args.scene)?;
+    output.check(Some(&args.scene))?;
+    let mut screen = Screen::new(args.show)?;
+    let scene = shown(&args.scene);
+    let latest = preview::watch(&args.scene, input::bytes)
+        .map_err(|error| Trouble(format!("cannot watch the folder of {scene}: {error}")))?;
+    let ended = Arc::clone(&latest);
+    interrupt.then(move || ended.end());
+    screen.say(&format!("watching {scene}; Ctrl-C ends it\n"));
+    let mut is_first = true;
+    while let Some(content) = latest.take() {
+        if !is_first {
+            screen.begin();
+        }
+        let made = content
+            .bytes
+            .map_err(|error| Trouble(format!("cannot read {scene}: {error}")))
+            .and_then(|bytes| make(args, bytes, &output, latest.stale(), &mut screen));
+        match made {
+            Ok(None) => {}
+            Ok(Some(done)) => {
+                let (since, what) = match is_first {
+                    true => (start, "after the start"),
+                    false => (content.since, "after the save"),
+                };
+                let time = time(done.duration_since(since));
+                screen.say(&format!("wrote {output} {time} {what}\n"));
+            }
+            // Whatever it is, the next save may find it gone.
+            Err(trouble) => output::error(&trouble),
+        }
+        is_first = false;
+    }
+    Ok(Status::Interrupted)
+}
+
+/// The file that the picture goes to.
+fn output(args: &WatchArgs) -> Result<Output, Trouble> {
+    if input::is_standard(&args.scene) {
+        return Err(Trouble(
+            "standard input cannot be watched: it is read once; give a file".to_owned(),
+        ));
+    }
+    match Output::of(&args.scene, args.output.as_deref())? {
+        Output::Standard => Err(Trouble(
+            "standard output holds one picture, and watch writes one after every save: give a file"
+                .to_owned(),
+        )),
+        file => Ok(file),
+    }
+}
+
+/// What can be known at the start: later, files come and go.
+fn check_scene(scene: &Path) -> Result<(), Trouble> {
+    let cannot_read = |error| Trouble(format!("cannot read {}: {error}", shown(scene)));
+    let found = fs::metadata(scene).map_err(cannot_read)?;
+    if !found.is_file() {
+        return Err(Trouble(format!("{} is not a file", shown(scene))));
+    }
+    check_text(scene, &input::bytes(scene).map_err(cannot_read)?)
+}
+
+fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
+    match bytes.starts_with(&SIGNATURE) {
+        false => Ok(()),
+        true => Err(Trouble(format!(
+            "{} is a picture, and what is watched is a text that somebody edits: `render` takes pictures",
+            shown(scene)
+        ))),
+    }
+}
+
+/// Makes the picture of a text; answers when it was written. None is made of a text with mistakes, nor when there is a newer one.
+fn make(
+    args: &WatchArgs,
+    bytes: Vec<u8>,
+    output: &Output,
+    is_stale: &AtomicBool,
+    screen: &mut Screen,
+) -> Result<Option<Instant>, Trouble> {
+    check_text(&args.scene, &bytes)?;
+    let input = Input::of(&args.scene, bytes, &args.overrides);
+    let reading = scene::read(&input.sources);
+    screen.say(&input.report(&reading));
+    let Some(scene) = reading.scene else {
+        return Ok(None);
+    };
+    let picture = match with_sketch(&scene, threads(args.threads), is_stale, screen) {
+        Ok(picture) => picture,
+        Err(RenderError::Cancelled) => return Ok(None),
+        Err(error) => return Err(Trouble(error.to_string())),
+    };
+    let recipe = input.recipe(None);
+    // The picture must not take the place of the scene, should a link lead there by now.
+    output.check(Some(&args.scene))?;
+    if let Err(error) = output.write(picture.film(), &recipe, is_stale) {
+        if is_stale.load(Ordering::SeqCst) {
+            return Ok(None);
+        }
+        return Err(Trouble(format!("cannot write to {output}: {error}")));
+    }
+    let done = Instant::now();
+    screen.draw(picture.film());
+    output.warn_of_length(&recipe);
+    screen.say(&picture.notes(output));
+    Ok(Some(done))
+}
+
+/// A picture that takes longer is shown as a sketch first.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// Renders the scene, and shows a coarse picture where people would wait.
+fn with_sketch(
+    scene: &Scene,
+    threads: Option<NonZero<usize>>,
+    is_stale: &AtomicBool,
+    screen: &mut Screen,
+) -> Result<Picture, RenderError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let world = World::new(scene);
+    let Some(side) = screen.side(whole) else {
+        return picture(scene, &world, whole, threads, is_stale);
+    };
+    thread::scope(|scope| {
+        let (done, wait) = mpsc::channel::<()>();
+        scope.spawn({
+            let world = &world;
+            move || {
+                if wait.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+                    return;
+                }
+                let control = Control {
+                    threads,
+                    progress: &|_| {},
+                    cancel: is_stale,
+                };
+                if let Ok(sketch) = refine::coarse(world, whole, side, &control) {
+                    screen.draw(&sketch.film);
+                }
+            }
+        });
+        let picture = picture(scene, &world, whole, threads, is_stale);
+        drop(done);
+        picture
+    })
+}
+
+/// A time that somebody waited.
+fn time(waited: Duration) -> String {
+    match waited.as_secs_f64() {
+        seconds if seconds < 1.0 => format!("{:.0} ms", seconds * 1e3),
+        seconds => format!("{seconds:.2} s"),
+    }
+}

@@ -1,0 +1,137 @@
+//! Ways out of a problem that a program can take: edits of the text.
+
+use crate::source::{SourceId, Sources, Span};
+
+/// A problem that knows what could be done about it.
+pub trait Fixable: miette::Diagnostic {
+    /// The ways out that are edits, the likeliest first. None of them needs another one.
+    fn fixes(&self, sources: &Sources) -> Vec<Fix>;
+}
+
+/// One way out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fix {
+    /// What it does, as a request: "write `30deg`".
+    pub title: String,
+    /// What has to be changed; the places do not overlap.
+    pub edits: Vec<Edit>,
+}
+
+/// A change of a text. As spans do, it says which: the file, or a `--set` argument.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// What is replaced; an empty span is a place to insert at.
+    pub span: Span,
+    /// What stands there afterwards.
+    pub text: String,
+}
+
+impl Fix {
+    /// A way out that takes these edits.
+    pub fn new(title: impl Into<String>, edits: impl IntoIterator<Item = Edit>) -> Self {
+        let mut edits: Vec<Edit> = edits.into_iter().collect();
+        edits.sort_by_key(|edit| edit.span);
+        Self {
+            title: title.into(),
+            edits,
+        }
+    }
+
+    /// Writes something else in a place; the title is what is written.
+    pub fn write(span: Span, text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self::new(format!("write `{text}`"), [Edit::new(span, text)])
+    }
+
+    /// Takes away what stands in a place.
+    pub fn remove(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
+        Self::new(title, [Edit::remove(span, sources)])
+    }
+}
+
+impl Edit {
+    /// Replaces what stands in a place.
+    pub fn new(span: Span, text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self { span, text }
+    }
+
+    /// Inserts before a byte of the text.
+    pub fn insert(source: SourceId, at: usize, text: impl Into<String>) -> Self {
+        Self::new(Span::new(source, at, at), text)
+    }
+
+    /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the blanks on one side too.
+    /// What stood on both sides of it stays apart.
+    pub fn remove(span: Span, sources: &Sources) -> Self {
+        let Span { source, start, end } = span;
+        let text = sources.get(source).text();
+        let (before, after) = (
+            text.get(..start).unwrap_or_default(),
+            text.get(end..).unwrap_or_default(),
+        );
+        let blank = [' ', '\t'];
+        let (outer, rest) = (
+            before.trim_end_matches(blank),
+            after.trim_start_matches(blank),
+        );
+        let line_starts = outer.is_empty() || outer.ends_with(['\n', '\u{feff}']);
+        let line_ends = rest.is_empty() || rest.starts_with(['\n', '\r']);
+        if line_starts && line_ends {
+            let line_end = rest.find('\n').map_or(rest.len(), |at| at + 1);
+            let to = text.len() - rest.len() + line_end;
+            return Self::new(Span::new(source, outer.len(), to), "");
+        }
+        if line_starts || outer.ends_with(['{', '(', '[']) {
+            return Self::new(Span::new(source, start, text.len() - rest.len()), "");
+        }
+        let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
+        let joins = outer.ends_with(is_word) && after.starts_with(is_word);
+        let text = if joins { " " } else { "" };
+        Self::new(Span::new(source, outer.len(), end), text)
+    }
+}
+
+/// A text with the edits of a fix that are for it.
+pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
+    let mut applied = String::with_capacity(text.len());
+    let mut at = 0;
+    for edit in fix.edits.iter().filter(|edit| edit.span.source == source) {
+        applied.push_str(text.get(at..edit.span.start).unwrap_or_default());
+        applied.push_str(&edit.text);
+        at = edit.span.end.max(at);
+    }
+    applied.push_str(text.get(at..).unwrap_or_default());
+    applied
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    #[test]
+    fn what_is_removed_leaves_no_gap() {
+        let cases = [
+            ("a\n  [b 1]\nc", "a\nc"),
+            ("a\n  [b 1]", "a\n"),
+            ("\u{feff}[b 1]\r\nc", "\u{feff}c"),
+            ("{ a 1  [b 1]  c 1 }", "{ a 1  c 1 }"),
+            ("{ [b 1]  c 1 }", "{ c 1 }"),
+            ("{ a 1  [b 1] }", "{ a 1 }"),
+            ("a 1[;]b 2", "a 1 b 2"),
+            ("a [=] 2", "a 2"),
+            ("a[=]2", "a 2"),
+            ("(1, 2[,])", "(1, 2)"),
+            ("  [b 1]  // why\nc", "  // why\nc"),
+        ];
+        for (text, expected) in cases {
+            let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
+            let text = text.replace(['[', ']'], "");
+            let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
+            let span = Span::new(SourceId::File, start, end);
+            let fix = Fix::remove("remove it", span, &sources);
+            assert_eq!(apply(&fix, SourceId::File, &text), expected);
+        }
+    }
+}

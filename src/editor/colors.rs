@@ -1,0 +1,122 @@
+//! The colours that stand in a text, and how another one is written in their place.
+//!
+//! A colour is written back in the spelling that was there: a name as a name if the new colour has one, a code with as many digits if
+//! they can say it, `rgb(…)` as numbers; capital letters stay.
+
+use super::{Analysis, words::Role};
+use crate::{
+    color::Color,
+    numbers,
+    scene::{Value, css},
+    source::Span,
+    syntax::tree::{self, ValueKind},
+};
+
+/// A colour in the text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swatch {
+    /// Its name, its code, or the call of `rgb`.
+    pub span: Span,
+    /// The colour.
+    pub color: Color,
+}
+
+/// Every colour that is written out in the text, in order.
+pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
+    let mut swatches = Vec::new();
+    for definition in analysis.survey.definitions() {
+        collect(analysis, &definition.value, &mut swatches);
+    }
+    for block in analysis.blocks() {
+        for field in &block.fields {
+            // The words of methods are none, whatever they are called.
+            collect(analysis, &field.value, &mut swatches);
+        }
+    }
+    swatches.sort_by_key(|swatch| swatch.span.start);
+    swatches
+}
+
+fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut Vec<Swatch>) {
+    let is_color = match &value.kind {
+        ValueKind::ColorCode(_) => true,
+        ValueKind::Name(name) => css::color(name).is_some(),
+        ValueKind::Call(call) => call.function.text == "rgb",
+        _ => false,
+    };
+    if is_color && let Some(Value::Color(color)) = analysis.survey.value(value, None) {
+        let span = value.span;
+        swatches.push(Swatch { span, color });
+        return;
+    }
+    for part in value.parts() {
+        collect(analysis, part, swatches);
+    }
+}
+
+/// How a colour could be written in the place of another, the spelling of that first.
+pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
+    let written = analysis.slice(span);
+    let own = match analysis.token_at(span.start).map(|token| token.role) {
+        Some(Role::ColorCode) => like_code(written, color),
+        Some(Role::Function) => rgb(color),
+        Some(Role::Name) => like_name(written, color).unwrap_or_else(|| color.to_string()),
+        _ => color.to_string(),
+    };
+    let mut presentations = vec![own];
+    let others = [
+        name(color).map(str::to_owned),
+        Some(color.to_string()),
+        Some(rgb(color)),
+    ];
+    for other in others.into_iter().flatten() {
+        let is_new = |written: &String| !written.eq_ignore_ascii_case(&other);
+        if presentations.iter().all(is_new) {
+            presentations.push(other);
+        }
+    }
+    presentations
+}
+
+/// A code with as many digits, if they can say it, in the letters that were there.
+fn like_code(written: &str, color: Color) -> String {
+    let code = color.to_string();
+    let digits: Vec<char> = code.chars().skip(1).collect();
+    let is_short = written.len() == 4;
+    let pairs = digits.chunks(2);
+    let can_be_short = pairs.clone().all(|pair| pair.first() == pair.last());
+    let code: String = match is_short && can_be_short {
+        true => pairs.filter_map(|pair| pair.first()).collect(),
+        false => digits.iter().collect(),
+    };
+    match is_upper(written) {
+        true => format!("#{}", code.to_ascii_uppercase()),
+        false => format!("#{code}"),
+    }
+}
+
+fn like_name(written: &str, color: Color) -> Option<String> {
+    let name = name(color)?;
+    Some(match is_upper(written) {
+        true => name.to_ascii_uppercase(),
+        false => name.to_owned(),
+    })
+}
+
+/// The name of a colour, if it has one; of several the first in the alphabet, and American `gray`.
+fn name(color: Color) -> Option<&'static str> {
+    let bytes = color.to_bytes();
+    let is_it = |name: &&str| css::color(name).is_some_and(|named| named.to_bytes() == bytes);
+    css::names().find(is_it)
+}
+
+fn rgb(color: Color) -> String {
+    let [r, g, b] = color.srgb.map(numbers::short);
+    format!("rgb({r}, {g}, {b})")
+}
+
+/// Whether the letters of a word are capitals, those that there are.
+fn is_upper(written: &str) -> bool {
+    let has_letters = written.contains(|c: char| c.is_ascii_alphabetic());
+    has_letters && !written.contains(|c: char| c.is_ascii_lowercase())
+}

@@ -1,0 +1,401 @@
+//! What could be typed at a place.
+//!
+//! What is offered follows from what stands before the place, not from a tree: the text around a place where somebody types is
+//! seldom right. A field or a block comes with a value that it can have, to type over.
+
+use super::{
+    Analysis, hover,
+    signature::{bare, label},
+    words::{Expected, Role, Situation},
+};
+use crate::{
+    color::Color,
+    scene::{
+        Value, css, example_call,
+        schema::{self, Field, Function, Kind, Preset, Type},
+    },
+    source::Span,
+};
+
+/// Something that could be typed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Completion {
+    /// What it is called; what is typed is compared with it.
+    pub label: String,
+    /// What sort of thing it is.
+    pub kind: CompletionKind,
+    /// A few words about it: its type, its value.
+    pub detail: String,
+    /// What it is, in Markdown.
+    pub help: String,
+    /// What is put in.
+    pub insert: Vec<Piece>,
+    /// What that takes the place of.
+    pub replaces: Span,
+    /// What fits better has a smaller number.
+    pub rank: u8,
+}
+
+/// The sorts of what could be typed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CompletionKind {
+    /// `let`
+    Keyword,
+    /// A whole block.
+    Block,
+    /// A field.
+    Field,
+    /// A `let`'s name.
+    Definition,
+    /// A function.
+    Function,
+    /// A sampling method.
+    Method,
+    /// `pi`, `deg`, `rad`.
+    Constant,
+    /// A named colour.
+    Color(Color),
+    /// A value written out.
+    Value,
+}
+
+/// A piece of what is put in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// As it is.
+    Text(String),
+    /// A value to type over.
+    Hole(String),
+}
+
+/// Everything that could be typed at a place, what fits best first.
+pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
+    let Some(situation) = analysis.situation(at) else {
+        return Vec::new();
+    };
+    let mut completions = match situation.expected {
+        Expected::Item => items(analysis, &situation),
+        Expected::Field => fields(&situation),
+        Expected::Value => values(analysis, &situation),
+        Expected::Definition | Expected::Head => Vec::new(),
+    };
+    completions.sort_by(|a, b| (a.rank, &a.label).cmp(&(b.rank, &b.label)));
+    completions
+}
+
+fn text(text: impl Into<String>) -> Piece {
+    Piece::Text(text.into())
+}
+
+fn hole(value: impl Into<String>) -> Piece {
+    Piece::Hole(value.into())
+}
+
+/// `let`, and the blocks that there may still be.
+fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
+    let is_there = |row: &schema::Block| {
+        let kinds = analysis.tokens.iter();
+        let mut kinds = kinds.filter(|token| token.role == Role::Kind);
+        kinds.any(|kind| kind.span != situation.word && analysis.slice(kind.span) == row.name)
+    };
+    // Where the rest is there already, the word is all that is wanted.
+    let next = situation.next.map(|next| next.role);
+    let goes_on = matches!(next, Some(Role::Open | Role::ObjectName));
+    let rows = schema::BLOCKS.iter();
+    let rows = rows.filter(|row| row.is_object || !is_there(row));
+    let mut completions: Vec<Completion> = rows
+        .map(|row| Completion {
+            label: row.name.to_owned(),
+            kind: CompletionKind::Block,
+            detail: row.help.to_owned(),
+            help: hover::about_block(row),
+            insert: match goes_on {
+                true => vec![text(row.name)],
+                false => block_with_fields(row),
+            },
+            replaces: situation.word,
+            // A scene without a camera is none.
+            rank: u8::from(row.kind != Kind::Camera),
+        })
+        .collect();
+    completions.push(Completion {
+        label: "let".to_owned(),
+        kind: CompletionKind::Keyword,
+        detail: "gives a value a name".to_owned(),
+        help: hover::ABOUT_LET.to_owned(),
+        insert: vec![text("let "), hole("name"), text(" = "), hole("1")],
+        replaces: situation.word,
+        rank: 2,
+    });
+    completions
+}
+
+/// A block with the fields that it needs: in one line if that is one.
+fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
+    let least = row.least_fields();
+    let (open, between, close) = match least.len() {
+        0 | 1 => (" { ", "  ", " }"),
+        _ => (" {\n  ", "\n  ", "\n}"),
+    };
+    let mut pieces = vec![text(format!("{}{open}", row.name))];
+    for (index, field) in least.iter().enumerate() {
+        if index > 0 {
+            pieces.push(text(between));
+        }
+        pieces.push(text(format!("{} ", field.name)));
+        pieces.extend(value_to_type_over(field));
+    }
+    if least.is_empty() {
+        pieces.push(hole(""));
+    }
+    pieces.push(text(close));
+    pieces
+}
+
+/// The parts of a vector are typed over one by one.
+fn value_to_type_over(field: &Field) -> Vec<Piece> {
+    let example = field.example();
+    let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
+    let Some(inner) = inner else {
+        return vec![hole(example)];
+    };
+    let mut pieces = vec![text("(")];
+    for (index, part) in inner.split(", ").enumerate() {
+        if index > 0 {
+            pieces.push(text(", "));
+        }
+        pieces.push(hole(part));
+    }
+    pieces.push(text(")"));
+    pieces
+}
+
+/// The fields that the block may still be given.
+fn fields(situation: &Situation) -> Vec<Completion> {
+    let Some(row) = situation.block else {
+        return Vec::new();
+    };
+    let is_open = |field: &&Field| {
+        let given = &situation.given;
+        let is_excluded = |given: &&str| field.excludes.contains(given);
+        !given.contains(&field.name) && !given.iter().any(is_excluded)
+    };
+    let value_follows = situation.next.is_some_and(|next| {
+        let starts_value = matches!(
+            next.role,
+            Role::Number
+                | Role::ColorCode
+                | Role::OpenList
+                | Role::Name
+                | Role::Function
+                | Role::Method
+        );
+        starts_value && !situation.word.range().is_empty()
+    });
+    let fields = row.fields.iter().filter(is_open);
+    let fields = fields.map(|field| {
+        let mut insert = vec![text(field.name)];
+        if !value_follows {
+            insert = vec![text(format!("{} ", field.name))];
+            insert.extend(value_to_type_over(field));
+        }
+        Completion {
+            label: field.name.to_owned(),
+            kind: CompletionKind::Field,
+            detail: match field.preset {
+                Preset::Value(literal) => format!("{}, {literal} by default", bare(field.takes)),
+                Preset::Required => format!("{}, required", bare(field.takes)),
+                Preset::Alternative | Preset::Nothing => bare(field.takes).to_owned(),
+            },
+            help: hover::about_field(row, field),
+            insert,
+            replaces: situation.word,
+            rank: match field.preset {
+                Preset::Required => 0,
+                Preset::Alternative => 1,
+                Preset::Value(_) | Preset::Nothing => 2,
+            },
+        }
+    });
+    fields.collect()
+}
+
+/// Values and parts of values.
+fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
+    if situation.wanted == Some(Type::Method) {
+        return methods(situation);
+    }
+    let wanted = situation.wanted;
+    let is_color = wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors));
+    let mut completions: Vec<Completion> = written_out(situation).into_iter().collect();
+    completions.extend(definitions(analysis, situation, is_color));
+    completions.extend(functions(situation, is_color));
+    if is_color != Some(true) {
+        completions.extend(constants(situation));
+    }
+    if is_color != Some(false) {
+        completions.extend(colors(situation));
+    }
+    completions
+}
+
+fn methods(situation: &Situation) -> Vec<Completion> {
+    let methods = schema::METHODS.iter();
+    let methods = methods.map(|(method, help)| Completion {
+        label: method.name().to_owned(),
+        kind: CompletionKind::Method,
+        detail: (*help).to_owned(),
+        help: (*help).to_owned(),
+        insert: vec![text(method.name())],
+        replaces: situation.word,
+        rank: 0,
+    });
+    methods.collect()
+}
+
+/// A value such as the field can have, to type over; only where the whole value is still to come.
+fn written_out(situation: &Situation) -> Option<Completion> {
+    let field = situation.field.filter(|_| !situation.is_nested)?;
+    if !situation.word.range().is_empty() {
+        return None;
+    }
+    let example = field.example();
+    Some(Completion {
+        label: example,
+        kind: CompletionKind::Value,
+        detail: match field.preset {
+            Preset::Value(_) => "the default".to_owned(),
+            _ => bare(field.takes).to_owned(),
+        },
+        help: field.help.to_owned(),
+        insert: value_to_type_over(field),
+        replaces: situation.word,
+        rank: 0,
+    })
+}
+
+/// The `let`s that are defined before the place.
+fn definitions(
+    analysis: &Analysis<'_>,
+    situation: &Situation,
+    is_color: Option<bool>,
+) -> Vec<Completion> {
+    let mut completions = Vec::new();
+    for definition in analysis.survey.definitions() {
+        let Some(name) = definition.name else {
+            continue;
+        };
+        let is_own = situation.field.is_none() && situation.defining == Some(name.span);
+        let is_before = definition.span.end <= situation.word.start && !is_own;
+        let first = analysis.survey.definition_at(name.text, usize::MAX);
+        let is_first = first.is_some_and(|first| first.span == definition.span);
+        if !is_before || !is_first {
+            continue;
+        }
+        let value = analysis.survey.defined(definition);
+        let kind = value.map(|value| value.kind());
+        let fits = match (is_color, kind) {
+            (Some(is_color), Some(kind)) => is_color == matches!(kind, Type::Color | Type::Colors),
+            _ => true,
+        };
+        if !fits {
+            continue;
+        }
+        completions.push(Completion {
+            label: name.text.to_owned(),
+            kind: match value {
+                Some(Value::Color(color)) => CompletionKind::Color(color),
+                _ => CompletionKind::Definition,
+            },
+            detail: value.map(|value| value.to_string()).unwrap_or_default(),
+            help: hover::about_definition(analysis, definition),
+            insert: vec![text(name.text)],
+            replaces: situation.word,
+            rank: rank(situation, kind),
+        });
+    }
+    completions
+}
+
+fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
+    let gives_color = |function: &&Function| function.gives == Type::Color;
+    let functions = schema::FUNCTIONS.iter();
+    let functions = functions.filter(|function| match is_color {
+        Some(is_color) => gives_color(function) == is_color,
+        None => true,
+    });
+    let is_called = situation
+        .next
+        .is_some_and(|next| next.role == Role::OpenList && next.span.start == situation.word.end);
+    let functions = functions.map(|function| Completion {
+        label: function.name.to_owned(),
+        kind: CompletionKind::Function,
+        detail: label(function).0,
+        help: hover::about_function(function),
+        insert: match is_called {
+            true => vec![text(function.name)],
+            false => call_to_type_over(function),
+        },
+        replaces: situation.word,
+        rank: rank(situation, Some(function.gives)) + 2,
+    });
+    functions.collect()
+}
+
+fn call_to_type_over(function: &Function) -> Vec<Piece> {
+    let example = example_call(function);
+    let arguments = example.strip_prefix(function.name).unwrap_or_default();
+    let arguments = arguments
+        .strip_prefix('(')
+        .and_then(|a| a.strip_suffix(')'));
+    let arguments = arguments.unwrap_or_default();
+    let is_vector = function.takes.contains(&Type::Vector);
+    let mut pieces = vec![text(format!("{}(", function.name))];
+    // Vectors have commas of their own.
+    let separator = if is_vector { "), " } else { ", " };
+    for (index, argument) in arguments.split(separator).enumerate() {
+        if index > 0 {
+            pieces.push(text(", "));
+        }
+        let is_cut = is_vector && !argument.ends_with(')');
+        pieces.push(hole(match is_cut {
+            true => format!("{argument})"),
+            false => argument.to_owned(),
+        }));
+    }
+    pieces.push(text(")"));
+    pieces
+}
+
+fn constants(situation: &Situation) -> Vec<Completion> {
+    let constants = schema::CONSTANTS.iter();
+    let constants = constants.map(|(name, help)| Completion {
+        label: (*name).to_owned(),
+        kind: CompletionKind::Constant,
+        detail: (*help).to_owned(),
+        help: (*help).to_owned(),
+        insert: vec![text(*name)],
+        replaces: situation.word,
+        rank: 5,
+    });
+    constants.collect()
+}
+
+fn colors(situation: &Situation) -> Vec<Completion> {
+    let colors = css::names().filter_map(|name| Some((name, css::color(name)?)));
+    let colors = colors.map(|(name, color)| Completion {
+        label: name.to_owned(),
+        kind: CompletionKind::Color(color),
+        detail: color.to_string(),
+        help: hover::about_color(color),
+        insert: vec![text(name)],
+        replaces: situation.word,
+        rank: if situation.wanted.is_some() { 2 } else { 6 },
+    });
+    colors.collect()
+}
+
+/// What is of the type that would fit comes first.
+fn rank(situation: &Situation, kind: Option<Type>) -> u8 {
+    u8::from(situation.wanted.is_some() && kind != situation.wanted) + 1
+}

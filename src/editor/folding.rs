@@ -1,0 +1,63 @@
+//! What can be folded away: blocks, and runs of comments.
+
+use super::Analysis;
+use crate::source::Span;
+
+/// Lines that can be folded to the first of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fold {
+    /// From the first line's text to the last one's end.
+    pub span: Span,
+    /// What they are.
+    pub kind: FoldKind,
+}
+
+/// What is folded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoldKind {
+    /// A block.
+    Block,
+    /// A comment, or several without anything between.
+    Comment,
+}
+
+/// Everything that can be folded: what takes more than one line.
+pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
+    let takes_lines = |span: &Span| span.end > span.start && analysis.slice(*span).contains('\n');
+    let blocks = analysis.blocks().map(|block| block.span);
+    let blocks = blocks.filter(takes_lines).map(|span| Fold {
+        span,
+        kind: FoldKind::Block,
+    });
+    let comments = runs_of_comments(analysis).into_iter();
+    let comments = comments.filter(takes_lines).map(|span| Fold {
+        span,
+        kind: FoldKind::Comment,
+    });
+    let mut folds: Vec<Fold> = blocks.chain(comments).collect();
+    folds.sort_by_key(|fold| fold.span.start);
+    folds
+}
+
+/// Comments that stand in lines of their own, one line after the other.
+fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
+    let mut runs: Vec<Span> = Vec::new();
+    for comment in analysis.comments() {
+        let source = analysis.source();
+        let start = source.line_range(analysis.line(*comment)).start;
+        let before = source.slice(start..comment.start);
+        let is_alone = before.trim_start_matches('\u{feff}').trim().is_empty();
+        match runs.last_mut() {
+            Some(run) if is_alone && is_next_line(source.slice(run.end..comment.start)) => {
+                run.end = comment.end;
+            }
+            _ => runs.push(*comment),
+        }
+    }
+    runs
+}
+
+/// Whether nothing but the end of one line stands between two comments.
+fn is_next_line(between: &str) -> bool {
+    between.trim().is_empty() && between.matches('\n').count() == 1
+}

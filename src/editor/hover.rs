@@ -1,0 +1,331 @@
+//! What the word at a place means.
+
+use super::{
+    Analysis,
+    analysis::Path,
+    signature::{bare, label},
+    words::{Role, Token},
+};
+use crate::{
+    color::Color,
+    explain, inspect,
+    math::Angle,
+    numbers::{short, short_vector},
+    scene::{
+        Value, css,
+        schema::{self, Block, Field, Function, Kind, Preset},
+    },
+    source::Span,
+    suggest,
+    syntax::{
+        shorten,
+        tree::{self, Definition, ValueKind},
+    },
+};
+
+/// What a place means.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hover {
+    /// The text that it is about.
+    pub span: Span,
+    /// What there is to say, in Markdown.
+    pub markdown: String,
+    /// The colours that it is about.
+    pub colors: Vec<Color>,
+}
+
+/// What the word at a place means; and where something is wrong with it, which page says more about that.
+pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
+    let meaning = meaning(analysis, at);
+    let Some((span, more)) = mistake(analysis, at) else {
+        return meaning;
+    };
+    let mut hover = meaning.unwrap_or(Hover {
+        span,
+        markdown: String::new(),
+        colors: Vec::new(),
+    });
+    if !hover.markdown.is_empty() {
+        hover.markdown.push_str("\n\n");
+    }
+    hover.markdown.push_str(&more);
+    Some(hover)
+}
+
+/// The place of a problem, and the command that explains it.
+fn mistake(analysis: &Analysis<'_>, at: usize) -> Option<(Span, String)> {
+    let mut found = analysis.diagnostics().iter().filter_map(|diagnostic| {
+        let span = diagnostic.labels.first()?.span;
+        let holds = span.start <= at && at <= span.end && !span.range().is_empty();
+        holds.then_some((span, explain::page(&diagnostic.code)?))
+    });
+    let (span, page) = found.next()?;
+    let code = explain::short(page.code);
+    Some((span, format!("{}: `pinhole explain {code}`", page.title())))
+}
+
+fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
+    let token = analysis.token_at(at)?;
+    let path = analysis.path(at);
+    let word = analysis.slice(token.span);
+    let plain = |markdown: String| Hover {
+        span: token.span,
+        markdown,
+        colors: Vec::new(),
+    };
+    match token.role {
+        Role::Let => Some(plain(ABOUT_LET.to_owned())),
+        Role::Kind => Some(plain(kind(analysis, schema::block(word)?))),
+        Role::ObjectName => Some(plain(object(analysis, &path)?)),
+        Role::Field => {
+            let row = path.row()?;
+            Some(plain(about_field(row, row.field(word)?)))
+        }
+        Role::Method => {
+            let mut methods = schema::METHODS.iter();
+            let (_, help) = methods.find(|(method, _)| method.name() == word)?;
+            Some(plain(format!("`{word}`: {help}")))
+        }
+        Role::Defined => {
+            let definition = path.definition?;
+            let color = analysis.survey.defined(definition);
+            Some(Hover {
+                span: token.span,
+                markdown: about_definition(analysis, definition),
+                colors: colors(color),
+            })
+        }
+        _ => value(analysis, &path, token),
+    }
+}
+
+/// What `let` does.
+pub(super) const ABOUT_LET: &str =
+    "`let NAME = VALUE` gives a value a name, for what stands further down.";
+
+/// A kind of block, and its fields.
+pub(super) fn about_block(row: &Block) -> String {
+    let mut text = format!("`{}`: {}\n", row.name, row.help);
+    for field in row.fields {
+        text += &format!(
+            "\n- `{}` {}: {}",
+            field.name,
+            kind_and_preset(field),
+            field.help
+        );
+    }
+    text
+}
+
+/// A field: what it is, what it takes, what it is if not given, and what it must be.
+pub(super) fn about_field(row: &Block, field: &Field) -> String {
+    let mut text = format!(
+        "`{}` of {}: {}\n\n{}",
+        field.name,
+        row.noun,
+        field.help,
+        kind_and_preset(field)
+    );
+    if !field.must.is_empty() {
+        let must: Vec<String> = field.must.iter().map(ToString::to_string).collect();
+        text += &format!(
+            "; must be {}",
+            suggest::list(must.iter().map(String::as_str))
+        );
+    }
+    if !field.excludes.is_empty() {
+        let others: Vec<String> = field
+            .excludes
+            .iter()
+            .map(|name| format!("`{name}`"))
+            .collect();
+        let others = suggest::choice(others.iter().map(String::as_str));
+        text += &format!("; not together with {others}");
+    }
+    text
+}
+
+fn kind_and_preset(field: &Field) -> String {
+    let kind = bare(field.takes);
+    match field.preset {
+        Preset::Value(literal) => format!("({kind}, `{literal}` by default)"),
+        Preset::Required => format!("({kind}, required)"),
+        Preset::Alternative | Preset::Nothing => format!("({kind})"),
+    }
+}
+
+/// A function: how it is called, and what it is.
+pub(super) fn about_function(function: &Function) -> String {
+    format!("`{}`: {}", label(function).0, function.help)
+}
+
+/// A colour in all its spellings.
+pub(super) fn about_color(color: Color) -> String {
+    let [r, g, b] = color.srgb.map(short);
+    let [red, green, blue] = color.to_linear().map(short);
+    format!("`{color}`, `rgb({r}, {g}, {b})`; in linear light ({red}, {green}, {blue})")
+}
+
+/// A `let`: where it is defined, and its value.
+pub(super) fn about_definition<'s>(analysis: &Analysis<'s>, definition: &Definition<'s>) -> String {
+    let name = definition.name.map_or("", |name| name.text);
+    let written = shorten(analysis.slice(definition.value.span));
+    let line = analysis.line(definition.span);
+    let value = match analysis.survey.defined(definition) {
+        Some(value) => described(value),
+        None => "it has no value: see what is reported there".to_owned(),
+    };
+    format!("`let {name} = {written}` (line {line})\n\n{value}")
+}
+
+/// A value with its type.
+fn described(value: Value) -> String {
+    let noun = value.kind().noun();
+    match value {
+        Value::Color(color) => format!("{noun}: {}", about_color(color)),
+        Value::Colors(colors) => {
+            let [first, second] = colors.map(about_color);
+            format!("{noun}: {first}\n\nand {second}")
+        }
+        Value::Angle(angle) => {
+            let radians = angle.degrees.to_radians() + angle.radians;
+            let degrees = Angle::from_degrees(angle.degrees + angle.radians.to_degrees());
+            let degrees = Value::Angle(degrees);
+            format!("{noun}: `{degrees}`, `{}rad`", short(radians))
+        }
+        Value::Number(_) | Value::Vector(_) | Value::Method(_) => format!("{noun}: `{value}`"),
+    }
+}
+
+fn colors(value: Option<Value>) -> Vec<Color> {
+    match value {
+        Some(Value::Color(color)) => vec![color],
+        Some(Value::Colors(colors)) => colors.to_vec(),
+        _ => Vec::new(),
+    }
+}
+
+/// A kind of block; of the camera also what it comes to.
+fn kind(analysis: &Analysis<'_>, row: &Block) -> String {
+    let about = about_block(row);
+    let facts = match row.kind {
+        Kind::Camera => camera(analysis),
+        _ => None,
+    };
+    match facts {
+        Some(facts) => format!("{facts}\n\n{about}"),
+        None => about,
+    }
+}
+
+/// The camera's axes, its field of view and its vanishing points, as `inspect` shows them.
+fn camera(analysis: &Analysis<'_>) -> Option<String> {
+    let parts = &analysis.survey.parts;
+    let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
+    let mut text = format!(
+        "looks {}; a field of view of {} degrees, `d {}`, `view_height {}`\n",
+        camera.looks,
+        short(camera.fov_deg),
+        short(camera.d),
+        short(camera.view_height)
+    );
+    let axes = [
+        ("u", camera.u, "the picture's right"),
+        ("v", camera.v, "the picture's top"),
+        ("w", camera.w, "against the view direction"),
+    ];
+    for (name, axis, meaning) in axes {
+        text += &format!("\n- `{name}` {}, {meaning}", short_vector(axis));
+    }
+    for (axis, point) in ["x", "y", "z"].into_iter().zip(points) {
+        text += &match point {
+            Some([x, y]) => format!(
+                "\n- vanishing point of {axis}: pixel ({}, {})",
+                short(x),
+                short(y)
+            ),
+            None => {
+                format!("\n- vanishing point of {axis}: none, it is parallel to the view plane")
+            }
+        };
+    }
+    Some(text)
+}
+
+/// An object, as `inspect` shows it.
+fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
+    let block = path.block?;
+    let (kind, name) = (block.kind?.text, block.name?.text);
+    let objects = &analysis.survey.parts.objects;
+    let index = objects.partition_point(|object| object.span.start < block.span.start);
+    let object = objects
+        .get(index)
+        .filter(|object| object.span == block.span);
+    Some(match object {
+        Some(object) => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
+        None => format!("{kind} `{name}`"),
+    })
+}
+
+/// What a value comes to: the smallest one that the place is in.
+fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Option<Hover> {
+    let value = *path.values.last()?;
+    let found = match path.values.len() {
+        1 => analysis.value(value, path),
+        _ => analysis.survey.value(value, None),
+    };
+    let about = |span, markdown| {
+        Some(Hover {
+            span,
+            markdown,
+            colors: colors(found),
+        })
+    };
+    match &value.kind {
+        ValueKind::Name(name) => {
+            let definition = analysis.survey.definition_at(name, value.span.start);
+            if let Some(definition) = definition {
+                return about(value.span, about_definition(analysis, definition));
+            }
+            if css::color(name).is_some() {
+                return about(value.span, format!("`{name}` is {}", described(found?)));
+            }
+            let mut constants = schema::CONSTANTS.iter();
+            let (name, help) = constants.find(|(constant, _)| constant == name)?;
+            about(value.span, format!("`{name}`: {help}"))
+        }
+        ValueKind::Call(call) if token.role == Role::Function => {
+            let function = schema::function(call.function.text)?;
+            let result = found.map(|found| format!("\n\nhere {}", described(found)));
+            let markdown = about_function(function) + &result.unwrap_or_default();
+            about(call.function.span, markdown)
+        }
+        ValueKind::Number(_) => {
+            // What a number is follows from its field; of a part of a vector nothing is to be said.
+            let (row, field) = (path.row()?, path.field_row()?);
+            (path.values.len() == 1).then_some(())?;
+            about(value.span, about_field(row, field))
+        }
+        _ => {
+            let written = shorten(analysis.slice(value.span));
+            let is_literal = is_literal(value);
+            let found = described(found?);
+            about(
+                value.span,
+                match is_literal {
+                    true => found,
+                    false => format!("`{written}` is {found}"),
+                },
+            )
+        }
+    }
+}
+
+/// Whether a value says itself what it is.
+fn is_literal(value: &tree::Value<'_>) -> bool {
+    match &value.kind {
+        ValueKind::Number(_) | ValueKind::Angle { .. } | ValueKind::ColorCode(_) => true,
+        ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. } => false,
+        _ => value.parts().into_iter().all(is_literal),
+    }
+}

@@ -1,0 +1,129 @@
+//! The names that a text defines: where each is defined, where it is used, and what it could be called instead.
+//!
+//! A `let` and an object may have the same name, and have nothing to do with each other then.
+
+use super::{
+    Analysis,
+    words::{Role, Token},
+};
+use crate::{
+    scene::{predefined, schema},
+    source::Span,
+};
+
+/// A place where a name stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Occurrence {
+    /// The name.
+    pub span: Span,
+    /// Whether it is defined here.
+    pub is_definition: bool,
+}
+
+/// What a name is the name of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Space {
+    Lets,
+    Objects,
+}
+
+/// Where the name at a place is defined.
+pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
+    let mut occurrences = occurrences(analysis, at).into_iter();
+    let first = occurrences.find(|occurrence| occurrence.is_definition);
+    first.map(|occurrence| occurrence.span)
+}
+
+/// Every place where the name at a place stands, in order; nothing where there is no name of the scene's own.
+pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
+    let Some((name, space)) = name_at(analysis, at) else {
+        return Vec::new();
+    };
+    let tokens = analysis.tokens.iter();
+    let same = tokens.filter(|token| analysis.slice(token.span) == analysis.slice(name.span));
+    let occurrences: Vec<Occurrence> = same
+        .filter(|token| space_of(token.role) == Some(space))
+        .map(|token| Occurrence {
+            span: token.span,
+            is_definition: matches!(token.role, Role::Defined | Role::ObjectName),
+        })
+        .collect();
+    let is_defined = occurrences.iter().any(|found| found.is_definition);
+    match is_defined {
+        true => occurrences,
+        false => Vec::new(),
+    }
+}
+
+/// The name at a place, if it can be changed; otherwise why not.
+pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
+    let Some(token) = analysis.token_at(at) else {
+        return Err("no name stands here".to_owned());
+    };
+    let word = analysis.slice(token.span);
+    if !occurrences(analysis, at).is_empty() {
+        return Ok(token.span);
+    }
+    Err(match token.role {
+        Role::Field | Role::Kind | Role::Let | Role::Function | Role::Method => {
+            format!("`{word}` is a word of the language")
+        }
+        Role::Name | Role::Defined => match predefined(word) {
+            Some(what) => format!("`{word}` is {what} of the language"),
+            None => format!("`{word}` is not defined"),
+        },
+        _ => "no name stands here".to_owned(),
+    })
+}
+
+/// The places that take a new name instead of the one at a place; or why it will not do.
+pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>, String> {
+    renamable(analysis, at)?;
+    let occurrences = occurrences(analysis, at);
+    let Some((name, space)) = name_at(analysis, at) else {
+        return Err("no name stands here".to_owned());
+    };
+    let starts_well = new.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    let is_name = starts_well && new.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if !is_name {
+        return Err(format!(
+            "`{new}` is no name: a name is made of the letters a to z, digits and `_`, and does not start with a digit"
+        ));
+    }
+    if new == "let" {
+        return Err("`let` is a word of the language".to_owned());
+    }
+    let is_reserved = |name: &str| schema::block(name).is_some_and(|row| !row.is_object);
+    match (space, predefined(new)) {
+        (Space::Lets, Some(what)) => return Err(format!("`{new}` is {what} of the language")),
+        (Space::Objects, _) if is_reserved(new) => {
+            return Err(format!("`{new}` is the name of the {new} block"));
+        }
+        _ => {}
+    }
+    let is_same = analysis.slice(name.span) == new;
+    let taken = analysis.tokens.iter().find(|token| {
+        let defines = matches!(token.role, Role::Defined | Role::ObjectName);
+        defines && space_of(token.role) == Some(space) && analysis.slice(token.span) == new
+    });
+    match taken {
+        Some(taken) if !is_same => Err(format!(
+            "`{new}` is taken: it is defined in line {}",
+            analysis.line(taken.span)
+        )),
+        _ => Ok(occurrences.into_iter().map(|found| found.span).collect()),
+    }
+}
+
+fn name_at(analysis: &Analysis<'_>, at: usize) -> Option<(Token, Space)> {
+    let token = analysis.token_at(at)?;
+    Some((token, space_of(token.role)?))
+}
+
+fn space_of(role: Role) -> Option<Space> {
+    match role {
+        Role::Defined | Role::Name => Some(Space::Lets),
+        Role::ObjectName => Some(Space::Objects),
+        _ => None,
+    }
+}

@@ -1,0 +1,102 @@
+//! What each word is, for colouring.
+
+use super::{
+    Analysis,
+    words::{Role, Token},
+};
+use crate::{
+    scene::{css, schema},
+    source::Span,
+};
+
+/// A word, number, sign or comment, and what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SemanticToken {
+    /// Its place; a comment may take several lines.
+    pub span: Span,
+    /// What it is.
+    pub kind: SemanticKind,
+    /// Whether the name is defined here.
+    pub is_declaration: bool,
+}
+
+/// What a token is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SemanticKind {
+    /// `let`, and the kinds of blocks.
+    Keyword,
+    /// The name of a field.
+    Property,
+    /// A `let`'s name.
+    Variable,
+    /// An object's name.
+    Class,
+    /// A function.
+    Function,
+    /// A word of the language that is a value: a method, a named colour, a constant.
+    EnumMember,
+    /// A number with its unit, or a colour's code.
+    Number,
+    /// An operator or `=`.
+    Operator,
+    /// A comment.
+    Comment,
+}
+
+impl SemanticKind {
+    /// All of them; the place of each is its number in a legend.
+    pub const ALL: [Self; 9] = [
+        Self::Keyword,
+        Self::Property,
+        Self::Variable,
+        Self::Class,
+        Self::Function,
+        Self::EnumMember,
+        Self::Number,
+        Self::Operator,
+        Self::Comment,
+    ];
+}
+
+/// The tokens of the text in order.
+pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
+    let words = analysis.tokens.iter();
+    let words = words.filter_map(|token| classified(analysis, token));
+    let comments = analysis.comments().iter().map(|&span| SemanticToken {
+        span,
+        kind: SemanticKind::Comment,
+        is_declaration: false,
+    });
+    let mut tokens: Vec<SemanticToken> = words.chain(comments).collect();
+    tokens.sort_by_key(|token| token.span.start);
+    tokens
+}
+
+fn classified(analysis: &Analysis<'_>, token: &Token) -> Option<SemanticToken> {
+    let word = analysis.slice(token.span);
+    let kind = match token.role {
+        Role::Let | Role::Kind => SemanticKind::Keyword,
+        Role::Field => SemanticKind::Property,
+        Role::Defined => SemanticKind::Variable,
+        Role::ObjectName => SemanticKind::Class,
+        Role::Function => SemanticKind::Function,
+        Role::Method => SemanticKind::EnumMember,
+        Role::Name if css::color(word).is_some() || is_constant(word) => SemanticKind::EnumMember,
+        Role::Name if schema::function(word).is_some() => SemanticKind::Function,
+        Role::Name => SemanticKind::Variable,
+        Role::Number | Role::ColorCode => SemanticKind::Number,
+        Role::Operator | Role::Equals => SemanticKind::Operator,
+        Role::Open | Role::Close | Role::OpenList | Role::CloseList | Role::Comma | Role::Other => {
+            return None;
+        }
+    };
+    Some(SemanticToken {
+        span: token.span,
+        kind,
+        is_declaration: token.role == Role::Defined,
+    })
+}
+
+fn is_constant(word: &str) -> bool {
+    schema::CONSTANTS.iter().any(|&(name, _)| name == word)
+}

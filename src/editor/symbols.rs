@@ -1,0 +1,96 @@
+//! The outline of a text: its definitions and blocks, with their fields.
+
+use super::Analysis;
+use crate::{
+    scene::schema,
+    source::Span,
+    syntax::{
+        shorten,
+        tree::{Block, Definition, Item},
+    },
+};
+
+/// An entry of the outline.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Symbol {
+    /// What it is called.
+    pub name: String,
+    /// What it is, or what its value is.
+    pub detail: String,
+    /// What sort of thing it is.
+    pub kind: SymbolKind,
+    /// All of it.
+    pub span: Span,
+    /// The word that stands for it, within that.
+    pub selection: Span,
+    /// What it holds.
+    pub children: Vec<Symbol>,
+}
+
+/// The sorts of entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SymbolKind {
+    /// A `let`.
+    Definition,
+    /// The image, the camera, the sampler.
+    Setting,
+    /// An object.
+    Object,
+    /// A field.
+    Field,
+}
+
+/// The outline, in the order of the text.
+pub fn symbols(analysis: &Analysis<'_>) -> Vec<Symbol> {
+    let items = analysis.items().iter();
+    let mut symbols: Vec<Symbol> = items
+        .filter_map(|item| match item {
+            Item::Definition(definition) => defined(analysis, definition),
+            Item::Block(block) => of_block(analysis, block),
+            Item::Bad(_) => None,
+        })
+        .collect();
+    symbols.sort_by_key(|symbol| symbol.span.start);
+    symbols
+}
+
+fn defined(analysis: &Analysis<'_>, definition: &Definition<'_>) -> Option<Symbol> {
+    let name = definition.name?;
+    let span = definition.span.to(name.span);
+    Some(Symbol {
+        name: name.text.to_owned(),
+        detail: shorten(analysis.slice(definition.value.span)),
+        kind: SymbolKind::Definition,
+        span,
+        selection: name.span,
+        children: Vec::new(),
+    })
+}
+
+fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
+    let kind = block.kind?;
+    let row = schema::block(kind.text);
+    let fields = block.fields.iter().map(|field| Symbol {
+        name: field.name.text.to_owned(),
+        detail: shorten(analysis.slice(field.value.span)),
+        kind: SymbolKind::Field,
+        span: field.span,
+        selection: field.name.span,
+        children: Vec::new(),
+    });
+    // A name that stands before its kind (`let Ball = sphere {`) lies outside of the block.
+    let name = block
+        .name
+        .filter(|name| name.span.start >= block.span.start);
+    Some(Symbol {
+        name: name.map_or(kind.text, |name| name.text).to_owned(),
+        detail: name.map_or("", |_| kind.text).to_owned(),
+        kind: match row.is_some_and(|row| row.is_object) {
+            true => SymbolKind::Object,
+            false => SymbolKind::Setting,
+        },
+        span: block.span.to(kind.span),
+        selection: name.map_or(kind.span, |name| name.span),
+        children: fields.collect(),
+    })
+}

@@ -1,0 +1,125 @@
+//! What every diagnostic code means: a page for each, with a wrong scene, the right one, and why the language has the rule.
+//!
+//! The pages are the files in `grammar/codes`, in Markdown of a fixed form: a title, what the mistake is, and the sections
+//! *Wrong*, *Right* and *Why*. The tests hold the codes of the stages and the pages together, and read the scenes: a wrong one has
+//! that mistake and no other, a right one none. How a page is shown (terminal, editor) is for others to say.
+
+/// Pages on one subject.
+#[derive(Debug)]
+pub struct Group {
+    /// The subject.
+    pub name: &'static str,
+    /// Its pages, in the order in which one would teach them.
+    pub pages: &'static [Page],
+}
+
+/// The explanation of a code.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Page {
+    /// The code, without `pinhole::`.
+    pub code: &'static str,
+    /// The page, as Markdown.
+    pub text: &'static str,
+}
+
+/// The page of a code, which may be written with `pinhole::` or without.
+pub fn page(code: &str) -> Option<&'static Page> {
+    let code = short(code);
+    pages().find(|page| page.code == code)
+}
+
+/// All pages.
+pub fn pages() -> impl Iterator<Item = &'static Page> {
+    GROUPS.iter().flat_map(|group| group.pages)
+}
+
+/// The code without `pinhole::`.
+pub fn short(code: &str) -> &str {
+    code.strip_prefix("pinhole::").unwrap_or(code)
+}
+
+impl Page {
+    /// The sentence at the top of the page.
+    pub fn title(&self) -> &'static str {
+        let first = self.text.lines().next().unwrap_or_default();
+        first.strip_prefix("# ").unwrap_or(first)
+    }
+}
+
+/// A list of pages by their codes.
+macro_rules! pages {
+    ($($code:ident)*) => {
+        &[$(Page {
+            code: stringify!($code),
+            text: include_str!(concat!("../grammar/codes/", stringify!($code), ".md")),
+        }),*]
+    };
+}
+
+/// Every page, by subject.
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "The text",
+        pages: pages! { invalid_utf8 odd_space unclosed_comment quoted unexpected },
+    },
+    Group {
+        name: "Definitions",
+        pages: pages! {
+            missing_let missing_equals missing_name bad_name missing_value misplaced_let duplicate_let predefined_name
+            used_before_definition unknown_name
+        },
+    },
+    Group {
+        name: "Blocks",
+        pages: pages! {
+            missing_kind unknown_kind bad_head unopened_block unclosed_block nested_braces stray_closing outside_block
+            duplicate_block unexpected_name reserved_name duplicate_name missing_camera no_objects
+        },
+    },
+    Group {
+        name: "Fields",
+        pages: pages! {
+            unknown_field missing_field duplicate_field conflicting_fields needless_equals needless_separator wrong_type
+            out_of_range
+        },
+    },
+    Group {
+        name: "Numbers and angles",
+        pages: pages! {
+            bad_number decimal_comma plus_sign spaced_unit bare_angle number_too_large number_underflow
+        },
+    },
+    Group {
+        name: "Colours",
+        pages: pages! { unknown_color bad_color_code color_range },
+    },
+    Group {
+        name: "Vectors",
+        pages: pages! {
+            missing_parentheses brackets missing_comma needless_comma unclosed_parenthesis part_count part_type
+        },
+    },
+    Group {
+        name: "Calculations",
+        pages: pages! {
+            missing_operator missing_operand unknown_operator operand_types unknown_function function_without_arguments
+            argument_count argument_type not_finite too_deep
+        },
+    },
+    Group {
+        name: "The camera",
+        pages: pages! { view_undefined up_parallel empty_depth },
+    },
+    Group {
+        name: "Triangles and boxes",
+        pages: pages! { not_a_triangle empty_box box_too_large },
+    },
+    Group {
+        name: "Samples",
+        pages: pages! { unknown_method few_samples too_many_samples },
+    },
+    Group {
+        name: "Overrides with --set",
+        pages: pages! { bad_set bad_target no_such_target },
+    },
+];

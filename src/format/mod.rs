@@ -1,0 +1,101 @@
+//! The one canonical layout of a scene's text.
+//!
+//! In: a text without mistakes of syntax. Out: the same tokens and comments in the same order, with the white space between
+//! them that `grammar/language.md` describes under "Layout". What the names mean does not matter, so that a scene with other
+//! mistakes can be laid out.
+//!
+//! Of the white space that was there, only the ends of lines tell something: whether a block stands on one line, where blank
+//! lines separate groups, and which line a comment belongs to. Blanks tell nothing, so that two texts that differ in them
+//! alone are laid out alike. On the way, `words` reads tokens and comments from tree and text, `entries` makes lines of
+//! them, `columns` decides what stands under what, and `page` writes it all.
+
+mod columns;
+mod entries;
+mod page;
+mod words;
+
+use std::collections::BTreeSet;
+
+use crate::{
+    diagnostic::Diagnostic,
+    scene,
+    source::{Source, SourceId, Sources},
+    syntax::{
+        self, Parsed,
+        tree::{Item, Tree, ValueKind},
+    },
+};
+
+/// A line gets no longer than this, as far as there are places to break it. What stands in columns is measured before it is
+/// aligned, and comments at the end of a line do not count.
+pub const WIDTH: usize = 100;
+
+/// The canonical layout of a scene's text; or, if it has mistakes of syntax, these.
+pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
+    let parsed = syntax::parse(source, SourceId::File);
+    format_parsed(source, &parsed).ok_or_else(|| mistakes(source))
+}
+
+/// The canonical layout of a text that is parsed already; none if it has mistakes of syntax.
+pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
+    let right = parsed.problems.is_empty() && source.invalid_utf8().is_empty();
+    if !right || !is_whole(&parsed.tree) {
+        return None;
+    }
+    let text = source.text();
+    let mut entries = entries::of_file(source, parsed);
+    columns::align(&mut entries);
+    let page = page::written(&entries);
+    let formatted = with_line_ends(&page, text, source.bom_len());
+    debug_assert!(ink(text).eq(ink(&formatted)), "only white space changes");
+    Some(formatted)
+}
+
+/// Whether every field has a value: where it is missing, nothing was reported yet.
+fn is_whole(tree: &Tree<'_>) -> bool {
+    tree.items.iter().all(|item| match item {
+        Item::Definition(_) => true,
+        Item::Block(block) => block
+            .fields
+            .iter()
+            .all(|field| field.value.kind != ValueKind::Missing),
+        Item::Bad(_) => false,
+    })
+}
+
+/// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what a field without a value is
+/// called. What else is wrong with the scene is left out.
+fn mistakes(source: &Source) -> Vec<Diagnostic> {
+    let problems = syntax::parse(source, SourceId::File).problems;
+    let codes = problems.iter().map(|p| Diagnostic::from_problem(p).code);
+    let mut codes: BTreeSet<String> = codes.collect();
+    codes.extend(["pinhole::missing_value", "pinhole::invalid_utf8"].map(str::to_owned));
+    let found = scene::read(&Sources::new(source.clone())).diagnostics;
+    let is_syntax = |diagnostic: &&Diagnostic| codes.contains(&diagnostic.code);
+    let of_syntax: Vec<_> = found.iter().filter(is_syntax).cloned().collect();
+    match of_syntax.is_empty() {
+        true => found.into_iter().filter(Diagnostic::is_error).collect(),
+        false => of_syntax,
+    }
+}
+
+/// The page with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with
+/// blanks, in comments neither.
+fn with_line_ends(page: &str, text: &str, bom: usize) -> String {
+    let mut ends = text.split('\n');
+    let last = ends.next_back();
+    let mut ends = ends.peekable();
+    let crlf = last.is_some() && ends.peek().is_some() && ends.all(|line| line.ends_with('\r'));
+    let mut formatted = String::with_capacity(page.len() + bom);
+    formatted.push_str(text.get(..bom).unwrap_or_default());
+    for line in page.lines() {
+        formatted.push_str(line.trim_end_matches([' ', '\t', '\r']));
+        formatted.push_str(if crlf { "\r\n" } else { "\n" });
+    }
+    formatted
+}
+
+/// All of a text but its white space.
+fn ink(text: &str) -> impl Iterator<Item = u8> {
+    text.bytes().filter(|byte| !byte.is_ascii_whitespace())
+}

@@ -1,0 +1,136 @@
+//! What the client understands, and what the server offers it.
+
+use gen_lsp_types as lsp;
+
+use crate::{editor::SemanticKind, lsp::documents::Encoding};
+
+/// What the client understands.
+#[derive(Clone, Copy, Debug)]
+pub struct Client {
+    /// In what columns are counted.
+    pub encoding: Encoding,
+    /// Whether a completion may have values to type over.
+    pub snippets: bool,
+    /// Whether it shows Markdown.
+    pub markdown: bool,
+    /// Whether it says which Markdown it shows: then pictures are among it.
+    pub pictures: bool,
+    /// Whether it asks for diagnostics itself.
+    pub pulls_diagnostics: bool,
+    /// Whether it shows the other places of a diagnostic.
+    pub related: bool,
+    /// Whether changes may name the version that they are for.
+    pub versioned_edits: bool,
+    /// Whether an outline may have levels.
+    pub nested_symbols: bool,
+}
+
+impl Client {
+    /// What a client says of itself.
+    pub fn new(capabilities: &lsp::ClientCapabilities) -> Self {
+        let text = capabilities.text_document.clone().unwrap_or_default();
+        let general = capabilities.general.clone().unwrap_or_default();
+        let hover = text.hover.and_then(|hover| hover.content_format);
+        let completion = text
+            .completion
+            .and_then(|completion| completion.completion_item);
+        let workspace = capabilities.workspace.clone().unwrap_or_default();
+        let edits = workspace.workspace_edit.unwrap_or_default();
+        let published = text.publish_diagnostics.unwrap_or_default();
+        let symbols = text.document_symbol.unwrap_or_default();
+        Self {
+            encoding: encoding(&general.position_encodings.unwrap_or_default()),
+            snippets: completion.and_then(|item| item.snippet_support) == Some(true),
+            markdown: hover.is_some_and(|formats| formats.contains(&lsp::MarkupKind::Markdown)),
+            pictures: general.markdown.is_some(),
+            pulls_diagnostics: text.diagnostic.is_some(),
+            related: published.diagnostics_capabilities.related_information == Some(true),
+            versioned_edits: edits.document_changes == Some(true),
+            nested_symbols: symbols.hierarchical_document_symbol_support == Some(true),
+        }
+    }
+}
+
+/// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it says nothing.
+fn encoding(offered: &[lsp::PositionEncodingKind]) -> Encoding {
+    let known = offered.iter().find_map(|kind| match kind {
+        lsp::PositionEncodingKind::UTF8 => Some(Encoding::Utf8),
+        lsp::PositionEncodingKind::UTF16 => Some(Encoding::Utf16),
+        lsp::PositionEncodingKind::UTF32 => Some(Encoding::Utf32),
+        lsp::PositionEncodingKind::Custom(_) => None,
+    });
+    known.unwrap_or(Encoding::Utf16)
+}
+
+/// What the server offers.
+pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
+    let words = |words: &[&str]| Some(words.iter().map(|word| (*word).to_owned()).collect());
+    lsp::ServerCapabilities {
+        position_encoding: Some(match client.encoding {
+            Encoding::Utf8 => lsp::PositionEncodingKind::UTF8,
+            Encoding::Utf16 => lsp::PositionEncodingKind::UTF16,
+            Encoding::Utf32 => lsp::PositionEncodingKind::UTF32,
+        }),
+        text_document_sync: Some(lsp::TextDocumentSync::Options(
+            lsp::TextDocumentSyncOptions {
+                open_close: Some(true),
+                change: Some(lsp::TextDocumentSyncKind::Incremental),
+                ..Default::default()
+            },
+        )),
+        completion_provider: Some(lsp::CompletionOptions::default()),
+        hover_provider: Some(lsp::HoverProvider::Bool(true)),
+        signature_help_provider: Some(lsp::SignatureHelpOptions {
+            trigger_characters: words(&["(", ","]),
+            ..Default::default()
+        }),
+        definition_provider: Some(lsp::DefinitionProvider::Bool(true)),
+        references_provider: Some(lsp::ReferencesProvider::Bool(true)),
+        document_highlight_provider: Some(lsp::DocumentHighlightProvider::Bool(true)),
+        document_symbol_provider: Some(lsp::DocumentSymbolProvider::Bool(true)),
+        document_formatting_provider: Some(lsp::DocumentFormattingProvider::Bool(true)),
+        code_action_provider: Some(lsp::CodeActionProvider::CodeActionOptions(
+            lsp::CodeActionOptions {
+                code_action_kinds: Some(vec![lsp::CodeActionKind::QuickFix]),
+                ..Default::default()
+            },
+        )),
+        color_provider: Some(lsp::ColorProvider::Bool(true)),
+        rename_provider: Some(lsp::RenameProvider::RenameOptions(lsp::RenameOptions {
+            prepare_provider: Some(true),
+            ..Default::default()
+        })),
+        folding_range_provider: Some(lsp::FoldingRangeProvider::Bool(true)),
+        selection_range_provider: Some(lsp::SelectionRangeProvider::Bool(true)),
+        inlay_hint_provider: Some(lsp::InlayHintProvider::Bool(true)),
+        semantic_tokens_provider: Some(lsp::SemanticTokensProvider::SemanticTokensOptions(
+            lsp::SemanticTokensOptions {
+                legend: lsp::SemanticTokensLegend {
+                    token_types: SemanticKind::ALL.map(token_type).map(str::to_owned).into(),
+                    token_modifiers: vec!["declaration".to_owned()],
+                },
+                full: Some(lsp::Full::Bool(true)),
+                ..Default::default()
+            },
+        )),
+        diagnostic_provider: client
+            .pulls_diagnostics
+            .then(|| lsp::DiagnosticProvider::DiagnosticOptions(lsp::DiagnosticOptions::default())),
+        ..Default::default()
+    }
+}
+
+/// The legend's word for a kind of token.
+fn token_type(kind: SemanticKind) -> &'static str {
+    match kind {
+        SemanticKind::Keyword => "keyword",
+        SemanticKind::Property => "property",
+        SemanticKind::Variable => "variable",
+        SemanticKind::Class => "class",
+        SemanticKind::Function => "function",
+        SemanticKind::EnumMember => "enumMember",
+        SemanticKind::Number => "number",
+        SemanticKind::Operator => "operator",
+        SemanticKind::Comment => "comment",
+    }
+}

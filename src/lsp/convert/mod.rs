@@ -1,0 +1,463 @@
+//! From the editor's answers to the protocol's types, and back.
+
+mod client;
+
+pub use client::{Client, capabilities};
+
+use gen_lsp_types as lsp;
+
+use super::documents::{Change, Document, Encoding};
+use crate::{
+    color::Color,
+    diagnostic::{Diagnostic, Fix, Severity},
+    editor::{
+        Completion, CompletionKind, Fold, FoldKind, Hint, Hover, Occurrence, Piece, SemanticKind,
+        SemanticToken, Signature, Swatch, Symbol, SymbolKind,
+    },
+    source::{SourceId, Span},
+};
+
+/// A document with its address, for the client that has it open.
+#[derive(Clone, Copy)]
+pub struct Page<'d> {
+    /// Who has it open.
+    pub client: &'d Client,
+    /// Its address.
+    pub uri: &'d lsp::Uri,
+    /// The text.
+    pub document: &'d Document,
+}
+
+fn count(number: usize) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+impl Page<'_> {
+    /// The offset of a position.
+    pub fn offset(&self, position: lsp::Position) -> usize {
+        let (line, column) = (position.line as usize, position.character as usize);
+        self.document.offset(line, column, self.client.encoding)
+    }
+
+    /// A span of the text from a range.
+    pub fn span(&self, range: lsp::Range) -> Span {
+        let (start, end) = (self.offset(range.start), self.offset(range.end));
+        Span::new(SourceId::File, start.min(end), end.max(start))
+    }
+
+    pub fn position(&self, offset: usize) -> lsp::Position {
+        let (line, column) = self.document.place(offset, self.client.encoding);
+        lsp::Position {
+            line: count(line),
+            character: count(column),
+        }
+    }
+
+    pub fn range(&self, span: Span) -> lsp::Range {
+        lsp::Range {
+            start: self.position(span.start),
+            end: self.position(span.end),
+        }
+    }
+
+    pub fn location(&self, span: Span) -> lsp::Location {
+        lsp::Location {
+            uri: self.uri.clone(),
+            range: self.range(span),
+        }
+    }
+
+    fn columns(&self, text: &str) -> u32 {
+        count(self.client.encoding.columns(text))
+    }
+
+    fn markup(&self, markdown: String) -> lsp::MarkupContent {
+        let kind = match self.client.markdown {
+            true => lsp::MarkupKind::Markdown,
+            // Without its signs the text is as plain as it is.
+            false => lsp::MarkupKind::PlainText,
+        };
+        let value = match self.client.markdown {
+            true => markdown,
+            false => markdown.replace('`', ""),
+        };
+        lsp::MarkupContent { kind, value }
+    }
+
+    /// A diagnostic: the help stands below the message, the labels but the first are its other places.
+    pub fn diagnostic(&self, diagnostic: &Diagnostic) -> lsp::Diagnostic {
+        let mut labels = diagnostic.labels.iter();
+        let place = labels.next().map(|label| label.span);
+        let related = labels.map(|label| lsp::DiagnosticRelatedInformation {
+            location: self.location(label.span),
+            message: label.message.clone(),
+        });
+        let related: Vec<_> = related.filter(|_| self.client.related).collect();
+        let message = match &diagnostic.help {
+            Some(help) => format!("{}\nhelp: {help}", diagnostic.message),
+            None => diagnostic.message.clone(),
+        };
+        lsp::Diagnostic {
+            range: place.map(|span| self.range(span)).unwrap_or_default(),
+            severity: Some(match diagnostic.severity {
+                Severity::Error => lsp::DiagnosticSeverity::Error,
+                Severity::Warning => lsp::DiagnosticSeverity::Warning,
+            }),
+            code: Some(lsp::Code::String(diagnostic.code.clone())),
+            code_description: None,
+            source: Some("pinhole".to_owned()),
+            message: lsp::Message::String(message),
+            tags: is_unnecessary(&diagnostic.code).then(|| vec![lsp::DiagnosticTag::Unnecessary]),
+            related_information: Some(related).filter(|related| !related.is_empty()),
+            data: None,
+        }
+    }
+
+    pub fn completion(&self, index: usize, completion: Completion) -> lsp::CompletionItem {
+        let (kind, documentation) = match completion.kind {
+            CompletionKind::Keyword => (lsp::CompletionItemKind::Keyword, None),
+            CompletionKind::Block => (lsp::CompletionItemKind::Struct, None),
+            CompletionKind::Field => (lsp::CompletionItemKind::Property, None),
+            CompletionKind::Definition => (lsp::CompletionItemKind::Variable, None),
+            CompletionKind::Function => (lsp::CompletionItemKind::Function, None),
+            CompletionKind::Method => (lsp::CompletionItemKind::EnumMember, None),
+            CompletionKind::Constant => (lsp::CompletionItemKind::Constant, None),
+            CompletionKind::Value => (lsp::CompletionItemKind::Value, None),
+            // Editors show a swatch of a colour's code that stands here by itself.
+            CompletionKind::Color(color) => {
+                let code = lsp::Documentation::String(color.to_string());
+                (lsp::CompletionItemKind::Color, Some(code))
+            }
+        };
+        let markup = || lsp::Documentation::MarkupContent(self.markup(completion.help));
+        let has_holes = completion
+            .insert
+            .iter()
+            .any(|piece| matches!(piece, Piece::Hole(_)));
+        let is_snippet = self.client.snippets && has_holes;
+        lsp::CompletionItem {
+            label: completion.label,
+            kind: Some(kind),
+            detail: Some(completion.detail).filter(|detail| !detail.is_empty()),
+            documentation: Some(documentation.unwrap_or_else(markup)),
+            // Editors sort by this text, and the list is in its order.
+            sort_text: Some(format!("{index:04}")),
+            insert_text_format: Some(match is_snippet {
+                true => lsp::InsertTextFormat::Snippet,
+                false => lsp::InsertTextFormat::PlainText,
+            }),
+            text_edit: Some(lsp::CompletionItemTextEdit::TextEdit(lsp::TextEdit {
+                range: self.range(completion.replaces),
+                new_text: inserted(&completion.insert, is_snippet),
+            })),
+            ..Default::default()
+        }
+    }
+
+    pub fn hover(&self, hover: Hover) -> lsp::Hover {
+        let mut markdown = hover.markdown;
+        if self.client.pictures && self.client.markdown {
+            for color in hover.colors {
+                markdown = format!("{}\n\n{markdown}", picture(color));
+            }
+        }
+        lsp::Hover {
+            contents: lsp::Contents::MarkupContent(self.markup(markdown)),
+            range: Some(self.range(hover.span)),
+        }
+    }
+
+    pub fn signature(&self, signature: Signature) -> lsp::SignatureHelp {
+        let parameters = signature.parameters.iter().map(|range| {
+            // Counted in UTF-16 units whatever the encoding of positions.
+            let before = |end: usize| {
+                let before = signature.label.get(..end).unwrap_or_default();
+                count(Encoding::Utf16.columns(before))
+            };
+            lsp::ParameterInformation {
+                label: lsp::ParameterInformationLabel::Tuple((
+                    before(range.start),
+                    before(range.end),
+                )),
+                documentation: None,
+            }
+        });
+        let active = lsp::ActiveParameter::Int(count(signature.active));
+        lsp::SignatureHelp {
+            signatures: vec![lsp::SignatureInformation {
+                parameters: Some(parameters.collect()),
+                documentation: Some(lsp::Documentation::String(signature.help.to_owned())),
+                active_parameter: Some(active),
+                label: signature.label,
+            }],
+            active_signature: Some(0),
+            active_parameter: Some(active),
+        }
+    }
+
+    pub fn highlight(&self, occurrence: Occurrence) -> lsp::DocumentHighlight {
+        lsp::DocumentHighlight {
+            range: self.range(occurrence.span),
+            kind: Some(match occurrence.is_definition {
+                true => lsp::DocumentHighlightKind::Write,
+                false => lsp::DocumentHighlightKind::Read,
+            }),
+        }
+    }
+
+    /// Texts that take the place of others.
+    pub fn text_edits(
+        &self,
+        edits: impl IntoIterator<Item = (Span, String)>,
+    ) -> impl Iterator<Item = lsp::TextEdit> {
+        edits.into_iter().map(|(span, new_text)| lsp::TextEdit {
+            range: self.range(span),
+            new_text,
+        })
+    }
+
+    /// The same as one change of the document.
+    pub fn edit(&self, edits: impl IntoIterator<Item = (Span, String)>) -> lsp::WorkspaceEdit {
+        let edits = self.text_edits(edits);
+        if !self.client.versioned_edits {
+            let changes = [(self.uri.clone(), edits.collect())];
+            return lsp::WorkspaceEdit {
+                changes: Some(changes.into()),
+                ..Default::default()
+            };
+        }
+        // With the version, an editor that is ahead of this text refuses it.
+        let edit = lsp::TextDocumentEdit {
+            text_document: lsp::OptionalVersionedTextDocumentIdentifier {
+                version: Some(self.document.version),
+                text_document_identifier: lsp::TextDocumentIdentifier {
+                    uri: self.uri.clone(),
+                },
+            },
+            edits: edits.map(lsp::Edit::TextEdit).collect(),
+        };
+        lsp::WorkspaceEdit {
+            document_changes: Some(vec![lsp::DocumentChange::TextDocumentEdit(edit)]),
+            ..Default::default()
+        }
+    }
+
+    /// A way out of a diagnostic.
+    pub fn action(&self, diagnostic: &Diagnostic, fix: &Fix) -> lsp::CodeAction {
+        let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
+        lsp::CodeAction {
+            title: fix.title.clone(),
+            kind: Some(lsp::CodeActionKind::QuickFix),
+            diagnostics: Some(vec![self.diagnostic(diagnostic)]),
+            // The only way out is the one to take without asking.
+            is_preferred: Some(diagnostic.fixes.len() == 1),
+            edit: Some(self.edit(edits)),
+            ..Default::default()
+        }
+    }
+
+    /// An outline in levels, or one of all entries for a client that knows no levels.
+    #[allow(deprecated, reason = "a struct must be given all its fields")]
+    pub fn symbols(&self, symbols: Vec<Symbol>) -> lsp::DocumentSymbolResponse {
+        if self.client.nested_symbols {
+            let symbols = symbols.into_iter().map(|symbol| self.symbol(symbol));
+            return lsp::DocumentSymbolResponse::DocumentSymbolList(symbols.collect());
+        }
+        let symbols = symbols.into_iter().map(|symbol| {
+            let location = self.location(symbol.span);
+            let base = lsp::BaseSymbolInformation {
+                name: symbol.name,
+                kind: symbol_kind(symbol.kind),
+                tags: None,
+                container_name: None,
+            };
+            lsp::SymbolInformation {
+                location,
+                base_symbol_information: base,
+                deprecated: None,
+            }
+        });
+        lsp::DocumentSymbolResponse::SymbolInformationList(symbols.collect())
+    }
+
+    #[allow(deprecated, reason = "a struct must be given all its fields")]
+    fn symbol(&self, symbol: Symbol) -> lsp::DocumentSymbol {
+        let children = symbol.children.into_iter().map(|child| self.symbol(child));
+        let children: Vec<_> = children.collect();
+        lsp::DocumentSymbol {
+            name: symbol.name,
+            detail: Some(symbol.detail).filter(|detail| !detail.is_empty()),
+            kind: symbol_kind(symbol.kind),
+            tags: None,
+            deprecated: None,
+            range: self.range(symbol.span),
+            selection_range: self.range(symbol.selection),
+            children: Some(children).filter(|children| !children.is_empty()),
+        }
+    }
+
+    pub fn fold(&self, fold: Fold) -> lsp::FoldingRange {
+        let range = self.range(fold.span);
+        lsp::FoldingRange {
+            start_line: range.start.line,
+            start_character: None,
+            end_line: range.end.line,
+            end_character: None,
+            kind: match fold.kind {
+                FoldKind::Comment => Some(lsp::FoldingRangeKind::Comment),
+                FoldKind::Block => None,
+            },
+            collapsed_text: None,
+        }
+    }
+
+    /// Spans, each within the next one, as a chain that starts with the innermost.
+    pub fn selection(&self, spans: Vec<Span>) -> lsp::SelectionRange {
+        let chain = spans.into_iter().rev().fold(None, |parent, span| {
+            Some(Box::new(lsp::SelectionRange {
+                range: self.range(span),
+                parent,
+            }))
+        });
+        chain.map(|innermost| *innermost).unwrap_or_default()
+    }
+
+    pub fn hint(&self, hint: Hint) -> lsp::InlayHint {
+        lsp::InlayHint {
+            position: self.position(hint.at),
+            label: lsp::Label::String(hint.text),
+            kind: Some(lsp::InlayHintKind::Type),
+            text_edits: None,
+            tooltip: None,
+            padding_left: Some(true),
+            padding_right: None,
+            data: None,
+        }
+    }
+
+    pub fn swatch(&self, swatch: Swatch) -> lsp::ColorInformation {
+        let [red, green, blue] = swatch.color.srgb.map(|channel| (channel / 255.0) as f32);
+        lsp::ColorInformation {
+            range: self.range(swatch.span),
+            color: lsp::Color {
+                red,
+                green,
+                blue,
+                alpha: 1.0,
+            },
+        }
+    }
+
+    /// Each token relative to the one before it; comments of several lines in pieces, a line each.
+    pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> lsp::SemanticTokens {
+        let mut data = Vec::with_capacity(tokens.len());
+        let mut last = lsp::Position::default();
+        for token in tokens {
+            let kind = SemanticKind::ALL
+                .iter()
+                .position(|kind| *kind == token.kind);
+            let mut start = token.span.start;
+            let text = self.document.sources.text(token.span);
+            for piece in text.split(['\n', '\r']) {
+                let at = self.position(start);
+                start += piece.len() + 1;
+                if piece.is_empty() {
+                    continue;
+                }
+                data.push(lsp::SemanticToken {
+                    delta_line: at.line - last.line,
+                    delta_start: match at.line == last.line {
+                        true => at.character - last.character,
+                        false => at.character,
+                    },
+                    length: self.columns(piece),
+                    token_type: kind.map_or(0, count),
+                    token_modifiers_bitset: u32::from(token.is_declaration),
+                });
+                last = at;
+            }
+        }
+        lsp::SemanticTokens {
+            result_id: None,
+            data,
+        }
+    }
+}
+
+/// A change of a text.
+pub fn change(change: lsp::TextDocumentContentChangeEvent) -> Change {
+    use lsp::TextDocumentContentChangeEvent as Event;
+    let place = |position: lsp::Position| (position.line as usize, position.character as usize);
+    match change {
+        Event::TextDocumentContentChangePartial(part) => Change {
+            range: Some([place(part.range.start), place(part.range.end)]),
+            text: part.text,
+        },
+        Event::TextDocumentContentChangeWholeDocument(whole) => Change {
+            range: None,
+            text: whole.text,
+        },
+    }
+}
+
+/// A colour as a client picks it.
+pub fn color(color: &lsp::Color) -> Color {
+    let bytes = [color.red, color.green, color.blue];
+    // A conversion of floats ends at the bounds.
+    Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
+}
+
+/// What can be left out without any change of meaning is shown in grey.
+fn is_unnecessary(code: &str) -> bool {
+    code.contains("needless") || code.ends_with("plus_sign")
+}
+
+fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
+    match kind {
+        SymbolKind::Definition => lsp::SymbolKind::Variable,
+        SymbolKind::Setting => lsp::SymbolKind::Module,
+        SymbolKind::Object => lsp::SymbolKind::Object,
+        SymbolKind::Field => lsp::SymbolKind::Property,
+    }
+}
+
+/// What is put in, as a snippet or as plain text.
+fn inserted(pieces: &[Piece], is_snippet: bool) -> String {
+    let mut text = String::new();
+    let mut holes = 0;
+    for piece in pieces {
+        match piece {
+            Piece::Text(piece) | Piece::Hole(piece) if !is_snippet => text.push_str(piece),
+            Piece::Text(piece) => text.push_str(&escaped(piece)),
+            Piece::Hole(value) => {
+                holes += 1;
+                text.push_str(&format!("${{{holes}:{}}}", escaped(value)));
+            }
+        }
+    }
+    text
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('\\', "\\\\")
+        .replace('$', "\\$")
+        .replace('}', "\\}")
+}
+
+/// A patch of a colour: an SVG picture within the text itself.
+fn picture(color: Color) -> String {
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='16'><rect width='48' height='16' fill='{color}'/></svg>"
+    );
+    let mut address = String::from("data:image/svg+xml,");
+    for character in svg.chars() {
+        match character {
+            'a'..='z' | 'A'..='Z' | '0'..='9' | '-' | '.' | '/' | ':' | '=' => {
+                address.push(character)
+            }
+            // All others are of one byte here.
+            other => address.push_str(&format!("%{:02X}", u32::from(other))),
+        }
+    }
+    format!("![{color}]({address})")
+}

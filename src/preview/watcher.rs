@@ -1,0 +1,237 @@
+//! Which content a file has, and when it changes.
+//!
+//! It is the folder that is watched: many editors save by writing another file and renaming it, and the file that was there before is
+//! gone then, with whatever watched it. Of a symbolic link, the folder of the file at its end is watched as well.
+//!
+//! Events come in bursts, so the file is read once there was none for a moment. (notify's own debouncers do that too, but the small one
+//! forgets what kind an event is, and would be woken by our own reading, and the large one keeps books on files that were renamed,
+//! which nobody asks for here.) Once a second the file's time and length are looked at in any case, for folders without events, such as
+//! those on other machines, and for those that come and go.
+
+use std::{
+    collections::BTreeSet,
+    ffi::{OsStr, OsString},
+    fs, io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Weak,
+        mpsc::{self, Receiver, RecvTimeoutError},
+    },
+    thread,
+    time::{Duration, Instant, SystemTime},
+};
+
+use notify::{
+    Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher as _,
+    event::{AccessKind, AccessMode},
+};
+
+use super::Latest;
+
+/// A file is read when it was left alone for so long.
+const QUIET: Duration = Duration::from_millis(10);
+
+/// But no later than this, should it never be left alone.
+const LONGEST_BURST: Duration = Duration::from_millis(200);
+
+/// A file that is gone, or empty, is most likely being saved: it has so long to come back.
+const ABSENCE: Duration = Duration::from_millis(300);
+
+/// How often the file is looked at without an event.
+const ANYWAY: Duration = Duration::from_secs(1);
+
+/// What a file holds.
+#[derive(Debug)]
+pub struct Content {
+    /// Its bytes, or why they cannot be had.
+    pub bytes: io::Result<Vec<u8>>,
+    /// When it was seen to change.
+    pub since: Instant,
+}
+
+/// Watches a file, which is read by `read`, until what is returned ends or is dropped. The first content is there at once; after that
+/// there is one whenever it differs from the one before.
+pub fn watch(
+    path: &Path,
+    read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
+) -> notify::Result<Arc<Latest<Content>>> {
+    let (sender, events) = mpsc::channel();
+    let mut watcher = Watcher {
+        path: path.to_owned(),
+        read,
+        notifier: notify::recommended_watcher(move |event| {
+            // Where nobody listens any more, there is nothing to tell.
+            let _ = sender.send(event);
+        })?,
+        events,
+        folders: BTreeSet::new(),
+        names: Vec::new(),
+        stamp: stamp(path),
+        seen: None,
+    };
+    watcher.follow()?;
+    let latest = Arc::new(Latest::default());
+    watcher.look(Instant::now(), &latest);
+    let weak = Arc::downgrade(&latest);
+    thread::Builder::new()
+        .name("watcher".to_owned())
+        .spawn(move || watcher.run(&weak))
+        .map_err(notify::Error::io)?;
+    Ok(latest)
+}
+
+struct Watcher<R> {
+    path: PathBuf,
+    read: R,
+    notifier: RecommendedWatcher,
+    events: Receiver<notify::Result<Event>>,
+    /// The folders that are watched.
+    folders: BTreeSet<PathBuf>,
+    /// What the file is called in them.
+    names: Vec<OsString>,
+    /// What was seen of it from outside.
+    stamp: Option<Stamp>,
+    /// What was read last; of an error, its words.
+    seen: Option<Result<Vec<u8>, String>>,
+}
+
+impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
+    fn run(mut self, latest: &Weak<Latest<Content>>) {
+        loop {
+            let event = self.events.recv_timeout(ANYWAY);
+            let since = Instant::now();
+            let Some(latest) = latest.upgrade().filter(|latest| !latest.is_over()) else {
+                return;
+            };
+            match event {
+                Ok(event) if self.concerns(&event) => self.settle(),
+                Ok(_) => continue,
+                Err(RecvTimeoutError::Timeout) => {
+                    if stamp(&self.path) == self.stamp {
+                        // Perhaps a folder is back, or a link leads elsewhere.
+                        let _ = self.follow();
+                        continue;
+                    }
+                    // It has changed without an event: what was watched is no longer there, or never told.
+                    self.forget_folders();
+                }
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            // A folder that cannot be watched now is looked at once a second.
+            let _ = self.follow();
+            self.stamp = stamp(&self.path);
+            self.look(since, &latest);
+        }
+    }
+
+    /// Whether an event may have changed the file's content.
+    fn concerns(&self, event: &notify::Result<Event>) -> bool {
+        let Ok(event) = event else {
+            return true;
+        };
+        let written = AccessKind::Close(AccessMode::Write);
+        match event.kind {
+            // Also by ourselves.
+            EventKind::Access(access) if access != written => false,
+            _ if event.need_rescan() => true,
+            _ => event.paths.iter().any(|path| {
+                let name = path.file_name();
+                self.names.iter().any(|ours| name == Some(ours))
+            }),
+        }
+    }
+
+    /// Waits until the file was left alone for a moment.
+    fn settle(&self) {
+        let start = Instant::now();
+        let mut quiet = start + QUIET;
+        loop {
+            let now = Instant::now();
+            if now >= quiet || now - start >= LONGEST_BURST {
+                return;
+            }
+            if let Ok(event) = self.events.recv_timeout(quiet - now)
+                && self.concerns(&event)
+            {
+                quiet = Instant::now() + QUIET;
+            }
+        }
+    }
+
+    /// Watches the folders that matter now.
+    fn follow(&mut self) -> notify::Result<()> {
+        let mut folders = BTreeSet::new();
+        let mut names = BTreeSet::new();
+        let end = fs::canonicalize(&self.path).ok();
+        for path in [Some(&self.path), end.as_ref()].into_iter().flatten() {
+            folders.insert(folder(path));
+            names.extend(path.file_name().map(OsStr::to_owned));
+        }
+        self.names = names.into_iter().collect();
+        for old in self.folders.difference(&folders) {
+            let _ = self.notifier.unwatch(old);
+        }
+        self.folders.retain(|folder| folders.contains(folder));
+        for folder in folders {
+            if !self.folders.contains(&folder) {
+                self.notifier.watch(&folder, RecursiveMode::NonRecursive)?;
+                self.folders.insert(folder);
+            }
+        }
+        Ok(())
+    }
+
+    fn forget_folders(&mut self) {
+        for folder in std::mem::take(&mut self.folders) {
+            let _ = self.notifier.unwatch(&folder);
+        }
+    }
+
+    /// Reads the file, and hands its content on if it is a new one.
+    fn look(&mut self, since: Instant, latest: &Latest<Content>) {
+        let bytes = self.read_when_there();
+        let seen = match &bytes {
+            Ok(bytes) => Ok(bytes.clone()),
+            Err(error) => Err(error.to_string()),
+        };
+        if self.seen.as_ref() != Some(&seen) {
+            self.seen = Some(seen);
+            latest.put(Content { bytes, since });
+        }
+    }
+
+    fn read_when_there(&self) -> io::Result<Vec<u8>> {
+        let end = Instant::now() + ABSENCE;
+        loop {
+            let bytes = (self.read)(&self.path);
+            let is_there = match &bytes {
+                Ok(bytes) => !bytes.is_empty(),
+                Err(error) => error.kind() != io::ErrorKind::NotFound,
+            };
+            let left = end.saturating_duration_since(Instant::now());
+            if is_there || left.is_zero() || self.seen.is_none() {
+                return bytes;
+            }
+            if let Ok(event) = self.events.recv_timeout(left.min(QUIET))
+                && self.concerns(&event)
+            {
+                self.settle();
+            }
+        }
+    }
+}
+
+fn folder(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// What changes when a file does, as a rule: its time and its length.
+type Stamp = (SystemTime, u64);
+
+fn stamp(path: &Path) -> Option<Stamp> {
+    let found = fs::metadata(path).ok()?;
+    Some((found.modified().ok()?, found.len()))
+}

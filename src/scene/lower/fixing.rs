@@ -1,0 +1,109 @@
+//! Edits of whole fields, for problems of a block.
+
+use super::{Block, Lowering};
+use crate::{
+    diagnostic::{Edit, Fix},
+    scene::schema::{Field, Preset},
+    source::{SourceId, Span},
+    suggest,
+};
+
+impl Lowering<'_> {
+    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their own.
+    pub(super) fn add_fields(
+        &self,
+        block: &Block<'_>,
+        title: impl Into<String>,
+        fields: &[String],
+    ) -> Option<Fix> {
+        let text = self.sources.get(block.span.source).text();
+        let inside = text.get(..block.span.end)?.strip_suffix('}')?;
+        if block.span.source != SourceId::File {
+            return None;
+        }
+        let tight = inside.trim_end();
+        let gap = inside.get(tight.len()..)?;
+        let (place, added) = match gap.rsplit_once('\n') {
+            Some((before, indent)) => {
+                let end = if before.ends_with('\r') { "\r\n" } else { "\n" };
+                let lines = fields.iter().map(|f| format!("{indent}  {f}{end}"));
+                let at = inside.len() - indent.len();
+                (at..at, lines.collect())
+            }
+            None => {
+                let apart = if tight.ends_with('{') { " " } else { "  " };
+                let added = format!("{apart}{} ", fields.join("  "));
+                (tight.len()..inside.len(), added)
+            }
+        };
+        let span = Span::new(block.span.source, place.start, place.end);
+        Some(Fix::new(title, [Edit::new(span, added)]))
+    }
+
+    /// Of two fields that exclude each other, keeps either one: what it excludes is removed. One that would not be enough
+    /// by itself is not kept.
+    pub(super) fn one_of(&self, block: &Block<'_>, [earlier, later]: [&Field; 2]) -> Vec<Fix> {
+        let ways = [earlier, later].into_iter().filter_map(|kept| {
+            let given = |name: &&str| block.given(name).is_some();
+            let removed: Vec<&str> = kept.excludes.iter().copied().filter(given).collect();
+            // A box by its centre needs that, and one by its corners both.
+            let alike = |field: &&Field| field.excludes == kept.excludes;
+            let mut needed = block.row.fields.iter().filter(alike);
+            if !needed.all(|field| given(&field.name) || field.preset != Preset::Alternative) {
+                return None;
+            }
+            let spans = removed.iter().filter_map(|name| block.given(name));
+            let spans = self.joined(spans.map(|given| given.field()).collect());
+            let edits = spans.into_iter().map(|s| Edit::remove(s, self.sources));
+            let alike = block
+                .row
+                .fields
+                .iter()
+                .filter(alike)
+                .map(|field| field.name);
+            let kept: Vec<&str> = alike.filter(|name| given(name)).collect();
+            let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
+            Some(Fix::new(title, edits))
+        });
+        ways.collect()
+    }
+}
+
+impl Lowering<'_> {
+    /// Places in their order; those with nothing but white space between are one.
+    fn joined(&self, mut places: Vec<Span>) -> Vec<Span> {
+        places.sort();
+        let mut joined: Vec<Span> = Vec::with_capacity(places.len());
+        for place in places {
+            match joined.last_mut() {
+                Some(last)
+                    if last.source == place.source
+                        && last.end <= place.start
+                        && self.is_blank(last.end, place) =>
+                {
+                    last.end = place.end;
+                }
+                _ => joined.push(place),
+            }
+        }
+        joined
+    }
+
+    fn is_blank(&self, from: usize, place: Span) -> bool {
+        let between = Span::new(place.source, from, place.start);
+        self.sources.text(between).trim().is_empty()
+    }
+}
+
+/// Names in a title.
+pub(super) fn quoted(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    suggest::list(names.iter().map(String::as_str))
+}
+
+/// Fields with values that they can have.
+pub(super) fn examples(block: &Block<'_>, names: &[&str]) -> Vec<String> {
+    let rows = names.iter().filter_map(|name| block.row.field(name));
+    rows.map(|row| format!("{} {}", row.name, row.example()))
+        .collect()
+}

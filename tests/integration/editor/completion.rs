@@ -1,0 +1,208 @@
+//! What is offered while one types.
+
+use pinhole::{
+    color::Color,
+    editor::{Analysis, Completion, CompletionKind, Piece, completions},
+};
+
+use super::cursor;
+
+fn complete(text: &str) -> Vec<Completion> {
+    let (sources, at) = cursor(text);
+    completions(&Analysis::new(&sources), at)
+}
+
+fn labels(text: &str) -> String {
+    let labels: Vec<String> = complete(text).into_iter().map(|c| c.label).collect();
+    labels.join(" ")
+}
+
+/// What one of them puts in, with `‹›` around what is typed over, in the text.
+fn done(text: &str, label: &str) -> String {
+    let (sources, at) = cursor(text);
+    let all = completions(&Analysis::new(&sources), at);
+    let found = all
+        .iter()
+        .find(|c| c.label == label)
+        .expect("it is offered");
+    let insert: String = found
+        .insert
+        .iter()
+        .map(|piece| match piece {
+            Piece::Text(text) => text.clone(),
+            Piece::Hole(value) => format!("‹{value}›"),
+        })
+        .collect();
+    let text = sources.file.text();
+    format!(
+        "{}{insert}{}",
+        &text[..found.replaces.start],
+        &text[found.replaces.end..]
+    )
+}
+
+/// One of those that are offered.
+fn offered(text: &str, label: &str) -> Completion {
+    let found = complete(text).into_iter().find(|c| c.label == label);
+    found.unwrap_or_else(|| panic!("{label} is not offered in {text}"))
+}
+
+#[test]
+fn blocks_stand_outside_of_blocks() {
+    assert_eq!(
+        labels("$0"),
+        "camera box checkerboard image sampler sphere triangle let"
+    );
+    assert_eq!(
+        labels("camera {} im$0"),
+        "box checkerboard image sampler sphere triangle let"
+    );
+    assert_eq!(
+        labels("let a = 1\n$0\nsphere {}"),
+        "camera box checkerboard image sampler sphere triangle let"
+    );
+    assert_eq!(
+        labels("sphere { center (0, 1, 0) }\nima$0\ncamera { eye (0, 0, 0) }"),
+        "box checkerboard image sampler sphere triangle let"
+    );
+}
+
+#[test]
+fn a_block_comes_with_the_fields_that_it_needs() {
+    assert_eq!(
+        done("cam$0", "camera"),
+        "camera {\n  eye (‹0›, ‹2›, ‹8›)\n  lookat (‹0›, ‹1›, ‹0›)\n}"
+    );
+    assert_eq!(done("$0", "sphere"), "sphere { center (‹0›, ‹1›, ‹0›) }");
+    assert_eq!(done("$0", "image"), "image { ‹› }");
+    assert_eq!(done("$0", "let"), "let ‹name› = ‹1›");
+    // What is there already stays.
+    assert_eq!(
+        done("sp$0 { center (0, 0, 0) }", "sphere"),
+        "sphere { center (0, 0, 0) }"
+    );
+    assert_eq!(
+        done("sp$0 Ball { center (0, 0, 0) }", "sphere"),
+        "sphere Ball { center (0, 0, 0) }"
+    );
+}
+
+#[test]
+fn fields_that_are_given_or_excluded_are_not_offered() {
+    assert_eq!(labels("sphere { $0 }"), "center color radius");
+    assert_eq!(labels("sphere { $0 center (0, 1, 0) }"), "color radius");
+    assert_eq!(
+        labels("sphere { center (0, 1, 0) ra$0 color olive }"),
+        "radius"
+    );
+    assert_eq!(labels("box { center (0, 0, 0) $0 }"), "color size");
+    assert_eq!(labels("box { $0 }"), "center max min color size");
+    assert_eq!(
+        labels("camera { eye (0, 0, 0) fov 40deg $0 }"),
+        "direction lookat far near roll up view_height"
+    );
+}
+
+#[test]
+fn broken_texts_get_answers_too() {
+    assert_eq!(labels("sphere { center (0, 1, 0) $0"), "color radius");
+    assert_eq!(
+        labels("sphere {\n  center (0, 1, 0\n  rad$0\n}"),
+        "color radius"
+    );
+    assert_eq!(
+        labels("sphere {\n  rad$0\nbox { center (0, 0, 0) }"),
+        "center color radius"
+    );
+    assert_eq!(labels("sphere { radius ! 2 $0 } box {"), "center color");
+    assert_eq!(
+        labels("sampler { method $0"),
+        "exact halton hammersley jittered multi_jittered n_rooks random regular scatter sobol"
+    );
+    assert_eq!(labels("spere { $0 }"), "center color radius");
+}
+
+#[test]
+fn a_field_comes_with_a_value_that_it_can_have() {
+    assert_eq!(done("sphere { $0 }", "radius"), "sphere { radius ‹1› }");
+    assert_eq!(done("sphere { rad$0 2 }", "radius"), "sphere { radius 2 }");
+    assert_eq!(
+        done("box { min (0, 0, 0) $0 }", "max"),
+        "box { min (0, 0, 0) max (‹1›, ‹1›, ‹1›) }"
+    );
+    assert_eq!(
+        done("checkerboard { $0 }", "colors"),
+        "checkerboard { colors (‹gray›, ‹white›) }"
+    );
+    let radius = offered("sphere { $0 }", "radius");
+    assert_eq!(radius.kind, CompletionKind::Field);
+    assert_eq!(radius.detail, "number, 1 by default");
+    assert_eq!(
+        radius.help,
+        "`radius` of a sphere: its radius\n\n(number, `1` by default); must be more than 0"
+    );
+}
+
+#[test]
+fn values_fit_their_field() {
+    let lets = "let sky = #123456 let place = (1, 2, 3) let size = 2 ";
+    let first = |text: &str, count: usize| {
+        let labels = labels(&format!("{lets}{text}"));
+        labels
+            .split(' ')
+            .take(count)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    assert_eq!(
+        first("sphere { center p$0 }", 4),
+        "place size cross normalize"
+    );
+    assert_eq!(first("sphere { radius s$0 }", 3), "size place abs");
+    assert_eq!(first("sphere { color s$0 }", 2), "sky aliceblue");
+    assert_eq!(first("camera { roll s$0 }", 3), "place size acos");
+    assert_eq!(first("checkerboard { colors (s$0 }", 2), "sky aliceblue");
+    assert_eq!(first("sphere { center (0, 1, s$0", 3), "size place abs");
+    assert_eq!(first("camera { roll atan2(1, s$0", 2), "size place");
+    let sky = offered(&format!("{lets}sphere {{ color s$0 }}"), "sky");
+    assert_eq!(
+        sky.kind,
+        CompletionKind::Color(Color::from_bytes([0x12, 0x34, 0x56]))
+    );
+    assert_eq!(sky.detail, "#123456");
+    let teal = offered("sphere { color t$0 }", "teal");
+    assert_eq!(
+        teal.kind,
+        CompletionKind::Color(Color::from_bytes([0, 128, 128]))
+    );
+    assert_eq!(
+        done("let a = 2 * $0", "cross"),
+        "let a = 2 * cross(‹(1, 0, 0)›, ‹(0, 1, 0)›)"
+    );
+    assert_eq!(done("let a = si$0(30deg)", "sin"), "let a = sin(30deg)");
+    assert_eq!(offered("let a = $0", "atan2").detail, "atan2(y, x) → angle");
+}
+
+#[test]
+fn only_names_that_are_defined_before_are_offered() {
+    let text = "let a = 1 let b = $0 let c = 3";
+    let labels = labels(text);
+    let words: Vec<&str> = labels.split(' ').collect();
+    assert!(words.contains(&"a") && !words.contains(&"b") && !words.contains(&"c"));
+}
+
+#[test]
+fn nothing_is_offered_where_a_new_name_stands_or_no_word() {
+    for text in [
+        "// a $0",
+        "/* $0 */",
+        "let $0",
+        "let a$0",
+        "sphere B$0 {",
+        "sphere { radius 12$0 }",
+        "sphere { color #ff$0 }",
+    ] {
+        assert_eq!(labels(text), "", "{text}");
+    }
+}

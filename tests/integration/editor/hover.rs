@@ -1,0 +1,197 @@
+//! What the word under the cursor means.
+
+use pinhole::editor::{Analysis, hover, signature};
+
+use super::{cursor, under};
+
+/// The text that the answer is about, and the answer.
+fn hovered(text: &str) -> (String, String) {
+    let (sources, at) = cursor(text);
+    let analysis = Analysis::new(&sources);
+    match hover(&analysis, at) {
+        Some(hover) => (under(&analysis, hover.span).to_owned(), hover.markdown),
+        None => (String::new(), String::new()),
+    }
+}
+
+fn markdown(text: &str) -> String {
+    hovered(text).1
+}
+
+#[test]
+fn fields_say_what_the_table_says() {
+    assert_eq!(
+        hovered("sphere { center (0, 1, 0) ra$0dius 2 }"),
+        (
+            "radius".into(),
+            "`radius` of a sphere: its radius\n\n(number, `1` by default); must be more than 0"
+                .into()
+        )
+    );
+    assert_eq!(
+        markdown("camera { fo$0v 40deg }"),
+        "`fov` of a camera: the angle that the window's height takes up, instead of d\n\n(angle); must be more than 0 and less than 180deg; not together with `d`"
+    );
+    // A number is about its field.
+    assert_eq!(hovered("sphere { radius $02 }").0, "2");
+    assert_eq!(
+        markdown("sampler { method so$0bol }"),
+        "`sobol`: Sobol' points with Owen scrambling, per pixel"
+    );
+    assert_eq!(
+        markdown("$0let a = 1"),
+        "`let NAME = VALUE` gives a value a name, for what stands further down."
+    );
+}
+
+#[test]
+fn definitions_say_their_value() {
+    let about = "`let a = 2 * (1, 2, 3)` (line 1)\n\na vector: `(2, 4, 6)`";
+    assert_eq!(
+        hovered("let $0a = 2 * (1, 2, 3)"),
+        ("a".into(), about.into())
+    );
+    assert_eq!(
+        hovered("let a = 2 * (1, 2, 3)\nsphere { center a$0 }"),
+        ("a".into(), about.into())
+    );
+    assert_eq!(markdown("let a = 2 $0 let b = 1"), "");
+    assert_eq!(
+        markdown("let $0a = 1 + olive"),
+        "`let a = 1 + olive` (line 1)\n\nit has no value: see what is reported there"
+    );
+}
+
+#[test]
+fn expressions_say_what_they_come_to() {
+    let text = |place: usize| {
+        let mut text = "let a = 30deg let b = 2 * sin(a) + (1 - 0.5)".to_owned();
+        text.insert_str(place, "$0");
+        text
+    };
+    let at = |word: &str| text(text(0).find(word).expect("it stands there") - 2);
+    assert_eq!(
+        hovered(&at("* ")),
+        ("2 * sin(a)".into(), "`2 * sin(a)` is a number: `1`".into())
+    );
+    assert_eq!(
+        hovered(&at("+ ")),
+        (
+            "2 * sin(a) + (1 - 0.5)".into(),
+            "`2 * sin(a) + (1 - 0.5)` is a number: `1.5`".into()
+        )
+    );
+    assert_eq!(
+        hovered(&at("- 0")),
+        ("1 - 0.5".into(), "`1 - 0.5` is a number: `0.5`".into())
+    );
+    assert_eq!(
+        hovered(&at("sin")),
+        (
+            "sin".into(),
+            "`sin(angle) → number`: the sine of an angle\n\nhere a number: `0.5`".into()
+        )
+    );
+    assert_eq!(
+        markdown("let a = $090deg"),
+        "an angle: `90deg`, `1.5708rad`"
+    );
+    assert_eq!(
+        markdown("let a = p$0i"),
+        "`pi`: the number 3.141592653589793"
+    );
+}
+
+#[test]
+fn colors_are_shown_in_every_spelling() {
+    assert_eq!(
+        markdown("sphere { color ol$0ive }"),
+        "`olive` is a colour: `#808000`, `rgb(128, 128, 0)`; in linear light (0.215861, 0.215861, 0)"
+    );
+    assert_eq!(
+        markdown("let a = #f$000"),
+        "a colour: `#ff0000`, `rgb(255, 0, 0)`; in linear light (1, 0, 0)"
+    );
+    let (sources, at) = cursor("checkerboard { colors $0(gray, white) }");
+    let hover = hover(&Analysis::new(&sources), at).expect("an answer");
+    assert_eq!(hover.colors.len(), 2);
+}
+
+#[test]
+fn the_camera_says_what_it_comes_to() {
+    let text = "ca$0mera { eye (0, 1, 5) lookat (0, 1, 0) d 1 } sphere { radius oops }";
+    let expected = "looks level; a field of view of 90 degrees, `d 1`, `view_height 2`
+
+- `u` (1, 0, 0), the picture's right
+- `v` (0, 1, 0), the picture's top
+- `w` (0, 0, 1), against the view direction
+- vanishing point of x: none, it is parallel to the view plane
+- vanishing point of y: none, it is parallel to the view plane
+- vanishing point of z: pixel (400, 225)";
+    assert!(markdown(text).starts_with(expected), "{}", markdown(text));
+    assert!(
+        markdown(text).contains("- `eye` (vector, required): the point that all rays pass through")
+    );
+    // A camera that looks nowhere comes to nothing.
+    let nowhere = markdown("ca$0mera { eye (0, 1, 0) lookat (0, 1, 0) }");
+    assert!(nowhere.starts_with("`camera`: "), "{nowhere}");
+}
+
+#[test]
+fn objects_say_what_they_are() {
+    assert_eq!(
+        hovered("sphere Ba$0ll { center (0, 1, 0) }"),
+        (
+            "Ball".into(),
+            "sphere `Ball`: center (0, 1, 0), radius 1, #808000".into()
+        )
+    );
+    assert_eq!(markdown("sphere Ba$0ll { radius 0 }"), "sphere `Ball`");
+}
+
+#[test]
+fn mistakes_say_where_they_are_explained() {
+    let (about, text) = hovered("sphere { center (0, 1, 0) rad$0us 2 }");
+    assert_eq!(about, "radus");
+    assert!(
+        text.ends_with(": `pinhole explain unknown_field`"),
+        "{text}"
+    );
+    let text = markdown("camera { eye (0, 0, 0) lookat (1, 0, 0) roll $030 }");
+    assert!(text.starts_with("`roll` of a camera: "), "{text}");
+    assert!(text.ends_with(": `pinhole explain bare_angle`"), "{text}");
+}
+
+/// The label with the active parameter in `‹›`.
+fn called(text: &str) -> Option<String> {
+    let (sources, at) = cursor(text);
+    let found = signature(&Analysis::new(&sources), at)?;
+    let mut label = found.label;
+    if let Some(parameter) = found.parameters.get(found.active) {
+        label.insert(parameter.end, '›');
+        label.insert(parameter.start, '‹');
+    }
+    Some(label)
+}
+
+#[test]
+fn calls_say_what_they_take() {
+    let label = |text| called(text).unwrap_or_default();
+    assert_eq!(label("let a = sin($0"), "sin(‹angle›) → number");
+    assert_eq!(label("let a = atan2(1, $0)"), "atan2(y, ‹x›) → angle");
+    assert_eq!(
+        label("sphere { color rgb(1, 2, max(3, $0"),
+        "max(number, ‹number›, …) → number"
+    );
+    assert_eq!(
+        label("sphere { color rgb(1, max(3, 4), $0 }"),
+        "rgb(red, green, ‹blue›) → colour"
+    );
+    assert_eq!(
+        label("let a = max(1, 2, 3, $0"),
+        "max(number, number, ‹…›) → number"
+    );
+    assert_eq!(label("let a = sin(1deg, $0"), "sin(angle) → number");
+    assert_eq!(label("let a = (1, $0"), "");
+    assert_eq!(label("let a = sin(1deg) $0"), "");
+}

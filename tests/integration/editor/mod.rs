@@ -1,0 +1,29 @@
+//! The answers to one who writes a scene: a text with `$0` where the cursor is, and what comes of it.
+
+mod completion;
+mod hover;
+mod names;
+mod prefixes;
+mod shape;
+mod words;
+
+use pinhole::{
+    editor::Analysis,
+    source::{Source, Sources, Span},
+};
+
+/// The text without `$0`, and where that was.
+fn cursor(text: &str) -> (Sources, usize) {
+    let at = text.find("$0").expect("a cursor");
+    let text = text.replacen("$0", "", 1);
+    (sources(&text), at)
+}
+
+fn sources(text: &str) -> Sources {
+    Sources::new(Source::from_text("test.scn", text))
+}
+
+/// The text under a span.
+fn under<'s>(analysis: &Analysis<'s>, span: Span) -> &'s str {
+    analysis.slice(span)
+}

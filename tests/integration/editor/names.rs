@@ -1,0 +1,126 @@
+//! Definitions, uses and new names.
+
+use pinhole::editor::{Analysis, definition, occurrences, renamable, rename};
+
+use super::cursor;
+
+const SCENE: &str = "let ball = 1\nlet b = ball + ball\nsphere ball { radius ball }\n";
+
+/// The text with the name at the cursor changed; or why it cannot be.
+fn renamed(text: &str, new: &str) -> Result<String, String> {
+    let (sources, at) = cursor(text);
+    let analysis = Analysis::new(&sources);
+    let mut text = analysis.text().to_owned();
+    for span in rename(&analysis, at, new)?.into_iter().rev() {
+        text.replace_range(span.range(), new);
+    }
+    Ok(text)
+}
+
+#[test]
+fn every_use_of_a_definition_is_found_from_everywhere() {
+    for place in [
+        "let $0ball",
+        "let ba$0ll",
+        "= ball$0 +",
+        "+ ball$0",
+        "{ radius ball$0 }",
+    ] {
+        let text = SCENE.replacen(&place.replace("$0", ""), place, 1);
+        let (sources, at) = cursor(&text);
+        let analysis = Analysis::new(&sources);
+        let found = occurrences(&analysis, at);
+        let places: Vec<usize> = found.iter().map(|found| found.span.start).collect();
+        assert_eq!(places, [4, 21, 28, 54], "{place}");
+        assert!(found[0].is_definition && !found[1].is_definition);
+        assert_eq!(definition(&analysis, at).map(|span| span.start), Some(4));
+    }
+    // The object of the same name is another one.
+    let (sources, at) = cursor(&SCENE.replace("sphere ball", "sphere $0ball"));
+    let analysis = Analysis::new(&sources);
+    let places: Vec<usize> = occurrences(&analysis, at)
+        .iter()
+        .map(|found| found.span.start)
+        .collect();
+    assert_eq!(places, [40]);
+}
+
+#[test]
+fn names_change_wherever_they_stand() {
+    assert_eq!(
+        renamed(
+            "let a = 1 let b = a + sin(a * 1deg) sphere a { radius a$0 }",
+            "size"
+        )
+        .as_deref(),
+        Ok("let size = 1 let b = size + sin(size * 1deg) sphere a { radius size }")
+    );
+    assert_eq!(
+        renamed("let Ball = 1 sphere $0Ball { radius Ball }", "Globe").as_deref(),
+        Ok("let Ball = 1 sphere Globe { radius Ball }")
+    );
+    // Fields and methods may have the name of a definition, and are none.
+    assert_eq!(
+        renamed(
+            "let rad$0ius = 2 let sobol = 1 sampler { method sobol } sphere { radius radius }",
+            "r"
+        )
+        .as_deref(),
+        Ok("let r = 2 let sobol = 1 sampler { method sobol } sphere { radius r }")
+    );
+    assert_eq!(
+        renamed("let a = 1 let $0b = 2", "b").as_deref(),
+        Ok("let a = 1 let b = 2")
+    );
+}
+
+#[test]
+fn names_that_will_not_do_are_refused_with_the_reason() {
+    let refused = |text, new| renamed(text, new).expect_err("it will not do");
+    assert_eq!(
+        refused("let a = 1\nlet b = $0a", "b"),
+        "`b` is taken: it is defined in line 2"
+    );
+    assert_eq!(
+        refused("let $0a = 1", "Olive"),
+        "`Olive` is a colour of the language"
+    );
+    assert_eq!(
+        refused("let $0a = 1", "sin"),
+        "`sin` is a function of the language"
+    );
+    assert_eq!(
+        refused("let $0a = 1", "let"),
+        "`let` is a word of the language"
+    );
+    assert_eq!(
+        refused("let $0a = 1", "2x"),
+        "`2x` is no name: a name is made of the letters a to z, digits and `_`, and does not start with a digit"
+    );
+    assert_eq!(
+        refused("sphere $0A {}", "camera"),
+        "`camera` is the name of the camera block"
+    );
+    assert_eq!(
+        refused("sphere $0A {} box B {}", "B"),
+        "`B` is taken: it is defined in line 1"
+    );
+}
+
+#[test]
+fn words_of_the_language_have_no_other_name() {
+    let refused = |text| {
+        let (sources, at) = cursor(text);
+        renamable(&Analysis::new(&sources), at).expect_err("it cannot be changed")
+    };
+    assert_eq!(
+        refused("sphere { $0radius 1 }"),
+        "`radius` is a word of the language"
+    );
+    assert_eq!(
+        refused("sphere { color $0olive }"),
+        "`olive` is a colour of the language"
+    );
+    assert_eq!(refused("sphere { color $0sky }"), "`sky` is not defined");
+    assert_eq!(refused("sphere { radius $01 }"), "no name stands here");
+}

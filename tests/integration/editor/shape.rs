@@ -1,0 +1,251 @@
+//! Answers about a whole text: its outline, its folds, its colours, its remarks, and what a selection grows to.
+
+use pinhole::{
+    color::Color,
+    editor::{
+        Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, selection,
+        swatches, symbols,
+    },
+    source::{SourceId, Span},
+};
+
+use super::{cursor, sources, under};
+
+#[test]
+fn the_outline_has_definitions_blocks_and_fields() {
+    let text =
+        "let a = 1\ncamera {\n  eye a\n}\nsphere Ball { center (0, 1, 0) radius 2 * a }\nbox {";
+    let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
+    let sources = sources(text);
+    let analysis = Analysis::new(&sources);
+    let outline: Vec<String> = symbols(&analysis)
+        .iter()
+        .flat_map(|symbol| {
+            assert!(
+                symbol.span.start <= symbol.selection.start
+                    && symbol.selection.end <= symbol.span.end
+            );
+            std::iter::once(shown(symbol)).chain(
+                symbol
+                    .children
+                    .iter()
+                    .map(|child| format!("  {}", shown(child))),
+            )
+        })
+        .collect();
+    let expected = [
+        "Definition a 1",
+        "Setting camera ",
+        "  Field eye a",
+        "Object Ball sphere",
+        "  Field center (0, 1, 0)",
+        "  Field radius 2 * a",
+        "Object box ",
+    ];
+    assert_eq!(outline, expected);
+}
+
+#[test]
+fn blocks_and_runs_of_comments_fold() {
+    let text = "// a\n// b\n\n// c\nsphere {\n}\nbox {} // d\n// e\n// f\n/* g\n */\n";
+    let sources = sources(text);
+    let analysis = Analysis::new(&sources);
+    let folds: Vec<(FoldKind, &str)> = folds(&analysis)
+        .into_iter()
+        .map(|fold| (fold.kind, under(&analysis, fold.span)))
+        .collect();
+    let expected = [
+        (FoldKind::Comment, "// a\n// b"),
+        (FoldKind::Block, "sphere {\n}"),
+        (FoldKind::Comment, "// d\n// e\n// f\n/* g\n */"),
+    ];
+    assert_eq!(folds, expected);
+}
+
+#[test]
+fn a_selection_grows_from_the_word_to_the_file() {
+    let (sources, at) = cursor("let a = 1\nsphere { center 2 * (0, $0a + 1, 0)  radius 1 }\n");
+    let analysis = Analysis::new(&sources);
+    let grown: Vec<&str> = selection(&analysis, at)
+        .into_iter()
+        .map(|span| under(&analysis, span))
+        .collect();
+    let expected = [
+        "a",
+        "a + 1",
+        "(0, a + 1, 0)",
+        "2 * (0, a + 1, 0)",
+        "center 2 * (0, a + 1, 0)",
+        "center 2 * (0, a + 1, 0)  radius 1",
+        "sphere { center 2 * (0, a + 1, 0)  radius 1 }",
+        "let a = 1\nsphere { center 2 * (0, a + 1, 0)  radius 1 }\n",
+    ];
+    assert_eq!(grown, expected);
+    for text in ["$0", "/* a $0*/", "let a = $0", "sphere { } $0 "] {
+        let (sources, at) = cursor(text);
+        let analysis = Analysis::new(&sources);
+        for pair in selection(&analysis, at).windows(2) {
+            assert!(
+                pair[1].start <= pair[0].start && pair[0].end <= pair[1].end && pair[0] != pair[1]
+            );
+        }
+    }
+}
+
+#[test]
+fn colors_are_found_wherever_they_are_written_out() {
+    let text = "let olivey = Olive let c = rgb(1, 2 + 3, 4) image { background #fA0 } sampler { method tan } checkerboard { colors (c, #123456) } sphere { color olivey }";
+    let sources = sources(text);
+    let analysis = Analysis::new(&sources);
+    let found: Vec<(&str, String)> = swatches(&analysis)
+        .into_iter()
+        .map(|s| (under(&analysis, s.span), s.color.to_string()))
+        .collect();
+    let expected = [
+        ("Olive", "#808000"),
+        ("rgb(1, 2 + 3, 4)", "#010504"),
+        ("#fA0", "#ffaa00"),
+        ("tan", "#d2b48c"),
+        ("#123456", "#123456"),
+    ];
+    assert_eq!(
+        found
+            .iter()
+            .map(|(text, color)| (*text, color.as_str()))
+            .collect::<Vec<_>>(),
+        expected
+    );
+}
+
+#[test]
+fn colors_are_written_back_in_their_spelling() {
+    let written = |text: &str, bytes: [u8; 3]| {
+        let sources = sources(&format!("let a = {text}"));
+        let analysis = Analysis::new(&sources);
+        let swatch = swatches(&analysis)[0];
+        presentations(&analysis, swatch.span, Color::from_bytes(bytes)).join(" | ")
+    };
+    assert_eq!(
+        written("olive", [0, 128, 128]),
+        "teal | #008080 | rgb(0, 128, 128)"
+    );
+    assert_eq!(
+        written("OLIVE", [0, 128, 128]),
+        "TEAL | #008080 | rgb(0, 128, 128)"
+    );
+    assert_eq!(written("olive", [1, 2, 3]), "#010203 | rgb(1, 2, 3)");
+    assert_eq!(
+        written("#fa0", [0x11, 0x22, 0xcc]),
+        "#12c | #1122cc | rgb(17, 34, 204)"
+    );
+    assert_eq!(
+        written("#FA0", [0x12, 0x22, 0xcc]),
+        "#1222CC | rgb(18, 34, 204)"
+    );
+    assert_eq!(
+        written("#ffaa00", [255, 255, 255]),
+        "#ffffff | white | rgb(255, 255, 255)"
+    );
+    assert_eq!(
+        written("rgb(1, 2, 3)", [255, 165, 0]),
+        "rgb(255, 165, 0) | orange | #ffa500"
+    );
+}
+
+/// The text with its remarks in `‹›`.
+fn remarked(text: &str) -> String {
+    let sources = sources(text);
+    let analysis = Analysis::new(&sources);
+    let mut text = analysis.text().to_owned();
+    for hint in hints(&analysis, 0..text.len()).into_iter().rev() {
+        text.insert_str(hint.at, &format!("‹{}›", hint.text));
+    }
+    text
+}
+
+#[test]
+fn remarks_say_what_the_text_does_not() {
+    assert_eq!(
+        remarked("let a = 2 let b = a * 2 sphere { center (0, a + b, 0) radius -a color olive }"),
+        "let a = 2 let b = a * 2‹= 4› sphere { center (0, a + b, 0)‹= (0, 6, 0)› radius -a‹= -2› color olive }"
+    );
+    let view = "eye (0, 1, 5) lookat (0, 1, 0)";
+    assert_eq!(
+        remarked(&format!("camera {{ {view} d 1 }}")),
+        format!("camera {{ {view} d 1‹fov 90deg› }}")
+    );
+    assert_eq!(
+        remarked(&format!("camera {{ {view} fov 2 * 45deg }}")),
+        format!("camera {{ {view} fov 2 * 45deg‹= 90deg, d 1› }}")
+    );
+    assert_eq!(
+        remarked("sampler { per_pixel 16 }"),
+        "sampler { per_pixel 16‹5_760_000 in all› }"
+    );
+    assert_eq!(
+        remarked("sampler { total 720_000 }"),
+        "sampler { total 720_000‹2 per pixel› }"
+    );
+    assert_eq!(
+        remarked("sampler { method exact per_pixel 16 }"),
+        "sampler { method exact per_pixel 16 }"
+    );
+    assert_eq!(
+        remarked("let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)"),
+        "let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)‹= #010203›"
+    );
+}
+
+#[test]
+fn the_layout_changes_white_space_only_where_it_must() {
+    let changes = |text: &str| {
+        let sources = sources(text);
+        let found = formatting(&Analysis::new(&sources));
+        found.map(|changes| {
+            let changes = changes.into_iter();
+            let shown = changes.map(|(span, new)| (span.start, span.end - span.start, new));
+            shown.collect::<Vec<_>>()
+        })
+    };
+    assert_eq!(changes("let a = 1\nlet b = 2\n"), Some(Vec::new()));
+    assert_eq!(
+        changes("let a  =  1+1\nlet b = 2"),
+        Some(vec![
+            (6, 1, String::new()),
+            (9, 1, String::new()),
+            (11, 0, " ".to_owned()),
+            (12, 0, " ".to_owned()),
+            (23, 0, "\n".to_owned()),
+        ])
+    );
+    assert_eq!(changes("let a = "), None);
+}
+
+#[test]
+fn fixes_are_offered_where_the_problem_is() {
+    let offered = |text: &str| {
+        let (sources, at) = cursor(text);
+        let analysis = Analysis::new(&sources);
+        let found = fixes(&analysis, Span::new(SourceId::File, at, at));
+        let shown = found.into_iter().map(|(diagnostic, fix)| {
+            let mut text = analysis.text().to_owned();
+            for edit in fix.edits.iter().rev() {
+                text.replace_range(edit.span.range(), &edit.text);
+            }
+            format!("{}: {text}", diagnostic.code)
+        });
+        shown.collect::<Vec<_>>()
+    };
+    assert_eq!(
+        offered("sphere { center (0, 1, 0) rad$0us 2 }"),
+        ["pinhole::unknown_field: sphere { center (0, 1, 0) radius 2 }"]
+    );
+    assert_eq!(
+        offered("camera { eye (0, 0, 0) lookat (1, 0, 0) roll 3$00 }"),
+        [
+            "pinhole::bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30deg }",
+            "pinhole::bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30rad }",
+        ]
+    );
+    assert!(offered("sphere { $0center (0, 1, 0) radus 2 }").is_empty());
+}

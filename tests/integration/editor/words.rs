@@ -1,0 +1,153 @@
+//! What each word is, for colouring: by its place alone, and as the tree has it.
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use pinhole::{
+    editor::{Analysis, SemanticKind, semantic_tokens},
+    scene,
+    source::{SourceId, Span},
+    syntax::{
+        self,
+        tree::{Item, Value, ValueKind},
+    },
+};
+
+use super::{sources, under};
+
+/// The tokens, each with the first letters of what it is.
+fn shown(text: &str) -> String {
+    let sources = sources(text);
+    let analysis = Analysis::new(&sources);
+    let tokens = semantic_tokens(&analysis).into_iter().map(|token| {
+        let mark = if token.is_declaration { "!" } else { "" };
+        format!("{}:{:?}{mark}", under(&analysis, token.span), token.kind)
+    });
+    tokens.collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn words_are_what_their_place_makes_them() {
+    assert_eq!(
+        shown("let a = sin(30deg) // b"),
+        "let:Keyword a:Variable! =:Operator sin:Function 30deg:Number // b:Comment"
+    );
+    assert_eq!(
+        shown("sphere Ball { center a color olive radius -2 * pi }"),
+        "sphere:Keyword Ball:Class center:Property a:Variable color:Property olive:EnumMember radius:Property -:Operator 2:Number *:Operator pi:EnumMember"
+    );
+    assert_eq!(
+        shown("sampler { method sobol } image { background #fff }"),
+        "sampler:Keyword method:Property sobol:EnumMember image:Keyword background:Property #fff:Number"
+    );
+}
+
+#[test]
+fn words_keep_their_colour_while_others_are_typed() {
+    assert_eq!(
+        shown("sphere { radius color olive }"),
+        "sphere:Keyword radius:Property color:Property olive:EnumMember"
+    );
+    assert_eq!(
+        shown("let a =\nsphere { radius 1 }"),
+        "let:Keyword a:Variable! =:Operator sphere:Keyword radius:Property 1:Number"
+    );
+    assert_eq!(
+        shown("sphere {\n  center (0, 1\n  radius 2\nbox Crate { size"),
+        "sphere:Keyword center:Property 0:Number 1:Number radius:Property 2:Number box:Keyword Crate:Class size:Property"
+    );
+}
+
+/// What the tree says of each word of a text without mistakes of syntax.
+fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
+    let sources = sources(text);
+    let parsed = syntax::parse(&sources.file, SourceId::File);
+    if !parsed.problems.is_empty() {
+        return None;
+    }
+    let mut words: BTreeMap<Span, SemanticKind> = BTreeMap::new();
+    for item in &parsed.tree.items {
+        match item {
+            Item::Definition(definition) => {
+                words.insert(definition.keyword, SemanticKind::Keyword);
+                words.extend(
+                    definition
+                        .name
+                        .map(|name| (name.span, SemanticKind::Variable)),
+                );
+                values(&definition.value, false, &mut words);
+            }
+            Item::Block(block) => {
+                words.extend(block.kind.map(|kind| (kind.span, SemanticKind::Keyword)));
+                words.extend(block.name.map(|name| (name.span, SemanticKind::Class)));
+                for field in &block.fields {
+                    words.insert(field.name.span, SemanticKind::Property);
+                    values(&field.value, field.name.text == "method", &mut words);
+                }
+            }
+            Item::Bad(_) => return None,
+        }
+    }
+    Some(words)
+}
+
+fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, SemanticKind>) {
+    match &value.kind {
+        ValueKind::Name(name) => {
+            let kind = match scene::predefined(name) {
+                _ if is_method => SemanticKind::EnumMember,
+                Some("a function") => SemanticKind::Function,
+                Some(_) => SemanticKind::EnumMember,
+                None => SemanticKind::Variable,
+            };
+            words.insert(value.span, kind);
+        }
+        ValueKind::Call(call) if scene::predefined(call.function.text) == Some("a function") => {
+            words.insert(call.function.span, SemanticKind::Function);
+        }
+        ValueKind::Number(_) | ValueKind::Angle { .. } | ValueKind::ColorCode(_) => {
+            words.insert(value.span, SemanticKind::Number);
+        }
+        _ => {}
+    }
+    for part in value.parts() {
+        values(part, is_method, words);
+    }
+}
+
+/// The words by their places agree with the tree wherever that is certain.
+#[test]
+fn places_and_trees_agree() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = 0;
+    for folder in ["examples", "tests/diagnostics", "tests/syntax/ok"] {
+        for entry in fs::read_dir(root.join(folder)).expect("the folder is there") {
+            let path = entry.expect("an entry").path();
+            let Ok(text) = fs::read_to_string(&path) else {
+                continue;
+            };
+            if path.extension().is_none_or(|ending| ending != "scn") {
+                continue;
+            }
+            let Some(words) = of_tree(&text) else {
+                continue;
+            };
+            files += 1;
+            let sources = sources(&text);
+            let analysis = Analysis::new(&sources);
+            let tokens = semantic_tokens(&analysis).into_iter();
+            let tokens: BTreeMap<Span, SemanticKind> =
+                tokens.map(|token| (token.span, token.kind)).collect();
+            for (span, kind) in words {
+                let found = tokens.get(&span);
+                assert_eq!(
+                    found,
+                    Some(&kind),
+                    "{} {:?}",
+                    path.display(),
+                    under(&analysis, span)
+                );
+            }
+        }
+    }
+    assert!(files > 40, "{files}");
+}

@@ -1,0 +1,206 @@
+//! `pinhole fmt` from outside: files, standard input, exit status.
+
+use std::{
+    fs,
+    io::Write,
+    path::Path,
+    process::{Command, Stdio},
+    time::{Duration, SystemTime},
+};
+
+use tempfile::TempDir;
+
+const UNTIDY: &str = "let a=1\nsphere {center (a,2,3)} // c\n";
+const TIDY: &str = "let a = 1\nsphere { center (a, 2, 3) }  // c\n";
+const BROKEN: &str = "let a=1;\nsphere {center (a,2,3)}\n";
+
+/// Runs `pinhole fmt`: its status, standard output and standard error.
+fn fmt(folder: &Path, input: &str, arguments: &[&str]) -> (i32, String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
+        .arg("fmt")
+        .args(arguments)
+        .current_dir(folder)
+        .env("LC_ALL", "C.UTF-8")
+        .env("NO_COLOR", "1")
+        .env_remove("NO_GRAPHICS")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let output = child.wait_with_output().unwrap();
+    (
+        output.status.code().unwrap(),
+        String::from_utf8(output.stdout).unwrap(),
+        String::from_utf8(output.stderr).unwrap(),
+    )
+}
+
+fn silent(status: i32) -> (i32, String, String) {
+    (status, String::new(), String::new())
+}
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+fn read(folder: &TempDir, name: &str) -> String {
+    fs::read_to_string(folder.path().join(name)).unwrap()
+}
+
+#[test]
+fn files_are_laid_out_in_place() {
+    let folder = folder(&[("a.scn", UNTIDY), ("b.scn", TIDY), ("c.scn", "")]);
+    let long_ago = SystemTime::now() - Duration::from_secs(1000);
+    let tidy = fs::File::options()
+        .write(true)
+        .open(folder.path().join("b.scn"))
+        .unwrap();
+    tidy.set_modified(long_ago).unwrap();
+    assert_eq!(
+        fmt(folder.path(), "", &["a.scn", "b.scn", "c.scn"]),
+        silent(0)
+    );
+    assert_eq!(read(&folder, "a.scn"), TIDY);
+    assert_eq!(read(&folder, "c.scn"), "");
+    // What is canonical already is not touched.
+    assert_eq!(tidy.metadata().unwrap().modified().unwrap(), long_ago);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    assert_eq!(fmt(folder.path(), "", &["a.scn", "--check"]), silent(0));
+}
+
+#[test]
+fn check_prints_a_diff_and_writes_nothing() {
+    let folder = folder(&[("a.scn", UNTIDY), ("b.scn", TIDY), ("c.scn", "sphere  {}")]);
+    let (status, output, errors) = fmt(folder.path(), "", &["--check", "a.scn", "b.scn", "c.scn"]);
+    assert_eq!((status, output.as_str()), (1, ""));
+    assert_eq!(
+        errors,
+        "\
+--- a.scn
++++ a.scn, formatted
+@@ -1,2 +1,2 @@
+-let a=1
+-sphere {center (a,2,3)} // c
++let a = 1
++sphere { center (a, 2, 3) }  // c
+--- c.scn
++++ c.scn, formatted
+@@ -1 +1 @@
+-sphere  {}
+\\ No newline at end of file
++sphere {}
+"
+    );
+    assert_eq!(read(&folder, "a.scn"), UNTIDY);
+}
+
+#[test]
+fn standard_input_goes_to_standard_output() {
+    let folder = folder(&[]);
+    assert_eq!(
+        fmt(folder.path(), UNTIDY, &["-"]),
+        (0, TIDY.to_owned(), String::new())
+    );
+    assert_eq!(
+        fmt(folder.path(), TIDY, &["-"]),
+        (0, TIDY.to_owned(), String::new())
+    );
+    assert_eq!(fmt(folder.path(), TIDY, &["-", "--check"]), silent(0));
+    let (status, output, errors) = fmt(folder.path(), UNTIDY, &["-", "--check"]);
+    assert_eq!((status, output.as_str()), (1, ""));
+    assert!(errors.starts_with("--- -\n+++ -, formatted\n"), "{errors}");
+    let (status, output, errors) = fmt(folder.path(), BROKEN, &["-"]);
+    assert_eq!((status, output.as_str()), (1, ""));
+    assert!(errors.contains("pinhole::needless_separator"), "{errors}");
+    let (status, _, errors) = fmt(folder.path(), "", &["-", "-"]);
+    assert_eq!(status, 2, "{errors}");
+}
+
+#[test]
+fn a_broken_file_stays_and_the_others_are_laid_out() {
+    let folder = folder(&[("a.scn", BROKEN), ("b.scn", UNTIDY), ("c.scn", UNTIDY)]);
+    let (status, output, errors) = fmt(folder.path(), "", &["a.scn", "b.scn"]);
+    assert_eq!((status, output.as_str()), (1, ""));
+    assert!(errors.contains("pinhole::needless_separator") && errors.contains("\n1 error\n"));
+    assert_eq!(read(&folder, "a.scn"), BROKEN);
+    assert_eq!(read(&folder, "b.scn"), TIDY);
+    let (status, _, errors) = fmt(folder.path(), "", &["none.scn", "a.scn", "c.scn"]);
+    assert_eq!(status, 2);
+    assert!(errors.contains("cannot read none.scn"), "{errors}");
+    assert_eq!(read(&folder, "c.scn"), TIDY);
+    // Errors of meaning do not hinder.
+    fs::write(folder.path().join("d.scn"), "sphere{radus b}").unwrap();
+    assert_eq!(fmt(folder.path(), "", &["d.scn"]), silent(0));
+    assert_eq!(read(&folder, "d.scn"), "sphere { radus b }\n");
+}
+
+#[test]
+fn pictures_are_refused() {
+    let folder = folder(&[("a.scn", "camera { eye (0, 1, 5) lookat (0, 1, 0) }")]);
+    let picture = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/figure_9_9.png");
+    fs::copy(&picture, folder.path().join("a.png")).unwrap();
+    assert_eq!(
+        fmt(folder.path(), "", &["a.png"]),
+        (
+            2,
+            String::new(),
+            "error: a.png is a picture; fmt takes the scene's text\n".to_owned()
+        )
+    );
+    assert_eq!(
+        fs::read(picture).unwrap(),
+        fs::read(folder.path().join("a.png")).unwrap()
+    );
+    let (status, _, errors) = fmt(folder.path(), "", &["a.scn", "--set", "h=1"]);
+    assert_eq!(status, 2, "{errors}");
+    assert_eq!(fmt(folder.path(), "", &[]).0, 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_permissions_stay() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = folder(&[("a.scn", UNTIDY)]);
+    let file = folder.path().join("a.scn");
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("a.scn", folder.path().join("link.scn")).unwrap();
+    assert_eq!(fmt(folder.path(), "", &["link.scn"]), silent(0));
+    assert_eq!(read(&folder, "a.scn"), TIDY);
+    let link = fs::symlink_metadata(folder.path().join("link.scn")).unwrap();
+    assert!(link.is_symlink());
+    assert_eq!(
+        fs::metadata(&file).unwrap().permissions().mode() & 0o777,
+        0o640
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_replaced_stays() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = folder(&[("a.scn", UNTIDY)]);
+    let mode = |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).unwrap();
+    mode(0o555);
+    // Who may write everywhere (root does) is not kept from it.
+    let may_write = fs::write(folder.path().join("probe"), "").is_ok();
+    let (status, output, errors) = fmt(folder.path(), "", &["a.scn"]);
+    mode(0o755);
+    assert_eq!(output, "");
+    if may_write {
+        assert_eq!((status, read(&folder, "a.scn").as_str()), (0, TIDY));
+    } else {
+        assert_eq!((status, read(&folder, "a.scn").as_str()), (2, UNTIDY));
+        assert!(
+            errors.starts_with("error: cannot write a.scn: "),
+            "{errors}"
+        );
+    }
+}
