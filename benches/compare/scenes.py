@@ -1,6 +1,7 @@
 """Writes what `pinhole inspect` says of a scene as scenes of POV-Ray and of Mitsuba: scenes.py INSPECTED FOLDER
 
-The same camera, shapes and flat colours. Both get the camera's axes as they are, so that nothing is left to their own rules for them, and colours in linear light."""
+The same camera, shapes and flat colours. Both get the camera's axes as they are, so that nothing is left to their own rules for them, and
+colours in linear light."""
 
 import json
 import os
@@ -8,8 +9,9 @@ import sys
 from math import log
 from struct import pack
 
-# Mitsuba computes with 32-bit floats and has no endless plane: a checkerboard is a square of this half-width with rings around it, each this
-# many times as wide as what is within, so that places are as exact as their distance asks for. Under a pixel's height is left out at the horizon.
+# Mitsuba computes with 32-bit floats and has no endless plane: a checkerboard is a square of so many squares on each side of the origin, with
+# rings around it, each this many times as wide as what is within, so that places are as exact as their distance asks for. From 3.5 above it, what
+# is missing at the horizon of figure 9.9 is a fortieth of a pixel's height.
 INNERMOST = 32.0
 RING = 8.0
 RINGS = 4
@@ -41,12 +43,17 @@ def linear(color):
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in encoded]
 
 
+def colors(scene):
+    """The colours of all objects but checkerboards, each once: objects of one colour share a texture, or a material."""
+    return sorted({thing["color"] for thing in scene["objects"] if "color" in thing})
+
+
 def povray(scene):
     """The text of a scene of POV-Ray 3.7."""
     image, camera = scene["image"], scene["camera"]
 
     def vector(values):
-        return "<" + ", ".join(f"{value:.17g}" for value in values) + ">"
+        return "<" + ", ".join(map(repr, values)) + ">"
 
     def scaled(axis, by):
         return vector([by * value for value in camera[axis]])
@@ -61,10 +68,12 @@ def povray(scene):
         f"camera {{ location {vector(camera['eye'])} direction {scaled('w', -camera['d'])}",
         f"  right {scaled('u', height * image['width'] / image['height'])} up {scaled('v', height)} }}",
     ]
+    for value in colors(scene):
+        lines.append(f"#declare C{value[1:]} = texture {{ pigment {{ rgb {vector(linear(value))} }} }}")
     for thing in scene["objects"]:
         match thing["kind"]:
             case "sphere":
-                shape = f"sphere {{ {vector(thing['center'])}, {thing['radius']:.17g}"
+                shape = f"sphere {{ {vector(thing['center'])}, {thing['radius']!r}"
             case "triangle":
                 shape = "triangle { " + ", ".join(vector(vertex) for vertex in thing["vertices"])
             case "box":
@@ -74,11 +83,11 @@ def povray(scene):
                 first, second = (f"rgb {vector(linear(color))}" for color in thing["colors"])
                 square, y = thing["square"], thing["y"]
                 lines.append(
-                    f"plane {{ y, {y:.17g} pigment {{ checker {first}, {second} "
-                    f"scale {square:.17g} translate <0, {y - square / 2:.17g}, 0> }} }}"
+                    f"plane {{ y, {y!r} pigment {{ checker {first}, {second} "
+                    f"scale {square!r} translate <0, {y - square / 2!r}, 0> }} }}"
                 )
                 continue
-        lines.append(f"{shape} pigment {{ rgb {vector(linear(thing['color']))} }} }}")
+        lines.append(f"{shape} texture {{ C{thing['color'][1:]} }} }}")
     return "\n".join(lines) + "\n"
 
 
@@ -121,9 +130,7 @@ def mitsuba(scene):
         "</sensor>",
     ]
     files = {}
-    # Objects of one colour share its material.
-    colors = sorted({thing["color"] for thing in scene["objects"] if "color" in thing})
-    for value in colors:
+    for value in colors(scene):
         lines.append(f'<bsdf type="diffuse" id="{value[1:]}">{color("reflectance", value)}</bsdf>')
     for value, spheres in clouds.items():
         name = f"spheres_{value[1:]}.ply"
