@@ -3,14 +3,16 @@
 use glam::DVec2;
 
 use super::board::{Board, UNIT, form, measure};
-use super::cells::{Bulk, Chord, Tally};
+use super::bulk::Bulk;
+use super::cells::MANY;
+use super::cutter::{Chord, Tally};
 use super::euler::square_wave;
 use super::modes::Lines;
 
 /// What may be neglected of a side, in square pixels, and what is if that takes too long.
 const NEGLECTED: f64 = 1e-10;
 const AT_WORST: f64 = 4e-9;
-/// No more rows than this are summed one by one for that.
+/// No more rows than this, of a square each, are summed one by one for that.
 const PATIENCE: f64 = 200_000.0;
 
 /// What lies between two lines of the board and between two sides, on each of which m is linear.
@@ -73,12 +75,15 @@ impl Bulk for Block<'_> {
     fn smooth(&self) -> [f64; 2] {
         let [mut first, mut last] = [self.first, self.last];
         let factor = 2.0 * self.board.per_slope[1 - self.along].value;
+        let [left, right] = self.sides;
+        let length = (right[0][0] - left[0][0]).max(right[1][0] - left[1][0]);
+        let most = (PATIENCE / (1.0 + 0.25 * length.clamp(0.0, MANY))).ceil();
         for side in &self.sides {
             let lines = self.lines(side, [self.first, self.last]);
             let start = lines.start(AT_WORST / factor);
             let missing = (start - lines.depth.min(side[1][1])) / lines.rise.abs();
             if missing > 0.0 {
-                let rows = missing.ceil().min(PATIENCE);
+                let rows = missing.ceil().min(most);
                 if lines.rise > 0.0 {
                     first = first.max(self.first + rows);
                 } else {
