@@ -9,16 +9,19 @@
 //! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen there. Boundaries that
 //!    are hidden do no harm: both sides of them get the same colour.
 //! 4. Areas have closed forms: `arc` for conics. What a region shows of a checkerboard (`board`) is summed row by row where it is
-//!    near (`cells`) and along the region's boundary where it is far (`edge`), with `level` for sides that cross very many lines
-//!    and `horizon` for those that cross lines without end.
+//!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
+//!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
+//!    recedes, and in `modes` at any distance.
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
 mod arc;
 mod block;
 mod board;
+mod bulk;
 mod cells;
 mod complex;
+mod cutter;
 mod edge;
 mod euler;
 mod exponential;
@@ -29,6 +32,7 @@ mod polygon;
 mod region;
 mod sides;
 mod sliver;
+mod strip;
 mod sweep;
 #[cfg(test)]
 mod tests;
