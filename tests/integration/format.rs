@@ -214,6 +214,9 @@ fn mistakes_of_syntax_are_told_and_no_others() {
         formatted("sphere { center (1, 2, 3) radius }"),
         codes(&["missing_value"])
     );
+    // So it is where the field is no field.
+    assert_eq!(formatted("sphere { radus }"), codes(&["missing_value"]));
+    assert_eq!(formatted("ball { radius }"), codes(&["missing_value"]));
     assert_eq!(
         formatted("sphere { center (1"),
         codes(&["unclosed_block", "unclosed_parenthesis"])
