@@ -22,7 +22,7 @@ use pinhole::{
 /// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
 const ROUNDS: usize = 3;
 
-const WAYS: [Way; 3] = [Way::OneByOne, Way::Together, Way::Culled];
+const WAYS: [Way; 4] = [Way::OneByOne, Way::Narrow, Way::Together, Way::Culled];
 
 /// The scenes that are compared by one method: what culling likes, and what it does not.
 const SCENES: [&str; 5] = [
@@ -38,12 +38,17 @@ fn main() {
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }
+    let arguments: Vec<_> = env::args().collect();
+    if let Some(at) = arguments.iter().position(|argument| argument == "--once") {
+        once(&arguments[at + 1..]);
+        return;
+    }
     println!(
         "one thread; millions of samples a second one by one, and how many times as fast the other ways are"
     );
     println!(
-        "{:40} {:>10} {:>10} {:>10}",
-        "", "one by one", "together", "culled"
+        "{:40} {:>10} {:>10} {:>10} {:>10}",
+        "", "one by one", "narrow", "together", "culled"
     );
     let figure = example("figure_9_9");
     for method in Method::SAMPLED {
@@ -157,10 +162,32 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() {
     }
 }
 
+/// Renders figure 9.9 on one thread and ends, for those who measure processes: a way, a method, the picture's width, samples per pixel, and how
+/// many times. The way `None` prepares everything and renders nothing.
+fn once(arguments: &[String]) {
+    let [way, method, numbers @ ..] = arguments else {
+        panic!("--once WAY METHOD WIDTH SAMPLES TIMES");
+    };
+    let number = |at: usize| -> u32 { numbers[at].parse().expect("a number") };
+    let mut methods = Method::SAMPLED.into_iter();
+    let method = methods.find(|known| known.name() == method);
+    let scene = sized(
+        &example("figure_9_9"),
+        number(0),
+        method.expect("a method's name"),
+        u64::from(number(1)),
+    );
+    let known = WAYS.into_iter().find(|known| format!("{known:?}") == *way);
+    let picture = picture(&scene, known.unwrap_or(Way::Culled));
+    if known.is_some() {
+        (0..number(2)).for_each(|_| picture());
+    }
+}
+
 /// The ways compared in turns, so that a busy moment meets all of them.
 fn ratios(name: &str, scene: &Scene) {
     let pictures = WAYS.map(|way| picture(scene, way));
-    let mut best = [Duration::MAX; 3];
+    let mut best = [Duration::MAX; WAYS.len()];
     for _ in 0..ROUNDS {
         for (picture, best) in pictures.iter().zip(&mut best) {
             let start = Instant::now();
@@ -168,11 +195,12 @@ fn ratios(name: &str, scene: &Scene) {
             *best = start.elapsed().min(*best);
         }
     }
-    let [one, together, culled] = best.map(|time| time.as_secs_f64());
+    let [one, narrow, together, culled] = best.map(|time| time.as_secs_f64());
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let rate = sampling.total() as f64 / one / 1e6;
     println!(
-        "{name:40} {rate:10.1} {:10.2} {:10.2}",
+        "{name:40} {rate:10.1} {:10.2} {:10.2} {:10.2}",
+        one / narrow,
         one / together,
         one / culled
     );

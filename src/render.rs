@@ -24,6 +24,7 @@ use crate::{
     area::Area,
     exact::Integrator,
     film::{Film, TooLarge, mean},
+    math::Vectors,
     sampling::Sampling,
     tracer::{Live, Part, Pixel, Quartering, Room, World},
 };
@@ -61,8 +62,20 @@ pub enum Way {
     Culled,
     /// All of them, many at a time, against all objects.
     Together,
+    /// The same by vectors that every processor of the kind has.
+    Narrow,
     /// All of them, one by one, against all objects.
     OneByOne,
+}
+
+impl Way {
+    /// What its loops are made of.
+    fn vectors(self) -> Vectors {
+        match self {
+            Self::Culled | Self::Together => Vectors::Widest,
+            Self::Narrow | Self::OneByOne => Vectors::Baseline,
+        }
+    }
 }
 
 /// Why there is no picture.
@@ -132,7 +145,7 @@ pub fn render_in_a_way(
         quartering: Quartering::new(world).down_to(grain),
         everything: match way {
             Way::Culled => Vec::new(),
-            Way::Together | Way::OneByOne => world.everything(),
+            Way::Together | Way::Narrow | Way::OneByOne => world.everything(),
         },
     };
     let side = tile_side(sampling, part);
@@ -252,7 +265,7 @@ impl Frame<'_> {
         };
         let flow = match self.way {
             Way::Culled => self.quartering.parts(tile, room, &mut visit),
-            Way::Together | Way::OneByOne => tile.iter().try_for_each(|(x, y)| {
+            Way::Together | Way::Narrow | Way::OneByOne => tile.iter().try_for_each(|(x, y)| {
                 visit(Part::Open {
                     x,
                     y,
@@ -333,14 +346,17 @@ impl Frame<'_> {
             points,
         } = tally;
         points.clear();
-        self.sampling.points(x, y, samples, first..end, points);
+        let vectors = self.way.vectors();
+        self.sampling
+            .points_by(vectors, [x, y], samples, first..end, points);
         if self.way == Way::OneByOne {
             for &offset in &*points {
                 counts.add(self.world.slot_at(x, y, offset), 1);
             }
         } else {
-            self.world
-                .count(pixel, points, |slot, samples| counts.add(slot, samples));
+            self.world.count(pixel, points, vectors, |slot, samples| {
+                counts.add(slot, samples)
+            });
         }
     }
 

@@ -3,7 +3,9 @@
 use glam::DVec2;
 
 use super::board::{Board, UNIT, form, measure};
-use super::cells::{Bulk, Chord, MANY, Tally};
+use super::bulk::Bulk;
+use super::cells::MANY;
+use super::cutter::{Chord, Tally};
 use super::euler::square_wave;
 use super::modes::Lines;
 

@@ -1,18 +1,15 @@
 //! The board's integral where its squares are near: row by row, and square by square at the ends of the rows.
 
-use std::f64::consts::PI;
-
 use glam::DVec2;
 
 use super::block::Block;
-use super::board::{Board, Corner, FAR, Sum, UNIT, form, measure};
-use super::edge::MAX_TERMS;
-use super::euler::{ORDERS, square_wave, waves};
+use super::board::{Board, Corner, Sum, UNIT, form, measure};
+use super::bulk::{in_bulk, vertices};
+use super::cutter::{Cutter, Tally};
+use super::euler::square_wave;
 use super::modes::GRADUAL;
-use crate::math::two_sum;
+use super::strip::Strip;
 
-/// A row with fewer whole squares is cut square by square.
-const FEW: f64 = 3.0;
 /// More squares of a row than this are summed at once.
 pub(super) const MANY: f64 = 32.0;
 
@@ -76,66 +73,6 @@ pub(super) fn sum_with_blocks(board: &Board, corners: &[Corner], least: f64) -> 
     sum
 }
 
-/// What much of a polygon between two lines of the board is summed as, at once.
-pub(super) trait Bulk {
-    /// The part of it that can be.
-    fn smooth(&self) -> [f64; 2];
-    /// Adds its part between two lines, which is `piece`.
-    fn add(&self, ends: [f64; 2], piece: &[DVec2], tally: &mut Tally);
-}
-
-/// Where vertices lie along an axis of the board, in order, and how uncertain that is.
-fn vertices(board: &Board, axis: usize, points: &[DVec2]) -> Vec<(f64, f64)> {
-    // Far away a vertex is uncertain by more than a square, and which side a line there crosses.
-    let vertex = |&at: &DVec2| board.place(axis, at, form(&board.below, at));
-    let mut ends: Vec<(f64, f64)> = points.iter().map(vertex).collect();
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ends
-}
-
-/// Adds the polygon with which a cutter has begun: in bulk what lies between two vertices with more than `least` lines
-/// between them, and the rest by another way.
-///
-/// Between two vertices it is bounded by one side above and by one below.
-fn in_bulk<B: Bulk>(
-    cutter: &mut Cutter,
-    vertices: &[(f64, f64)],
-    least: f64,
-    bulk: impl Fn([f64; 2], &[Chord; 2]) -> Option<B>,
-    mut add_rest: impl FnMut(&[DVec2], &mut Tally),
-    tally: &mut Tally,
-) {
-    for ends in vertices.windows(2) {
-        let [from, to] = [ends[0], ends[1]];
-        let first = (from.0 + from.1).ceil();
-        let last = (to.0 - to.1).floor();
-        let are_many = last - first > least;
-        if !are_many {
-            continue;
-        }
-        cutter.cut(first, tally);
-        add_rest(&cutter.piece, tally);
-        cutter.cut(last, tally);
-        let Some(bulk) = bulk([first, last], &cutter.chords) else {
-            add_rest(&cutter.piece, tally);
-            continue;
-        };
-        let [first, last] = bulk.smooth();
-        let are_many = last - first > least;
-        if !are_many {
-            add_rest(&cutter.piece, tally);
-            continue;
-        }
-        let mut parts = cutter.again();
-        parts.cut(first, tally);
-        add_rest(&parts.piece, tally);
-        parts.cut(last, tally);
-        bulk.add([first, last], &parts.piece, tally);
-        add_rest(&parts.rest, tally);
-    }
-    add_rest(&cutter.rest, tally);
-}
-
 /// Sums polygons row by row.
 struct Rows<'a> {
     board: &'a Board,
@@ -192,16 +129,16 @@ impl Rows<'_> {
 }
 
 /// A row of the board.
-struct Row<'a> {
-    board: &'a Board,
-    along: usize,
+pub(super) struct Row<'a> {
+    pub board: &'a Board,
+    pub along: usize,
     number: f64,
     /// The sign of its square 0.
-    sign: f64,
+    pub sign: f64,
 }
 
 impl Row<'_> {
-    fn place(&self, at: DVec2) -> f64 {
+    pub(super) fn place(&self, at: DVec2) -> f64 {
         form(&self.board.across[self.along], at) / form(&self.board.below, at)
     }
 
@@ -274,292 +211,4 @@ impl Row<'_> {
             tally,
         );
     }
-}
-
-/// Much of a row: what lies between two lines of the board, and between two sides on which m is linear.
-///
-/// A line at a has G(a) = K/2|q|·(m^−2 − M^−2) of J = K/m³ between the sides, where m and M are theirs, and s(a)·G has the
-/// antiderivative Σ (−1)^k A_k+1(a) G^(k)(a). At a line of the board just the odd waves are not 0.
-struct Strip<'a> {
-    row: &'a Row<'a>,
-    first: f64,
-    last: f64,
-    sides: [Side; 2],
-}
-
-/// A side of a strip: where it begins and ends along the row and m there, and the slope of m.
-///
-/// Far away both are uncertain, but by the same factor 1/L, so that the slope is not.
-struct Side {
-    start: [f64; 2],
-    end: [f64; 2],
-    slope: f64,
-}
-
-impl<'a> Strip<'a> {
-    /// Between two lines, given where they cut the row's piece.
-    fn new(row: &'a Row, [first, last]: [f64; 2], chords: &[Chord; 2]) -> Option<Self> {
-        let point = |at: DVec2| [row.place(at), 1.0 / form(&row.board.below, at)];
-        let ends = |chord: Chord| {
-            let [s, t] = chord?.map(point);
-            Some(if s[1] <= t[1] { [s, t] } else { [t, s] })
-        };
-        let (from, to) = (ends(chords[0])?, ends(chords[1])?);
-        let sides = [0, 1].map(|i| {
-            let (start, end) = (from[i], to[i]);
-            Side {
-                start,
-                end,
-                slope: (end[1] - start[1]) / (end[0] - start[0]),
-            }
-        });
-        Some(Self {
-            row,
-            first,
-            last,
-            sides,
-        })
-    }
-
-    /// m on a side, from the end that is nearer.
-    fn depth(&self, Side { start, end, slope }: &Side, i: f64) -> f64 {
-        if i - self.first < self.last - i {
-            start[1] + slope * (i - start[0])
-        } else {
-            end[1] + slope * (i - end[0])
-        }
-    }
-}
-
-impl Bulk for Strip<'_> {
-    /// The part of it in which m changes little from line to line.
-    fn smooth(&self) -> [f64; 2] {
-        let [mut first, mut last] = [self.first, self.last];
-        for Side { start, end, slope } in &self.sides {
-            if *slope > 0.0 {
-                first = first.max(self.first + (FAR - start[1] / slope).ceil());
-            } else if *slope < 0.0 {
-                last = last.min(self.last - (FAR + end[1] / slope).ceil());
-            }
-        }
-        [first, last]
-    }
-
-    fn add(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
-        let waves = waves::<MAX_TERMS>(0.0);
-        let mut sum = 0.0;
-        let mut bound = 0.0;
-        for (i, sense) in [(first, -1.0), (last, 1.0)] {
-            for (side, half) in self.sides.iter().zip([1.0, -1.0]) {
-                let end = self.potential(&waves, self.depth(side, i), side.slope);
-                sum += sense * half * square_wave(i) * end.value;
-                bound += end.bound;
-            }
-        }
-        let (_, perimeter) = measure(piece.iter().copied());
-        // The sides are those between points that are a few roundings off.
-        bound += 8.0 * UNIT * perimeter;
-        tally.add(self.row.sign * sum, bound);
-    }
-}
-
-impl Strip<'_> {
-    /// Σ A_k+1(0)·(K/2|q|)·(k + 1)!·γ^k·m^(−2−k), with what it neglects: |A_n| ≤ ½π^(1−n), and G^(n−1) is monotonic.
-    fn potential(&self, waves: &[f64; ORDERS], depth: f64, slope: f64) -> Sum {
-        let board = self.row.board;
-        let u = 1.0 / depth;
-        let per_slope = board.per_slope[1 - self.row.along];
-        let first = 0.5 * per_slope.value * u * u;
-        // L is off by some roundings of its terms.
-        let [x, y, z] = board.below.map(f64::abs);
-        let off = 12.0 * UNIT * (0.5 * (x + y) + z) * depth;
-        let (mut sum, mut factor) = (0.0, first);
-        for k in 0..MAX_TERMS - 1 {
-            sum += waves[k + 1] * factor;
-            factor *= slope * u * (k + 2) as f64;
-        }
-        let neglected = 0.5 * factor.abs() / libm::pow(PI, (MAX_TERMS - 1) as f64);
-        Sum {
-            value: sum,
-            bound: neglected + (per_slope.bound + off + 16.0 * UNIT) * first,
-        }
-    }
-}
-
-/// A sum of many numbers, and what it is off. The numbers' own rounding is kept and added in the end.
-#[derive(Default)]
-pub(super) struct Tally {
-    value: f64,
-    rest: f64,
-    bound: f64,
-    /// Whether anything was computed of the forms' inverse.
-    pub(super) has_inverse: bool,
-}
-
-impl Tally {
-    pub(super) fn add(&mut self, value: f64, bound: f64) {
-        let sum = two_sum(self.value, value);
-        self.value = sum.hi;
-        self.rest += sum.lo;
-        self.bound += bound;
-    }
-
-    fn sum(&self) -> Sum {
-        Sum {
-            value: self.value + self.rest,
-            bound: self.bound + 2.0 * UNIT,
-        }
-    }
-}
-
-/// A convex polygon from which one strip of squares after the other is cut off, along one axis of the board.
-struct Cutter {
-    across: [f64; 3],
-    below: [f64; 3],
-    rest: Vec<DVec2>,
-    piece: Vec<DVec2>,
-    spare: Vec<DVec2>,
-    strips: Option<(i64, i64)>,
-    /// Where the lines on both sides of the piece cut the polygon.
-    chords: [Chord; 2],
-}
-
-/// What a line has of a polygon: its ends, if it was met.
-pub(super) type Chord = Option<[DVec2; 2]>;
-
-impl Cutter {
-    fn new(board: &Board, axis: usize) -> Self {
-        Self {
-            across: board.across[axis],
-            below: board.below,
-            rest: Vec::new(),
-            piece: Vec::new(),
-            spare: Vec::new(),
-            strips: None,
-            chords: [None; 2],
-        }
-    }
-
-    /// Begins with a polygon.
-    fn start(&mut self, points: impl Iterator<Item = DVec2>) {
-        self.rest.clear();
-        self.rest.extend(points);
-        self.strips = self.range();
-        self.chords = [None; 2];
-    }
-
-    /// Makes `piece` the part of the rest between the lines i and i + 1, and returns i.
-    fn next(&mut self, tally: &mut Tally) -> Option<f64> {
-        if self.rest.len() < 3 {
-            return None;
-        }
-        let (i, last) = self.strips?;
-        self.strips = Some((i + 1, last));
-        if i >= last {
-            self.chords = [self.chords[1], None];
-            std::mem::swap(&mut self.piece, &mut self.rest);
-            self.rest.clear();
-            return Some(last as f64);
-        }
-        self.cut((i + 1) as f64, tally);
-        Some(i as f64)
-    }
-
-    /// The first and the last strip that the polygon meets; none if they are out of the range of numbers.
-    fn range(&self) -> Option<(i64, i64)> {
-        let mut range = None;
-        for &p in &self.rest {
-            let place = form(&self.across, p) / form(&self.below, p);
-            if place.is_nan() || place.abs() > 1e18 {
-                return None;
-            }
-            let i = place.floor() as i64;
-            let (low, high) = range.unwrap_or((i, i));
-            range = Some((low.min(i), high.max(i)));
-        }
-        range
-    }
-
-    /// How many strips are left.
-    fn count(&self) -> f64 {
-        self.strips
-            .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
-    }
-
-    /// Another cutter that begins with the piece.
-    fn again(&self) -> Self {
-        let mut again = Self {
-            across: self.across,
-            below: self.below,
-            rest: Vec::new(),
-            piece: Vec::new(),
-            spare: Vec::new(),
-            strips: None,
-            chords: [None; 2],
-        };
-        again.start(self.piece.iter().copied());
-        again
-    }
-
-    /// Makes `piece` the part of the rest before the line n.
-    fn cut(&mut self, n: f64, tally: &mut Tally) {
-        let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
-        self.piece.clear();
-        self.spare.clear();
-        let chord = split(&self.rest, &line, &mut self.piece, &mut self.spare);
-        std::mem::swap(&mut self.rest, &mut self.spare);
-        self.chords = [self.chords[1], chord];
-        let Some([from, to]) = chord else { return };
-        let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors are off by three roundings of these, the form's value by four, and the point by four of its own.
-        let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
-        let step = (to - from).abs();
-        tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
-    }
-
-    /// The whole squares of the strip, as lines of the other axis count them, if there are some.
-    fn whole(&self, board: &Board, axis: usize) -> Option<[f64; 2]> {
-        let [Some(lower), Some(upper)] = self.chords else {
-            return None;
-        };
-        let [lower, upper] = [lower, upper].map(|chord| {
-            let [s, t] = chord.map(|p| form(&board.across[axis], p) / form(&self.below, p));
-            [s.min(t), s.max(t)]
-        });
-        let first = lower[0].max(upper[0]).ceil();
-        let last = lower[1].min(upper[1]).floor();
-        (last - first >= FEW).then_some([first, last])
-    }
-}
-
-/// A convex polygon's parts on the negative and on the positive side of a line, and the line's chord.
-fn split(
-    points: &[DVec2],
-    line: &[f64; 3],
-    negative: &mut Vec<DVec2>,
-    positive: &mut Vec<DVec2>,
-) -> Chord {
-    let mut before = points.last().map(|&last| (last, form(line, last)))?;
-    let mut chord: Chord = None;
-    let mut meet = |at: DVec2| chord = Some([chord.map_or(at, |[first, _]| first), at]);
-    for &point in points {
-        let side = form(line, point);
-        if (side > 0.0 && before.1 < 0.0) || (side < 0.0 && before.1 > 0.0) {
-            let at = before.0 + (point - before.0) * (before.1 / (before.1 - side));
-            negative.push(at);
-            positive.push(at);
-            meet(at);
-        }
-        if side <= 0.0 {
-            negative.push(point);
-        }
-        if side >= 0.0 {
-            positive.push(point);
-        }
-        if side == 0.0 {
-            meet(point);
-        }
-        before = (point, side);
-    }
-    chord
 }

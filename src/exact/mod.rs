@@ -18,8 +18,10 @@
 mod arc;
 mod block;
 mod board;
+mod bulk;
 mod cells;
 mod complex;
+mod cutter;
 mod edge;
 mod euler;
 mod exponential;
@@ -30,6 +32,7 @@ mod polygon;
 mod region;
 mod sides;
 mod sliver;
+mod strip;
 mod sweep;
 #[cfg(test)]
 mod tests;

@@ -11,6 +11,7 @@ pub mod exact;
 mod radius;
 mod real;
 pub mod trig;
+mod vectors;
 
 pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
@@ -18,3 +19,4 @@ pub use big::{Big, Exact, compare_half_turns};
 pub use double::{Double, two_product, two_sum};
 pub use radius::{Radius, Wide};
 pub use real::Real;
+pub use vectors::Vectors;

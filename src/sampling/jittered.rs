@@ -10,6 +10,7 @@ use super::{
     hash::Key,
     lattice::{self, Strata},
 };
+use crate::math::Vectors;
 
 /// The cells, and the strata that bound them.
 #[derive(Debug)]
@@ -33,18 +34,19 @@ impl Jittered {
     }
 
     /// Appends the points with these indices, row by row.
-    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+    pub fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
         let [short, _] = self.bricks.lengths();
-        for (row, columns) in self.bricks.parts(range) {
-            let strata = &self.columns[(row.cells - short) as usize];
-            let places = self.rows.places(row.first, row.first + row.cells);
-            out.extend(columns.map(|column| {
-                let i = row.first + column;
-                DVec2::new(
-                    strata.choose(column, key.bits(2 * i)),
-                    lattice::choose(places.clone(), key.bits(2 * i + 1)),
-                )
-            }));
-        }
+        key.pairs(range, vectors, |first, mut pairs| {
+            let end = first + pairs.len() as u64;
+            for (row, columns) in self.bricks.parts(first..end) {
+                let strata = &self.columns[(row.cells - short) as usize];
+                let places = self.rows.places(row.first, row.first + row.cells);
+                let (here, rest) = pairs.split_at((columns.end - columns.start) as usize);
+                pairs = rest;
+                out.extend(columns.zip(here).map(|(column, &[x, y])| {
+                    DVec2::new(strata.choose(column, x), lattice::choose(places.clone(), y))
+                }));
+            }
+        });
     }
 }

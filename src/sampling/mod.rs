@@ -43,6 +43,7 @@ use self::{
 };
 use crate::{
     area::Area,
+    math::Vectors,
     scene::{Count, Method, Sampler},
 };
 
@@ -147,15 +148,27 @@ impl Sampling {
     ///
     /// What a pixel's points have in common is prepared anew in each call, so ask for a few thousand at once.
     pub fn points(&self, x: u32, y: u32, count: u64, range: Range<u64>, out: &mut Vec<DVec2>) {
+        self.points_by(Vectors::Widest, [x, y], count, range, out);
+    }
+
+    /// The same points, by vectors of either kind.
+    pub fn points_by(
+        &self,
+        vectors: Vectors,
+        [x, y]: [u32; 2],
+        count: u64,
+        range: Range<u64>,
+        out: &mut Vec<DVec2>,
+    ) {
         debug_assert!(range.end <= count);
         let key = self.key.part(u64::from(y) << 32 | u64::from(x));
         match &self.share {
             Share::Even(even) => {
                 let [few, more] = &even.patterns;
                 let pattern = if count == even.count { few } else { more };
-                pattern.points(key, range, out);
+                pattern.points(key, range, vectors, out);
             }
-            Share::Scattered(_) => random::points(key, range, out),
+            Share::Scattered(_) => random::points(key, range, vectors, out),
         }
     }
 }
@@ -202,16 +215,16 @@ impl Pattern {
         }
     }
 
-    fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+    fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
         match self {
             Self::Empty => {}
             Self::Regular(bricks) => regular::points(bricks, range, out),
-            Self::Random => random::points(key, range, out),
-            Self::Jittered(jittered) => jittered.points(key, range, out),
-            Self::MultiJittered(grid) => grid.points(key, range, out),
+            Self::Random => random::points(key, range, vectors, out),
+            Self::Jittered(jittered) => jittered.points(key, range, vectors, out),
+            Self::MultiJittered(grid) => grid.points(key, range, vectors, out),
             Self::Hammersley(hammersley) => hammersley.points(key, range, out),
             Self::Halton(halton) => halton.points(key, range, out),
-            Self::Sobol(sobol) => sobol.points(key, range, out),
+            Self::Sobol(sobol) => sobol.points(key, range, vectors, out),
         }
     }
 }

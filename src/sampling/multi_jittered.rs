@@ -12,6 +12,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::{hash::Key, lattice::Strata, shuffle::Shuffle};
+use crate::math::Vectors;
 
 /// A grid of cells, with the fine strata that they are made of.
 #[derive(Debug)]
@@ -43,24 +44,23 @@ impl MultiJittered {
     }
 
     /// Appends the points with these indices, row by row.
-    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+    pub fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
         if range.is_empty() {
             return;
         }
         let sigma = Shuffle::new(self.rows, key.part(0));
         let tau = Shuffle::new(self.columns, key.part(1));
         let (mut i, mut j) = (range.start % self.columns, range.start / self.columns);
-        out.extend(range.map(|index| {
-            let column = i * self.rows + sigma.get(j);
-            let row = j * self.columns + tau.get(i);
-            i += 1;
-            if i == self.columns {
-                (i, j) = (0, j + 1);
-            }
-            DVec2::new(
-                self.strata.choose(column, key.bits(2 * index)),
-                self.strata.choose(row, key.bits(2 * index + 1)),
-            )
-        }));
+        key.pairs(range, vectors, |_, pairs| {
+            out.extend(pairs.iter().map(|&[x, y]| {
+                let column = i * self.rows + sigma.get(j);
+                let row = j * self.columns + tau.get(i);
+                i += 1;
+                if i == self.columns {
+                    (i, j) = (0, j + 1);
+                }
+                DVec2::new(self.strata.choose(column, x), self.strata.choose(row, y))
+            }));
+        });
     }
 }

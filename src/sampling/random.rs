@@ -5,13 +5,15 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::{hash::Key, lattice};
+use crate::math::Vectors;
 
 /// Appends the points with these indices.
-pub fn points(key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
-    out.extend(range.map(|i| {
-        DVec2::new(
-            lattice::offset_of_bits(key.bits(2 * i)),
-            lattice::offset_of_bits(key.bits(2 * i + 1)),
-        )
-    }));
+pub fn points(key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
+    key.pairs(range, vectors, |_, pairs| {
+        out.extend(
+            pairs
+                .iter()
+                .map(|bits| DVec2::from(bits.map(lattice::offset_of_bits))),
+        );
+    });
 }

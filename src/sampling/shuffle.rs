@@ -41,7 +41,7 @@ impl Shuffle {
     }
 
     /// The entry at `index` < n.
-    #[inline]
+    #[inline(always)]
     pub fn get(&self, index: u64) -> u64 {
         match self {
             Self::Short(entries) => u64::from(entries[index as usize]),

@@ -15,6 +15,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::{hash::Key, lattice};
+use crate::math::Vectors;
 
 /// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
 const LEVELS: u32 = 6;
@@ -46,15 +47,15 @@ impl Sobol {
     }
 
     /// Appends the points with these indices.
-    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+    pub fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
         let axes = [0, 1].map(|axis| Tree::new(key.part(axis), self.depth));
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            out.extend(tops.iter().map(|&[x, y]| {
-                DVec2::new(
-                    lattice::offset_of_bits(axes[0].leaf(x)),
-                    lattice::offset_of_bits(axes[1].leaf(y)),
-                )
+            let leaves = axes.each_ref().map(|axis| axis.leaves(vectors));
+            out.extend(tops.iter().map(|top| {
+                let offset =
+                    |axis: usize| lattice::offset_of_bits(leaves[axis][usize::from(top[axis])]);
+                DVec2::new(offset(0), offset(1))
             }));
             return;
         }
@@ -109,13 +110,16 @@ impl Tree {
         }
     }
 
-    /// Scrambles a fraction whose bits but for the topmost ones do not matter, where one hash decides all of these.
-    #[inline]
-    fn leaf(&self, part: u8) -> u64 {
-        let flips = self.key.bits(1 << self.depth | u64::from(part));
-        let scrambled = u64::from(self.top[usize::from(part)]);
-        // Two steps, as the depth may be 0.
-        scrambled << 1 << (u64::BITS - 1 - self.depth) | flips >> self.depth
+    /// All fractions of which the topmost bits alone matter, scrambled, where one hash decides all of these.
+    fn leaves(&self, vectors: Vectors) -> [u64; 1 << LEVELS] {
+        let mut leaves = [0; 1 << LEVELS];
+        let count = 1 << self.depth;
+        self.key.fill(count, vectors, &mut leaves[..count as usize]);
+        for (leaf, &top) in leaves.iter_mut().zip(&self.top) {
+            // Two steps, as the depth may be 0.
+            *leaf = u64::from(top) << 1 << (u64::BITS - 1 - self.depth) | *leaf >> self.depth;
+        }
+        leaves
     }
 
     /// Scrambles a fraction, in units of 2^−64.

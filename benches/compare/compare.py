@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""Whole processes of Pinhole, POV-Ray and Mitsuba 3 on the same scene, in turns: compare.py figure|many SCENE... [options]
+
+From the start of a process to the picture on disk, as PNG of 8 bits, on two threads: CPU seconds (user and system time of all threads), wall
+time and peak memory. `figure` also measures each picture's error, against Pinhole's exact one and in linear light, from another run that
+writes OpenEXR. Nothing but Python and the three programs is needed; see README.md in the folder above."""
+
+import argparse
+import json
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+THREADS = 2
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["figure", "many"])
+    parser.add_argument("scenes", nargs="+", metavar="SCENE")
+    parser.add_argument("--pinhole", default="pinhole", help="the program")
+    parser.add_argument("--povray", default="povray", help="the program")
+    parser.add_argument("--mitsuba", default=sys.executable, metavar="PYTHON", help="the Python that has Mitsuba")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--quick", action="store_true", help="one round of a small picture, to see that all works")
+    options = parser.parse_args()
+    if options.quick:
+        options.rounds = 1
+    for program in ["pinhole", "povray", "mitsuba"]:
+        found = shutil.which(getattr(options, program))
+        if found is None:
+            sys.exit(f"{getattr(options, program)} is not there")
+        # The processes run in a folder of their own.
+        setattr(options, program, os.path.abspath(found))
+    for scene in options.scenes:
+        with tempfile.TemporaryDirectory() as folder:
+            compare(options, os.path.abspath(scene), folder)
+
+
+def compare(options, scene, folder):
+    sets = ["--set", "image.width=320", "--set", "image.height=180"] if options.quick else []
+    inspected = os.path.join(folder, "inspected.json")
+    with open(inspected, "w") as file:
+        subprocess.run([options.pinhole, "inspect", scene, "--format", "json", *sets], stdout=file, check=True)
+    # In a process of its own: a child's peak memory counts that of this process, too, which must therefore stay small.
+    subprocess.run([sys.executable, os.path.join(HERE, "scenes.py"), inspected, folder], check=True)
+    with open(inspected) as file:
+        size = json.loads(re.match(r'\{"image":(\{.*?\})', file.read(200))[1])
+    ways = list((figure if options.what == "figure" else many)(options, scene, sets, size))
+    errors = {}
+    if options.what == "figure":
+        errors = measure_errors(options, ways, folder)
+    measured = {name: [] for name, *_ in ways}
+    phases = {name: [] for name, *_ in ways}
+    others, loads = [], []
+    # Caches, Mitsuba's compiled kernels among them, are filled by the pictures that errors are measured by, or else by a round that does not count.
+    for number in range(1 if errors else 0, options.rounds + 1):
+        for name, command, fresh in ways:
+            before = busy_seconds(), time.monotonic()
+            numbers, said = run(command("picture.png"), folder, fresh)
+            if number > 0:
+                passed = time.monotonic() - before[1]
+                others.append(max(0.0, busy_seconds() - before[0] - numbers[0]) / passed)
+                loads.append(os.getloadavg()[0])
+                measured[name].append(numbers)
+                phases[name].append(told(said))
+    print(
+        f"{os.path.basename(scene)}, {size['width']} x {size['height']}, {options.rounds} rounds, load (with this) {spread(loads)}, "
+        f"processors that other work took {spread(others)}"
+    )
+    print("| what | CPU s | wall s | peak MB |" + (" RMSE |" if errors else " phases, s |"))
+    print("| --- | --- | --- | --- | --- |")
+    for name, *_ in ways:
+        cpu, wall, memory = ([run[at] for run in measured[name]] for at in range(3))
+        last = f"{errors[name]:.4f}" if errors else ""
+        each = [f"{phase} {statistics.median(run[phase] for run in phases[name]):.2f}" for phase in phases[name][0]]
+        print(f"| {name} | {spread(cpu)} | {spread(wall)} | {statistics.median(memory):.0f} | {last or ', '.join(each)} |")
+        if errors and each:
+            print(f"{name}: {', '.join(each)}", file=sys.stderr)
+    sys.stdout.flush()
+
+
+def figure(options, scene, sets, size):
+    """Each way has a name, the command for a picture, and whether it starts without anything that an earlier run has compiled."""
+    for method, samples in [("multi_jittered", 16), ("multi_jittered", 48), ("multi_jittered", 64), ("sobol", 16), ("sobol", 64)]:
+        chosen = [f"sampler.method={method}", f"sampler.per_pixel={samples}"]
+        yield f"Pinhole, {method}, {samples}", pinhole(options, scene, sets, chosen), False
+    yield "Pinhole, exact", pinhole(options, scene, sets, ["sampler.method=exact"]), False
+    yield "POV-Ray, every pixel, 4 x 4", povray(options, size, 0, 4), False
+    yield "POV-Ray, every pixel, 8 x 8", povray(options, size, 0, 8), False
+    yield "POV-Ray, every pixel, 9 x 9", povray(options, size, 0, 9), False
+    yield "POV-Ray, adaptive, 9 x 9", povray(options, size, 0.001, 9), False
+    for sampler, samples in [("ldsampler", 4), ("ldsampler", 16), ("multijitter", 48), ("ldsampler", 64)]:
+        yield f"Mitsuba, LLVM, {sampler}, {samples}", mitsuba(options, "llvm_ad_rgb", sampler, samples), False
+    yield "Mitsuba, LLVM, ldsampler, 16, first run", mitsuba(options, "llvm_ad_rgb", "ldsampler", 16), True
+    for samples in [4, 16, 64]:
+        yield f"Mitsuba, scalar, ldsampler, {samples}", mitsuba(options, "scalar_rgb", "ldsampler", samples), False
+
+
+def many(options, scene, sets, size):
+    """With so many objects, POV-Ray is faster with its second kind of bounding, a tree."""
+    chosen = ["sampler.method=jittered", "sampler.per_pixel=4"]
+    yield "Pinhole, jittered, 4", pinhole(options, scene, sets, chosen), False
+    yield "POV-Ray, every pixel, 2 x 2", povray(options, size, 0, 2, ["+BM2"]), False
+    for name, variant in [("LLVM", "llvm_ad_rgb"), ("scalar", "scalar_rgb")]:
+        yield f"Mitsuba, {name}, multijitter, 4", mitsuba(options, variant, "multijitter", 4), False
+
+
+def pinhole(options, scene, sets, chosen):
+    arguments = [options.pinhole, "render", scene, "--threads", str(THREADS), *sets]
+    for value in chosen:
+        arguments += ["--set", value]
+    return lambda picture: [*arguments, "-o", picture]
+
+
+def povray(options, size, threshold, side, more=()):
+    """Its first kind of antialiasing: a grid in each pixel that differs from one beside it by the threshold or more, fully jittered."""
+    arguments = [options.povray, "+Iscene.pov", f"+W{size['width']}", f"+H{size['height']}", f"+WT{THREADS}", "-D", "-V"]
+    arguments += ["+AM1", f"+A{threshold:.3f}", f"+R{side}", "+J1", *more]
+    return lambda picture: [*arguments, f"+O{picture}", "+FE" if picture.endswith("exr") else "+FN8"]
+
+
+def mitsuba(options, variant, sampler, samples):
+    arguments = [options.mitsuba, os.path.join(HERE, "mitsuba_render.py"), variant, str(THREADS), sampler, str(samples)]
+    return lambda picture: [*arguments, "scene.xml", picture]
+
+
+def run(arguments, folder, fresh):
+    """CPU seconds, wall time and peak memory in MB; and what the process said."""
+    home = os.path.join(folder, "home")
+    if fresh:
+        home = tempfile.mkdtemp(dir=folder)
+    os.makedirs(home, exist_ok=True)
+    said = os.path.join(folder, "said.txt")
+    with open(said, "w") as output:
+        start = time.monotonic()
+        process = subprocess.Popen(
+            arguments, cwd=folder, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, "HOME": home}
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+        wall = time.monotonic() - start
+    with open(said, errors="replace") as output:
+        text = output.read()
+    if status != 0:
+        sys.exit(f"{' '.join(arguments)} failed:\n{text[-2000:]}")
+    return (usage.ru_utime + usage.ru_stime, wall, usage.ru_maxrss / 1024), text
+
+
+def busy_seconds():
+    """The seconds that all processors together were not idle since the machine started."""
+    with open("/proc/stat") as file:
+        user, nice, system, _, _, *interrupts = map(int, file.readline().split()[1:9])
+    return (user + nice + system + sum(interrupts)) / os.sysconf("SC_CLK_TCK")
+
+
+def told(text):
+    """The seconds of its phases, as far as a program tells them: of POV-Ray those of its processors, of Mitsuba those of the wall's clock."""
+    seconds = {}
+    for phase, spent in re.findall(r"(Parse|Bounding|Trace) Time:.*\n\s+using.* with ([\d.]+) CPU-seconds", text):
+        seconds[phase.lower()] = float(spent)
+    for line in text.splitlines():
+        if line.startswith('{"import"'):
+            seconds.update(json.loads(line))
+    return seconds
+
+
+def measure_errors(options, ways, folder):
+    exact = os.path.join(folder, "exact.exr")
+    as_exact = dict((name, command) for name, command, _ in ways)["Pinhole, exact"]
+    run(as_exact(exact), folder, False)
+    errors = {}
+    for name, command, _ in ways:
+        arguments = command("picture.exr")
+        _, text = run(arguments + ["again"] if "LLVM" in name else arguments, folder, False)
+        if "LLVM" in name:
+            print(f"{name}: rendered once more in {told(text)['again']:.2f} s of wall time", file=sys.stderr)
+        said = subprocess.run(
+            [options.pinhole, "diff", "picture.exr", exact, "--format", "json"], cwd=folder, stdout=subprocess.PIPE
+        )
+        errors[name] = json.loads(said.stdout)["rmse"]
+    return errors
+
+
+def spread(values):
+    return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
+
+
+main()

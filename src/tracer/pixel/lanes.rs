@@ -1,0 +1,259 @@
+//! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
+
+use glam::DVec2;
+use multiversion::multiversion;
+
+use super::{
+    Depth, Pattern, Pixel,
+    local::{Conic, Line, Local, ROUNDINGS},
+    squares::Squares,
+};
+use crate::math::{UP, Vectors};
+
+/// So many samples are evaluated at a time.
+pub(super) const CHUNK: usize = 64;
+
+/// The widest vectors that loops are padded for.
+const LANES: usize = 8;
+
+/// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1, its second colour 2i + 2.
+pub(super) const BACKGROUND: f64 = 0.0;
+pub(super) const DOUBT: f64 = -1.0;
+
+/// The samples of a chunk.
+#[derive(Debug)]
+pub(super) struct Lanes {
+    x: [f64; CHUNK],
+    y: [f64; CHUNK],
+    /// What is seen so far.
+    pub(super) seen: [f64; CHUNK],
+    /// How deep that lies.
+    nearest: [f64; CHUNK],
+    /// How certainly a surface is hit.
+    margin: [f64; CHUNK],
+    /// What is seen of it.
+    shown: [f64; CHUNK],
+    /// Its inverse depth.
+    depth: [f64; CHUNK],
+    /// The product of signs.
+    sign: [f64; CHUNK],
+}
+
+impl Default for Lanes {
+    fn default() -> Self {
+        let zeros = [0.0; CHUNK];
+        Self {
+            x: zeros,
+            y: zeros,
+            seen: zeros,
+            nearest: zeros,
+            margin: zeros,
+            shown: zeros,
+            depth: zeros,
+            sign: zeros,
+        }
+    }
+}
+
+#[multiversion(targets = "simd")]
+fn see_widely(pixel: &mut Pixel, points: &[DVec2]) {
+    pixel.see(points);
+}
+
+impl Pixel {
+    /// What the samples of a chunk see.
+    pub(super) fn chunk(&mut self, points: &[DVec2], vectors: Vectors) {
+        match vectors {
+            Vectors::Widest => see_widely(self, points),
+            Vectors::Baseline => self.see(points),
+        }
+    }
+
+    #[inline(always)]
+    fn see(&mut self, points: &[DVec2]) {
+        let length = points.len().next_multiple_of(LANES).min(CHUNK);
+        let lanes = &mut self.lanes;
+        for ((x, y), point) in lanes.x.iter_mut().zip(&mut lanes.y).zip(points) {
+            (*x, *y) = (point.x, point.y);
+        }
+        lanes.seen[..length].fill(BACKGROUND);
+        if self.depths.is_some() {
+            lanes.nearest[..length].fill(f64::NEG_INFINITY);
+        }
+        for surface in &self.surfaces {
+            let [start, end] = surface.edges;
+            lanes.margin(&self.lines[start..end], surface.conic.as_ref(), length);
+            let shown = match &surface.pattern {
+                Pattern::Plain(code) => Some(*code),
+                Pattern::Lines { end: last, odd } => {
+                    let codes = [*odd, !*odd].map(|odd| surface.code(odd));
+                    lanes.between(&self.lines[end..*last], codes, length);
+                    None
+                }
+                Pattern::Squares(squares) => {
+                    let codes = [squares.odd, !squares.odd].map(|odd| surface.code(odd));
+                    lanes.squares(squares, codes, length);
+                    None
+                }
+            };
+            if let Some(code) = shown {
+                lanes.shown[..length].fill(code);
+            }
+            match self.depths {
+                None => lanes.cover(length),
+                Some(apart) => {
+                    lanes.depths(&surface.depth, &self.planes, length);
+                    lanes.merge(apart, length);
+                }
+            }
+        }
+    }
+}
+
+impl Lanes {
+    /// The least of the boundaries' values, in units of their errors.
+    #[inline(always)]
+    fn margin(&mut self, edges: &[Line], conic: Option<&Conic>, length: usize) {
+        let (x, y) = (&self.x[..length], &self.y[..length]);
+        let margin = &mut self.margin[..length];
+        match conic {
+            None => margin.fill(f64::INFINITY),
+            Some(conic) => {
+                for ((margin, &x), &y) in margin.iter_mut().zip(x).zip(y) {
+                    *margin = conic.at(x, y);
+                }
+            }
+        }
+        for Line([a, b, c]) in edges {
+            for ((margin, &x), &y) in margin.iter_mut().zip(x).zip(y) {
+                let value = a * x + b * y + c;
+                *margin = if value < *margin { value } else { *margin };
+            }
+        }
+    }
+
+    /// Which side of an odd number of lines a sample is on.
+    #[inline(always)]
+    fn between(&mut self, lines: &[Line], [even, odd]: [f64; 2], length: usize) {
+        let (x, y) = (&self.x[..length], &self.y[..length]);
+        let (sign, least) = (&mut self.sign[..length], &mut self.shown[..length]);
+        sign.fill(1.0);
+        least.fill(f64::INFINITY);
+        for Line([a, b, c]) in lines {
+            let samples = x.iter().zip(y);
+            for ((sign, least), (&x, &y)) in sign.iter_mut().zip(&mut *least).zip(samples) {
+                let value = a * x + b * y + c;
+                *sign *= value;
+                let size = value.abs();
+                *least = if size < *least { size } else { *least };
+            }
+        }
+        for (&sign, shown) in sign.iter().zip(least) {
+            let code = if sign > 0.0 { even } else { odd };
+            *shown = if *shown > 1.0 { code } else { DOUBT };
+        }
+    }
+
+    /// In which squares of a board the samples lie.
+    #[inline(always)]
+    fn squares(&mut self, squares: &Squares, [even, odd]: [f64; 2], length: usize) {
+        /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
+        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+        const ONE: u64 = 1.0f64.to_bits();
+        let (x, y) = (&self.x[..length], &self.y[..length]);
+        let Local { factors: l, rad } = squares.below;
+        let [n0, n1] = squares.across.map(|across| across.factors);
+        let rads = squares.across.map(|across| across.rad);
+        for ((shown, &x), &y) in self.shown[..length].iter_mut().zip(x).zip(y) {
+            let below = l[0] * x + l[1] * y + l[2];
+            let inverse = 1.0 / below;
+            let double = 2.0 * UP * inverse;
+            let place = |n: [f64; 3], own: f64| {
+                let value = (n[0] * x + n[1] * y + n[2]) * inverse;
+                // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ| |ℓ' − ℓ|)/ℓ', and ℓ' is at least ℓ/2.
+                let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * ROUNDINGS;
+                let middle = value - 0.5;
+                let rounded = middle + ROUND;
+                let room = 0.5 - (middle - (rounded - ROUND)).abs();
+                (rounded.to_bits(), room - error * UP)
+            };
+            let ((bits0, room0), (bits1, room1)) = (place(n0, rads[0]), place(n1, rads[1]));
+            let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
+            let code = if parity > 0.0 { even } else { odd };
+            // Not so for NaN either, and the error of what is too great for the rounding is too great, too.
+            let first = if room0 > 0.0 { code } else { DOUBT };
+            let second = if room1 > 0.0 { first } else { DOUBT };
+            *shown = if below > 2.0 * UP * rad {
+                second
+            } else {
+                DOUBT
+            };
+        }
+    }
+
+    /// Puts a surface in front of all so far.
+    #[inline(always)]
+    fn cover(&mut self, length: usize) {
+        let surface = self.margin[..length].iter().zip(&self.shown[..length]);
+        for (seen, (&margin, &shown)) in self.seen[..length].iter_mut().zip(surface) {
+            let missed = if margin < -1.0 { *seen } else { DOUBT };
+            *seen = if margin > 1.0 { shown } else { missed };
+        }
+    }
+
+    /// The inverse depths of a surface.
+    #[inline(always)]
+    fn depths(&mut self, depth: &Depth, planes: &[Local], length: usize) {
+        let (x, y) = (&self.x[..length], &self.y[..length]);
+        let out = &mut self.depth[..length];
+        match *depth {
+            Depth::Unknown => out.fill(f64::NAN),
+            Depth::Least([start, end]) => {
+                out.fill(f64::INFINITY);
+                for plane in &planes[start..end] {
+                    for ((out, &x), &y) in out.iter_mut().zip(x).zip(y) {
+                        let value = plane.at(x, y);
+                        *out = if value < *out { value } else { *out };
+                    }
+                }
+            }
+            Depth::Greatest([start, end]) => {
+                out.fill(f64::NEG_INFINITY);
+                for plane in &planes[start..end] {
+                    for ((out, &x), &y) in out.iter_mut().zip(x).zip(y) {
+                        let value = plane.at(x, y);
+                        *out = if value > *out { value } else { *out };
+                    }
+                }
+            }
+            Depth::Sphere { q, b, factor } => {
+                for ((out, &x), &y) in out.iter_mut().zip(x).zip(y) {
+                    let q = q.at(x, y);
+                    let q = if q > 0.0 { q } else { 0.0 };
+                    *out = (b.at(x, y) + q.sqrt()) * factor;
+                }
+            }
+        }
+    }
+
+    /// Puts a surface before or behind what is seen so far, `apart` being how far depths must differ for that to be certain.
+    #[inline(always)]
+    fn merge(&mut self, apart: f64, length: usize) {
+        let surface = self.margin[..length]
+            .iter()
+            .zip(&self.shown[..length])
+            .zip(&self.depth[..length]);
+        let so_far = self.seen[..length]
+            .iter_mut()
+            .zip(&mut self.nearest[..length]);
+        for ((seen, nearest), ((&margin, &shown), &depth)) in so_far.zip(surface) {
+            let ahead = depth - *nearest;
+            let shown = if margin > 1.0 { shown } else { DOUBT };
+            let close = if ahead > apart { shown } else { DOUBT };
+            let new = if ahead < -apart { *seen } else { close };
+            let greatest = if depth > *nearest { depth } else { *nearest };
+            *seen = if margin < -1.0 { *seen } else { new };
+            *nearest = if margin < -1.0 { *nearest } else { greatest };
+        }
+    }
+}

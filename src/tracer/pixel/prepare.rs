@@ -1,0 +1,275 @@
+//! What a pixel shows of its candidates, written down as forms.
+
+use std::borrow::Borrow;
+
+use super::{
+    super::{
+        checkerboard::Checkerboard,
+        form::Form,
+        object::Object,
+        outlook::Live,
+        sphere::Sphere,
+        world::{Level, World},
+    },
+    Depth, Pattern, Pixel, Surface,
+    local::{Here, Local, ROUNDINGS, Side},
+    squares::{Squares, is_odd},
+};
+use crate::{area::Area, math::UP};
+
+/// A square of a board is told by lines if no more than this many of them pass through the pixel.
+const LINES: usize = 6;
+
+/// The preparation has met something that is better traced sample by sample.
+pub(super) struct Hard;
+
+/// Whether an object is seen in the pixel at all.
+enum Met {
+    Yes,
+    No,
+}
+
+impl Pixel {
+    pub(super) fn prepare(&mut self, world: &World) -> Result<(), Hard> {
+        let here = Here::new(&f64::frame(world).camera, Area::pixel(self.x, self.y));
+        self.surfaces.clear();
+        self.lines.clear();
+        self.planes.clear();
+        for place in 0..self.live.len() {
+            self.surface(world, &here, place)?;
+        }
+        self.order(world, &here)
+    }
+
+    /// Writes down a candidate's boundaries and colours.
+    fn surface(&mut self, world: &World, here: &Here, place: usize) -> Result<(), Hard> {
+        let live = self.live[place];
+        let object = &*f64::object(world, live.object);
+        let start = self.lines.len();
+        let mut surface = Surface {
+            place,
+            edges: [start; 2],
+            conic: None,
+            pattern: Pattern::Plain(0.0),
+            depth: Depth::Unknown,
+        };
+        let met = match object {
+            Object::EdgeOn => Met::No,
+            _ if live.is_whole => Met::Yes,
+            Object::Triangle(triangle) => self.edges(&triangle.edges, here)?,
+            Object::Checkerboard(board) => self.edges([&board.plane], here)?,
+            Object::Cuboid(cuboid) => self.edges(cuboid.sides(), here)?,
+            Object::Sphere(sphere) => self.silhouette(sphere, here, &mut surface)?,
+        };
+        if matches!(met, Met::No) {
+            self.lines.truncate(start);
+            return Ok(());
+        }
+        if let Met::No = self.clips(world, here, live, object)? {
+            self.lines.truncate(start);
+            return Ok(());
+        }
+        surface.edges[1] = self.lines.len();
+        surface.pattern = Pattern::Plain(surface.code(false));
+        if let Object::Checkerboard(board) = object {
+            let [first, second] = world.slots(live.object);
+            if first != second {
+                surface.pattern = self.pattern(board, here, &surface)?;
+            }
+        }
+        self.surfaces.push(surface);
+        Ok(())
+    }
+
+    /// Adds forms that are all ≥ 0 where an object is hit.
+    fn edges(
+        &mut self,
+        forms: impl IntoIterator<Item: Borrow<Form<f64>>>,
+        here: &Here,
+    ) -> Result<Met, Hard> {
+        for form in forms {
+            if let Met::No = self.edge(form.borrow().local(here))? {
+                return Ok(Met::No);
+            }
+        }
+        Ok(Met::Yes)
+    }
+
+    fn edge(&mut self, local: Local) -> Result<Met, Hard> {
+        match local.side() {
+            Side::Above => Ok(Met::Yes),
+            Side::Below => Ok(Met::No),
+            Side::Both => {
+                self.lines.push(local.line());
+                Ok(Met::Yes)
+            }
+            Side::Unknown => Err(Hard),
+        }
+    }
+
+    /// Where a sphere is hit: everywhere, by an eye inside.
+    fn silhouette(
+        &mut self,
+        sphere: &Sphere<f64>,
+        here: &Here,
+        surface: &mut Surface,
+    ) -> Result<Met, Hard> {
+        if !sphere.is_outside() {
+            // On the surface, or too seldom seen in part to be worth a rule of its own.
+            return Err(Hard);
+        }
+        let (q, b) = sphere.local(here);
+        match q.side() {
+            Side::Above => {}
+            Side::Below => return Ok(Met::No),
+            Side::Both => surface.conic = Some(q.certain()),
+            Side::Unknown => return Err(Hard),
+        }
+        self.edge(b)
+    }
+
+    /// What the near and the far plane leave of an object with a single surface.
+    fn clips(
+        &mut self,
+        world: &World,
+        here: &Here,
+        live: Live,
+        object: &Object<f64>,
+    ) -> Result<Met, Hard> {
+        let frame = f64::frame(world);
+        let plane = match object {
+            Object::Triangle(triangle) => Some(&triangle.plane),
+            Object::Checkerboard(board) => Some(&board.plane),
+            _ => None,
+        };
+        let mut met = Met::Yes;
+        if live.is_cut {
+            let (Some(near), Some(plane)) = (&frame.near, plane) else {
+                return Err(Hard);
+            };
+            met = self.edge(near.minus(plane).local(here))?;
+        }
+        if let Some(far) = &frame.far
+            && !live.is_whole
+        {
+            let depth = far.local(here);
+            let is_before =
+                live.inverse_depth.low > depth.factors[2] + depth.spread() * UP + depth.rad;
+            if !is_before {
+                let plane = plane.ok_or(Hard)?;
+                if let Met::No = self.edge(plane.minus(far).local(here))? {
+                    met = Met::No;
+                }
+            }
+        }
+        Ok(met)
+    }
+
+    /// Which squares a board shows.
+    fn pattern(
+        &mut self,
+        board: &Checkerboard<f64>,
+        here: &Here,
+        surface: &Surface,
+    ) -> Result<Pattern, Hard> {
+        let squares = Squares::new(board, here);
+        let Squares { across, below, .. } = squares;
+        let sizes = [&below, &across[0], &across[1]].map(|local| local.rad);
+        if !sizes.iter().all(|&rad| rad < 1e250) {
+            return Err(Hard);
+        }
+        let Some([(x0, x1), (z0, z1)]) = squares.ranges() else {
+            return Ok(Pattern::Squares(squares));
+        };
+        if (x1 - x0) + (z1 - z0) > LINES as f64 {
+            return Ok(Pattern::Squares(squares));
+        }
+        let mut odd = board.odd ^ is_odd(x0) ^ is_odd(z0);
+        for (across, first, last) in [(&across[0], x0, x1), (&across[1], z0, z1)] {
+            let mut k = first + 1.0;
+            while k <= last {
+                let line = across.less(k, &below);
+                // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more odd step.
+                match line.side() {
+                    Side::Above => odd = !odd,
+                    Side::Below => {}
+                    Side::Both => {
+                        self.lines.push(line.line());
+                        // Where it is negative the step is not made: count from the other side.
+                        odd = !odd;
+                    }
+                    Side::Unknown => return Err(Hard),
+                }
+                k += 1.0;
+            }
+        }
+        let end = self.lines.len();
+        Ok(if end == surface.edges[1] {
+            Pattern::Plain(surface.code(odd))
+        } else {
+            Pattern::Lines { end, odd }
+        })
+    }
+
+    /// Sorts the surfaces from back to front, or has them compared at every sample.
+    fn order(&mut self, world: &World, here: &Here) -> Result<(), Hard> {
+        let live = &self.live;
+        let range = |surface: &Surface| live[surface.place].inverse_depth;
+        self.surfaces
+            .sort_by(|a, b| range(a).low.total_cmp(&range(b).low));
+        let is_sorted = self
+            .surfaces
+            .windows(2)
+            .all(|pair| range(&pair[0]).high < range(&pair[1]).low);
+        self.depths = None;
+        if is_sorted {
+            return Ok(());
+        }
+        let mut rad = 0.0_f64;
+        for surface in &mut self.surfaces {
+            let start = self.planes.len();
+            let object = &*f64::object(world, self.live[surface.place].object);
+            surface.depth = match object {
+                Object::EdgeOn => return Err(Hard),
+                Object::Triangle(triangle) => {
+                    self.planes.push(triangle.plane.local(here));
+                    Depth::Least([start, start + 1])
+                }
+                Object::Checkerboard(board) => {
+                    self.planes.push(board.plane.local(here));
+                    Depth::Least([start, start + 1])
+                }
+                Object::Cuboid(cuboid) => {
+                    self.planes
+                        .extend(cuboid.firsts().map(|face| face.local(here)));
+                    let range = [start, self.planes.len()];
+                    if object.is_seen_from_inside() {
+                        Depth::Greatest(range)
+                    } else {
+                        Depth::Least(range)
+                    }
+                }
+                Object::Sphere(sphere) => {
+                    let (factor, error) = sphere.depth_factor().ok_or(Hard)?;
+                    let (q, b) = sphere.local(here);
+                    let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
+                    let size = root.sqrt() + b.factors[2].abs() + b.spread();
+                    // |√a − √b| ≤ √|a − b|.
+                    let own = b.rad + q.rad.sqrt() + size * (ROUNDINGS + error);
+                    rad = rad.max(own * factor * UP);
+                    Depth::Sphere { q, b, factor }
+                }
+            };
+        }
+        for plane in &self.planes {
+            rad = rad.max(plane.rad);
+        }
+        // Of both sides of a comparison, and its own rounding is within theirs.
+        let apart = 2.0 * rad * UP;
+        if !apart.is_finite() {
+            return Err(Hard);
+        }
+        self.depths = Some(apart);
+        Ok(())
+    }
+}

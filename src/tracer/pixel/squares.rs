@@ -1,0 +1,80 @@
+//! In which squares of a checkerboard a pixel lies.
+
+use super::{
+    super::{
+        checkerboard::Checkerboard,
+        object::Object,
+        world::{Level, World},
+    },
+    local::{Here, Local, ROUNDINGS},
+};
+use crate::{area::Area, math::UP};
+
+/// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Squares {
+    pub(super) across: [Local; 2],
+    pub(super) below: Local,
+    pub(super) odd: bool,
+}
+
+impl World {
+    /// Whether a part of the picture, in which a checkerboard is all that may be seen, shows but one of its squares, and then whether
+    /// that has the second colour.
+    pub fn only_square(&self, part: Area, object: usize) -> Option<bool> {
+        let object = f64::object(self, object);
+        let Object::Checkerboard(board) = &*object else {
+            return None;
+        };
+        let here = Here::new(&f64::frame(self).camera, part);
+        let squares = Squares::new(board, &here);
+        let mut odd = squares.odd;
+        for across in &squares.across {
+            let (first, last) = squares.range(across)?;
+            if first != last {
+                return None;
+            }
+            odd ^= is_odd(first);
+        }
+        Some(odd)
+    }
+}
+
+impl Squares {
+    pub(super) fn new(board: &Checkerboard<f64>, here: &Here) -> Self {
+        Self {
+            across: board.across.each_ref().map(|form| form.local(here)),
+            below: board.below.local(here),
+            odd: board.odd,
+        }
+    }
+
+    /// From which to which square there are any in the pixel, in x and in z.
+    pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
+        let [x, z] = &self.across;
+        Some([self.range(x)?, self.range(z)?])
+    }
+
+    /// The same along one axis: perhaps one square more than there are. `None` if that is not certain.
+    pub(super) fn range(&self, across: &Local) -> Option<(f64, f64)> {
+        const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
+        let least = self.below.factors[2] - self.below.spread() * UP;
+        if least <= 4.0 * self.below.rad {
+            return None;
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        // A ratio of linear forms is the greatest and the least at corners.
+        for (x, y) in CORNERS {
+            let value = across.at(x, y) / self.below.at(x, y);
+            (low, high) = (low.min(value), high.max(value));
+        }
+        let size = low.abs().max(high.abs());
+        let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
+        (slack < 0.25).then(|| ((low - slack).floor(), (high + slack).floor()))
+    }
+}
+
+pub(super) fn is_odd(whole: f64) -> bool {
+    // `ranges` answers for numbers far below 2^53.
+    whole as i64 & 1 == 1
+}
