@@ -10,7 +10,7 @@ mod report;
 
 pub use fix::{Edit, Fix, Fixable, apply};
 #[cfg(feature = "cli")]
-pub use report::{Drawing, Report, Style};
+pub use report::{Drawing, Report, Style, printable};
 
 use std::fmt::Write;
 

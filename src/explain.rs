@@ -22,7 +22,7 @@ pub struct Page {
     pub text: &'static str,
 }
 
-/// The page of a code, which may be written with `pinhole::` or without.
+/// The page of a code, which may be written as a report does, or without what stands around it there.
 pub fn page(code: &str) -> Option<&'static Page> {
     let code = short(code);
     pages().find(|page| page.code == code)
@@ -33,9 +33,15 @@ pub fn pages() -> impl Iterator<Item = &'static Page> {
     GROUPS.iter().flat_map(|group| group.pages)
 }
 
-/// The code without `pinhole::`.
+/// The code without what stands around it in a report: `error[pinhole::bare_angle]` is `bare_angle`.
 pub fn short(code: &str) -> &str {
-    code.strip_prefix("pinhole::").unwrap_or(code)
+    let inner = code.trim().trim_end_matches(':').strip_suffix(']');
+    let inner = inner.and_then(|head| head.split_once('[').map(|(_, inner)| inner));
+    let code = inner.unwrap_or(code).trim();
+    match code.strip_prefix("pinhole") {
+        Some(rest) => rest.trim_start_matches(':'),
+        None => code,
+    }
 }
 
 impl Page {

@@ -28,6 +28,10 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
 }
 
 fn page(code: &str) -> Result<&'static Page, Trouble> {
+    if code.trim().is_empty() {
+        let hint = "`pinhole explain` lists all codes";
+        return Err(Trouble(format!("the code is empty: {hint}")));
+    }
     explain::page(code).ok_or_else(|| {
         let codes = explain::pages().map(|page| page.code);
         Trouble(match suggest::nearest(explain::short(code), codes) {

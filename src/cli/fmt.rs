@@ -1,9 +1,9 @@
 //! `fmt`: the canonical layout of scenes.
 
-use std::path::Path;
+use std::{fs, path::Path};
 
 use pinhole::{
-    diagnostic::Report,
+    diagnostic::{Report, printable},
     film,
     format::format,
     source::{Source, Sources},
@@ -36,6 +36,12 @@ pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 }
 
 fn one(path: &Path, check: bool, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    // Opening a pipe may take for ever, and what is written into one comes back to nobody.
+    let is_pipe = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    if is_pipe && !is_standard(path) {
+        let hint = "fmt takes files, or standard input as `-`";
+        return Err(Trouble(format!("{} is not a file: {hint}", shown(path))));
+    }
     let no_overrides = Overrides { sets: Vec::new() };
     let input = Input::read(path, &no_overrides)?;
     if input.is_picture {
@@ -88,7 +94,8 @@ fn difference(source: &Source, formatted: &str) -> String {
                 ChangeTag::Insert => ('+', "\x1b[32m"),
                 ChangeTag::Equal => (' ', ""),
             };
-            let line = change.value().trim_end_matches('\n');
+            let line = change.value().trim_end_matches(['\n', '\r']);
+            let line: String = line.chars().map(printable).collect();
             text += &match color && !paint.is_empty() {
                 true => format!("{paint}{sign}{line}\x1b[0m\n"),
                 false => format!("{sign}{line}\n"),

@@ -28,19 +28,23 @@ pub fn to_people(text: &str) {
 
 /// Says what kept a command from its work.
 pub fn error(message: &dyn fmt::Display) {
-    word("error", "1;31", message);
+    to_people(&worded_error(message));
+}
+
+/// What says why the command was not carried out.
+pub fn worded_error(message: &dyn fmt::Display) -> String {
+    worded("error", "1;31", message)
 }
 
 /// Says what the user might not expect.
 pub fn warning(message: &dyn fmt::Display) {
-    word("warning", "1;33", message);
+    to_people(&worded("warning", "1;33", message));
 }
 
-fn word(word: &str, color: &str, message: &dyn fmt::Display) {
-    if style().color {
-        to_people(&format!("\x1b[{color}m{word}:\x1b[0m {message}\n"));
-    } else {
-        to_people(&format!("{word}: {message}\n"));
+fn worded(word: &str, color: &str, message: &dyn fmt::Display) -> String {
+    match style().color {
+        true => format!("\x1b[{color}m{word}:\x1b[0m {message}\n"),
+        false => format!("{word}: {message}\n"),
     }
 }
 

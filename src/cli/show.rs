@@ -81,7 +81,14 @@ fn size() -> (usize, usize) {
         .map_or((80, 24), |(Width(columns), Height(rows))| {
             (usize::from(columns), usize::from(rows))
         });
-    (columns.max(1), (rows * 3 / 4).max(1))
+    (columns.max(1), rows_of_picture(rows))
+}
+
+/// A report of one mistake takes eleven rows or so, and is to be read beside the last picture.
+fn rows_of_picture(rows: usize) -> usize {
+    const SAID: usize = 12;
+    let rest = rows.saturating_sub(SAID);
+    rest.clamp(rows / 3, rows * 3 / 4).max(1)
 }
 
 /// Whether the terminal says that it shows all colours; else it gets those of the 256 that are near.
@@ -192,6 +199,13 @@ mod tests {
             for line in text.lines() {
                 assert_eq!(line.matches('▀').count(), across, "{width} × {height}");
             }
+        }
+    }
+
+    #[test]
+    fn a_picture_leaves_room_for_a_report() {
+        for (rows, of_picture) in [(1, 1), (10, 3), (24, 12), (40, 28), (60, 45), (100, 75)] {
+            assert_eq!(rows_of_picture(rows), of_picture, "{rows}");
         }
     }
 

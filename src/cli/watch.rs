@@ -65,7 +65,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 screen.say(&format!("wrote {output} {time} {what}\n"));
             }
             // Whatever it is, the next save may find it gone.
-            Err(trouble) => output::error(&trouble),
+            Err(trouble) => screen.say(&output::worded_error(&trouble)),
         }
         is_first = false;
     }
@@ -130,15 +130,17 @@ fn make(
     };
     let recipe = input.recipe(None);
     // The picture must not take the place of the scene, should a link lead there by now.
-    output.check(Some(&args.scene))?;
-    if let Err(error) = output.write(picture.film(), &recipe, is_stale) {
-        if is_stale.load(Ordering::SeqCst) {
-            return Ok(None);
-        }
-        return Err(Trouble(format!("cannot write to {output}: {error}")));
+    let written = output.check(Some(&args.scene)).and_then(|()| {
+        let written = output.write(picture.film(), &recipe, is_stale);
+        written.map_err(|error| Trouble(format!("cannot write to {output}: {error}")))
+    });
+    if written.is_err() && is_stale.load(Ordering::SeqCst) {
+        return Ok(None);
     }
     let done = Instant::now();
+    // Also one that cannot be written can be seen.
     screen.draw(picture.film());
+    written?;
     output.warn_of_length(&recipe);
     screen.say(&picture.notes(output));
     Ok(Some(done))

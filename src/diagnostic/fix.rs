@@ -92,7 +92,12 @@ impl Edit {
         }
         let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
         let joins = outer.ends_with(is_word) && after.starts_with(is_word);
+        let length = text.len();
         let text = if joins { " " } else { "" };
+        let end = match rest.starts_with([')', ']', ',']) {
+            true => length - rest.len(),
+            false => end,
+        };
         Self::new(Span::new(source, outer.len(), end), text)
     }
 }

@@ -457,9 +457,9 @@ fn shown_pieces(source: &Source, line: Range<usize>, labels: &[(Span, &str)]) ->
     pieces
 }
 
-/// A control character would act on the terminal; none is longer than the one byte that stands in for it, or it is shown
+/// What stands for a character on a terminal: a control character would act on it. None is longer than the one byte that stands in for it, or it is shown
 /// by as many.
-fn printable(character: char) -> char {
+pub fn printable(character: char) -> char {
     match character {
         '\t' => character,
         _ if character.is_ascii_control() => '?',

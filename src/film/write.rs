@@ -1,7 +1,7 @@
 //! Files that are written whole or not at all.
 
 use std::{
-    fs::{self, OpenOptions, Permissions},
+    fs::{self, File, Metadata, OpenOptions},
     io::{self, BufWriter, Cursor, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
@@ -16,7 +16,8 @@ impl<T: Write + Seek> Sink for T {}
 
 /// Has `write` write the content of the file at `path`, which stays as it was until the new content is complete.
 ///
-/// The content goes into a temporary file in the same folder, which then takes the place of the old one, with its permissions. Of a
+/// The content goes into a temporary file in the same folder, which then takes the place of the old one, with its permissions and,
+/// where that is allowed, its owner; but it never runs as its owner (setuid). A hard link is cut: its other names keep the old content. Of a
 /// symbolic link the target is replaced, not the link. What is not a file (a device, a pipe) gets the content once it is complete.
 /// When `cancel` is set, or an error occurs, the temporary file is removed.
 pub fn write_whole(
@@ -25,8 +26,8 @@ pub fn write_whole(
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     match place(path)? {
-        Place::File(path, permissions) => {
-            let temporary = temporary(&path, permissions.as_ref())?;
+        Place::File(path, found) => {
+            let temporary = temporary(&path, found.as_ref())?;
             let mut out = BufWriter::with_capacity(1 << 16, Checked::new(temporary, cancel));
             write(&mut out)?;
             let temporary = out.into_inner().map_err(|error| error.into_error())?.sink;
@@ -60,15 +61,15 @@ pub fn write_stream(
 /// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to learn it after a long render.
 pub fn check_writable(path: &Path) -> io::Result<()> {
     match place(path)? {
-        Place::File(path, permissions) => temporary(&path, permissions.as_ref())?.close(),
+        Place::File(path, found) => temporary(&path, found.as_ref())?.close(),
         Place::Device(_) => Ok(()),
     }
 }
 
 /// Where the content goes.
 enum Place {
-    /// A file, which may exist already and then has permissions.
-    File(PathBuf, Option<Permissions>),
+    /// A file; what there is to know about the one that exists already.
+    File(PathBuf, Option<Metadata>),
     /// Something that must not be replaced.
     Device(PathBuf),
 }
@@ -80,10 +81,7 @@ fn place(path: &Path) -> io::Result<Place> {
             // Replacing a file only takes the right to write to its folder; not to touch a file that is write-protected is
             // what its owner expects.
             OpenOptions::new().write(true).open(path)?;
-            Ok(Place::File(
-                fs::canonicalize(path)?,
-                Some(found.permissions()),
-            ))
+            Ok(Place::File(fs::canonicalize(path)?, Some(found)))
         }
         Ok(_) => Ok(Place::Device(path.to_owned())),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -113,19 +111,37 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-fn temporary(path: &Path, permissions: Option<&Permissions>) -> io::Result<NamedTempFile> {
+fn temporary(path: &Path, found: Option<&Metadata>) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".pinhole-").suffix(".tmp");
     #[cfg(unix)]
-    if permissions.is_none() {
+    if found.is_none() {
         // The usual permissions of a new file: the system takes the mask off.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
-    if let Some(permissions) = permissions {
-        temporary.as_file().set_permissions(permissions.clone())?;
+    if let Some(found) = found {
+        keep_owner(temporary.as_file(), found)?;
     }
     Ok(temporary)
+}
+
+/// Gives a file the owner and the permissions of another one.
+#[cfg(unix)]
+fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
+    use std::{
+        fs::Permissions,
+        os::unix::fs::{MetadataExt, PermissionsExt, fchown},
+    };
+
+    // Only root may give files away, and may edit those of others without taking them over.
+    let _ = fchown(file, Some(found.uid()), Some(found.gid()));
+    file.set_permissions(Permissions::from_mode(found.mode() & 0o777))
+}
+
+#[cfg(not(unix))]
+fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
+    file.set_permissions(found.permissions())
 }
 
 /// The system's own words: nobody wants to know what the temporary file would have been called.

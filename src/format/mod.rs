@@ -21,8 +21,8 @@ use crate::{
     scene,
     source::{Source, SourceId, Sources},
     syntax::{
-        self, Parsed,
-        tree::{Item, Tree, ValueKind},
+        self, Parsed, Problem,
+        tree::{Item, Name, Tree, ValueKind},
     },
 };
 
@@ -53,30 +53,43 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
 
 /// Whether every field has a value: where it is missing, nothing was reported yet.
 fn is_whole(tree: &Tree<'_>) -> bool {
-    tree.items.iter().all(|item| match item {
-        Item::Definition(_) => true,
-        Item::Block(block) => block
-            .fields
-            .iter()
-            .all(|field| field.value.kind != ValueKind::Missing),
-        Item::Bad(_) => false,
-    })
+    let is_bad = |item: &Item<'_>| matches!(item, Item::Bad(_));
+    without_value(tree).next().is_none() && !tree.items.iter().any(is_bad)
 }
 
 /// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what a field without a value is
 /// called. What else is wrong with the scene is left out.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
-    let problems = syntax::parse(source, SourceId::File).problems;
-    let codes = problems.iter().map(|p| Diagnostic::from_problem(p).code);
+    let sources = Sources::new(source.clone());
+    let survey = scene::survey(&sources);
+    let problems = survey.parsed.problems.iter();
+    let codes = problems.map(|p| Diagnostic::from_problem(p).code);
     let mut codes: BTreeSet<String> = codes.collect();
     codes.extend(["pinhole::missing_value", "pinhole::invalid_utf8"].map(str::to_owned));
-    let found = scene::read(&Sources::new(source.clone())).diagnostics;
-    let is_syntax = |diagnostic: &&Diagnostic| codes.contains(&diagnostic.code);
-    let of_syntax: Vec<_> = found.iter().filter(is_syntax).cloned().collect();
-    match of_syntax.is_empty() {
-        true => found.into_iter().filter(Diagnostic::is_error).collect(),
-        false => of_syntax,
+    let found = survey.diagnostics.iter();
+    let of_syntax = found.filter(|diagnostic| codes.contains(&diagnostic.code));
+    let mut mistakes: Vec<_> = of_syntax.cloned().collect();
+    if mistakes.is_empty() {
+        // A field that its block does not know is reported for that alone; so is one for a word that belongs to its neighbour.
+        mistakes.extend(without_value(&survey.parsed.tree).map(|name| {
+            Diagnostic::from_problem(&Problem::FieldWithoutValue {
+                name: name.text.to_owned(),
+                span: name.span,
+            })
+        }));
     }
+    mistakes
+}
+
+/// The names of the fields without a value.
+fn without_value<'t, 's>(tree: &'t Tree<'s>) -> impl Iterator<Item = &'t Name<'s>> {
+    let blocks = tree.items.iter().filter_map(|item| match item {
+        Item::Block(block) => Some(block),
+        Item::Definition(_) | Item::Bad(_) => None,
+    });
+    let fields = blocks.flat_map(|block| &block.fields);
+    let missing = fields.filter(|field| field.value.kind == ValueKind::Missing);
+    missing.map(|field| &field.name)
 }
 
 /// The page with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with

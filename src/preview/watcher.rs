@@ -160,14 +160,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
 
     /// Watches the folders that matter now.
     fn follow(&mut self) -> notify::Result<()> {
-        let mut folders = BTreeSet::new();
-        let mut names = BTreeSet::new();
-        let end = fs::canonicalize(&self.path).ok();
-        for path in [Some(&self.path), end.as_ref()].into_iter().flatten() {
-            folders.insert(folder(path));
-            names.extend(path.file_name().map(OsStr::to_owned));
-        }
-        self.names = names.into_iter().collect();
+        let (folders, names) = places(&self.path);
+        self.names = names;
         for old in self.folders.difference(&folders) {
             let _ = self.notifier.unwatch(old);
         }
@@ -221,11 +215,27 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 }
 
-fn folder(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
+/// The folders that matter to a file, and what it is called in them.
+fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
+    let mut folders = BTreeSet::new();
+    let mut names = BTreeSet::new();
+    let end = fs::canonicalize(path).ok();
+    for path in [Some(path), end.as_deref()].into_iter().flatten() {
+        folders.insert(folder(path));
+        names.extend(path.file_name().map(OsStr::to_owned));
     }
+    (folders, names.into_iter().collect())
+}
+
+/// The folder of a file, by one name however the file is named: the system watches a folder once, so that with the watch of one of
+/// two names that of the other would end.
+fn folder(path: &Path) -> PathBuf {
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    // One that is gone is called as it was named.
+    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
 /// What changes when a file does, as a rule: its time and its length.
@@ -234,4 +244,24 @@ type Stamp = (SystemTime, u64);
 fn stamp(path: &Path) -> Option<Stamp> {
     let found = fs::metadata(path).ok()?;
     Some((found.modified().ok()?, found.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_has_one_name_whether_its_file_is_there_or_not() {
+        // The tests run in the folder of the package.
+        let here = fs::canonicalize(".").unwrap();
+        for path in [
+            "Cargo.toml",
+            "./Cargo.toml",
+            "src/../Cargo.toml",
+            "gone.scn",
+        ] {
+            let (folders, _) = places(Path::new(path));
+            assert!(folders.iter().eq([&here]), "{path}: {folders:?}");
+        }
+    }
 }

@@ -235,12 +235,7 @@ impl<'s> Dealt<'_, 's> {
                     return ValueKind::Bad;
                 }
                 let texts = (sources.text(left.span), sources.text(right.span));
-                match left.kind {
-                    ValueKind::Name(name) if schema::function(name).is_some() => {
-                        syntax::call_without_parentheses(texts.0, texts.1, right.span)
-                    }
-                    _ => syntax::missing_operator(texts.0, texts.1, right.span),
-                }
+                syntax::missing_operator(texts.0, texts.1, right.span)
             }
         };
         problems.push(problem);

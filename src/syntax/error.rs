@@ -103,6 +103,14 @@ pub enum Problem {
         span: Span,
     },
 
+    #[error("`{name}` has no value")]
+    #[diagnostic(code(pinhole::missing_value), help("write a value after it"))]
+    FieldWithoutValue {
+        name: String,
+        #[label("a value should follow this")]
+        span: Span,
+    },
+
     #[error("this `--set` gives no value")]
     #[diagnostic(code(pinhole::missing_value), help("write a value after the `=`"))]
     SetWithoutValue {
@@ -387,8 +395,6 @@ pub enum Meant {
     Product,
     /// The call of a function.
     Call,
-    /// One of these.
-    Either,
 }
 
 fn times(more: usize) -> String {

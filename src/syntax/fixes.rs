@@ -55,12 +55,13 @@ impl Fixable for Problem {
             Self::NeedlessComma { span, .. } => {
                 vec![Fix::remove("remove this comma", *span, sources)]
             }
+            // The blank before the sign stands before the value then.
             Self::PlusSign { value, span } => {
-                vec![Fix::remove(format!("write `{value}`"), *span, sources)]
+                vec![Fix::new(format!("write `{value}`"), [Edit::new(*span, "")])]
             }
             Self::MissingEquals { name, value, span } => {
                 let edit = match sources.text(*span) {
-                    ":" => Edit::new(*span, "="),
+                    ":" => Edit::new(gap_before(*span, sources).to(*span), " ="),
                     _ => Edit::insert(span.source, span.start, "= "),
                 };
                 vec![Fix::new(format!("write `let {name} = {value}`"), [edit])]
@@ -72,13 +73,10 @@ impl Fixable for Problem {
                 meant,
                 ..
             } => {
-                let product = product(left, right, *span, sources);
-                let call = call(left, right, *span, sources);
-                match meant {
-                    Meant::Product => vec![product],
-                    Meant::Call => vec![call],
-                    Meant::Either => vec![product, call],
-                }
+                vec![match meant {
+                    Meant::Product => product(left, right, *span, sources),
+                    Meant::Call => call(left, right, *span, sources),
+                }]
             }
             Self::MissingComma { whole, places, .. } => vec![Fix::new(
                 format!("write `{whole}`"),
@@ -196,6 +194,7 @@ impl Fixable for Problem {
             | Self::TooDeep { .. }
             | Self::UnclosedParenthesis { .. }
             | Self::MissingValue { .. }
+            | Self::FieldWithoutValue { .. }
             | Self::SetWithoutValue { .. }
             | Self::MissingName { .. }
             | Self::BadName { .. }
@@ -235,16 +234,12 @@ fn odd_spaces(places: &[Span], sort: &str) -> Vec<Fix> {
 }
 
 fn product(left: &str, right: &str, span: Span, sources: &Sources) -> Fix {
-    let text = sources.get(span.source).text();
-    let before = text.get(..span.start).unwrap_or_default();
-    let sign = match before.ends_with(char::is_whitespace) {
-        true => "* ",
-        false => " * ",
+    let gap = gap_before(span, sources);
+    let edit = match sources.text(gap).contains('\n') {
+        true => Edit::insert(span.source, span.start, "* "),
+        false => Edit::new(gap, " * "),
     };
-    Fix::new(
-        format!("write `{left} * {right}`"),
-        [Edit::insert(span.source, span.start, sign)],
-    )
+    Fix::new(format!("write `{left} * {right}`"), [edit])
 }
 
 fn call(left: &str, right: &str, span: Span, sources: &Sources) -> Fix {

@@ -161,7 +161,15 @@ fn explained(arguments: &[&str]) -> Output {
 
 #[test]
 fn a_pipe_gets_the_page_as_it_is() {
-    for code in ["bare_angle", "pinhole::bare_angle"] {
+    for code in [
+        "bare_angle",
+        "pinhole::bare_angle",
+        "pinhole:bare_angle",
+        "[pinhole::bare_angle]",
+        "error[pinhole::bare_angle]",
+        "error[pinhole::bare_angle]:",
+        " bare_angle ",
+    ] {
         let output = explained(&[code]);
         assert_eq!(output.status.code(), Some(0));
         assert_eq!(output.stderr, b"");
@@ -199,7 +207,7 @@ fn a_mistyped_code_gets_the_nearest_one() {
             "pinhole::E0308",
             "there is no code `pinhole::E0308`: `pinhole explain` lists them all",
         ),
-        ("", "there is no code ``: `pinhole explain` lists them all"),
+        ("", "the code is empty: `pinhole explain` lists all codes"),
     ] {
         let output = explained(&[written]);
         assert_eq!(output.status.code(), Some(2));

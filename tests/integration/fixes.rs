@@ -42,14 +42,6 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     // What the comment took is read again; the other fix leaves it in the comment.
     ("unclosed_comment", "begin it with `//`", "missing_field"),
     ("unclosed_comment", "begin it with `//`", "unknown_field"),
-    // Syntax does not know which names are functions; the other fix is for these.
-    (
-        "missing_operator",
-        "write `sin * 30deg`",
-        "function_without_arguments",
-    ),
-    // 90 is a quarter in degrees, and too much in radians.
-    ("bare_angle", "write `quarter * 1rad`", "out_of_range"),
 ];
 
 /// Every fixture that is a text, with its name and the arguments that it gives.
@@ -244,6 +236,68 @@ fn edits_keep_all_that_is_written() {
     // Nothing that would be cut is offered.
     assert!(offered(&text(&format!("sqrt({sum}, 2)"))).is_empty());
     assert!(offered(&text("atan2(0.25)")).is_empty());
+}
+
+#[test]
+fn a_function_is_called_and_all_else_multiplied() {
+    for (written, meant) in [
+        ("sin 30deg", "sin(30deg)"),
+        ("sqrt 2", "sqrt(2)"),
+        ("b 2", "b * 2"),
+        ("pi 2", "pi * 2"),
+        ("2 b", "2 * b"),
+    ] {
+        let title = format!("write `{meant}`");
+        let text = |value: &str| {
+            format!(
+                "let b = 2\nlet a = {value}\ncheckerboard {{}} camera {{ eye (0, 1, 5)  lookat (0, 1, 0) }}"
+            )
+        };
+        offers(&text(written), &[(&title, &text(meant))]);
+        if written == "sin 30deg" {
+            continue;
+        }
+        let text = |value: &str| {
+            format!(
+                "let b = 2\ncamera {{ eye (0, 1, 5)  lookat (0, 1, 0)  d {value} }} checkerboard {{}}"
+            )
+        };
+        offers(&text(written), &[(&title, &text(meant))]);
+    }
+}
+
+#[test]
+fn what_a_fix_leaves_is_tidy() {
+    let rest = "\ncheckerboard {} camera { eye (0, 1, 5)  lookat (0, 1, 0) }";
+    for (written, title, fixed) in [
+        ("let a = (0, +1, 0)", "write `1`", "let a = (0, 1, 0)"),
+        ("let a: 4", "write `let a = 4`", "let a = 4"),
+        ("let a : 4", "write `let a = 4`", "let a = 4"),
+        ("let a = (2 + )", "remove this `+`", "let a = (2)"),
+    ] {
+        let fixed = format!("{fixed}{rest}");
+        offers(&format!("{written}{rest}"), &[(title, &fixed)]);
+    }
+    // 45 radians are more than half a turn.
+    let camera = |fov: &str| {
+        format!("checkerboard {{}} camera {{ eye (0, 1, 5)  lookat (0, 1, 0)  fov {fov} }}")
+    };
+    offers(&camera("45"), &[("write `45deg`", &camera("45deg"))]);
+    offers(
+        &camera("1"),
+        &[
+            ("write `1deg`", &camera("1deg")),
+            ("write `1rad`", &camera("1rad")),
+        ],
+    );
+    offers(&camera("200"), &[]);
+    let product = |sign: &str| {
+        format!(
+            "let b = 2 checkerboard {{}} camera {{ eye (0, 1, 5)  lookat (0, 1, 0)  d 2{sign}b * 2 }}"
+        )
+    };
+    let fixes = offered(&product("  "));
+    assert_eq!(fixes[0].1, product(" * "));
 }
 
 #[test]

@@ -100,6 +100,44 @@ fn check_prints_a_diff_and_writes_nothing() {
     assert_eq!(read(&folder, "a.scn"), UNTIDY);
 }
 
+/// A terminal would obey them.
+#[test]
+fn control_characters_are_not_printed() {
+    let text = "// \u{1b}[31mx\r\nlet a=1\u{20}// \u{7}\r\n";
+    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
+    assert_eq!(status, 1);
+    assert!(
+        errors.contains("\n // ?[31mx\n-let a=1 // ?\n+let a = 1  // ?\n"),
+        "{errors}"
+    );
+    let is_odd = |c: char| c.is_control() && c != '\n';
+    assert!(!errors.contains(is_odd), "{errors:?}");
+}
+
+/// What is written into a pipe comes back to nobody, and one that nobody writes to is waited for without end.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_refused() {
+    let refused = |path: &str| {
+        let hint = "fmt takes files, or standard input as `-`";
+        let errors = format!("error: {path} is not a file: {hint}\n");
+        (2, String::new(), errors)
+    };
+    for path in ["/dev/stdin", "/dev/null"] {
+        assert_eq!(fmt(Path::new("."), UNTIDY, &[path]), refused(path));
+        assert_eq!(
+            fmt(Path::new("."), UNTIDY, &["--check", path]),
+            refused(path)
+        );
+    }
+    let folder = folder(&[]);
+    let made = Command::new("mkfifo")
+        .arg(folder.path().join("pipe"))
+        .status();
+    assert!(made.unwrap().success());
+    assert_eq!(fmt(folder.path(), "", &["pipe"]), refused("pipe"));
+}
+
 #[test]
 fn standard_input_goes_to_standard_output() {
     let folder = folder(&[]);
@@ -179,6 +217,24 @@ fn links_and_permissions_stay() {
         fs::metadata(&file).unwrap().permissions().mode() & 0o777,
         0o640
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn the_owner_stays_and_nothing_runs_as_him() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
+
+    let folder = folder(&[("a.scn", UNTIDY)]);
+    let file = folder.path().join("a.scn");
+    // Only root may do that; to everybody else the file stays his own.
+    let _ = chown(&file, Some(1234), Some(1234));
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o4755)).unwrap();
+    let before = fs::metadata(&file).unwrap();
+    assert_eq!(fmt(folder.path(), "", &["a.scn"]), silent(0));
+    let after = fs::metadata(&file).unwrap();
+    assert_eq!((after.uid(), after.gid()), (before.uid(), before.gid()));
+    assert_eq!(after.mode() & 0o7777, 0o755);
+    assert_eq!(read(&folder, "a.scn"), TIDY);
 }
 
 #[cfg(unix)]

@@ -26,7 +26,7 @@ use super::{
 };
 use crate::{
     diagnostic::{self, Diagnostic},
-    math::compare_half_turns,
+    math::{Angle, compare_half_turns},
     source::{SourceId, Sources, Span},
     suggest,
     syntax::{
@@ -573,15 +573,28 @@ impl<'s> Lowering<'s> {
         let written = evaluator.quoted(tree.span);
         let whole = evaluator.sources.text(tree.span);
         let text = shorten(whole);
-        let problem = if (row.takes, value.kind()) == (Type::Angle, Type::Number) {
+        let problem = if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
             let [degrees, radians] = evaluator.with_units(tree);
+            // A unit that cannot be meant is not offered: `fov 45rad` would be the next mistake.
+            let angles = [Angle::from_degrees(number), Angle::from_radians(number)];
+            let fits = angles.map(|angle| {
+                let mut must = row.must.iter();
+                must.all(|condition| holds(*condition, Value::Angle(angle)))
+            });
+            let instead = evaluator.as_angle(tree).into_iter().zip(fits);
             Problem::BareAngle {
                 what: format!("`{}`", row.name),
                 written,
-                help: format!("write `{degrees}` (or `{radians}`)"),
+                help: match fits {
+                    [true, false] => format!("write `{degrees}`"),
+                    [false, true] => format!("write `{radians}`"),
+                    _ => format!("write `{degrees}` (or `{radians}`)"),
+                },
                 span: tree.span,
                 label,
-                instead: evaluator.as_angle(tree).to_vec(),
+                instead: instead
+                    .filter_map(|(text, fits)| fits.then_some(text))
+                    .collect(),
             }
         } else {
             Problem::WrongType {

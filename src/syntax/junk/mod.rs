@@ -4,13 +4,14 @@
 //! the author's words. It is read again here token by token, and strictly.
 
 mod items;
+mod known;
 mod tokens;
 mod values;
 
 pub use items::{head, lines};
+pub use known::is_kind;
 pub use values::{
-    call_without_parentheses, is_unit, missing_operator, odd_number, unexpected_value,
-    unknown_operator, value,
+    is_unit, missing_operator, odd_number, unexpected_value, unknown_operator, value,
 };
 
 use self::{

@@ -1,6 +1,7 @@
 //! What is wrong with a value.
 
 use super::{
+    known::is_function,
     shorten,
     tokens::{Kind, Token, tokens},
 };
@@ -180,7 +181,7 @@ fn group_around(tokens: &[Token<'_>], index: usize) -> (usize, usize) {
 }
 
 /// A function with nothing around its argument.
-pub fn call_without_parentheses(function: &str, argument: &str, span: Span) -> Problem {
+fn call_without_parentheses(function: &str, argument: &str, span: Span) -> Problem {
     let (left, right) = (shorten(function), shorten(argument));
     Problem::MissingOperator {
         help: format!("write `{left}({right})`"),
@@ -191,34 +192,23 @@ pub fn call_without_parentheses(function: &str, argument: &str, span: Span) -> P
     }
 }
 
-/// Two values with nothing between.
+/// Two values with nothing between; a function before its argument lacks the parentheses.
 pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
     let is_number = left.ends_with(|c: char| c.is_ascii_digit() || c == '.')
         && left.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-'));
     if is_number && is_unit(right) {
         return spaced_unit(left, right, span);
     }
+    if is_function(left) {
+        return call_without_parentheses(left, right, span);
+    }
     let (left, right) = (shorten(left), shorten(right));
-    let word = left.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let number = right.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    let (help, meant) = match word && number {
-        true => (
-            format!(
-                "write `{left} * {right}` to multiply them, or `{left}({right})` if `{left}` is a function"
-            ),
-            Meant::Either,
-        ),
-        false => (
-            format!("write `{left} * {right}` to multiply them"),
-            Meant::Product,
-        ),
-    };
     Problem::MissingOperator {
+        help: format!("write `{left} * {right}` to multiply them"),
         left,
         right,
-        help,
         span,
-        meant,
+        meant: Meant::Product,
     }
 }
 

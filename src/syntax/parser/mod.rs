@@ -323,12 +323,19 @@ impl<'s> Parser<'s> {
     }
 
     /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
+    ///
+    /// That is so only where the text is wrong as it stands, and right but for one slip if it is read like this: the first
+    /// word is no kind, and the second one is. What is right, such as `let a = 2 sphere` and `B {`, means the same however
+    /// its lines end.
     fn kind_of_the_next_line(&mut self, block: &mut Block<'s>) {
         let (Some(Item::Definition(before)), Some(kind), Some(name)) =
             (self.items.last(), block.kind, block.name)
         else {
             return;
         };
+        if junk::is_kind(kind.text) || !junk::is_kind(name.text) {
+            return;
+        }
         let value = before.value.span;
         let apart = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
         if !apart(value.end, kind.span.start) && apart(kind.span.end, name.span.start) {
