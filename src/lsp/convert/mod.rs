@@ -1,6 +1,8 @@
 //! From the editor's answers to the protocol's types, and back.
 
 mod client;
+mod completion;
+mod tokens;
 
 pub use client::{Client, capabilities};
 
@@ -10,10 +12,7 @@ use super::documents::{Change, Document, Encoding};
 use crate::{
     color::Color,
     diagnostic::{Diagnostic, Fix, Severity},
-    editor::{
-        Completion, CompletionKind, Fold, FoldKind, Hint, Hover, Occurrence, Piece, SemanticKind,
-        SemanticToken, Signature, Swatch, Symbol, SymbolKind,
-    },
+    editor::{Fold, FoldKind, Hint, Hover, Occurrence, Signature, Swatch, Symbol, SymbolKind},
     source::{SourceId, Span},
 };
 
@@ -115,50 +114,6 @@ impl Page<'_> {
                 .then(|| vec![lsp::DiagnosticTag::Unnecessary]),
             related_information: Some(related).filter(|related| !related.is_empty()),
             data: None,
-        }
-    }
-
-    pub fn completion(&self, index: usize, completion: Completion) -> lsp::CompletionItem {
-        let (kind, documentation) = match completion.kind {
-            CompletionKind::Keyword => (lsp::CompletionItemKind::Keyword, None),
-            CompletionKind::Block => (lsp::CompletionItemKind::Struct, None),
-            CompletionKind::Field => (lsp::CompletionItemKind::Property, None),
-            CompletionKind::Definition => (lsp::CompletionItemKind::Variable, None),
-            CompletionKind::Function => (lsp::CompletionItemKind::Function, None),
-            CompletionKind::Method => (lsp::CompletionItemKind::EnumMember, None),
-            CompletionKind::Constant => (lsp::CompletionItemKind::Constant, None),
-            CompletionKind::Value => (lsp::CompletionItemKind::Value, None),
-            // Editors show a swatch of a colour's code that stands here by itself.
-            CompletionKind::Color(color) => {
-                let code = lsp::Documentation::String(color.to_string());
-                (lsp::CompletionItemKind::Color, Some(code))
-            }
-        };
-        let markup = || lsp::Documentation::MarkupContent(self.markup(completion.help));
-        let has_holes = completion
-            .insert
-            .iter()
-            .any(|piece| matches!(piece, Piece::Hole(_)));
-        let is_snippet = self.client.snippets && has_holes;
-        lsp::CompletionItem {
-            label: completion.label,
-            kind: Some(kind),
-            detail: Some(completion.detail).filter(|detail| !detail.is_empty()),
-            documentation: Some(documentation.unwrap_or_else(markup)),
-            // Editors sort by this text, and the list is in its order.
-            sort_text: Some(format!("{index:04}")),
-            insert_text_format: Some(match is_snippet {
-                true => lsp::InsertTextFormat::Snippet,
-                false => lsp::InsertTextFormat::PlainText,
-            }),
-            text_edit: Some(lsp::CompletionItemTextEdit::TextEdit(lsp::TextEdit {
-                range: self.range(completion.replaces),
-                new_text: match is_snippet {
-                    true => snippet(&completion.insert),
-                    false => plain(&completion.insert),
-                },
-            })),
-            ..Default::default()
         }
     }
 
@@ -355,41 +310,6 @@ impl Page<'_> {
             },
         }
     }
-
-    /// Each token relative to the one before it; comments of several lines in pieces, a line each.
-    pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> lsp::SemanticTokens {
-        let mut data = Vec::with_capacity(tokens.len());
-        let mut last = lsp::Position::default();
-        for token in tokens {
-            let kind = SemanticKind::ALL
-                .iter()
-                .position(|kind| *kind == token.kind);
-            let mut start = token.span.start;
-            let text = self.document.sources.text(token.span);
-            for piece in text.split(['\n', '\r']) {
-                let at = self.position(start);
-                start += piece.len() + 1;
-                if piece.is_empty() {
-                    continue;
-                }
-                data.push(lsp::SemanticToken {
-                    delta_line: at.line - last.line,
-                    delta_start: match at.line == last.line {
-                        true => at.character - last.character,
-                        false => at.character,
-                    },
-                    length: self.columns(piece),
-                    token_type: kind.map_or(0, count),
-                    token_modifiers_bitset: u32::from(token.is_declaration),
-                });
-                last = at;
-            }
-        }
-        lsp::SemanticTokens {
-            result_id: None,
-            data,
-        }
-    }
 }
 
 /// A change of a text.
@@ -422,36 +342,6 @@ fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
         SymbolKind::Object => lsp::SymbolKind::Object,
         SymbolKind::Field => lsp::SymbolKind::Property,
     }
-}
-
-/// What is put in, as it is.
-fn plain(pieces: &[Piece]) -> String {
-    let texts = pieces.iter().map(|piece| match piece {
-        Piece::Text(text) | Piece::Hole(text) => text.as_str(),
-    });
-    texts.collect()
-}
-
-/// What is put in, with holes to type over.
-fn snippet(pieces: &[Piece]) -> String {
-    let mut text = String::new();
-    let mut holes = 0;
-    for piece in pieces {
-        match piece {
-            Piece::Text(piece) => text.push_str(&escaped(piece)),
-            Piece::Hole(value) => {
-                holes += 1;
-                text.push_str(&format!("${{{holes}:{}}}", escaped(value)));
-            }
-        }
-    }
-    text
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('\\', "\\\\")
-        .replace('$', "\\$")
-        .replace('}', "\\}")
 }
 
 /// A patch of a colour: an SVG picture within the text itself.
