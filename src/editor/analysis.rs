@@ -34,9 +34,10 @@ pub(super) struct Path<'a, 's> {
 impl<'s> Analysis<'s> {
     /// Reads a text.
     pub fn new(sources: &'s Sources) -> Self {
+        let survey = scene::survey(sources);
         Self {
-            survey: scene::survey(sources),
-            tokens: words::tokens(sources.file.text()),
+            tokens: words::tokens(&survey),
+            survey,
         }
     }
 

@@ -7,7 +7,10 @@ use super::{Analysis, words::Role};
 use crate::{
     color::Color,
     numbers,
-    scene::{Value, css},
+    scene::{
+        Value, css,
+        schema::{self, Type},
+    },
     source::Span,
     syntax::tree::{self, ValueKind},
 };
@@ -28,8 +31,13 @@ pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
         collect(analysis, &definition.value, &mut swatches);
     }
     for block in analysis.blocks() {
+        let row = block.kind.and_then(|kind| schema::block(kind.text));
         for field in &block.fields {
-            // The words of methods are none, whatever they are called.
+            let known = row.and_then(|row| row.field(field.name.text));
+            if known.is_some_and(|known| known.takes == Type::Method) {
+                // The words of methods are none, whatever they are called.
+                continue;
+            }
             collect(analysis, &field.value, &mut swatches);
         }
     }

@@ -229,6 +229,10 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_color = wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors));
     let mut completions: Vec<Completion> = written_out(situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
+    if wanted == Some(Type::Colors) {
+        // Two of them: one colour would not do.
+        return completions;
+    }
     completions.extend(functions(situation, is_color));
     if is_color != Some(true) {
         completions.extend(constants(situation));
@@ -255,7 +259,7 @@ fn methods(situation: &Situation) -> Vec<Completion> {
 
 /// A value such as the field can have, to type over; only where the whole value is still to come.
 fn written_out(situation: &Situation) -> Option<Completion> {
-    let field = situation.field.filter(|_| !situation.is_nested)?;
+    let field = situation.field.filter(|_| situation.is_start)?;
     if !situation.word.range().is_empty() {
         return None;
     }
@@ -295,6 +299,7 @@ fn definitions(
         let value = analysis.survey.defined(definition);
         let kind = value.map(|value| value.kind());
         let fits = match (is_color, kind) {
+            (_, Some(kind)) if situation.wanted == Some(Type::Colors) => kind == Type::Colors,
             (Some(is_color), Some(kind)) => is_color == matches!(kind, Type::Color | Type::Colors),
             _ => true,
         };

@@ -39,21 +39,28 @@ pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     folds
 }
 
-/// Comments that stand in lines of their own, one line after the other.
+/// Comments that stand in lines of their own, one line after the other; and those behind code, each by itself.
 fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     let mut runs: Vec<Span> = Vec::new();
+    let mut behind_code = Vec::new();
     for comment in analysis.comments() {
         let source = analysis.source();
         let start = source.line_range(analysis.line(*comment)).start;
         let before = source.slice(start..comment.start);
         let is_alone = before.trim_start_matches('\u{feff}').trim().is_empty();
+        if !is_alone {
+            // A comment behind code is about that line; of several lines it folds by itself.
+            behind_code.push(*comment);
+            continue;
+        }
         match runs.last_mut() {
-            Some(run) if is_alone && is_next_line(source.slice(run.end..comment.start)) => {
+            Some(run) if is_next_line(source.slice(run.end..comment.start)) => {
                 run.end = comment.end;
             }
             _ => runs.push(*comment),
         }
     }
+    runs.extend(behind_code);
     runs
 }
 

@@ -78,6 +78,9 @@ fn is_computed(value: &tree::Value<'_>) -> bool {
 
 /// What follows from a field together with others.
 fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Option<String> {
+    if !counts(analysis, block, field) {
+        return None;
+    }
     let parts = &analysis.survey.parts;
     let image = parts.image?;
     match (block.kind?.text, field.name.text) {
@@ -105,4 +108,21 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
         },
         _ => None,
     }
+}
+
+/// Whether the scene has this field's value: its block is the first of its kind, and no other field stands against it.
+fn counts(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
+    let Some(kind) = block.kind else {
+        return false;
+    };
+    let known = schema::block(kind.text).and_then(|row| row.field(field.name.text));
+    let is_against = |other: &&Field<'_>| {
+        let name = other.name.text;
+        let is_excluded = known.is_some_and(|known| known.excludes.contains(&name));
+        other.span != field.span && (name == field.name.text || is_excluded)
+    };
+    let mut blocks = analysis.blocks();
+    let first = blocks.find(|other| other.kind.is_some_and(|other| other.text == kind.text));
+    first.is_some_and(|first| first.span == block.span)
+        && !block.fields.iter().any(|f| is_against(&f))
 }

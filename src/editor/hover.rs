@@ -262,16 +262,51 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
         .get(index)
         .filter(|object| object.span == block.span);
     Some(match object {
-        Some(object) => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
+        Some(object) => {
+            let summary = inspect::summary(&object.shape);
+            format!("{kind} `{name}`: {}", as_written(block, summary))
+        }
         None => format!("{kind} `{name}`"),
     })
 }
 
-/// What a value comes to: the smallest one that the place is in.
+/// A summary with the names of colours where the block has them.
+fn as_written(block: &tree::Block<'_>, mut summary: String) -> String {
+    let values = block.fields.iter().map(|field| &field.value);
+    for value in values.flat_map(|value| std::iter::once(value).chain(value.parts())) {
+        if let ValueKind::Name(name) = value.kind
+            && let Some(color) = css::color(name)
+        {
+            summary = summary.replace(&color.to_string(), name);
+        }
+    }
+    summary
+}
+
+/// Which of the values around a place there is something to say of: the smallest one; or what a number or a vector that says all
+/// itself is an operand or an argument of.
+fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
+    let (value, around) = path.values.split_last()?;
+    let says_all = match value.kind {
+        ValueKind::Number(_)
+        | ValueKind::Tuple(_)
+        | ValueKind::Parentheses(_)
+        | ValueKind::Negation { .. } => is_literal(value),
+        _ => false,
+    };
+    let is_computed = |value: &&tree::Value<'_>| {
+        matches!(value.kind, ValueKind::Chain { .. } | ValueKind::Call(_))
+    };
+    let computed = around.iter().rposition(|value| is_computed(value));
+    Some(computed.filter(|_| says_all).unwrap_or(around.len()))
+}
+
+/// What a value comes to.
 fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Option<Hover> {
-    let value = *path.values.last()?;
-    let found = match path.values.len() {
-        1 => analysis.value(value, path),
+    let depth = depth_of_meaning(path)?;
+    let value = *path.values.get(depth)?;
+    let found = match depth {
+        0 => analysis.value(value, path),
         _ => analysis.survey.value(value, None),
     };
     let about = |span, markdown| {
@@ -303,7 +338,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
         ValueKind::Number(_) => {
             // What a number is follows from its field; of a part of a vector nothing is to be said.
             let (row, field) = (path.row()?, path.field_row()?);
-            (path.values.len() == 1).then_some(())?;
+            (depth == 0).then_some(())?;
             about(value.span, about_field(row, field))
         }
         _ => {

@@ -50,7 +50,9 @@ pub(super) fn label(function: &Function) -> (String, Vec<Range<usize>>) {
             label.push_str(", ");
         }
         let start = label.len();
-        label.push_str(parameter(function, index, *takes));
+        // The name of an argument stands for it, or its type.
+        let name = function.parameters.get(index);
+        label.push_str(name.copied().unwrap_or_else(|| bare(*takes)));
         parameters.push(start..label.len());
     }
     if function.more {
@@ -61,18 +63,6 @@ pub(super) fn label(function: &Function) -> (String, Vec<Range<usize>>) {
     }
     label.push_str(&format!(") → {}", bare(function.gives)));
     (label, parameters)
-}
-
-/// What stands for an argument: its name where there is one.
-fn parameter(function: &Function, index: usize, takes: Type) -> &'static str {
-    match (function.name, index) {
-        ("rgb", 0) => "red",
-        ("rgb", 1) => "green",
-        ("rgb", 2) => "blue",
-        ("atan2", 0) => "y",
-        ("atan2", 1) => "x",
-        _ => bare(takes),
-    }
 }
 
 /// A type without its article.

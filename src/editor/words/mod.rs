@@ -1,17 +1,23 @@
 //! The words and signs of a text, each with what it is by its place.
 //!
-//! In: a text. Out: its tokens in order, and what could stand at any place of it. A tree says more of a text that is right;
-//! this says something of every text, also of the half of a field that is being typed. Both agree on texts without mistakes
-//! of syntax, which a test holds them to.
+//! In: a text and what is known of it. Out: its tokens in order, and what could stand at any place of it. What the tree has
+//! read, it says; the reader says something of every text, also of the half of a field that is being typed. Both agree on
+//! texts without mistakes, which tests hold them to.
 
 mod reader;
 mod scan;
+mod settled;
+#[cfg(test)]
+mod tests;
 
 use std::collections::HashSet;
 
-use self::{reader::Reader, scan::scan};
+use self::{reader::Reader, scan::scan, settled::settle};
 use crate::{
-    scene::schema::{self, Type},
+    scene::{
+        Survey,
+        schema::{self, Type},
+    },
     source::{SourceId, Span},
 };
 
@@ -97,8 +103,8 @@ pub struct Situation {
     pub calls: Vec<(Span, usize)>,
     /// The name that is being defined: it cannot use itself.
     pub defining: Option<Span>,
-    /// Whether it is within parentheses.
-    pub is_nested: bool,
+    /// Whether a value starts here: nothing of it stands before.
+    pub is_start: bool,
     /// The word that is being typed, or nothing.
     pub word: Span,
     /// What stands behind the word.
@@ -106,8 +112,15 @@ pub struct Situation {
 }
 
 /// The tokens of a text.
-pub fn tokens(text: &str) -> Vec<Token> {
-    let mut tokens = scan(text);
+pub fn tokens(survey: &Survey<'_>) -> Vec<Token> {
+    let mut tokens = read(survey.sources().file.text(), &survey.parsed.comments);
+    settle(&mut tokens, survey);
+    tokens
+}
+
+/// The tokens of a text, by their places alone.
+fn read(text: &str, comments: &[Span]) -> Vec<Token> {
+    let mut tokens = scan(text, comments);
     let lets = defined_names(text, &tokens);
     let mut reader = Reader::new(text, &lets);
     for index in 0..tokens.len() {
@@ -170,7 +183,9 @@ pub fn situation(text: &str, tokens: &[Token], comments: &[Span], at: usize) -> 
         wanted: reader.wanted(expected),
         calls: reader.calls(),
         defining: reader.defining,
-        is_nested: !reader.lists.is_empty(),
+        is_start: reader
+            .last
+            .is_some_and(|last| matches!(last.role, Role::Field | Role::Equals)),
         word,
         next: tokens.get(index + 1).copied(),
     };

@@ -48,7 +48,7 @@ pub struct Reader<'t> {
     pub lists: Vec<(Option<Span>, usize)>,
     /// The name of the last `let`.
     pub defining: Option<Span>,
-    last: Option<Token>,
+    pub last: Option<Token>,
 }
 
 impl<'t> Reader<'t> {
@@ -242,20 +242,59 @@ impl<'t> Reader<'t> {
         }
         match self.in_block {
             true => {
-                let is_field = self.row.is_some_and(|row| row.field(word).is_some());
-                is_field && !is_value && !is_method
+                let field = self.row.and_then(|row| row.field(word));
+                let is_field = match field {
+                    // `min (0, 0, 0)`: a corner. The least of numbers is no field's whole value in a block with corners.
+                    Some(field) if schema::function(word).is_some() => {
+                        field.takes == Type::Vector && self.is_vector_next(tokens, index)
+                    }
+                    Some(_) => !is_value,
+                    None => false,
+                };
+                is_field && !is_method
             }
             false => self.is_on_new_line(token) && schema::block(word).is_some() && !is_value,
         }
     }
 
-    /// Whether a word starts `KIND {` or `KIND NAME {`.
+    /// Whether a list of three stands behind a word, and no further sign of an expression: the value of a field.
+    fn is_vector_next(&self, tokens: &[Token], index: usize) -> bool {
+        let mut open = 0_usize;
+        let mut commas = 0_usize;
+        let mut next = tokens.iter().skip(index + 1);
+        for token in next.by_ref() {
+            match token.role {
+                Role::OpenList => open += 1,
+                Role::CloseList => open = open.saturating_sub(1),
+                Role::Comma if open == 1 => commas += 1,
+                Role::Open | Role::Close => return false,
+                _ if open == 0 => return false,
+                _ => {}
+            }
+            if open == 0 {
+                break;
+            }
+        }
+        let ends = next
+            .next()
+            .is_none_or(|token| token.role == Role::Close || is_word(self.text, *token));
+        commas == 2 && ends
+    }
+
+    /// Whether a word starts `KIND {` or `KIND NAME {`. A value may have the name of a kind, with a block behind it: `box`, and
+    /// then `sphere {`.
     fn is_head(&self, tokens: &[Token], index: usize) -> bool {
         let mut next = tokens.iter().skip(index + 1);
         match next.next() {
             Some(token) if token.role == Role::Open => true,
             Some(token) if is_word(self.text, *token) => {
-                next.next().is_some_and(|token| token.role == Role::Open)
+                let word = |token: &Token| slice(self.text, token.span);
+                let is_kind = schema::block(word(token)).is_some();
+                let is_defined = tokens.get(index).map(word);
+                let is_defined = is_defined.is_some_and(|word| self.lets.contains(word));
+                let is_value = is_defined && self.expected(tokens, index) == Expected::Value;
+                let is_open = next.next().is_some_and(|token| token.role == Role::Open);
+                is_open && !(is_kind && is_value)
             }
             _ => false,
         }

@@ -1,22 +1,24 @@
 //! A text cut into words and signs.
 
 use super::{Role, Token, file};
+use crate::source::Span;
 
-/// The tokens without their roles, as far as those follow from places.
-pub fn scan(text: &str) -> Vec<Token> {
+/// The tokens without their roles, as far as those follow from places. None reaches into a comment.
+pub fn scan(text: &str, comments: &[Span]) -> Vec<Token> {
     let bytes = text.as_bytes();
     let mut tokens = Vec::with_capacity(text.len() / 4);
+    let mut comments = comments.iter().peekable();
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
-        let rest = bytes.get(at..).unwrap_or_default();
+        if let Some(comment) = comments.next_if(|comment| comment.start <= at) {
+            at = at.max(comment.end);
+            continue;
+        }
+        let end = comments.peek().map_or(text.len(), |comment| comment.start);
+        let rest = bytes.get(at..end).unwrap_or_default();
         let run = |of: fn(&u8) -> bool| rest.iter().take_while(|byte| of(byte)).count();
         let (length, role) = match byte {
             b' ' | b'\t' | b'\r' | b'\n' => (run(u8::is_ascii_whitespace).max(1), None),
-            b'/' if rest.starts_with(b"//") => (run(|byte| *byte != b'\n'), None),
-            b'/' if rest.starts_with(b"/*") => {
-                let inner = text.get(at + 2..).unwrap_or_default();
-                (inner.find("*/").map_or(rest.len(), |end| end + 4), None)
-            }
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => (run(is_word_byte), Some(Role::Name)),
             b'0'..=b'9' => (number_length(rest), Some(Role::Number)),
             b'.' if rest.get(1).is_some_and(u8::is_ascii_digit) => {

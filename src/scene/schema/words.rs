@@ -51,6 +51,7 @@ pub const FUNCTIONS: &[Function] = {
         Function {
             name,
             takes,
+            parameters: &[],
             more: false,
             gives,
             help,
@@ -63,12 +64,15 @@ pub const FUNCTIONS: &[Function] = {
         of("asin", &[Number], Angle, "the angle of this sine"),
         of("acos", &[Number], Angle, "the angle of this cosine"),
         of("atan", &[Number], Angle, "the angle of this tangent"),
-        of(
-            "atan2",
-            &[Number, Number],
-            Angle,
-            "the angle of the point (x, y), called atan2(y, x)",
-        ),
+        Function {
+            parameters: &["y", "x"],
+            ..of(
+                "atan2",
+                &[Number, Number],
+                Angle,
+                "the angle of the point (x, y), called atan2(y, x)",
+            )
+        },
         of("sqrt", &[Number], Number, "the square root"),
         of("abs", &[Number], Number, "the number without its sign"),
         Function {
@@ -98,12 +102,15 @@ pub const FUNCTIONS: &[Function] = {
             Vector,
             "the vector of length 1 in the same direction",
         ),
-        of(
-            "rgb",
-            &[Number, Number, Number],
-            Color,
-            "a colour of red, green and blue, 0 to 255 each",
-        ),
+        Function {
+            parameters: &["red", "green", "blue"],
+            ..of(
+                "rgb",
+                &[Number, Number, Number],
+                Color,
+                "a colour of red, green and blue, 0 to 255 each",
+            )
+        },
     ]
 };
 
@@ -114,6 +121,8 @@ pub struct Function {
     pub name: &'static str,
     /// The types of its arguments.
     pub takes: &'static [Type],
+    /// What its arguments are called; nothing where their types say it all.
+    pub parameters: &'static [&'static str],
     /// Whether it takes more of the last type.
     pub more: bool,
     /// The type of its result.

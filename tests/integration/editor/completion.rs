@@ -97,6 +97,11 @@ fn fields_that_are_given_or_excluded_are_not_offered() {
     );
     assert_eq!(labels("box { center (0, 0, 0) $0 }"), "color size");
     assert_eq!(labels("box { $0 }"), "center max min color size");
+    // Corners, which are called like functions.
+    assert_eq!(
+        labels("box {\n  $0\n  min (0, 0, 0)\n  max (1, 1, 1)\n}"),
+        "color"
+    );
     assert_eq!(
         labels("camera { eye (0, 0, 0) fov 40deg $0 }"),
         "direction lookat far near roll up view_height"
@@ -205,4 +210,29 @@ fn nothing_is_offered_where_a_new_name_stands_or_no_word() {
     ] {
         assert_eq!(labels(text), "", "{text}");
     }
+}
+
+#[test]
+fn a_whole_value_is_offered_only_where_one_starts() {
+    let first = |text: &str| complete(text).swap_remove(0).label;
+    assert_eq!(first("sphere { radius $0 }"), "1");
+    for text in [
+        "sphere { radius 1 + $0 }",
+        "let f = 2 camera { fov f * $0 }",
+        "sphere { radius -$0 }",
+    ] {
+        let offered = complete(text);
+        assert!(!offered.is_empty());
+        assert!(
+            offered.iter().all(|c| c.kind != CompletionKind::Value),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_pair_of_colors_is_no_single_color() {
+    let text = "let sky = #123456 let pair = (red, white) let n = 1 checkerboard { colors $0 }";
+    assert_eq!(labels(text), "(gray, white) pair");
+    assert_eq!(labels(&text.replace("$0", "p$0")), "pair");
 }

@@ -92,6 +92,23 @@ fn expressions_say_what_they_come_to() {
             "`sin(angle) → number`: the sine of an angle\n\nhere a number: `0.5`".into()
         )
     );
+    // A number says itself what it is, but not what it is a part of.
+    for (text, about) in [
+        ("let a = 2$0*3", "`2*3` is a number: `6`"),
+        (
+            "let a = 0.1+$00.2",
+            "`0.1+0.2` is a number: `0.30000000000000004`",
+        ),
+        ("sphere { center (1, 2*$03, 3) }", "`2*3` is a number: `6`"),
+        (
+            "let v = $0(1,2,3)*2",
+            "`(1,2,3)*2` is a vector: `(2, 4, 6)`",
+        ),
+        ("let a = max(1, $02)", "`max(1, 2)` is a number: `2`"),
+    ] {
+        assert_eq!(markdown(text), about, "{text}");
+    }
+    assert_eq!(markdown("let a = (1, $02, 3)"), "");
     assert_eq!(
         markdown("let a = $090deg"),
         "an angle: `90deg`, `1.5708rad`"
@@ -147,6 +164,15 @@ fn objects_say_what_they_are() {
         )
     );
     assert_eq!(markdown("sphere Ba$0ll { radius 0 }"), "sphere `Ball`");
+    // A colour in the spelling of the file.
+    assert_eq!(
+        markdown("sphere Ba$0ll { center (0, 1, 0) color olive }"),
+        "sphere `Ball`: center (0, 1, 0), radius 1, olive"
+    );
+    assert_eq!(
+        markdown("checkerboard Bo$0ard { colors (Teal, #fff) }"),
+        "checkerboard `Board`: y 0, squares of 1, Teal and #ffffff"
+    );
 }
 
 #[test]

@@ -68,6 +68,15 @@ fn names_change_wherever_they_stand() {
         .as_deref(),
         Ok("let r = 2 let sobol = 1 sampler { method sobol } sphere { radius r }")
     );
+    // A value before a block is no block's kind.
+    assert_eq!(
+        renamed(
+            "let $0box = 2\nlet c = box\nbox { center (c, 0, 0) }",
+            "crate"
+        )
+        .as_deref(),
+        Ok("let crate = 2\nlet c = crate\nbox { center (c, 0, 0) }")
+    );
     assert_eq!(
         renamed("let a = 1 let $0b = 2", "b").as_deref(),
         Ok("let a = 1 let b = 2")

@@ -47,7 +47,7 @@ fn the_outline_has_definitions_blocks_and_fields() {
 
 #[test]
 fn blocks_and_runs_of_comments_fold() {
-    let text = "// a\n// b\n\n// c\nsphere {\n}\nbox {} // d\n// e\n// f\n/* g\n */\n";
+    let text = "// a\n// b\n\n// c\nsphere { // x\n  // y\n  // z\n}\nbox {} // d\n// e\n// f\n/* g\n */\nlet a /* h\n */ = 1\n";
     let sources = sources(text);
     let analysis = Analysis::new(&sources);
     let folds: Vec<(FoldKind, &str)> = folds(&analysis)
@@ -56,8 +56,10 @@ fn blocks_and_runs_of_comments_fold() {
         .collect();
     let expected = [
         (FoldKind::Comment, "// a\n// b"),
-        (FoldKind::Block, "sphere {\n}"),
-        (FoldKind::Comment, "// d\n// e\n// f\n/* g\n */"),
+        (FoldKind::Block, "sphere { // x\n  // y\n  // z\n}"),
+        (FoldKind::Comment, "// y\n  // z"),
+        (FoldKind::Comment, "// e\n// f\n/* g\n */"),
+        (FoldKind::Comment, "/* h\n */"),
     ];
     assert_eq!(folds, expected);
 }
@@ -105,7 +107,6 @@ fn colors_are_found_wherever_they_are_written_out() {
         ("Olive", "#808000"),
         ("rgb(1, 2 + 3, 4)", "#010504"),
         ("#fA0", "#ffaa00"),
-        ("tan", "#d2b48c"),
         ("#123456", "#123456"),
     ];
     assert_eq!(
@@ -190,6 +191,15 @@ fn remarks_say_what_the_text_does_not() {
         remarked("sampler { method exact per_pixel 16 }"),
         "sampler { method exact per_pixel 16 }"
     );
+    // Nothing is said of a value that another one stands against, or that the scene does not have.
+    for text in [
+        format!("camera {{ {view} d 2 fov 30deg }}"),
+        format!("camera {{ {view} d 2 d 3 }}"),
+        format!("camera {{ {view} }} camera {{ {view} d 7 }}"),
+        "sampler { total 100 per_pixel 3 }".to_owned(),
+    ] {
+        assert_eq!(remarked(&text), text);
+    }
     assert_eq!(
         remarked("let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)"),
         "let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)‹= #010203›"

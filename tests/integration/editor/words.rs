@@ -57,6 +57,16 @@ fn words_keep_their_colour_while_others_are_typed() {
     );
 }
 
+#[test]
+fn no_word_reaches_into_a_comment() {
+    assert_eq!(shown("\"//\"a"), "//\"a:Comment");
+    assert_eq!(shown("'/*\na"), "/*\na:Comment");
+    assert_eq!(
+        shown("let a = \"/**/\"//"),
+        "let:Keyword a:Variable! =:Operator /**/:Comment //:Comment"
+    );
+}
+
 /// What the tree says of each word of a text without mistakes of syntax.
 fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
     let sources = sources(text);
