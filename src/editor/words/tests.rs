@@ -145,7 +145,7 @@ fn shown(text: &str, tokens: &[Token]) -> Vec<(String, Role)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 256, max_global_rejects: 16_384, ..ProptestConfig::default() })]
 
     #[test]
     fn the_reader_and_the_tree_agree((text, _) in scenes()) {

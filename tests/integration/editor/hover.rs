@@ -95,10 +95,7 @@ fn expressions_say_what_they_come_to() {
     // A number says itself what it is, but not what it is a part of.
     for (text, about) in [
         ("let a = 2$0*3", "`2*3` is a number: `6`"),
-        (
-            "let a = 0.1+$00.2",
-            "`0.1+0.2` is a number: `0.30000000000000004`",
-        ),
+        ("let a = 0.1+$00.2", "`0.1+0.2` is a number: `0.3`"),
         ("sphere { center (1, 2*$03, 3) }", "`2*3` is a number: `6`"),
         (
             "let v = $0(1,2,3)*2",

@@ -102,10 +102,12 @@ fn message(content: &[u8]) -> Result<Incoming, Failed> {
         .get("id")
         .filter(|id| id.is_string() || id.is_number());
     let id = id.cloned().unwrap_or_default();
+    // What has an identifier and nothing else would pass for a response.
+    let is_call = value.get("method").is_some_and(Value::is_string);
     match serde_json::from_value(value) {
-        Ok(message) => Ok(Ok(message)),
-        Err(_) if is_response => Err(Failed::Once("a response to nothing".to_owned())),
-        Err(_) => {
+        Ok(message) if is_call || is_response => Ok(Ok(message)),
+        _ if is_response => Err(Failed::Once("a response to nothing".to_owned())),
+        _ => {
             let message = "this is neither a request nor a notification".to_owned();
             malformed(id, ErrorCode::InvalidRequest, message)
         }
