@@ -297,7 +297,7 @@ fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     let is_computed = |value: &&tree::Value<'_>| {
         matches!(value.kind, ValueKind::Chain { .. } | ValueKind::Call(_))
     };
-    let computed = around.iter().rposition(|value| is_computed(value));
+    let computed = around.iter().rposition(is_computed);
     Some(computed.filter(|_| says_all).unwrap_or(around.len()))
 }
 
