@@ -102,8 +102,10 @@ fn message(content: &[u8]) -> Result<Incoming, Failed> {
         .get("id")
         .filter(|id| id.is_string() || id.is_number());
     let id = id.cloned().unwrap_or_default();
-    // What has an identifier and nothing else would pass for a response.
-    let is_call = value.get("method").is_some_and(Value::is_string);
+    // What has an identifier and nothing else would pass for a response, and a request with an odd one for a notification.
+    let is_odd = |id: &Value| !id.is_string() && !id.is_i64();
+    let is_call =
+        value.get("method").is_some_and(Value::is_string) && !value.get("id").is_some_and(is_odd);
     match serde_json::from_value(value) {
         Ok(message) if is_call || is_response => Ok(Ok(message)),
         _ if is_response => Err(Failed::Once("a response to nothing".to_owned())),
