@@ -17,6 +17,12 @@ pub(super) const FAR: f64 = 18.0;
 /// about 1.)
 const DEEP: f64 = 1e13;
 
+/// Nor one of no more than this line by line.
+const ENOUGH: f64 = 1e-13;
+
+/// Forms of about the same size have no smaller determinant.
+const LEAST: f64 = 1e-100;
+
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
 
@@ -65,6 +71,8 @@ pub(crate) struct Board {
     pub(super) density: f64,
     /// K over |∂m/∂a| and over |∂m/∂b|, with bounds relative to them: well known even where K itself is not.
     pub(super) per_slope: [Sum; 2],
+    /// How far det M may be from the true one, relative to it.
+    uncertain: f64,
     /// Whether the floor is seen mirrored: the sign of det M.
     pub(super) handed: f64,
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
@@ -89,6 +97,11 @@ pub(super) struct Corner {
 
 pub(super) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
+}
+
+/// What the terms of a form add up to at most.
+pub(super) fn size([x, y, z]: &[f64; 3]) -> f64 {
+    0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
 /// A cross product, each part to within two roundings of itself.
@@ -124,6 +137,8 @@ impl Board {
                 sum.plus(&plus.minus(minus).times(&Double::from_f64(l)))
             })
             .to_f64();
+        // Where nothing is left of it, next to nothing will do: it is off by more.
+        let det = if det.abs() > LEAST { det } else { LEAST };
         let third = |column: usize, exponent: i32| libm::ldexp(columns[column][2] / det, -exponent);
         let per_slope = |column: usize, form: &[f64; 3], exponent: i32| {
             let minor = columns[column][2].abs();
@@ -133,17 +148,23 @@ impl Board {
                 bound: 2.0 * UNIT * (terms / minor + 2.0),
             }
         };
-        let size = det.abs();
+        let volume = det.abs();
+        // Of each of the six products three factors are off by a rounding each, and what that leaves is rounded.
+        let products: f64 = (0..3)
+            .map(|i| {
+                let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+                l[i].abs() * ((wide[j] * high[k]).abs() + (wide[k] * high[j]).abs())
+            })
+            .sum();
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
         let forms = [wide, high, l];
-        let errors =
-            forms.map(|form| 4.0 * UNIT * (0.5 * (form[0].abs() + form[1].abs()) + form[2].abs()));
+        let errors = forms.map(|form| 4.0 * UNIT * size(&form));
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
             let column = column.map(f64::abs);
-            displacement += error * column.iter().sum::<f64>() / size;
-            tilt += error * column[2] / size;
+            displacement += error * column.iter().sum::<f64>() / volume;
+            tilt += error * column[2] / volume;
         }
         let steepness = libm::hypot(l[0], l[1]);
         Self {
@@ -151,13 +172,14 @@ impl Board {
             below: l,
             slope: [third(0, of_a), third(1, of_b)],
             origin: third(2, 0),
-            density: libm::ldexp(1.0 / size, -of_a - of_b),
+            density: libm::ldexp(1.0 / volume, -of_a - of_b),
             per_slope: [per_slope(0, &high, of_b), per_slope(1, &wide, of_a)],
+            uncertain: 4.0 * UNIT * products / volume,
             handed: det.signum(),
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
             upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
-            tail: 2e-10,
+            tail: 5e-10,
         }
     }
 
@@ -193,7 +215,7 @@ impl Board {
                 bound: if self.is_certain(&corners) {
                     2.0 * UNIT
                 } else {
-                    self.displaced(points)
+                    self.blurred(points)
                 },
             };
         }
@@ -226,6 +248,45 @@ impl Board {
             sum + across * along + self.displacement * up
         });
         anyhow.min(sides)
+    }
+
+    /// The same, or less: line by line of the board, which counts in the widest of views, where the forms of a and b are so
+    /// nearly parallel that points are displaced far along them, but no line is.
+    ///
+    /// Let corners be off by e_a, e_b and e_L of the forms, and what is between them by what is between. Moving every point up by
+    /// e_L/|∇L| is the same as to change L by e_L, and N by e_L·(∇N·∇L)/|∇L|². On any straight way up e_L grows and falls as
+    /// often as sides of triangles between corners are crossed, so that the motion changes the integral by up to
+    /// 2·corners·E_L/|∇L| for every 1 of width. N that is off by up to E changes the signs of points where |N − iL| ≤ E, a strip
+    /// along the line i, as wide as 2E/|∇N − i∇L|; that gradient is at least |i − i_0|·|∇L|, and at least |∇N × ∇L|/|∇L|,
+    /// where i_0 = ∇N·∇L/|∇L|². Lines beyond 2^60 are all within E of the horizon.
+    pub(super) fn blurred(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
+        const LINES: f64 = 100.0;
+        let displaced = self.displaced(points.clone());
+        if displaced <= ENOUGH {
+            return displaced;
+        }
+        let off = |form: &[f64; 3]| 8.0 * UNIT * size(form);
+        let gradient = |[x, y, _]: [f64; 3]| DVec2::new(x, y);
+        let up = gradient(self.below);
+        let (steepness, of_l) = (up.length(), off(&self.below));
+        let strips = self.across.map(|across| {
+            let n = gradient(across);
+            let middle = n.dot(up) / (steepness * steepness);
+            let off = off(&across) + of_l * middle.abs();
+            // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm.
+            let k = n.perp_dot(up).abs() / (steepness * steepness);
+            4.0 * off * (3.0 * (1.0 / k).max(1.0) + LINES)
+        });
+        let (_, perimeter) = measure(points.clone());
+        let widest = 0.5 * perimeter / steepness;
+        let lines = widest * (2.0 * points.count() as f64 * of_l + strips[0] + strips[1]);
+        displaced.min(lines)
+    }
+
+    /// How far the inverse of ∂m/∂a or of ∂m/∂b may be from the true one: that is known even where those may have any size.
+    pub(super) fn flat(&self, axis: usize) -> f64 {
+        let minor = self.per_slope[axis].bound;
+        (self.uncertain + minor + 4.0 * UNIT) / self.slope[axis].abs()
     }
 
     /// Whether a polygon shows the horizon.
@@ -289,9 +350,8 @@ impl Board {
 
     /// Where along an axis the floor is that a point shows, where L has a value above 0, and by how much roundings may be off.
     pub(super) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
-        let size = |[x, y, z]: [f64; 3]| 0.5 * (x.abs() + y.abs()) + z.abs();
         let place = form(&self.across[axis], at) / level;
-        let terms = size(self.across[axis]) + place.abs() * size(self.below);
+        let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         (place, 16.0 * UNIT / level * terms)
     }
 

@@ -2,8 +2,12 @@
 
 use glam::DVec2;
 
-use super::board::{Board, Sum, UNIT, form};
+use super::board::{Board, Sum, UNIT, form, measure};
 use crate::math::two_sum;
+
+/// A cut adds a corner at most, and strips of one family two in all. Where so many more come together, lines are too close to
+/// each other for their corners to be told apart.
+const SPARE_CORNERS: usize = 32;
 
 /// A row with fewer whole squares is cut square by square.
 const FEW: f64 = 3.0;
@@ -16,6 +20,8 @@ pub(super) struct Cutter {
     pub piece: Vec<DVec2>,
     spare: Vec<DVec2>,
     strips: Option<(i64, i64)>,
+    /// With how many corners nothing is said of what is left any more.
+    too_many: usize,
     /// Where the lines on both sides of the piece cut the polygon.
     pub chords: [Chord; 2],
 }
@@ -25,13 +31,18 @@ pub(super) type Chord = Option<[DVec2; 2]>;
 
 impl Cutter {
     pub(super) fn new(board: &Board, axis: usize) -> Self {
+        Self::of(board.across[axis], board.below)
+    }
+
+    fn of(across: [f64; 3], below: [f64; 3]) -> Self {
         Self {
-            across: board.across[axis],
-            below: board.below,
+            across,
+            below,
             rest: Vec::new(),
             piece: Vec::new(),
             spare: Vec::new(),
             strips: None,
+            too_many: SPARE_CORNERS,
             chords: [None; 2],
         }
     }
@@ -40,6 +51,7 @@ impl Cutter {
     pub(super) fn start(&mut self, points: impl Iterator<Item = DVec2>) {
         self.rest.clear();
         self.rest.extend(points);
+        self.too_many = self.rest.len() + SPARE_CORNERS;
         self.strips = self.range();
         self.chords = [None; 2];
     }
@@ -84,15 +96,7 @@ impl Cutter {
 
     /// Another cutter that begins with the piece.
     pub(super) fn again(&self) -> Self {
-        let mut again = Self {
-            across: self.across,
-            below: self.below,
-            rest: Vec::new(),
-            piece: Vec::new(),
-            spare: Vec::new(),
-            strips: None,
-            chords: [None; 2],
-        };
+        let mut again = Self::of(self.across, self.below);
         again.start(self.piece.iter().copied());
         again
     }
@@ -105,6 +109,11 @@ impl Cutter {
         let chord = split(&self.rest, &line, &mut self.piece, &mut self.spare);
         std::mem::swap(&mut self.rest, &mut self.spare);
         self.chords = [self.chords[1], chord];
+        if self.rest.len() > self.too_many {
+            let (area, perimeter) = measure(self.rest.iter().copied());
+            tally.add(0.0, area.abs() + 4.0 * UNIT * perimeter * perimeter);
+            self.rest.clear();
+        }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
         // The factors are off by three roundings of these, the form's value by four, and the point by four of its own.

@@ -17,6 +17,8 @@ use super::horizon;
 use super::sides::Known;
 use std::{array, f64::consts::PI};
 
+use multiversion::multiversion;
+
 /// The most terms of the asymptotic series.
 pub(super) const MAX_TERMS: usize = 20;
 /// The series is long enough when what it neglects is below this, in square pixels.
@@ -375,17 +377,7 @@ impl Crossings<'_> {
             let most = (0.5 * depth / self.edge.rise).floor().clamp(16.0, 4096.0);
             let count = most.min(lines - done);
             let (terms, left) = series.enough(depth, count, limit);
-            let block = match terms {
-                1 => self.block::<1>(series, done, count),
-                2 => self.block::<2>(series, done, count),
-                3 => self.block::<3>(series, done, count),
-                4 => self.block::<4>(series, done, count),
-                5 => self.block::<5>(series, done, count),
-                6 => self.block::<6>(series, done, count),
-                7..=9 => self.block::<9>(series, done, count),
-                10..=12 => self.block::<12>(series, done, count),
-                _ => self.block::<MAX_TERMS>(series, done, count),
-            };
+            let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
             // t is off by a few roundings of its size, which X′, at most π X's bound, takes to X; the sum of the block is
             // off by its length's roundings of the terms.
@@ -403,9 +395,10 @@ impl Crossings<'_> {
         series.at(self.t + j * edge.stride, self.depth + j * edge.rise)
     }
 
+    #[inline(always)]
     fn block<const TERMS: usize>(&self, series: &Series, done: f64, count: f64) -> f64 {
         // In lanes, which the compiler makes vectors of; what is left over is added one by one.
-        const LANES: usize = 4;
+        const LANES: usize = 8;
         let mut sums = [0.0; LANES];
         let count = count as usize;
         let mut j = done;
@@ -418,7 +411,7 @@ impl Crossings<'_> {
             *sum += self.at::<TERMS, 1>(series, [j])[0];
             j += 1.0;
         }
-        (sums[0] - sums[1]) + (sums[2] - sums[3])
+        ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
     /// X at some crossings.
@@ -431,5 +424,21 @@ impl Crossings<'_> {
             x = array::from_fn(|i| (x[i] + series.factors[k] * waves[k + 1][i]) * u[i]);
         }
         array::from_fn(|i| x[i] * u[i] * u[i])
+    }
+}
+
+/// Σ (−1)^j X over so many crossings after those that are done, of the series so many terms.
+#[multiversion(targets = "simd")]
+fn block(crossings: &Crossings, series: &Series, terms: usize, [done, count]: [f64; 2]) -> f64 {
+    match terms {
+        1 => crossings.block::<1>(series, done, count),
+        2 => crossings.block::<2>(series, done, count),
+        3 => crossings.block::<3>(series, done, count),
+        4 => crossings.block::<4>(series, done, count),
+        5 => crossings.block::<5>(series, done, count),
+        6 => crossings.block::<6>(series, done, count),
+        7..=9 => crossings.block::<9>(series, done, count),
+        10..=12 => crossings.block::<12>(series, done, count),
+        _ => crossings.block::<MAX_TERMS>(series, done, count),
     }
 }

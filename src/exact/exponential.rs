@@ -5,6 +5,9 @@
 use super::complex::{Complex, over, phase, size, times};
 use std::f64::consts::FRAC_PI_2;
 
+/// Below this power series are good, from here on a continued fraction.
+const SMALL: f64 = 3.0;
+
 /// F_3, F_4 and F_5.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let third = third(y);
@@ -26,7 +29,7 @@ fn of_order<const ORDER: u32>(y: f64, small: impl Fn(f64) -> Complex) -> Complex
     let size = y.abs();
     let integral = if size >= 64.0 {
         asymptotic::<ORDER>(size)
-    } else if size >= 3.0 {
+    } else if size >= SMALL {
         continued_fraction::<ORDER>(size)
     } else {
         small(size)
@@ -48,9 +51,20 @@ pub(super) fn divided_difference(y: [f64; 2], integrals: [Complex; 2]) -> (Compl
     const CLOSE: f64 = 0.05;
     let step = y[1] - y[0];
     let [from, to] = integrals;
-    if step.abs() >= CLOSE * y[0].abs().max(y[1].abs()) {
+    let largest = y[0].abs().max(y[1].abs());
+    if step.abs() >= CLOSE * largest {
+        if largest >= SMALL {
+            let quotient = [(to[0] - from[0]) / step, (to[1] - from[1]) / step];
+            return (quotient, (size(from) + size(to)) / step.abs());
+        }
+        if step == 0.0 {
+            return ([0.0, 0.5], 0.5);
+        }
+        // F_3 = ½(1 + iy − y²·F_1), whose last part is all that there is to cancel, however small y is.
+        let [from, to] = y.map(|y| first(y).map(|part| y * y * part));
         let quotient = [(to[0] - from[0]) / step, (to[1] - from[1]) / step];
-        return (quotient, (size(from) + size(to)) / step.abs());
+        let terms = 0.5 + 0.5 * (size(from) + size(to)) / step.abs();
+        return ([-0.5 * quotient[0], 0.5 - 0.5 * quotient[1]], terms);
     }
     // The mean of the derivative, by Gauss's rule of four points, whose error is the step by y to the eighth power.
     const PLACES: [(f64, f64); 2] = [
@@ -61,15 +75,31 @@ pub(super) fn divided_difference(y: [f64; 2], integrals: [Complex; 2]) -> (Compl
     let (mut sum, mut terms) = ([0.0; 2], 0.0);
     for (place, weight) in PLACES {
         for y in [middle - place * step, middle + place * step] {
-            // F_3′ = (2·F_3 − 3·F_4)/y, from DLMF 8.19.13 and the recurrence.
-            let [third, fourth] = [third(y), fourth(y)];
-            for (sum, (third, fourth)) in sum.iter_mut().zip(third.into_iter().zip(fourth)) {
-                *sum += weight * (2.0 * third - 3.0 * fourth) / y;
-            }
-            terms += weight * (2.0 * size(third) + 3.0 * size(fourth)) / y.abs();
+            let (slope, of_slope) = derivative(y);
+            sum = [sum[0] + weight * slope[0], sum[1] + weight * slope[1]];
+            terms += weight * of_slope;
         }
     }
     (sum, terms)
+}
+
+/// F_3′, and the size of what it is made of: i·(F_2 − F_3) since v = (1 + v) − 1, or, where that cancels, (2·F_3 − 3·F_4)/y from
+/// DLMF 8.19.13 and the recurrence.
+fn derivative(y: f64) -> (Complex, f64) {
+    if y.abs() < SMALL {
+        let first = first(y);
+        let second = [1.0 - y * first[1], y * first[0]];
+        let third = [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]];
+        return (
+            [third[1] - second[1], second[0] - third[0]],
+            size(second) + size(third),
+        );
+    }
+    let [third, fourth] = [third(y), fourth(y)];
+    (
+        [0, 1].map(|i| (2.0 * third[i] - 3.0 * fourth[i]) / y),
+        (2.0 * size(third) + 3.0 * size(fourth)) / y.abs(),
+    )
 }
 
 /// DLMF 8.20.2: (1/z)·Σ (−1)^k (s)_k z^−k, until the terms vanish.
@@ -114,24 +144,32 @@ fn continued_fraction<const ORDER: u32>(y: f64) -> Complex {
     h
 }
 
-/// F_3 near 0: E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2), and twice the recurrence.
+/// F_3 near 0, by twice the recurrence.
 fn power_series(y: f64) -> Complex {
+    let first = first(y);
+    // 1 − z·h with −z = iy.
+    let second = [1.0 - y * first[1], y * first[0]];
+    [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
+}
+
+/// F_1 near 0: E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where it has a pole of a logarithm, the 0 that y·F_1 is.
+fn first(y: f64) -> Complex {
     const EULER: f64 = 0.577_215_664_901_532_9;
     if y == 0.0 {
-        return [0.5, 0.0];
+        return [0.0; 2];
     }
-    let mut first = [-EULER - libm::log(y), FRAC_PI_2];
+    let mut first = [-EULER - libm::log(y.abs()), FRAC_PI_2.copysign(y)];
     let mut term = [1.0, 0.0];
     for k in 1..40 {
         let k = f64::from(k);
         // −z/k = iy/k.
         term = [-term[1] * y / k, term[0] * y / k];
         first = [first[0] - term[0] / k, first[1] - term[1] / k];
+        if size(term) < 1e-17 {
+            break;
+        }
     }
-    let first = times(first, phase(-y));
-    // 1 − z·h with −z = iy.
-    let second = [1.0 - y * first[1], y * first[0]];
-    [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
+    times(first, phase(-y))
 }
 
 #[cfg(test)]
@@ -164,6 +202,29 @@ mod tests {
             // Each cancels: the quotient by the step, the derivative by y.
             close(found, quotient, 1e-12 / y.abs().min(1.0));
         }
+    }
+
+    #[test]
+    fn differences_near_nothing() {
+        // F_3 = ½(1 + iy + y²(ln y + γ − iπ/2) + …).
+        for ends in [
+            [1e-9, 1e-9],
+            [0.0, 1e-12],
+            [-1e-10, 2e-10],
+            [0.0, 0.0],
+            [1e-200, 1.01e-200],
+        ] {
+            let (found, terms) = divided_difference(ends, ends.map(third));
+            close(found, [0.0, 0.5], 1e-7);
+            assert!(terms < 4.0, "{ends:?}: {terms}");
+        }
+        let ends = [0.5, 0.9];
+        let [from, to] = ends.map(third);
+        let quotient = [(to[0] - from[0]) / 0.4, (to[1] - from[1]) / 0.4];
+        close(divided_difference(ends, [from, to]).0, quotient, 1e-14);
+        // One that is close, at both sides of where the formulas meet.
+        let found = [[2.9, 2.9001], [3.1, 3.1001]].map(|y| divided_difference(y, y.map(third)).0);
+        close(found[0], found[1], 0.2);
     }
 
     #[test]

@@ -103,6 +103,7 @@ fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
         rise: *rise,
         lines: all.lines - direct,
         slope: all.edge.slope,
+        size: f64::INFINITY,
     };
     let modes = lines.sum(tolerance / factor.abs());
     let alternating = |lines: f64, x: f64| if lines % 2.0 == 0.0 { x } else { -x };

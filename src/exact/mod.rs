@@ -25,6 +25,7 @@ mod cutter;
 mod edge;
 mod euler;
 mod exponential;
+mod grid;
 mod horizon;
 mod level;
 mod modes;
@@ -49,6 +50,7 @@ use crate::{
 };
 
 use self::{
+    board::UNIT,
     region::{Regions, Shares},
     sides::Sides,
 };
@@ -117,13 +119,32 @@ impl<'a> Integrator<'a> {
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
                 Part::Open { x, y, live } => {
-                    let shares = self.shares(Spot::pixel(x, y), live, &mut scratch);
-                    film.set(x, y, self.mean(shares));
+                    let spot = Spot::pixel(x, y);
+                    let pixel = self.floor(spot, live).unwrap_or_else(|| {
+                        let shares = self.shares(spot, live, &mut scratch);
+                        self.mean(&shares.by_slot, shares.bound)
+                    });
+                    film.set(x, y, pixel);
                 }
             }
             ControlFlow::Continue(())
         });
         (flow.is_continue() && !cancel.load(Ordering::Relaxed)).then_some(film.pixels)
+    }
+
+    /// A spot that shows nothing but a checkerboard, if few of its lines cross it.
+    fn floor(&self, spot: Spot, live: &[Live]) -> Option<Pixel> {
+        let [only] = live else { return None };
+        let [first, second] = self.world.slots(only.object);
+        if !only.is_whole || first == second {
+            return None;
+        }
+        let board = self.world.board(only.object, spot)?;
+        let sum = grid::sum(&board)?;
+        let bound = 0.5 * sum.bound + 8.0 * UNIT;
+        let half = if board.odd { -0.5 } else { 0.5 } * sum.value;
+        let shares = [(first, 0.5 + half), (second, 0.5 - half)];
+        (bound <= ENOUGH).then(|| self.mean(&shares, bound))
     }
 
     /// The shares of a spot; of its quarters together where the whole is not computed well enough.
@@ -164,9 +185,9 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    fn mean(&self, shares: Shares) -> Pixel {
+    fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> Pixel {
         let mut mean = [0.0; 3];
-        match shares.by_slot.as_slice() {
+        match by_slot {
             [(slot, _)] => mean = self.colors[*slot],
             by_slot => {
                 let total: f64 = by_slot.iter().map(|(_, share)| share).sum();
@@ -178,10 +199,7 @@ impl<'a> Integrator<'a> {
                 mean = mean.map(|sum| (sum / total).clamp(0.0, 1.0));
             }
         }
-        Pixel {
-            mean,
-            bound: shares.bound,
-        }
+        Pixel { mean, bound }
     }
 }
 

@@ -27,10 +27,18 @@ pub(super) const GRADUAL: f64 = 4000.0;
 /// Where m changes by less than one part in so many, it is taken to be the same at all crossings: then the ends would cancel.
 const STEADY: f64 = 3e7;
 /// More modes than this take too long.
-const MOST: f64 = 40_000.0;
+pub(super) const MOST: f64 = 40_000.0;
 /// Σ |U| times this, by (Q − 1)², bounds all modes beyond Q: |F′(y)| ≤ 2.125/y², from integrating by parts twice, and Σ n⁻³ over
 /// the odd n beyond Q is at most 1/4(Q − 1)².
 const BEYOND: f64 = 4.0 / (PI * PI) * 2.125 / PI * 0.25;
+/// Σ m⁻² times this, by Q − 1, bounds them, too: |F| ≤ ½, and Σ n⁻² over the odd n beyond Q is at most 1/2(Q − 1).
+const FLAT: f64 = 4.0 / (PI * PI) * 0.5;
+/// By Abel |Σ e^(iθj)·U| is at most this by |θ| and m²: |1 − e^iθ| is at least 2|θ|/π, each of m⁻²F(y_p) and m⁻²F(y_c) is at
+/// most ½m⁻² and varies by at most as much again and that of ∫ m⁻³·|yF′| dm, |yF′| ≤ 17/16, and half an end is left out.
+const ABEL: f64 = (1.0 + 2.0 * (0.5 + 17.0 / 32.0) + 1.0) * PI;
+
+/// A mode that is smaller than this part of what is neglected anyhow is neglected, too.
+const LITTLE: f64 = 1e-4;
 
 /// The lines that a side crosses.
 pub(super) struct Lines {
@@ -42,6 +50,8 @@ pub(super) struct Lines {
     pub lines: f64,
     /// ∂m/∂t on the floor.
     pub slope: f64,
+    /// What late modes add up to, by the one-th of them, where more is known of that than of |U|.
+    pub size: f64,
 }
 
 /// One end of a sum: m there and w, which is infinite where m does not change.
@@ -57,13 +67,15 @@ impl Lines {
         let nearest = self.depth.min(last_depth);
         let w = (nearest / self.rise).abs();
         let crossings = self.lines.min(w);
-        // Σ m_j⁻³, and with what |U| has before it.
-        let cubes = (1.0 + crossings) / (nearest * nearest * nearest);
+        // Σ m_j⁻² and Σ m_j⁻³, the latter with what |U| has before it.
+        let squares = (1.0 + crossings) / (nearest * nearest);
         let climb = self.rise / self.stride;
-        let most = (self.slope - climb).abs() * cubes;
-        let all = BEYOND * most;
-        let last = ((all / tolerance).sqrt().ceil() + 2.0).clamp(3.0, MOST);
-        let beyond = all / ((last - 1.0) * (last - 1.0));
+        let most = (self.slope - climb).abs() * squares / nearest;
+        let (all, flat) = (BEYOND * most, FLAT * squares.min(self.size));
+        let last = ((all / tolerance).sqrt().ceil() + 2.0)
+            .min((flat / tolerance).ceil() + 2.0)
+            .clamp(3.0, MOST);
+        let beyond = (all / ((last - 1.0) * (last - 1.0))).min(flat / (last - 1.0));
 
         let is_steady = self.rise.abs() * self.lines * STEADY < nearest;
         let first = End {
@@ -78,10 +90,20 @@ impl Lines {
         let stride = stride - 1.0_f64.copysign(stride);
         let mut place = phase(turn(self.t) * PI);
         let step = square(place);
-        let (mut value, mut rounding) = (0.0, 0.0);
+        let (mut value, mut rounding, mut skipped) = (0.0, 0.0, 0.0);
+        let abel = ABEL / (nearest * nearest);
+        let little = LITTLE * tolerance.max(beyond);
         let mut n = 1.0;
         while n <= last {
             let theta = turn(n * stride) * PI;
+            let weight = 4.0 / (PI * PI * n * n);
+            let at_most = weight * abel;
+            if at_most <= little * theta.abs() {
+                skipped += at_most / theta.abs();
+                place = times(place, step);
+                n += 2.0;
+                continue;
+            }
             let (sum, terms) = if is_steady {
                 self.steady(n, theta)
             } else {
@@ -90,11 +112,11 @@ impl Lines {
                     let (rest, more) = self.from(end, n, theta);
                     let rest = times(phase(turn(theta / PI * self.lines) * PI), rest);
                     sum = [sum[0] - rest[0], sum[1] - rest[1]];
-                    terms += more;
+                    // Its place is off by three roundings of θN, |θ| ≤ π.
+                    terms += more + 0.1 * self.lines * size(rest);
                 }
                 (sum, terms)
             };
-            let weight = 4.0 / (PI * PI * n * n);
             value -= weight * (place[0] * sum[0] - place[1] * sum[1]);
             // F is good to some 100 roundings, and the place of the mode n to 4n.
             rounding += weight * terms * (128.0 + 4.0 * n) * UNIT;
@@ -103,26 +125,50 @@ impl Lines {
         }
         // |R″|/2 ≤ 0.04 on the whole line below −iθ, and each of pY_p and cY_c has a second derivative by j of at most 3·m⁻²w⁻².
         let curvature = if is_steady {
-            // m⁻³ is off by 3·gN/2m from its value in the middle.
-            0.5 * most * 3.0 / STEADY
+            // m⁻³ is off by 3·gN/2m from its value in the middle, and m⁻²·F by as much at most, since |F| and |yF′| are at
+            // most ½; Σ 4/π²n² is ½.
+            0.5 * most.min(squares) * 3.0 / STEADY
         } else {
             let ends = 1.0 + f64::from(u8::from(end.is_some()));
             0.5 * 0.04 * 6.0 * ends / (nearest * nearest * w * w)
         };
-        // τ is off by a rounding, and n times what is left of it by another.
-        let displaced = 2.0 * UNIT * (1.0 + self.stride.abs()) * crossings * most;
+        // τ is off by a rounding, and θ by one of nπ times what is left of τ, for which another was made, and by one of its own, so
+        // that the wave n is at crossing j off by πnj(2 + |τ|) units and a little. Of |U| there are two bounds: with
+        // 2.125·|p − c|/πnm³ the modes add up to 2.125/2 of Σ jm⁻³, and with that by m² to (4/π)·Σ 1/n of Σ jm⁻², which grows
+        // like a logarithm where m does.
+        let growth = last_depth.max(self.depth) / nearest;
+        let waves = 4.0 / PI * (1.0 + 0.5 * libm::log(last)) * (1.0 + libm::log(growth));
+        let by_size = 1.1 * most * crossings;
+        let by_squares = waves * self.largest(nearest) * crossings * squares;
+        let displaced = UNIT * (2.5 + self.stride.abs()) * by_size.min(by_squares);
         Sum {
             value,
-            bound: beyond + curvature + rounding + displaced,
+            bound: beyond + skipped + curvature + rounding + displaced,
         }
+    }
+
+    /// What bounds |U|, by m⁻², from some depth on: F is at most ½, and 2/|y|.
+    pub(super) fn largest(&self, depth: f64) -> f64 {
+        let of_climb = 2.0 * (self.rise / (PI * self.stride * depth)).abs();
+        0.5 + of_climb.min(0.5)
+    }
+
+    /// By what part of some area modes may be known that fill it.
+    pub(super) fn share_neglected() -> f64 {
+        2.0 * FLAT / MOST
     }
 
     /// How deep they must begin for so little to be neglected, and for m to grow slowly enough.
     pub(super) fn start(&self, tolerance: f64) -> f64 {
         let (rise, climb) = (self.rise.abs(), self.rise / self.stride);
         let each = BEYOND * (self.slope - climb).abs() / (tolerance * MOST * MOST);
+        let flat = FLAT / (tolerance * MOST);
         // Of N crossings, or of as many as m/g.
-        let modes = (each / rise).sqrt().min(libm::cbrt(each * self.lines));
+        let modes = (each / rise)
+            .sqrt()
+            .min(libm::cbrt(each * self.lines))
+            .min(flat / rise)
+            .min((flat * self.lines).sqrt());
         modes.max(GRADUAL * rise)
     }
 
@@ -236,6 +282,7 @@ mod tests {
                 rise,
                 lines: 40.0,
                 slope,
+                size: f64::INFINITY,
             };
             let (found, expected) = (lines.sum(1e-7), by_quadrature(&lines));
             let error = (found.value - expected).abs();

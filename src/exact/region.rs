@@ -89,9 +89,10 @@ impl<'a> Regions<'a> {
             board: object,
             x: self.spot.x,
             y: self.spot.y,
+            odd: checkered.odd,
             elsewhere: &|x, y| {
                 let board = world.board(object, Spot::pixel(x, y))?;
-                Some(Board::new(board.across, board.below))
+                Some((Board::new(board.across, board.below), board.odd))
             },
         };
         let is_pixel = self.spot.side == 1.0;

@@ -40,20 +40,25 @@ pub(super) struct Known<'a> {
     pub board: usize,
     pub x: u32,
     pub y: u32,
-    /// The same checkerboard in the pixel of another column and row.
-    pub elsewhere: &'a dyn Fn(u32, u32) -> Option<Board>,
+    /// Whether the square [0, 1)² of the board as the pixel has it has the second colour.
+    pub odd: bool,
+    /// The same checkerboard in the pixel of another column and row, and whether that is so of its square [0, 1)².
+    pub elsewhere: &'a dyn Fn(u32, u32) -> Option<(Board, bool)>,
 }
 
 impl Known<'_> {
     /// What an edge sums up to, from near to far, if it is a long side of the pixel.
     pub fn sum(&mut self, edge: &Edge, near: &Corner, far: &Corner) -> Option<Sum> {
         let side = (edge.lines() > LONG).then(|| self.side(edge, near, far))??;
-        if let Some(sum) = self.sides.0.get(&side) {
-            return Some(*sum);
-        }
-        let sum = self.computed(side)?;
-        self.sides.0.insert(side, sum);
-        Some(sum)
+        let sum = match self.sides.0.get(&side) {
+            Some(sum) => *sum,
+            None => {
+                let sum = self.computed(side)?;
+                self.sides.0.insert(side, sum);
+                sum
+            }
+        };
+        Some(by_color(sum, self.odd))
     }
 
     /// The side that an edge is: from a corner of the pixel along a side of it, to the next corner or into the horizon.
@@ -76,7 +81,7 @@ impl Known<'_> {
         })
     }
 
-    /// The sum of a side as the pixel to its left or above it has it, if it can be seen from there.
+    /// The sum of a side as the pixel to its left or above it has it, if it can be seen from there; positive for the first colour.
     fn computed(&self, side: Side) -> Option<Sum> {
         let [x, y] = side.near;
         let way = DVec2::new(f64::from(side.way[0]), f64::from(side.way[1]));
@@ -91,7 +96,7 @@ impl Known<'_> {
         } else {
             y.saturating_sub(1)
         };
-        let board = (self.elsewhere)(column, row)?;
+        let (board, odd) = (self.elsewhere)(column, row)?;
         let offset = |corner: u32, pixel: u32| f64::from(corner) - f64::from(pixel) - 0.5;
         let near = DVec2::new(offset(x, column), offset(y, row));
         let level = |at: DVec2| form(&board.below, at);
@@ -107,6 +112,14 @@ impl Known<'_> {
             return None;
         }
         let edge = Edge::along(&board, &near, &far, side.by_b)?;
-        Some(edge.alone(&board))
+        Some(by_color(edge.alone(&board), odd))
+    }
+}
+
+/// From a sum that is positive for the square [0, 1)² to one for the first colour, and back.
+fn by_color(sum: Sum, odd: bool) -> Sum {
+    Sum {
+        value: if odd { -sum.value } else { sum.value },
+        ..sum
     }
 }

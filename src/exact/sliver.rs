@@ -100,7 +100,7 @@ impl Board {
     /// The sliver of an arc within a square between whose lines it was cut, wherever those are to within roundings.
     fn between_lines(&self, arc: &Arc, sign: f64) -> Sum {
         let mut sum = within_a_square(arc, sign);
-        sum.bound += self.displaced([arc.start, arc.control, arc.end].into_iter());
+        sum.bound += self.blurred([arc.start, arc.control, arc.end].into_iter());
         sum
     }
 

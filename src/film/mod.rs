@@ -121,7 +121,8 @@ fn certain<T: PartialEq>(film: &Film, bounds: &[f32], round: impl Fn(f64) -> T) 
     let is_certain = |(pixel, bound): &(&[f64; 3], &f32)| {
         let bound = f64::from(**bound);
         let same = |&light: &f64| round(light - bound) == round(light + bound);
-        pixel.iter().all(same)
+        // What is the true mean itself is so, too.
+        bound == 0.0 || pixel.iter().all(same)
     };
     film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
 }

@@ -109,12 +109,14 @@ fn write(
     let mut row = Vec::new();
     for y in 0..film.height() {
         row.clear();
-        row.extend(
-            film.row(y)
-                .iter()
-                .flatten()
-                .map(|&light| bytes.encode(light)),
-        );
+        let (mut before, mut last) = ([0.0; 3], bytes.pixel([0.0; 3]));
+        for &light in film.row(y) {
+            // Most pixels are as the one before.
+            if light != before {
+                (before, last) = (light, bytes.pixel(light));
+            }
+            row.extend(last);
+        }
         rows.write_all(&row)?;
     }
     rows.finish()?;

@@ -30,6 +30,11 @@ impl Encoder {
         Self { thresholds, start }
     }
 
+    /// The bytes of a pixel.
+    pub fn pixel(&self, light: [f64; 3]) -> [u8; 3] {
+        light.map(|channel| self.encode(channel))
+    }
+
     /// The byte of one channel; light below 0 or above 1 counts as 0 or 1.
     pub fn encode(&self, light: f64) -> u8 {
         // The conversion clamps on both sides, and the scaling is exact.

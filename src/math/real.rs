@@ -52,6 +52,19 @@ pub trait Real: Clone + Debug + Sized {
     fn floor(&self) -> (Self, bool);
 }
 
+/// The greatest whole number that is not greater, for |x| < 2^63.
+///
+/// `f64::floor` is a call of a function where not every processor of the kind has an instruction for it.
+#[inline]
+pub fn floor(x: f64) -> f64 {
+    let towards_zero = x as i64 as f64;
+    if towards_zero > x {
+        towards_zero - 1.0
+    } else {
+        towards_zero
+    }
+}
+
 impl Real for f64 {
     type Radius = f64;
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
@@ -107,8 +120,13 @@ impl Real for f64 {
     fn negated(&self) -> Self {
         -self
     }
+    #[inline]
     fn scaled(&self, exponent: i32) -> Self {
-        libm::ldexp(*self, exponent)
+        match exponent {
+            // A power of two that is a normal number; a product is rounded as `ldexp` rounds.
+            -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
+            _ => libm::ldexp(*self, exponent),
+        }
     }
     #[inline]
     fn floor(&self) -> (Self, bool) {

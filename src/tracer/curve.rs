@@ -96,20 +96,22 @@ impl<T: Real> Place<T> {
     }
 
     /// The factors of some forms and a last one in the pixel, all by one power of two smaller or greater so that they are about
-    /// 1; from each of the first the last is taken off as often, an even number of times, as makes it small at the corner
-    /// where the last is largest: elsewhere it may be next to nothing.
-    pub fn together(&self, forms: [&Form<T>; 2], last: &Form<T>) -> [Line; 3] {
+    /// 1; from each of the first the last is taken off as often as makes it small at the corner where the last is largest: elsewhere
+    /// it may be next to nothing. And whether it is taken off an odd number of times in all.
+    pub fn together(&self, forms: [&Form<T>; 2], last: &Form<T>) -> ([Line; 3], bool) {
         let (below, rad) = self.local(last);
         let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
         let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
         let steep = corner(&below);
+        let mut odd = false;
         let local = forms.map(|form| {
             let (factors, own_rad) = self.local(form);
-            let times = 2.0 * (0.5 * corner(&factors) / steep).round();
-            // From 2^52 on every number is even, and a rounded one of the right parity may not be near.
+            let times = (corner(&factors) / steep).round();
+            // From 2^52 on a rounded number may not be near.
             if !(times.abs() < 4e15 && steep > 0.0) {
                 return (factors, own_rad);
             }
+            odd ^= times as i64 & 1 == 1;
             let often = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
             (factors, own_rad + rad * (2.0 * times.abs() + 1.0))
@@ -119,13 +121,14 @@ impl<T: Real> Place<T> {
         let sizes = local.iter().flat_map(|(factors, _)| factors);
         let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
         let exponent = -size.exponent();
-        local.map(|(factors, rad)| {
+        let lines = local.map(|(factors, rad)| {
             let factors = factors.map(|factor| factor.scaled(exponent).to_f64());
             Line {
                 rad: rad.scaled(exponent).to_f64(),
                 factors,
             }
-        })
+        });
+        (lines, odd)
     }
 
     fn local(&self, form: &Form<T>) -> ([T; 3], T::Radius) {

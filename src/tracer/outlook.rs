@@ -329,13 +329,13 @@ impl World {
         };
         let place = Place::new(&T::frame(self).camera, spot);
         let [a, b] = &board.across;
-        let lines = place.together([a, b], &board.below);
+        let (lines, is_moved) = place.together([a, b], &board.below);
         let [a, b, below] = lines.map(|line| line.factors);
         Some(Board {
             across: [a, b],
             below,
             rad: lines.iter().fold(0.0, |rad, line| line.rad.max(rad)),
-            odd: board.odd,
+            odd: board.odd ^ is_moved,
         })
     }
 }

@@ -83,6 +83,14 @@ impl<'a> Quartering<'a> {
                 .iter()
                 .try_for_each(|(x, y)| visit(Part::Open { x, y, live }));
         }
+        if let [only] = live
+            && only.is_whole
+        {
+            // What hides all else in the whole does so in its quarters.
+            return area
+                .quarters()
+                .try_for_each(|quarter| self.cut(quarter, live, depth + 1, room, visit));
+        }
         if room.0.len() <= depth {
             room.0.push(Vec::new());
         }

@@ -1,5 +1,7 @@
 //! In which squares of a checkerboard a pixel lies.
 
+use std::array;
+
 use super::{
     super::{
         checkerboard::Checkerboard,
@@ -8,7 +10,10 @@ use super::{
     },
     local::{Here, Local, ROUNDINGS},
 };
-use crate::{area::Area, math::UP};
+use crate::{
+    area::Area,
+    math::{UP, floor},
+};
 
 /// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
 #[derive(Clone, Copy, Debug)]
@@ -28,15 +33,8 @@ impl World {
         };
         let here = Here::new(&f64::frame(self).camera, part);
         let squares = Squares::new(board, &here);
-        let mut odd = squares.odd;
-        for across in &squares.across {
-            let (first, last) = squares.range(across)?;
-            if first != last {
-                return None;
-            }
-            odd ^= is_odd(first);
-        }
-        Some(odd)
+        let [(x, last_x), (z, last_z)] = squares.ranges()?;
+        (x == last_x && z == last_z).then(|| squares.odd ^ is_odd(x) ^ is_odd(z))
     }
 }
 
@@ -49,28 +47,28 @@ impl Squares {
         }
     }
 
-    /// From which to which square there are any in the pixel, in x and in z.
+    /// From which to which square there are any in the pixel, in x and in z: perhaps one square more than there are. `None` if that
+    /// is not certain.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
-        let [x, z] = &self.across;
-        Some([self.range(x)?, self.range(z)?])
-    }
-
-    /// The same along one axis: perhaps one square more than there are. `None` if that is not certain.
-    pub(super) fn range(&self, across: &Local) -> Option<(f64, f64)> {
         const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
         let least = self.below.factors[2] - self.below.spread() * UP;
         if least <= 4.0 * self.below.rad {
             return None;
         }
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        // A ratio of linear forms is the greatest and the least at corners.
-        for (x, y) in CORNERS {
-            let value = across.at(x, y) / self.below.at(x, y);
-            (low, high) = (low.min(value), high.max(value));
-        }
-        let size = low.abs().max(high.abs());
-        let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
-        (slack < 0.25).then(|| ((low - slack).floor(), (high + slack).floor()))
+        let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
+        let [x, z] = self.across.each_ref().map(|across| {
+            // A ratio of linear forms is the greatest and the least at corners.
+            let values: [f64; 4] = array::from_fn(|i| {
+                let (x, y) = CORNERS[i];
+                across.at(x, y) * inverse[i]
+            });
+            let low = values.into_iter().fold(f64::INFINITY, f64::min);
+            let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let size = low.abs().max(high.abs());
+            let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
+            (slack < 0.25).then(|| (floor(low - slack), floor(high + slack)))
+        });
+        Some([x?, z?])
     }
 }
 

@@ -1,23 +1,34 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 
-use std::{cmp::Ordering, collections::HashMap, ops::Deref, sync::OnceLock};
+mod colors;
+mod level;
+mod ray;
 
-use glam::{DVec2, DVec3};
+pub use self::ray::Hit;
+
+pub(super) use self::level::Level;
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
 use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 
+use self::{
+    colors::Colors,
+    level::{Frame, Numbers},
+};
 use super::{
-    camera::{Basis, Camera, Direction, Point},
+    camera::{Basis, Direction, Point},
     crossing::{Crossing, Part},
     form::Form,
     hierarchy::{Grid, Hierarchy, Item, Nearness},
     object::Object,
     outlook::Live,
-    sphere::Sphere,
 };
 use crate::{
     color::Color,
-    math::{Ball, Ball3, Big, Double, Doubt, Real},
-    scene::{self, Scene, Shape},
+    math::{Big, Double, Doubt, Real},
+    scene::{self, Scene},
 };
 
 /// The scene prepared for one picture: made once, then asked at any sample point from any thread.
@@ -33,36 +44,6 @@ pub struct World {
     double: Frame<Double>,
     big: Frame<Big>,
     colors: Colors,
-}
-
-/// The numbers of the scene that an object is prepared from.
-#[derive(Debug)]
-enum Numbers {
-    /// A sphere's centre and radius.
-    Sphere(DVec3, f64),
-    /// All of any other shape.
-    Other(Box<Shape>),
-}
-
-/// The colours of the objects.
-#[derive(Debug)]
-struct Colors {
-    /// The distinct ones, and the background.
-    palette: Vec<Color>,
-    /// The distinct pairs of slots of the palette: an object's colour, and a checkerboard's second one.
-    pairs: Vec<[usize; 2]>,
-    /// For each object its pair.
-    of_objects: Vec<u32>,
-}
-
-/// The camera and some objects in one precision.
-#[derive(Debug)]
-pub(super) struct Frame<T: Real> {
-    pub camera: Camera<T>,
-    /// The first objects, each filled in when it is first asked for.
-    kept: Vec<OnceLock<Box<Object<T>>>>,
-    pub near: Option<Form<T>>,
-    pub far: Option<Form<T>>,
 }
 
 /// The precisions, as what may be asked for by number.
@@ -101,23 +82,6 @@ const KEPT: usize = 1 << 12;
 
 /// With fewer objects it takes no longer to prepare them than to start threads for it.
 const MANY: usize = 1 << 10;
-
-/// A crossing of a ray with a surface, for people: numbers are right to the last bit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
-    /// The object's index in the file.
-    pub object: usize,
-    /// The distance from the eye, in metres.
-    pub t: f64,
-    /// The distance along the view direction, in metres.
-    pub depth: f64,
-    /// The point, in the world.
-    pub point: DVec3,
-    /// The colour there.
-    pub color: Color,
-    /// Whether it is the one that is seen.
-    pub visible: bool,
-}
 
 impl World {
     /// Prepares a scene for the sample points of its picture.
@@ -228,71 +192,6 @@ impl World {
         self.objects.is_empty()
     }
 
-    /// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
-    /// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
-    /// the reach that the world was made for.
-    pub fn ray(&self, pixels: DVec2) -> (DVec3, Vec<Hit>) {
-        let camera = &self.big.camera;
-        let point = camera.picture_point(pixels);
-        let r = camera.direction(&point);
-        let candidates = self.candidates(&point);
-        let mut crossings = Vec::new();
-        for &index in &candidates {
-            let object = Big::object(self, index);
-            let first = object.first(&r).unwrap_or_default();
-            let second = first.as_ref().and_then(|_| object.second(&r));
-            crossings.extend(first.map(|crossing| (index, false, crossing)));
-            crossings.extend(second.map(|crossing| (index, true, crossing)));
-        }
-        self.sort(&mut crossings);
-
-        let among = candidates.iter().copied();
-        let seen = self.seen_in_direction(&r, among).unwrap_or_default();
-        let along = [&r.x, &r.y, &r.z].map(rounded);
-        let world: Ball3<Big> = [0, 1, 2].map(|i| {
-            let part = |j: usize| &camera.axes[j][i] * &along[j];
-            part(0) + part(1) + part(2)
-        });
-        let length = rounded(&r.square).sqrt();
-        let direction = world.each_ref().map(|x| settled(&(x / &length))).into();
-        let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
-            let lambda = Ball::exact(1.0) / &crossing.inverse_depth;
-            let lambda = lambda.scaled(-camera.exponent);
-            let coordinate =
-                |i: usize| settled(&(Ball::exact(camera.eye[i]) + &lambda * &world[i]));
-            let odd = Big::object(self, index).is_odd(&r).unwrap_or_default();
-            Hit {
-                object: index,
-                t: settled(&(&lambda * &length)),
-                depth: settled(&(&lambda * &along[2])),
-                point: [0, 1, 2].map(coordinate).into(),
-                color: self.palette()[self.slots(index)[usize::from(odd)]],
-                visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
-            }
-        };
-        (direction, crossings.into_iter().map(hit).collect())
-    }
-
-    /// Sorts by depth; what cannot be told apart stands in file order.
-    fn sort(&self, crossings: &mut [(usize, bool, Crossing<Big>)]) {
-        // First by the computed depths, which is an order; then by pairs, as the tracer compares them.
-        crossings.sort_by(|(.., a), (.., b)| {
-            let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
-            difference.to_f64().total_cmp(&0.0)
-        });
-        for end in 1..crossings.len() {
-            let mut at = end;
-            while at > 0 {
-                let ((i, _, a), (j, _, b)) = (&crossings[at - 1], &crossings[at]);
-                if i <= j || self.order((*i, a), (*j, b)) != Ok(Ordering::Equal) {
-                    break;
-                }
-                crossings.swap(at - 1, at);
-                at -= 1;
-            }
-        }
-    }
-
     /// What is seen as far as `f64` can tell, by way of the hierarchy.
     #[inline]
     fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
@@ -316,7 +215,7 @@ impl World {
     }
 
     #[cfg(test)]
-    pub(super) fn double_camera(&self) -> &Camera<Double> {
+    pub(super) fn double_camera(&self) -> &super::camera::Camera<Double> {
         &self.double.camera
     }
 
@@ -553,157 +452,9 @@ impl World {
     }
 }
 
-impl<T: Real> Frame<T> {
-    fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: usize) -> Self {
-        let scene::Camera { near, far, .. } = scene.camera;
-        let camera = Camera::new(basis, scene, reach);
-        // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
-        let clip = |depth: f64| {
-            let zero = Ball::exact(0.0);
-            let inverse = Ball::exact(1.0) / camera.length(depth);
-            Form::new(&camera, &[zero.clone(), zero, inverse])
-        };
-        Self {
-            near: (near > 0.0).then(|| clip(near)),
-            far: far.map(clip),
-            kept: (0..kept).map(|_| OnceLock::new()).collect(),
-            camera,
-        }
-    }
-}
-
-/// A precision that the world is held in.
-pub(super) trait Level: Real {
-    fn frame(world: &World) -> &Frame<Self>;
-
-    /// An object in this precision, prepared when it is asked for.
-    fn object(world: &World, index: usize) -> Held<'_, Self> {
-        let Frame { camera, kept, .. } = Self::frame(world);
-        let made = || Box::new(world.numbers[index].object(camera));
-        match kept.get(index) {
-            Some(kept) => Held::Kept(kept.get_or_init(made)),
-            None => Held::Made(made()),
-        }
-    }
-}
-
-/// An object that is kept, or was made for the one who asks.
-#[derive(Debug)]
-pub(super) enum Held<'a, T: Real> {
-    Kept(&'a Object<T>),
-    Made(Box<Object<T>>),
-}
-
-impl<T: Real> Deref for Held<'_, T> {
-    type Target = Object<T>;
-
-    #[inline]
-    fn deref(&self) -> &Object<T> {
-        match self {
-            Self::Kept(object) => object,
-            Self::Made(object) => object,
-        }
-    }
-}
-
-impl Numbers {
-    fn new(object: &scene::Object) -> Self {
-        match &object.shape {
-            Shape::Sphere(sphere) => Self::Sphere(sphere.center, sphere.radius),
-            other => Self::Other(Box::new(*other)),
-        }
-    }
-
-    /// The object in one precision.
-    fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
-        match self {
-            Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),
-            Self::Other(shape) => Object::new(camera, shape),
-        }
-    }
-}
-
-impl Level for f64 {
-    #[inline]
-    fn frame(world: &World) -> &Frame<Self> {
-        &world.fast
-    }
-
-    #[inline]
-    fn object(world: &World, index: usize) -> Held<'_, Self> {
-        Held::Kept(&world.objects[index])
-    }
-}
-
-impl Level for Double {
-    fn frame(world: &World) -> &Frame<Self> {
-        &world.double
-    }
-}
-
-impl Level for Big {
-    fn frame(world: &World) -> &Frame<Self> {
-        &world.big
-    }
-}
-
-/// A coordinate or the square of a ray's direction, with what its few roundings may have cost.
-fn rounded(x: &Big) -> Ball<Big> {
-    Ball {
-        rad: x.magnitude() * (32.0 * Big::UNIT),
-        mid: x.clone(),
-    }
-}
-
 /// Threads to prepare so many objects; none if they are few, or if the system starts none.
 fn threads_for(objects: usize) -> Option<ThreadPool> {
     (objects >= MANY)
         .then(|| ThreadPoolBuilder::new().build().ok())
         .flatten()
-}
-
-/// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no height of 1e-97.
-fn settled(x: &Ball<Big>) -> f64 {
-    match x.sign() {
-        Ok(Ordering::Equal) => 0.0,
-        _ => x.mid.to_finite(),
-    }
-}
-
-impl Colors {
-    /// The distinct colours of all objects in file order with the background behind them, and the places of the objects' among them.
-    fn new(scene: &Scene) -> Self {
-        let mut palette = Vec::new();
-        let mut places = HashMap::new();
-        let mut place = |color: Color| {
-            *places
-                .entry(color.srgb.map(f64::to_bits))
-                .or_insert_with(|| {
-                    palette.push(color);
-                    palette.len() - 1
-                })
-        };
-        let mut pairs = Vec::new();
-        let mut places_of_pairs = HashMap::new();
-        let pair = |object: &scene::Object| {
-            let pair = match object.shape {
-                Shape::Sphere(scene::Sphere { color, .. })
-                | Shape::Triangle(scene::Triangle { color, .. })
-                | Shape::Box(scene::Cuboid { color, .. }) => [place(color); 2],
-                Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut place),
-            };
-            *places_of_pairs.entry(pair).or_insert_with(|| {
-                pairs.push(pair);
-                // No more than objects.
-                (pairs.len() - 1) as u32
-            })
-        };
-        let of_objects = scene.objects.iter().map(pair).collect();
-        palette.push(scene.image.background);
-        Self {
-            palette,
-            pairs,
-            of_objects,
-        }
-    }
 }

@@ -1,0 +1,130 @@
+//! The camera and the objects in each precision.
+
+use std::{ops::Deref, sync::OnceLock};
+
+use glam::{DVec2, DVec3};
+
+use super::World;
+use crate::{
+    math::{Ball, Big, Double, Real},
+    scene::{self, Scene, Shape},
+    tracer::{
+        camera::{Basis, Camera},
+        form::Form,
+        object::Object,
+        sphere::Sphere,
+    },
+};
+
+/// The numbers of the scene that an object is prepared from.
+#[derive(Debug)]
+pub enum Numbers {
+    /// A sphere's centre and radius.
+    Sphere(DVec3, f64),
+    /// All of any other shape.
+    Other(Box<Shape>),
+}
+
+/// The camera and some objects in one precision.
+#[derive(Debug)]
+pub struct Frame<T: Real> {
+    pub camera: Camera<T>,
+    /// The first objects, each filled in when it is first asked for.
+    kept: Vec<OnceLock<Box<Object<T>>>>,
+    pub near: Option<Form<T>>,
+    pub far: Option<Form<T>>,
+}
+
+impl<T: Real> Frame<T> {
+    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: usize) -> Self {
+        let scene::Camera { near, far, .. } = scene.camera;
+        let camera = Camera::new(basis, scene, reach);
+        // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
+        let clip = |depth: f64| {
+            let zero = Ball::exact(0.0);
+            let inverse = Ball::exact(1.0) / camera.length(depth);
+            Form::new(&camera, &[zero.clone(), zero, inverse])
+        };
+        Self {
+            near: (near > 0.0).then(|| clip(near)),
+            far: far.map(clip),
+            kept: (0..kept).map(|_| OnceLock::new()).collect(),
+            camera,
+        }
+    }
+}
+
+/// A precision that the world is held in.
+pub trait Level: Real {
+    fn frame(world: &World) -> &Frame<Self>;
+
+    /// An object in this precision, prepared when it is asked for.
+    fn object(world: &World, index: usize) -> Held<'_, Self> {
+        let Frame { camera, kept, .. } = Self::frame(world);
+        let made = || Box::new(world.numbers[index].object(camera));
+        match kept.get(index) {
+            Some(kept) => Held::Kept(kept.get_or_init(made)),
+            None => Held::Made(made()),
+        }
+    }
+}
+
+/// An object that is kept, or was made for the one who asks.
+#[derive(Debug)]
+pub enum Held<'a, T: Real> {
+    Kept(&'a Object<T>),
+    Made(Box<Object<T>>),
+}
+
+impl<T: Real> Deref for Held<'_, T> {
+    type Target = Object<T>;
+
+    #[inline]
+    fn deref(&self) -> &Object<T> {
+        match self {
+            Self::Kept(object) => object,
+            Self::Made(object) => object,
+        }
+    }
+}
+
+impl Numbers {
+    pub(super) fn new(object: &scene::Object) -> Self {
+        match &object.shape {
+            Shape::Sphere(sphere) => Self::Sphere(sphere.center, sphere.radius),
+            other => Self::Other(Box::new(*other)),
+        }
+    }
+
+    /// The object in one precision.
+    fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
+        match self {
+            Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),
+            Self::Other(shape) => Object::new(camera, shape),
+        }
+    }
+}
+
+impl Level for f64 {
+    #[inline]
+    fn frame(world: &World) -> &Frame<Self> {
+        &world.fast
+    }
+
+    #[inline]
+    fn object(world: &World, index: usize) -> Held<'_, Self> {
+        Held::Kept(&world.objects[index])
+    }
+}
+
+impl Level for Double {
+    fn frame(world: &World) -> &Frame<Self> {
+        &world.double
+    }
+}
+
+impl Level for Big {
+    fn frame(world: &World) -> &Frame<Self> {
+        &world.big
+    }
+}
