@@ -8,6 +8,10 @@ check:
 test:
     cargo test
 
+# The properties on cases that no run has tried yet; what fails is kept in tests/proptest-regressions.
+explore times="20":
+    for i in $(seq {{times}}); do PROPTEST_RNG_SEED=$(date +%s%N) cargo test --quiet || exit 1; done
+
 # Rays per second of each method, and where the time goes.
 bench:
     cargo bench
