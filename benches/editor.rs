@@ -21,6 +21,9 @@ const OBJECTS: usize = 1000;
 /// How often each thing is asked.
 const ROUNDS: u32 = 200;
 
+/// How often where each time is long.
+const FEW: u32 = 10;
+
 const URI: &str = "file:///spheres.scn";
 
 fn main() {
@@ -37,23 +40,9 @@ fn main() {
     println!("{:32} {:>9} {:>9}", "", "median", "longest");
     let mut server = Server::start(&text);
 
-    // A letter more, a letter less, in the middle of the text: what is said of that.
-    let mut version = 1;
-    let mut type_a_letter = |server: &mut Server| {
-        version += 1;
-        let place = json!({ "line": lines / 2, "character": 0 });
-        let after = json!({ "line": lines / 2, "character": 1 });
-        let change = match version % 2 {
-            0 => json!({ "range": { "start": place, "end": place }, "text": "x" }),
-            _ => json!({ "range": { "start": place, "end": after }, "text": "" }),
-        };
-        let document = json!({ "uri": URI, "version": version });
-        let params = json!({ "textDocument": document, "contentChanges": [change] });
-        server.tell("textDocument/didChange", params);
-        server.read();
-    };
-    show("a letter, and its diagnostics", || {
-        type_a_letter(&mut server)
+    let mut letters = Letters::at(lines / 2, 0);
+    show("a letter, and its diagnostics", ROUNDS, || {
+        letters.next(&mut server);
     });
 
     let middle = json!({ "line": lines / 2, "character": 4 });
@@ -99,14 +88,16 @@ fn main() {
             json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
         ),
         ("semanticTokens/full", json!({})),
+        ("diagnostic", json!({})),
     ];
     for (method, params) in questions {
-        show(method, || {
+        show(method, ROUNDS, || {
             server.ask(method, params.clone());
         });
     }
     formatted();
-    in_one_line();
+    objects_in_one_line();
+    tokens_in_one_line();
 }
 
 /// Formatting a text of a block a line, and what is said of the text when the editor has done it: its edits are sent back as the
@@ -124,7 +115,7 @@ fn formatted() {
         .map(|edit| json!({ "range": edit["range"], "text": edit["newText"] }));
     let changes: Vec<Value> = changes.collect();
     println!("a block a line: {} edits of formatting", changes.len());
-    show("formatting", || {
+    show("formatting", ROUNDS, || {
         server.ask("formatting", options.clone());
     });
     let mut version = 1;
@@ -145,33 +136,90 @@ fn formatted() {
     print("its edits, and their diagnostics", times.collect());
 }
 
-/// A text that is one line.
-fn in_one_line() {
+/// The same objects in one line.
+fn objects_in_one_line() {
     let text = spheres(OBJECTS, Layout::Lines);
     // Comments that end with their line would take all the rest.
     let lines = text.lines().filter(|line| !line.contains("//"));
     let line = lines.collect::<Vec<_>>().join(" ");
-    let mut server = Server::start(&line);
     println!("all of it in one line of {} bytes", line.len());
-    let methods = [
-        "documentSymbol",
-        "documentColor",
-        "formatting",
-        "semanticTokens/full",
+    in_one_line(&line, ROUNDS);
+}
+
+/// A sum that is one line of a million tokens.
+fn tokens_in_one_line() {
+    const TOKENS: usize = 1_000_000;
+    let line = format!("let a = 1{}", " + 1".repeat((TOKENS - 4) / 2));
+    println!(
+        "one line of {TOKENS} tokens, {} bytes; {FEW} times each",
+        line.len()
+    );
+    in_one_line(&line, FEW);
+}
+
+/// What there is to wait for in a text that is one line.
+fn in_one_line(line: &str, rounds: u32) {
+    let mut server = Server::start(line);
+    let mut letters = Letters::at(0, 0);
+    show("a letter, and its diagnostics", rounds, || {
+        letters.next(&mut server);
+    });
+    let middle = json!({ "line": 0, "character": line.len() / 2 });
+    let requests = [
+        ("completion", json!({ "position": middle })),
+        ("hover", json!({ "position": middle })),
+        ("selectionRange", json!({ "positions": [middle] })),
+        ("documentSymbol", json!({})),
+        ("documentColor", json!({})),
+        (
+            "formatting",
+            json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
+        ),
+        ("semanticTokens/full", json!({})),
     ];
-    for method in methods {
-        show(method, || {
-            server.ask(
-                method,
-                json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
-            );
+    for (method, params) in requests {
+        show(method, rounds, || {
+            server.ask(method, params.clone());
         });
     }
 }
 
+/// A letter more, a letter less, at one place of the text.
+struct Letters {
+    line: u32,
+    column: u32,
+    version: i32,
+}
+
+impl Letters {
+    fn at(line: u32, column: u32) -> Self {
+        let version = 1;
+        Self {
+            line,
+            column,
+            version,
+        }
+    }
+
+    /// Types the next one, and reads what is said of that.
+    fn next(&mut self, server: &mut Server) {
+        self.version += 1;
+        let place = json!({ "line": self.line, "character": self.column });
+        let after = json!({ "line": self.line, "character": self.column + 1 });
+        let change = match self.version % 2 {
+            0 => json!({ "range": { "start": place, "end": place }, "text": "x" }),
+            _ => json!({ "range": { "start": place, "end": after }, "text": "" }),
+        };
+        let document = json!({ "uri": URI, "version": self.version });
+        let params = json!({ "textDocument": document, "contentChanges": [change] });
+        server.tell("textDocument/didChange", params);
+        server.read();
+    }
+}
+
 /// The time of a thing, done over and over.
-fn show(name: &str, mut done: impl FnMut()) {
-    let times = (0..ROUNDS).map(|_| {
+fn show(name: &str, rounds: u32, mut done: impl FnMut()) {
+    let times = (0..rounds).map(|_| {
         let start = Instant::now();
         done();
         start.elapsed()

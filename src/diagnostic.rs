@@ -8,7 +8,7 @@ mod fix;
 #[cfg(feature = "cli")]
 mod report;
 
-pub use fix::{Edit, Fix, Fixable, apply};
+pub use fix::{Edit, Fix, Fixable, apply, with_comments};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style, printable};
 
@@ -54,6 +54,10 @@ pub struct Diagnostic {
     pub fixes: Vec<Fix>,
     /// Whether what stands at the place to jump to could be left out without any change of meaning.
     pub is_needless: bool,
+    /// Whether the text cannot be taken apart, whatever its names mean.
+    pub is_of_syntax: bool,
+    /// Whether it is still to be shown that its fixes help.
+    pub(crate) is_fix_doubtful: bool,
 }
 
 /// A place with a few words.
@@ -83,6 +87,8 @@ impl Diagnostic {
             labels: labels.collect(),
             fixes: Vec::new(),
             is_needless: false,
+            is_of_syntax: false,
+            is_fix_doubtful: false,
         }
     }
 
@@ -91,6 +97,8 @@ impl Diagnostic {
         Self {
             fixes: problem.fixes(sources),
             is_needless: problem.is_needless(),
+            is_of_syntax: problem.is_of_syntax(),
+            is_fix_doubtful: problem.is_fix_doubtful(),
             ..Self::from_problem(problem)
         }
     }

@@ -6,6 +6,7 @@
 use std::fmt::Write;
 
 use pinhole::{
+    diagnostic::Style,
     explain::{self, GROUPS, Page},
     suggest,
 };
@@ -19,12 +20,41 @@ const WIDEST: usize = 90;
 pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     let style = output::page_style();
     let text = match (&args.code, style) {
-        (None, style) => list(style.is_some_and(|style| style.color)),
-        (Some(code), Some(style)) => drawn(page(code)?, style.width.clamp(20, WIDEST), style.color),
+        (None, None) => list(Headings::Plain),
+        (None, Some(style)) => list(Headings::of(style)),
+        (Some(code), Some(style)) => drawn(
+            page(code)?,
+            style.width.clamp(20, WIDEST),
+            Headings::of(style),
+        ),
         (Some(code), None) => page(code)?.text.to_owned(),
     };
     output::to_programs(text.as_bytes())?;
     Ok(Status::Done)
+}
+
+/// How headings stand out.
+#[derive(Clone, Copy)]
+enum Headings {
+    Plain,
+    Bold,
+}
+
+impl Headings {
+    /// Bold is a colour, as far as a terminal is concerned.
+    fn of(style: Style) -> Self {
+        match style.color {
+            true => Self::Bold,
+            false => Self::Plain,
+        }
+    }
+
+    fn heading(self, words: &str) -> String {
+        match self {
+            Self::Bold => format!("\x1b[1m{words}\x1b[0m"),
+            Self::Plain => words.to_owned(),
+        }
+    }
 }
 
 fn page(code: &str) -> Result<&'static Page, Trouble> {
@@ -42,7 +72,7 @@ fn page(code: &str) -> Result<&'static Page, Trouble> {
 }
 
 /// All codes with their titles, by subject.
-fn list(bold: bool) -> String {
+fn list(headings: Headings) -> String {
     let width = explain::pages().map(|page| page.code.len()).max();
     let width = width.unwrap_or_default();
     let mut text = String::new();
@@ -50,7 +80,7 @@ fn list(bold: bool) -> String {
         if !text.is_empty() {
             text.push('\n');
         }
-        let _ = writeln!(text, "{}", heading(group.name, bold));
+        let _ = writeln!(text, "{}", headings.heading(group.name));
         for page in group.pages {
             let _ = writeln!(text, "  {:width$}  {}", page.code, page.title());
         }
@@ -58,15 +88,8 @@ fn list(bold: bool) -> String {
     text
 }
 
-fn heading(words: &str, bold: bool) -> String {
-    match bold {
-        true => format!("\x1b[1m{words}\x1b[0m"),
-        false => words.to_owned(),
-    }
-}
-
-/// A page for a terminal: headings bold, scenes indented, and lines that fit.
-fn drawn(page: &Page, width: usize, bold: bool) -> String {
+/// A page for a terminal: scenes indented, and lines that fit.
+fn drawn(page: &Page, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
@@ -77,7 +100,7 @@ fn drawn(page: &Page, width: usize, bold: bool) -> String {
         } else if is_scene {
             let _ = writeln!(text, "    {line}");
         } else if let Some(words) = line.trim_start_matches('#').strip_prefix(' ') {
-            let _ = writeln!(text, "{}", heading(words, bold));
+            let _ = writeln!(text, "{}", headings.heading(words));
         } else if line.is_empty() {
             push_wrapped(&mut text, &paragraph, width);
             paragraph.clear();
@@ -123,7 +146,7 @@ mod tests {
     fn a_terminal_shows_lines_that_fit() {
         for page in explain::pages() {
             for width in [20, 40, WIDEST] {
-                let text = drawn(page, width, false);
+                let text = drawn(page, width, Headings::Plain);
                 for line in text.lines().filter(|line| !line.starts_with("    ")) {
                     let fits = line.chars().count() <= width || line == page.title();
                     assert!(fits || !line.contains(' '), "{}: {line}", page.code);
@@ -141,7 +164,7 @@ mod tests {
             code: "test",
             text: "# A title\n\nSome words\nand more.\n\n## Wrong\n\n```scn\nsphere {\n  radus 1\n}\n```\n",
         };
-        let text = drawn(&page, 12, true);
+        let text = drawn(&page, 12, Headings::Bold);
         let expected = "\x1b[1mA title\x1b[0m\n\nSome words\nand more.\n\n\x1b[1mWrong\x1b[0m\n\n    sphere {\n      radus 1\n    }\n";
         assert_eq!(text, expected);
     }

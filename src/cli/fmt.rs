@@ -21,9 +21,10 @@ use super::{
 /// Lays out each scene in turn, or says what would change. The status is the gravest one.
 pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
+    let act = if args.check { compare } else { write };
     let mut status = Status::Done;
     for path in &args.scenes {
-        let found = one(path, args.check, interrupt).unwrap_or_else(|trouble| {
+        let found = one(path, act, interrupt).unwrap_or_else(|trouble| {
             output::error(&trouble);
             Status::Trouble
         });
@@ -35,7 +36,10 @@ pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status)
 }
 
-fn one(path: &Path, check: bool, interrupt: &Interrupt) -> Result<Status, Trouble> {
+/// What is done with a text and its layout; a long write ends when it is interrupted.
+type Act = fn(&Path, &Source, &str, &Interrupt) -> Result<Status, Trouble>;
+
+fn one(path: &Path, act: Act, interrupt: &Interrupt) -> Result<Status, Trouble> {
     // Opening a pipe may take for ever, and what is written into one comes back to nobody.
     let is_pipe = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
     if is_pipe && !is_standard(path) {
@@ -51,27 +55,35 @@ fn one(path: &Path, check: bool, interrupt: &Interrupt) -> Result<Status, Troubl
         )));
     }
     let source = &input.sources.file;
-    let formatted = match format(source) {
-        Ok(formatted) => formatted,
+    match format(source) {
+        Ok(formatted) => act(path, source, &formatted, interrupt),
         Err(mistakes) => {
             let sources = Sources::new(source.clone());
             output::to_people(&Report::new(&sources, output::style()).human(&mistakes));
-            return Ok(Status::SceneErrors);
+            Ok(Status::SceneErrors)
         }
-    };
-    let changes = formatted != source.text();
-    if check {
-        if changes {
-            output::to_people(&difference(source, &formatted));
-        }
-        return Ok(match changes {
-            true => Status::SceneErrors,
-            false => Status::Done,
-        });
     }
+}
+
+/// Says what would change.
+fn compare(_: &Path, source: &Source, formatted: &str, _: &Interrupt) -> Result<Status, Trouble> {
+    if formatted == source.text() {
+        return Ok(Status::Done);
+    }
+    output::to_people(&difference(source, formatted));
+    Ok(Status::SceneErrors)
+}
+
+/// Writes the layout to where the text came from.
+fn write(
+    path: &Path,
+    source: &Source,
+    formatted: &str,
+    interrupt: &Interrupt,
+) -> Result<Status, Trouble> {
     if is_standard(path) {
         output::to_programs(formatted.as_bytes())?;
-    } else if changes {
+    } else if formatted != source.text() {
         film::write_whole(path, interrupt.watch(), |file| {
             file.write_all(formatted.as_bytes())
         })
@@ -80,11 +92,13 @@ fn one(path: &Path, check: bool, interrupt: &Interrupt) -> Result<Status, Troubl
     Ok(Status::Done)
 }
 
-/// What would change, as a unified diff.
+/// What would change, as a unified diff. Where lines end in different ways, carriage returns are shown: lines can differ in them alone.
 fn difference(source: &Source, formatted: &str) -> String {
     let lines = TextDiff::from_lines(source.text(), formatted);
     let name = source.name();
     let color = output::style().color;
+    let text = source.text();
+    let is_mixed = text.matches('\n').count() != text.matches("\r\n").count();
     let mut text = format!("--- {name}\n+++ {name}, formatted\n");
     for hunk in lines.unified_diff().iter_hunks() {
         text += &format!("{}\n", hunk.header());
@@ -95,7 +109,10 @@ fn difference(source: &Source, formatted: &str) -> String {
                 ChangeTag::Equal => (' ', ""),
             };
             let line = change.value().trim_end_matches(['\n', '\r']);
-            let line: String = line.chars().map(printable).collect();
+            let mut line: String = line.chars().map(printable).collect();
+            if is_mixed && change.value().trim_end_matches('\n').ends_with('\r') {
+                line.push('␍');
+            }
             text += &match color && !paint.is_empty() {
                 true => format!("{paint}{sign}{line}\x1b[0m\n"),
                 false => format!("{sign}{line}\n"),

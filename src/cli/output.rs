@@ -38,7 +38,12 @@ pub fn worded_error(message: &dyn fmt::Display) -> String {
 
 /// Says what the user might not expect.
 pub fn warning(message: &dyn fmt::Display) {
-    to_people(&worded("warning", "1;33", message));
+    to_people(&worded_warning(message));
+}
+
+/// What says something that the user might not expect.
+pub fn worded_warning(message: &dyn fmt::Display) -> String {
+    worded("warning", "1;33", message)
 }
 
 fn worded(word: &str, color: &str, message: &dyn fmt::Display) -> String {

@@ -40,6 +40,15 @@ impl Picture {
         }
     }
 
+    /// Its means alone.
+    #[cfg(feature = "preview")]
+    pub fn into_film(self) -> Film {
+        match self {
+            Self::Sampled(film) => film,
+            Self::Exact(exact) => exact.film,
+        }
+    }
+
     /// What is to be said of it: how exact a computed one is.
     pub fn notes(&self, output: &Output) -> String {
         match self {
@@ -202,13 +211,14 @@ impl Output {
         }
     }
 
-    /// Says so where the picture should carry its scene and cannot.
-    pub fn warn_of_length(&self, recipe: &Recipe) {
+    /// What is to be said where the picture should carry its scene and cannot.
+    pub fn note_of_length(&self, recipe: &Recipe) -> String {
         let carries = !matches!(self, Self::File(_, Format::Exr));
-        if carries && !recipe.fits() {
-            output::warning(&format!(
+        match carries && !recipe.fits() {
+            true => output::worded_warning(&format!(
                 "the scene and its overrides have more than 1 MiB of text, so {self} does not carry them"
-            ));
+            )),
+            false => String::new(),
         }
     }
 }

@@ -53,7 +53,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         }
         return Err(Trouble(format!("cannot write to {output}: {error}")));
     }
-    output.warn_of_length(&recipe);
+    output::to_people(&output.note_of_length(&recipe));
     output::to_people(&picture.notes(&output));
     if output::is_watched() {
         let (width, height) = (film.width(), film.height());

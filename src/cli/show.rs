@@ -16,24 +16,39 @@ use super::{Trouble, output};
 
 /// What people see on standard error.
 pub struct Screen {
-    is_shown: bool,
-    /// The last picture, drawn.
-    picture: String,
+    /// The picture above what is said, if there is to be one.
+    shown: Option<Shown>,
     /// What was said since the last change.
     said: String,
 }
 
+/// The last picture.
+#[derive(Default)]
+struct Shown {
+    film: Option<Film>,
+    /// It as it is drawn, and the cells that it was drawn for.
+    drawn: String,
+    size: (usize, usize),
+}
+
 impl Screen {
-    /// Whether pictures are shown is the user's wish; without a terminal it cannot be granted.
-    pub fn new(is_shown: bool) -> Result<Self, Trouble> {
-        if is_shown && !io::stderr().is_terminal() {
+    /// One of words alone.
+    pub fn of_words() -> Self {
+        Self {
+            shown: None,
+            said: String::new(),
+        }
+    }
+
+    /// One of pictures and words, for which it takes a terminal.
+    pub fn of_pictures() -> Result<Self, Trouble> {
+        if !io::stderr().is_terminal() {
             return Err(Trouble(
                 "`--show` draws in a terminal, and standard error is none".to_owned(),
             ));
         }
         Ok(Self {
-            is_shown,
-            picture: String::new(),
+            shown: Some(Shown::default()),
             said: String::new(),
         })
     }
@@ -52,26 +67,76 @@ impl Screen {
 
     /// The side in pixels of blocks about as coarse as the screen is for a picture of this size; `None` if pictures are not shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
-        let (columns, rows) = self.is_shown.then(size)?;
+        self.shown.as_ref()?;
+        let (columns, rows) = size();
         let scale = scale(whole.width as usize, whole.height as usize, columns, rows);
         Some((scale as u32).max(1))
     }
 
     /// Shows a picture, and below it what was said.
-    pub fn draw(&mut self, film: &Film) {
-        if self.is_shown {
-            let (columns, rows) = size();
-            self.picture = drawn(film, columns, rows, has_all_colors());
+    pub fn draw(&mut self, film: Film) {
+        if let Some(shown) = &mut self.shown {
+            shown.film = Some(film);
+            shown.redraw();
+            self.refresh();
+        }
+    }
+
+    /// Shows the last picture anew if the terminal has another size than it was drawn for.
+    pub fn fit(&mut self) {
+        if let Some(shown) = &mut self.shown
+            && shown.film.is_some()
+            && shown.size != size()
+        {
+            shown.redraw();
+            // What the lines of another width left behind is no part of it.
+            output::to_people("\x1b[2J");
             self.refresh();
         }
     }
 
     fn refresh(&self) {
-        if self.is_shown {
+        if let Some(Shown { drawn, .. }) = &self.shown {
             // The screen is not cleared first: what is drawn over does not flicker.
-            let Self { picture, said, .. } = self;
-            output::to_people(&format!("\x1b[H{picture}\x1b[J{said}"));
+            output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.said));
         }
+    }
+}
+
+impl Shown {
+    fn redraw(&mut self) {
+        self.size = size();
+        if let Some(film) = &self.film {
+            self.drawn = drawn(film, self.size, Palette::of_terminal());
+        }
+    }
+}
+
+/// The colours that a terminal shows.
+#[derive(Clone, Copy)]
+enum Palette {
+    /// All.
+    Full,
+    /// 256, of which the nearest ones are taken.
+    Of256,
+}
+
+impl Palette {
+    fn of_terminal() -> Self {
+        let is_full = |value: String| value == "truecolor" || value == "24bit";
+        match env::var("COLORTERM").is_ok_and(is_full) {
+            true => Self::Full,
+            false => Self::Of256,
+        }
+    }
+
+    /// Sets the colour of what is written (38) or of what is behind it (48).
+    fn push(self, text: &mut String, which: u8, [r, g, b]: [u8; 3]) {
+        // Writing to a string does not fail.
+        let _ = match self {
+            Self::Full => write!(text, "\x1b[{which};2;{r};{g};{b}m"),
+            Self::Of256 => write!(text, "\x1b[{which};5;{}m", nearest_of_256([r, g, b])),
+        };
     }
 }
 
@@ -91,13 +156,8 @@ fn rows_of_picture(rows: usize) -> usize {
     rest.clamp(rows / 3, rows * 3 / 4).max(1)
 }
 
-/// Whether the terminal says that it shows all colours; else it gets those of the 256 that are near.
-fn has_all_colors() -> bool {
-    env::var("COLORTERM").is_ok_and(|value| value == "truecolor" || value == "24bit")
-}
-
 /// A picture in so many cells at most, each line with its end.
-fn drawn(film: &Film, columns: usize, rows: usize, has_all_colors: bool) -> String {
+fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> String {
     let (width, height) = (film.width() as usize, film.height() as usize);
     let scale = scale(width, height, columns, rows);
     let dots =
@@ -110,9 +170,9 @@ fn drawn(film: &Film, columns: usize, rows: usize, has_all_colors: bool) -> Stri
     let mut text = String::new();
     for y in (0..down).step_by(2) {
         for x in 0..across {
-            push_color(&mut text, 38, dot(x, y), has_all_colors);
+            palette.push(&mut text, 38, dot(x, y));
             if y + 1 < down {
-                push_color(&mut text, 48, dot(x, y + 1), has_all_colors);
+                palette.push(&mut text, 48, dot(x, y + 1));
             }
             text.push('▀');
         }
@@ -145,15 +205,6 @@ fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usiz
         }
     }
     sum.map(|sum| (linear_to_srgb(sum / count) * 255.0).round() as u8)
-}
-
-/// Sets the colour of what is written (38) or of what is behind it (48).
-fn push_color(text: &mut String, which: u8, [r, g, b]: [u8; 3], has_all_colors: bool) {
-    // Writing to a string does not fail.
-    let _ = match has_all_colors {
-        true => write!(text, "\x1b[{which};2;{r};{g};{b}m"),
-        false => write!(text, "\x1b[{which};5;{}m", nearest_of_256([r, g, b])),
-    };
 }
 
 /// The nearest of the colours 16 to 255 of a terminal: a cube of six levels a channel, and 24 greys.
@@ -194,7 +245,7 @@ mod tests {
             (1000, 1, 10, 10, 10, 1),
             (1, 1000, 10, 10, 1, 10),
         ] {
-            let text = drawn(&film(width, height), columns, rows, true);
+            let text = drawn(&film(width, height), (columns, rows), Palette::Full);
             assert_eq!(text.lines().count(), lines, "{width} × {height}");
             for line in text.lines() {
                 assert_eq!(line.matches('▀').count(), across, "{width} × {height}");
@@ -215,7 +266,7 @@ mod tests {
             0 => [1.0, 0.0, 1.0],
             _ => [0.0; 3],
         });
-        let text = drawn(&film.unwrap(), 2, 1, true);
+        let text = drawn(&film.unwrap(), (2, 1), Palette::Full);
         let cell = "\x1b[38;2;188;0;188m\x1b[48;2;188;0;188m▀";
         assert_eq!(text, format!("{cell}{cell}\x1b[0m\x1b[K\n"));
     }

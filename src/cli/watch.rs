@@ -38,7 +38,10 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let output = output(args)?;
     check_scene(&args.scene)?;
     output.check(Some(&args.scene))?;
-    let mut screen = Screen::new(args.show)?;
+    let mut screen = match args.show {
+        true => Screen::of_pictures()?,
+        false => Screen::of_words(),
+    };
     let scene = shown(&args.scene);
     let latest = preview::watch(&args.scene, input::bytes)
         .map_err(|error| Trouble(format!("cannot watch the folder of {scene}: {error}")))?;
@@ -46,7 +49,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     interrupt.then(move || ended.end());
     screen.say(&format!("watching {scene}; Ctrl-C ends it\n"));
     let mut is_first = true;
-    while let Some(content) = latest.take() {
+    while let Some(content) = latest.take_while(REFIT, || screen.fit()) {
         if !is_first {
             screen.begin();
         }
@@ -71,6 +74,9 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
     Ok(Status::Interrupted)
 }
+
+/// How often the size of the terminal is looked at while nothing happens.
+const REFIT: Duration = Duration::from_millis(200);
 
 /// The file that the picture goes to.
 fn output(args: &WatchArgs) -> Result<Output, Trouble> {
@@ -138,11 +144,12 @@ fn make(
         return Ok(None);
     }
     let done = Instant::now();
+    let notes = picture.notes(output);
     // Also one that cannot be written can be seen.
-    screen.draw(picture.film());
+    screen.draw(picture.into_film());
     written?;
-    output.warn_of_length(&recipe);
-    screen.say(&picture.notes(output));
+    screen.say(&output.note_of_length(&recipe));
+    screen.say(&notes);
     Ok(Some(done))
 }
 
@@ -175,7 +182,7 @@ fn with_sketch(
                     cancel: is_stale,
                 };
                 if let Ok(sketch) = refine::coarse(world, whole, side, &control) {
-                    screen.draw(&sketch.film);
+                    screen.draw(sketch.film);
                 }
             }
         });

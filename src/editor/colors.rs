@@ -1,7 +1,8 @@
 //! The colours that stand in a text, and how another one is written in their place.
 //!
 //! A colour is written back in the spelling that was there: a name as a name if the new colour has one, a code with as many digits if
-//! they can say it, `rgb(…)` as numbers; capital letters stay.
+//! they can say it, `rgb(…)` as numbers; capital letters stay. A call that is more than three numbers is left alone: another colour
+//! would take the expressions and the comments in it away.
 
 use super::{Analysis, words::Role};
 use crate::{
@@ -12,7 +13,7 @@ use crate::{
         schema::{self, Type},
     },
     source::Span,
-    syntax::tree::{self, ValueKind},
+    syntax::tree::{self, Call, ValueKind},
 };
 
 /// A colour in the text.
@@ -49,7 +50,9 @@ fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut 
     let is_color = match &value.kind {
         ValueKind::ColorCode(_) => true,
         ValueKind::Name(name) => css::color(name).is_some(),
-        ValueKind::Call(call) => call.function.text == "rgb",
+        ValueKind::Call(call) => {
+            call.function.text == "rgb" && is_plain(analysis, value.span, call)
+        }
         _ => false,
     };
     if is_color && let Some(Value::Color(color)) = analysis.survey.value(value, None) {
@@ -62,12 +65,31 @@ fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut 
     }
 }
 
-/// How a colour could be written in the place of another, the spelling of that first.
+/// Whether a call is made of numbers alone, without comments.
+fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
+    let is_number = |kind: &ValueKind<'_>| matches!(kind, ValueKind::Number(_));
+    let are_numbers = call
+        .arguments
+        .iter()
+        .all(|part| is_number(&part.value.kind));
+    let comments = analysis.comments();
+    let next = comments.partition_point(|comment| comment.end <= span.start);
+    let is_inside = |comment: &Span| comment.start < span.end;
+    are_numbers && !comments.get(next).is_some_and(is_inside)
+}
+
+/// How a colour could be written in the place of another, the spelling of that first; nothing in the place of a call that is no
+/// swatch.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let written = analysis.slice(span);
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::ColorCode) => like_code(written, color),
-        Some(Role::Function) => rgb(color),
+        Some(Role::Function) => {
+            if swatches(analysis).iter().all(|swatch| swatch.span != span) {
+                return Vec::new();
+            }
+            rgb(color)
+        }
         Some(Role::Name) => like_name(written, color).unwrap_or_else(|| color.to_string()),
         _ => color.to_string(),
     };

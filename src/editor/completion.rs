@@ -11,7 +11,7 @@ use super::{
 use crate::{
     color::Color,
     scene::{
-        Value, css, example_call,
+        Value, css, example_beside, example_call,
         schema::{self, Field, Function, Kind, Preset, Type},
     },
     source::Span,
@@ -75,7 +75,7 @@ pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     };
     let mut completions = match situation.expected {
         Expected::Item => items(analysis, &situation),
-        Expected::Field => fields(&situation),
+        Expected::Field => fields(analysis, &situation),
         Expected::Value => values(analysis, &situation),
         Expected::Definition | Expected::Head => Vec::new(),
     };
@@ -143,7 +143,7 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
             pieces.push(text(between));
         }
         pieces.push(text(format!("{} ", field.name)));
-        pieces.extend(value_to_type_over(field));
+        pieces.extend(value_to_type_over(&field.example()));
     }
     if least.is_empty() {
         pieces.push(hole(""));
@@ -153,8 +153,7 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
 }
 
 /// The parts of a vector are typed over one by one.
-fn value_to_type_over(field: &Field) -> Vec<Piece> {
-    let example = field.example();
+fn value_to_type_over(example: &str) -> Vec<Piece> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     let Some(inner) = inner else {
         return vec![hole(example)];
@@ -170,8 +169,22 @@ fn value_to_type_over(field: &Field) -> Vec<Piece> {
     pieces
 }
 
+/// A value that the field can have beside what the block around the place is given.
+fn example(analysis: &Analysis<'_>, situation: &Situation, field: &Field) -> String {
+    let at = situation.word.start;
+    // The last one that begins before the place: it may not be closed yet.
+    let blocks = analysis.blocks();
+    let block = blocks.take_while(|block| block.span.start <= at).last();
+    example_beside(field, &|name| {
+        let row = situation.block?.field(name)?;
+        let mut fields = block?.fields.iter();
+        let given = fields.find(|given| given.name.text == name)?;
+        analysis.survey.value(&given.value, Some(row.takes))
+    })
+}
+
 /// The fields that the block may still be given.
-fn fields(situation: &Situation) -> Vec<Completion> {
+fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let Some(row) = situation.block else {
         return Vec::new();
     };
@@ -197,7 +210,7 @@ fn fields(situation: &Situation) -> Vec<Completion> {
         let mut insert = vec![text(field.name)];
         if !value_follows {
             insert = vec![text(format!("{} ", field.name))];
-            insert.extend(value_to_type_over(field));
+            insert.extend(value_to_type_over(&example(analysis, situation, field)));
         }
         Completion {
             label: field.name.to_owned(),
@@ -227,7 +240,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     }
     let wanted = situation.wanted;
     let is_color = wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors));
-    let mut completions: Vec<Completion> = written_out(situation).into_iter().collect();
+    let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if wanted == Some(Type::Colors) {
         // Two of them: one colour would not do.
@@ -258,21 +271,21 @@ fn methods(situation: &Situation) -> Vec<Completion> {
 }
 
 /// A value such as the field can have, to type over; only where the whole value is still to come.
-fn written_out(situation: &Situation) -> Option<Completion> {
+fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Completion> {
     let field = situation.field.filter(|_| situation.is_start)?;
     if !situation.word.range().is_empty() {
         return None;
     }
-    let example = field.example();
+    let example = example(analysis, situation, field);
     Some(Completion {
-        label: example,
         kind: CompletionKind::Value,
         detail: match field.preset {
-            Preset::Value(_) => "the default".to_owned(),
+            Preset::Value(_) if example == field.example() => "the default".to_owned(),
             _ => bare(field.takes).to_owned(),
         },
+        insert: value_to_type_over(&example),
+        label: example,
         help: field.help.to_owned(),
-        insert: value_to_type_over(field),
         replaces: situation.word,
         rank: 0,
     })

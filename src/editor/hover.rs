@@ -34,7 +34,7 @@ pub struct Hover {
     pub colors: Vec<Color>,
 }
 
-/// What the word at a place means; and where something is wrong with it, which page says more about that.
+/// What the word at a place means; and where something is wrong with it, the page on that.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
     let Some((span, more)) = mistake(analysis, at) else {
@@ -46,22 +46,21 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
         colors: Vec::new(),
     });
     if !hover.markdown.is_empty() {
-        hover.markdown.push_str("\n\n");
+        hover.markdown.push_str("\n\n---\n\n");
     }
-    hover.markdown.push_str(&more);
+    hover.markdown.push_str(more);
     Some(hover)
 }
 
-/// The place of a problem, and the command that explains it.
-fn mistake(analysis: &Analysis<'_>, at: usize) -> Option<(Span, String)> {
+/// The place of a problem, and the page that explains it.
+fn mistake(analysis: &Analysis<'_>, at: usize) -> Option<(Span, &'static str)> {
     let mut found = analysis.diagnostics().iter().filter_map(|diagnostic| {
         let span = diagnostic.labels.first()?.span;
         let holds = span.start <= at && at <= span.end && !span.range().is_empty();
         holds.then_some((span, explain::page(&diagnostic.code)?))
     });
     let (span, page) = found.next()?;
-    let code = explain::short(page.code);
-    Some((span, format!("{}: `pinhole explain {code}`", page.title())))
+    Some((span, page.text.trim_end()))
 }
 
 fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
@@ -141,6 +140,9 @@ pub(super) fn about_field(row: &Block, field: &Field) -> String {
             .collect();
         let others = suggest::choice(others.iter().map(String::as_str));
         text += &format!("; not together with {others}");
+    }
+    for rule in row.rules_of(field.name) {
+        text += &format!("; {rule}");
     }
     text
 }

@@ -106,10 +106,20 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         let defines = matches!(token.role, Role::Defined | Role::ObjectName);
         defines && space_of(token.role) == Some(space) && analysis.slice(token.span) == new
     });
-    match taken {
-        Some(taken) if !is_same => Err(format!(
+    // One that nothing defines would be this one from then on.
+    let meant = analysis.tokens.iter().find(|token| {
+        let is_use = space == Space::Lets && token.role == Role::Name;
+        is_use && analysis.slice(token.span) == new
+    });
+    match (taken, meant) {
+        _ if is_same => Ok(occurrences.into_iter().map(|found| found.span).collect()),
+        (Some(taken), _) => Err(format!(
             "`{new}` is taken: it is defined in line {}",
             analysis.line(taken.span)
+        )),
+        (None, Some(meant)) => Err(format!(
+            "`{new}` is taken: line {} uses it, though nothing defines it",
+            analysis.line(meant.span)
         )),
         _ => Ok(occurrences.into_iter().map(|found| found.span).collect()),
     }

@@ -14,10 +14,10 @@ mod entries;
 mod page;
 mod words;
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{self, Diagnostic},
     scene,
     source::{Source, SourceId, Sources},
     syntax::{
@@ -58,17 +58,23 @@ fn is_whole(tree: &Tree<'_>) -> bool {
 }
 
 /// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what a field without a value is
-/// called. What else is wrong with the scene is left out.
+/// called. What else is wrong with the scene is left out; and what `check` leaves out, as a field that the block does not know
+/// is mistake enough, is told here, where that field is none.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let survey = scene::survey(&sources);
-    let problems = survey.parsed.problems.iter();
-    let codes = problems.map(|p| Diagnostic::from_problem(p).code);
-    let mut codes: BTreeSet<String> = codes.collect();
-    codes.extend(["pinhole::missing_value", "pinhole::invalid_utf8"].map(str::to_owned));
     let found = survey.diagnostics.iter();
-    let of_syntax = found.filter(|diagnostic| codes.contains(&diagnostic.code));
+    let of_syntax = found.filter(|diagnostic| diagnostic.is_of_syntax);
     let mut mistakes: Vec<_> = of_syntax.cloned().collect();
+    // Bytes that are not UTF-8 are told in place of what they led to.
+    if source.invalid_utf8().is_empty() {
+        let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| label.span);
+        let told: HashSet<_> = mistakes.iter().map(place).collect();
+        let problems = survey.parsed.problems.iter();
+        let all = problems.map(|problem| Diagnostic::fixable(problem, &sources));
+        mistakes.extend(all.filter(|diagnostic| !told.contains(&place(diagnostic))));
+        diagnostic::sort(&mut mistakes);
+    }
     if mistakes.is_empty() {
         // A field that its block does not know is reported for that alone; so is one for a word that belongs to its neighbour.
         mistakes.extend(without_value(&survey.parsed.tree).map(|name| {

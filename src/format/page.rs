@@ -4,7 +4,7 @@ use super::{
     WIDTH,
     columns::SLACK,
     entries::{Block, Entry, What},
-    words::{Before, Word, column_after, ends_line, width},
+    words::{Before, Word, column_after, ends_line, is_comment, width},
 };
 
 /// By how much a block's fields stand further to the right than itself, and the other lines of a value than its first.
@@ -39,24 +39,25 @@ impl Page {
             line.push(' ');
         }
         let start = column_after(0, &line);
+        let mut margins = Margins::new(indent, indent + INDENT);
         match &entry.what {
             What::Comments => {}
             What::Definition(head, rest) => {
-                push_folded(&mut line, head, indent + INDENT);
+                self.words(&mut line, head, &mut margins);
                 if entry.column > 0 {
                     pad(&mut line, start + entry.column - 1);
                 }
-                push_folded(&mut line, rest, indent + INDENT);
+                self.words(&mut line, rest, &mut margins);
             }
             What::Field(name, value) => {
                 line.push_str(name);
                 if entry.column > 0 {
                     pad(&mut line, start + entry.column - 1);
                 }
-                push_folded(&mut line, value, indent + INDENT);
+                self.words(&mut line, value, &mut margins);
             }
             What::Block(block) => {
-                push_head(&mut line, block, entry.column);
+                self.head(&mut line, block, entry.column);
                 if block.is_empty() {
                     line.push_str("{}");
                 } else if block.on_one_line {
@@ -91,6 +92,70 @@ impl Page {
         let mut comments = String::new();
         push_joined(&mut comments, trailing);
         self.waiting.push((line, comments));
+    }
+
+    /// Writes words, with new lines where they have to be and where the line would be too long; the last one goes on.
+    fn words(&mut self, line: &mut String, words: &[Word<'_>], margins: &mut Margins) {
+        let last = self.lines(line, words, margins);
+        push_flat(line, last);
+    }
+
+    /// Writes all lines of the words but the last one, and answers the words of that.
+    fn lines<'w, 's>(
+        &mut self,
+        line: &mut String,
+        words: &'w [Word<'s>],
+        margins: &mut Margins,
+    ) -> &'w [Word<'s>] {
+        let mut rest = words;
+        let mut written = 0;
+        for (start, margin) in line_starts(words, column_after(0, line), margins) {
+            let (these, others) = rest.split_at(start - written);
+            self.end_line(std::mem::take(line), these);
+            line.extend(std::iter::repeat_n(' ', margin));
+            (rest, written) = (others, start);
+        }
+        rest
+    }
+
+    /// Writes the last words of a line; comments at its end stand in a column.
+    fn end_line(&mut self, mut line: String, words: &[Word<'_>]) {
+        let is_behind = |word: &&Word<'_>| word.before == Before::Space && is_comment(word.text);
+        let behind = words.iter().rev().take_while(is_behind).count();
+        let (words, behind) = words.split_at(words.len() - behind);
+        let behind: Vec<&str> = behind.iter().map(|word| word.text).collect();
+        push_flat(&mut line, words);
+        // Beside a comment that has the line for itself they belong to that.
+        if words.len() == 1 && words.iter().all(|word| is_comment(word.text)) {
+            for comment in &behind {
+                line.push(' ');
+                line.push_str(comment);
+            }
+            self.line(line, &[]);
+        } else {
+            self.line(line, &behind);
+        }
+    }
+
+    /// Writes what stands before a block's `{`, and the blank there or the end of the line.
+    fn head(&mut self, line: &mut String, block: &Block<'_>, column: usize) {
+        match (block.name, block.name_column) {
+            (Some(name), 1..) => {
+                line.push_str(block.kind);
+                pad(line, block.name_column);
+                line.push_str(name);
+            }
+            _ if block.open_on_new_line => {
+                let last = self.lines(line, &block.head, &mut Margins::new(0, 0));
+                self.end_line(std::mem::take(line), last);
+                return;
+            }
+            _ => self.words(line, &block.head, &mut Margins::new(0, 0)),
+        }
+        line.push(' ');
+        if column > 0 {
+            pad(line, column);
+        }
     }
 
     /// Writes the lines that wait, their comments in columns.
@@ -133,26 +198,6 @@ fn pad(line: &mut String, column: usize) {
     line.extend(std::iter::repeat_n(' ', blanks));
 }
 
-/// What stands before a block's `{`, and the blank there or the end of the line.
-fn push_head(line: &mut String, block: &Block<'_>, column: usize) {
-    match (block.name, block.name_column) {
-        (Some(name), 1..) => {
-            line.push_str(block.kind);
-            pad(line, block.name_column);
-            line.push_str(name);
-        }
-        _ => push_folded(line, &block.head, 0),
-    }
-    if block.open_on_new_line {
-        line.push('\n');
-        return;
-    }
-    line.push(' ');
-    if column > 0 {
-        pad(line, column);
-    }
-}
-
 /// A block's fields on its line, between braces.
 fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str("{ ");
@@ -177,43 +222,75 @@ fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str(" }");
 }
 
+/// The words of one line.
 fn push_flat(line: &mut String, words: &[Word<'_>]) {
-    for word in words {
-        if word.before != Before::Nothing {
-            line.push(' ');
-        }
-        line.push_str(word.text);
-    }
-}
-
-/// Words, with new lines where they have to be and where the line would be too long.
-fn push_folded(line: &mut String, words: &[Word<'_>], indent: usize) {
-    let ends = line_ends(words, column_after(0, line), indent);
-    let mut ends = ends.into_iter().peekable();
+    let is_start = line.trim_start().is_empty();
     for (index, word) in words.iter().enumerate() {
-        if ends.next_if_eq(&index).is_some() {
-            line.push('\n');
-            line.extend(std::iter::repeat_n(' ', indent));
-        } else if word.before != Before::Nothing {
+        let is_apart = matches!(word.before, Before::Space | Before::Fold(_));
+        if is_apart && (index > 0 || !is_start) {
             line.push(' ');
         }
         line.push_str(word.text);
     }
 }
 
-/// The words that start a line, by their indices. A line that is too long is broken where it is least nested, and there as
-/// late as may be.
-fn line_ends(words: &[Word<'_>], start: usize, indent: usize) -> Vec<usize> {
-    let mut ends = Vec::new();
+/// Where the lines of an entry start.
+#[derive(Debug)]
+struct Margins {
+    /// The line that was started last.
+    line: usize,
+    /// The other lines of the entry, where no list has an element a line.
+    others: usize,
+    /// The lines on which the lists around begin that have an element a line.
+    lists: Vec<usize>,
+}
+
+impl Margins {
+    fn new(line: usize, others: usize) -> Self {
+        Self {
+            line,
+            others,
+            lists: Vec::new(),
+        }
+    }
+
+    /// Starts a line with a word, and answers where.
+    fn start(&mut self, before: Before) -> usize {
+        self.line = match before {
+            Before::Element(depth) => {
+                if self.lists.len() < depth {
+                    self.lists.push(self.line);
+                }
+                self.of_elements().unwrap_or(self.others)
+            }
+            // A list without elements opens none.
+            Before::Close(depth) if self.lists.len() < depth => self.line,
+            Before::Close(_) => self.lists.pop().unwrap_or(self.line),
+            _ => self
+                .of_elements()
+                .map_or(self.others, |margin| margin + INDENT),
+        };
+        self.line
+    }
+
+    fn of_elements(&self) -> Option<usize> {
+        self.lists.last().map(|opened| opened + INDENT)
+    }
+}
+
+/// The words that start a line, by their indices, with the lines' margins. A line that is too long is broken where it is
+/// least nested, and there as late as may be.
+fn line_starts(words: &[Word<'_>], start: usize, margins: &mut Margins) -> Vec<(usize, usize)> {
+    let mut starts = Vec::new();
     let mut column = start;
     let mut best: Option<(usize, usize)> = None;
     let mut index = 0;
     while let Some(word) = words.get(index) {
         match word.before {
-            Before::Line => {
-                ends.push(index);
+            Before::Line | Before::Element(_) | Before::Close(_) => {
+                column = margins.start(word.before);
+                starts.push((index, column));
                 best = None;
-                column = indent;
             }
             Before::Fold(depth) if best.is_none_or(|(least, _)| depth <= least) => {
                 best = Some((depth, index));
@@ -226,11 +303,12 @@ fn line_ends(words: &[Word<'_>], start: usize, indent: usize) -> Vec<usize> {
             && !ends_line(word.text)
             && let Some((_, at)) = best.take()
         {
-            ends.push(at);
-            column = indent + width(&words[at..=at]).saturating_sub(1);
+            let margin = margins.start(Before::Line);
+            starts.push((at, margin));
+            column = margin + width(&words[at..=at]).saturating_sub(1);
             index = at;
         }
         index += 1;
     }
-    ends
+    starts
 }

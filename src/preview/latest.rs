@@ -1,8 +1,11 @@
 //! A place for one value, of which only the newest counts.
 
-use std::sync::{
-    Condvar, Mutex, MutexGuard, PoisonError,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    sync::{
+        Condvar, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
 };
 
 /// What one thread puts and another one takes. A value that is put takes the place of one that nobody has taken.
@@ -36,6 +39,11 @@ impl<T> Default for Latest<T> {
 impl<T> Latest<T> {
     /// Waits for the next value; `None` means that there will be no more.
     pub fn take(&self) -> Option<T> {
+        self.take_while(Duration::MAX, || {})
+    }
+
+    /// The same, and does something whenever it has waited for so long again.
+    pub fn take_while(&self, pause: Duration, mut idle: impl FnMut()) -> Option<T> {
         let mut state = self.lock();
         loop {
             if state.is_over {
@@ -45,10 +53,17 @@ impl<T> Latest<T> {
                 self.stale.store(false, Ordering::SeqCst);
                 return Some(value);
             }
-            state = self
+            let (waited, result) = self
                 .news
-                .wait(state)
+                .wait_timeout(state, pause)
                 .unwrap_or_else(PoisonError::into_inner);
+            state = waited;
+            if result.timed_out() && state.next.is_none() {
+                // What is done may take its time: values can be put meanwhile.
+                drop(state);
+                idle();
+                state = self.lock();
+            }
         }
     }
 
@@ -103,6 +118,19 @@ mod tests {
         latest.end();
         assert_eq!(latest.take(), None);
         assert!(latest.stale().load(Ordering::SeqCst));
+    }
+
+    #[test]
+    fn whoever_waits_long_does_something_else_meanwhile() {
+        let latest = Latest::default();
+        let mut idle = 0;
+        let taken = latest.take_while(Duration::from_millis(1), || {
+            idle += 1;
+            if idle == 3 {
+                latest.put(1);
+            }
+        });
+        assert_eq!((taken, idle), (Some(1), 3));
     }
 
     #[test]

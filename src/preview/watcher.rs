@@ -7,6 +7,9 @@
 //! forgets what kind an event is, and would be woken by our own reading, and the large one keeps books on files that were renamed,
 //! which nobody asks for here.) Once a second the file's time and length are looked at in any case, for folders without events, such as
 //! those on other machines, and for those that come and go.
+//!
+//! A save is told by the file's time, its length and which file it is, and not by the text alone: who saves the text that was there
+//! wants to see something happen. Whatever else an editor does to a file that it has written changes none of them.
 
 use std::{
     collections::BTreeSet,
@@ -50,7 +53,7 @@ pub struct Content {
 }
 
 /// Watches a file, which is read by `read`, until what is returned ends or is dropped. The first content is there at once; after that
-/// there is one whenever it differs from the one before.
+/// there is one whenever the file was saved, be it with the text that it had.
 pub fn watch(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
@@ -66,7 +69,7 @@ pub fn watch(
         events,
         folders: BTreeSet::new(),
         names: Vec::new(),
-        stamp: stamp(path),
+        stamp: None,
         seen: None,
     };
     watcher.follow()?;
@@ -89,7 +92,7 @@ struct Watcher<R> {
     folders: BTreeSet<PathBuf>,
     /// What the file is called in them.
     names: Vec<OsString>,
-    /// What was seen of it from outside.
+    /// What was seen of it from outside when it was read last.
     stamp: Option<Stamp>,
     /// What was read last; of an error, its words.
     seen: Option<Result<Vec<u8>, String>>,
@@ -119,7 +122,6 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             }
             // A folder that cannot be watched now is looked at once a second.
             let _ = self.follow();
-            self.stamp = stamp(&self.path);
             self.look(since, &latest);
         }
     }
@@ -181,22 +183,40 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file, and hands its content on if it is a new one.
+    /// Reads the file, and hands its content on if it was saved since it was read last.
     fn look(&mut self, since: Instant, latest: &Latest<Content>) {
-        let bytes = self.read_when_there();
+        let (stamp, bytes) = self.read_when_still();
         let seen = match &bytes {
             Ok(bytes) => Ok(bytes.clone()),
             Err(error) => Err(error.to_string()),
         };
-        if self.seen.as_ref() != Some(&seen) {
+        // Where a clock ticks slowly, or somebody sets a file's time back, the text alone tells.
+        if stamp != self.stamp || self.seen.as_ref() != Some(&seen) {
+            self.stamp = stamp;
             self.seen = Some(seen);
             latest.put(Content { bytes, since });
         }
     }
 
-    fn read_when_there(&self) -> io::Result<Vec<u8>> {
+    /// The file's content, with the stamp that it has. What was written while it was read is read again: with the stamp of before, a
+    /// save that was read already would be taken for another one.
+    fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
+        let end = Instant::now() + LONGEST_BURST;
+        loop {
+            let (before, bytes) = self.read_when_there();
+            let after = stamp(&self.path);
+            if before == after || Instant::now() >= end {
+                return (before, bytes);
+            }
+            self.settle();
+        }
+    }
+
+    /// The file's content, with the stamp that it had before it was read.
+    fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + ABSENCE;
         loop {
+            let stamp = stamp(&self.path);
             let bytes = (self.read)(&self.path);
             let is_there = match &bytes {
                 Ok(bytes) => !bytes.is_empty(),
@@ -204,7 +224,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             let left = end.saturating_duration_since(Instant::now());
             if is_there || left.is_zero() || self.seen.is_none() {
-                return bytes;
+                return (stamp, bytes);
             }
             if let Ok(event) = self.events.recv_timeout(left.min(QUIET))
                 && self.concerns(&event)
@@ -238,12 +258,27 @@ fn folder(path: &Path) -> PathBuf {
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
-/// What changes when a file does, as a rule: its time and its length.
-type Stamp = (SystemTime, u64);
+/// What changes when a file is saved: its time, its length, or which file it is.
+type Stamp = (SystemTime, u64, FileId);
 
 fn stamp(path: &Path) -> Option<Stamp> {
     let found = fs::metadata(path).ok()?;
-    Some((found.modified().ok()?, found.len()))
+    Some((found.modified().ok()?, found.len(), file_id(&found)))
+}
+
+/// The device of a file, and its number there.
+type FileId = (u64, u64);
+
+#[cfg(unix)]
+fn file_id(found: &fs::Metadata) -> FileId {
+    use std::os::unix::fs::MetadataExt as _;
+    (found.dev(), found.ino())
+}
+
+/// Elsewhere the library tells no number, and a file that takes the place of another has a time of its own.
+#[cfg(not(unix))]
+fn file_id(_: &fs::Metadata) -> FileId {
+    (0, 0)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use miette::Diagnostic;
 use thiserror::Error;
 
+use super::schema::Type;
 use crate::{diagnostic::Fix, source::Span};
 
 /// A problem of meaning. The first label is the place to jump to.
@@ -183,6 +184,10 @@ pub enum Problem {
         what: &'static str,
         #[label("this name is taken")]
         span: Span,
+        /// What it was to stand for, if that is known.
+        found: Option<Type>,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("there is nothing named `{name}`")]
@@ -223,6 +228,8 @@ pub enum Problem {
         definition: Span,
         #[label(collection, "and used here")]
         more: Vec<Span>,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("there is no function `{name}`")]
@@ -578,6 +585,22 @@ impl Problem {
 }
 
 impl Problem {
+    /// The value that it is about, if another value there could be right.
+    pub fn place_of_value(&self) -> Option<Span> {
+        match self {
+            Self::FunctionWithoutArguments { span, .. }
+            | Self::ArgumentType { span, .. }
+            | Self::BareAngle { span, .. }
+            | Self::WrongType { span, .. }
+            | Self::PartType { span, .. }
+            | Self::OutOfRange { whole: span, .. } => Some(*span),
+            Self::OperandTypes { left, right, .. } => {
+                Some(left.map_or(*right, |left| left.to(*right)))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether it is about a name that stands for nothing.
     pub fn is_of_name(&self) -> bool {
         matches!(

@@ -7,6 +7,11 @@ use crate::{
 };
 
 impl Fixable for Problem {
+    /// Only reading the scene tells what a field without a value is called.
+    fn is_of_syntax(&self) -> bool {
+        matches!(self, Self::MissingValue { .. })
+    }
+
     fn fixes(&self, sources: &Sources) -> Vec<Fix> {
         match self {
             Self::UnknownFunction {
@@ -34,7 +39,9 @@ impl Fixable for Problem {
             | Self::EmptyDepth { fixes, .. }
             | Self::EmptyBox { fixes, .. }
             | Self::NotFinite { fixes, .. }
-            | Self::OperandTypes { fixes, .. } => fixes.clone(),
+            | Self::OperandTypes { fixes, .. }
+            | Self::PredefinedName { fixes, .. }
+            | Self::UsedBeforeDefinition { fixes, .. } => fixes.clone(),
             Self::BareAngle { span, instead, .. }
             | Self::WrongType { span, instead, .. }
             | Self::PartCount { span, instead, .. }
@@ -69,9 +76,9 @@ impl Fixable for Problem {
             }
             Self::DuplicateLet {
                 name, definition, ..
-            } => vec![Fix::remove(
+            } => vec![Fix::remove_whole(
                 format!("remove this `let {name}`"),
-                *definition,
+                [*definition],
                 sources,
             )],
             Self::UnexpectedName { name, span, .. }
@@ -96,9 +103,7 @@ impl Fixable for Problem {
                 vec![Fix::write(*span, pixels.to_string())]
             }
             // What is meant is for the author to say, or takes a look at more than this place.
-            Self::PredefinedName { .. }
-            | Self::UsedBeforeDefinition { .. }
-            | Self::ArgumentType { .. }
+            Self::ArgumentType { .. }
             | Self::PartType { .. }
             | Self::NumberTooLarge { .. }
             | Self::ViewUndefined { .. }
@@ -127,7 +132,7 @@ fn one_of_two(name: &str, what: &str, [first, second]: [Span; 2], sources: &Sour
     let ways = [("first", "second", second), ("second", "first", first)];
     let fixes = ways.map(|(kept, removed, span)| {
         let title = format!("keep the {kept} `{name}`{what}, remove the {removed}");
-        Fix::remove(title, span, sources)
+        Fix::remove_whole(title, [span], sources)
     });
     fixes.to_vec()
 }

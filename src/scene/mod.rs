@@ -17,6 +17,7 @@
 pub mod css;
 mod error;
 mod eval;
+mod examples;
 mod fixes;
 mod lower;
 mod overrides;
@@ -26,6 +27,7 @@ mod untangle;
 mod value;
 
 pub use eval::{example_call, predefined};
+pub use examples::example_beside;
 pub use lower::{read, read_in_parts, survey};
 pub use survey::{Parts, Survey};
 pub use value::Value;

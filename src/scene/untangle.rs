@@ -235,7 +235,10 @@ impl<'s> Dealt<'_, 's> {
                     return ValueKind::Bad;
                 }
                 let texts = (sources.text(left.span), sources.text(right.span));
-                syntax::missing_operator(texts.0, texts.1, right.span)
+                match has_no_product(left) && has_no_product(right) {
+                    true => syntax::missing_field(texts.0, texts.1, right.span),
+                    false => syntax::missing_operator(texts.0, texts.1, right.span),
+                }
             }
         };
         problems.push(problem);
@@ -254,6 +257,15 @@ impl Dealt<'_, '_> {
             ValueKind::Name(name) => self.row.field(name).map(|_| last.sign),
             _ => self.operator_before_field(&last.operand),
         }
+    }
+}
+
+/// Whether a value is a vector or a colour as it stands.
+fn has_no_product(value: &tree::Value<'_>) -> bool {
+    match value.kind {
+        ValueKind::Tuple(_) | ValueKind::ColorCode(_) => true,
+        ValueKind::Name(name) => predefined(name) == Some("a colour"),
+        _ => false,
     }
 }
 

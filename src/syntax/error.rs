@@ -42,6 +42,16 @@ pub enum Problem {
         places: Vec<Span>,
     },
 
+    #[error("a line of a comment ends at a carriage return alone, which ends no line")]
+    #[diagnostic(
+        code(pinhole::odd_space),
+        help("end the lines at LF or CRLF; the comment takes what follows, up to the next LF")
+    )]
+    LoneReturn {
+        #[label("here")]
+        span: Span,
+    },
+
     #[error("a comment is never closed")]
     #[diagnostic(
         code(pinhole::unclosed_comment),
@@ -184,13 +194,13 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("an operator is missing between `{left}` and `{right}`")]
+    #[error("{} is missing between `{left}` and `{right}`", meant.missing())]
     #[diagnostic(code(pinhole::missing_operator), help("{help}"))]
     MissingOperator {
         left: String,
         right: String,
         help: String,
-        #[label("what is to be done with this?")]
+        #[label("{}", meant.question())]
         span: Span,
         /// What may be meant.
         meant: Meant,
@@ -252,6 +262,8 @@ pub enum Problem {
         help: String,
         #[label("not one of `+`, `-`, `*` and `/`")]
         span: Span,
+        /// What can be written instead, and where.
+        instead: Option<(Span, String)>,
     },
 
     #[error("no `+` stands before a value")]
@@ -395,6 +407,26 @@ pub enum Meant {
     Product,
     /// The call of a function.
     Call,
+    /// The value of another field.
+    Field,
+    /// Nothing that can be told: two vectors have no product.
+    Unclear,
+}
+
+impl Meant {
+    fn missing(self) -> &'static str {
+        match self {
+            Self::Product | Self::Call | Self::Unclear => "an operator",
+            Self::Field => "a field's name",
+        }
+    }
+
+    fn question(self) -> &'static str {
+        match self {
+            Self::Product | Self::Call | Self::Unclear => "what is to be done with this?",
+            Self::Field => "which field is this for?",
+        }
+    }
 }
 
 fn times(more: usize) -> String {

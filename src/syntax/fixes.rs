@@ -1,8 +1,8 @@
 //! What can be done about problems of syntax.
 
-use super::{Problem, error::Meant};
+use super::{Problem, error::Meant, junk::shorten};
 use crate::{
-    diagnostic::{Edit, Fix, Fixable},
+    diagnostic::{Edit, Fix, Fixable, with_comments},
     source::{Sources, Span},
 };
 
@@ -17,10 +17,42 @@ impl Fixable for Problem {
         )
     }
 
+    fn is_of_syntax(&self) -> bool {
+        true
+    }
+
+    fn is_fix_doubtful(&self) -> bool {
+        match self {
+            Self::UnclosedComment { .. }
+            | Self::UnclosedParenthesis { .. }
+            | Self::BadHead { .. }
+            | Self::UnopenedBlock { .. } => true,
+            // What is multiplied may be no number, or the product no angle.
+            Self::BadNumber { instead, .. } => {
+                let instead = instead.as_ref();
+                instead.is_some_and(|[_, part]| part.starts_with(" * "))
+            }
+            _ => false,
+        }
+    }
+
     fn fixes(&self, sources: &Sources) -> Vec<Fix> {
         match self {
             Self::OddSpace { places, span, .. } => odd_spaces(places, sources.text(*span)),
+            Self::LoneReturn { span } => {
+                let text = sources.get(span.source).text();
+                let returns = text.match_indices('\r');
+                let lone = returns.filter(|(at, _)| text.as_bytes().get(at + 1) != Some(&b'\n'));
+                let edits = lone.map(|(at, _)| {
+                    Edit::new(
+                        Span::new(span.source, at, at + 1),
+                        sources.get(span.source).line_end(),
+                    )
+                });
+                vec![Fix::new("end these lines as text files do", edits)]
+            }
             Self::UnclosedComment { span } => unclosed_comment(*span, sources),
+            Self::UnclosedParenthesis { span } => unclosed_parenthesis(*span, sources),
             Self::UnclosedBlock {
                 kind, open, end, ..
             } => {
@@ -72,12 +104,11 @@ impl Fixable for Problem {
                 span,
                 meant,
                 ..
-            } => {
-                vec![match meant {
-                    Meant::Product => product(left, right, *span, sources),
-                    Meant::Call => call(left, right, *span, sources),
-                }]
-            }
+            } => match meant {
+                Meant::Product => vec![product(left, right, *span, sources)],
+                Meant::Call => vec![call(left, right, *span, sources)],
+                Meant::Field | Meant::Unclear => Vec::new(),
+            },
             Self::MissingComma { whole, places, .. } => vec![Fix::new(
                 format!("write `{whole}`"),
                 places.iter().map(|place| Edit::new(*place, ",")),
@@ -102,12 +133,11 @@ impl Fixable for Problem {
                     ends.map(|(at, sign)| Edit::new(Span::new(source, at, at + 1), sign)),
                 )]
             }
-            Self::UnknownOperator { sign, span, .. } => match sign.as_str() {
-                "×" | "·" => vec![Fix::write(*span, "*")],
-                "÷" => vec![Fix::write(*span, "/")],
-                "−" => vec![Fix::write(*span, "-")],
-                _ => Vec::new(),
-            },
+            Self::UnknownOperator { instead, .. } => {
+                let fix = instead.as_ref();
+                let fix = fix.map(|(place, text)| Fix::write(*place, text));
+                fix.into_iter().collect()
+            }
             Self::Quoted { what, span, .. } => {
                 let inner = sources.text(*span).trim_matches(['"', '\'']).trim();
                 let inner = match *what {
@@ -159,24 +189,25 @@ impl Fixable for Problem {
                 let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
                 let indent = if line.trim().is_empty() { line } else { "" };
                 let line_end = sources.get(block.source).line_end();
-                let text = format!("{}{line_end}{indent}", sources.text(*definitions));
+                let definitions = with_comments(*definitions, sources);
+                let text = format!("{}{line_end}{indent}", sources.text(definitions));
                 vec![Fix::new(
                     "move it before the block",
                     [
                         Edit::insert(block.source, block.start, text),
-                        Edit::remove(*definitions, sources),
+                        Edit::remove(definitions, sources),
                     ],
                 )]
             }
             Self::UnopenedBlock { head, span, .. } => {
-                let after = sources.get(span.source).text().get(span.end..);
-                // A `(` would have to go for it, and its `)` for a `}`.
-                match after.is_some_and(|after| after.trim_start().starts_with('(')) {
-                    true => Vec::new(),
-                    false => vec![Fix::new(
-                        format!("write `{head} {{`"),
-                        [Edit::insert(span.source, span.end, " {")],
-                    )],
+                let title = format!("write `{head} {{`");
+                match in_parentheses(*span, sources) {
+                    Some(ends) => {
+                        let braces = ends.into_iter().zip(["{", "}"]);
+                        let edits = braces.map(|(end, brace)| Edit::new(end, brace));
+                        vec![Fix::new(title, edits)]
+                    }
+                    None => vec![Fix::new(title, [Edit::insert(span.source, span.end, " {")])],
                 }
             }
             Self::MissingLet {
@@ -192,7 +223,6 @@ impl Fixable for Problem {
             Self::InvalidUtf8 { .. }
             | Self::Utf16 { .. }
             | Self::TooDeep { .. }
-            | Self::UnclosedParenthesis { .. }
             | Self::MissingValue { .. }
             | Self::FieldWithoutValue { .. }
             | Self::SetWithoutValue { .. }
@@ -207,17 +237,85 @@ impl Fixable for Problem {
     }
 }
 
-/// A comment of one line may have been meant by what has no end. Of several lines it took the rest of the text, which may
-/// stay so, or become what it was.
+/// A comment of one line is meant, as a rule. What closes what was opened before it on the line stands behind its end.
 fn unclosed_comment(span: Span, sources: &Sources) -> Vec<Fix> {
     let text = sources.get(span.source).text();
-    let taken = text.get(span.start..).unwrap_or_default().trim_end();
-    let line = Fix::new("begin it with `//`", [Edit::new(span, "//")]);
-    if !taken.contains('\n') {
-        return vec![line];
+    let before = text.get(..span.start).unwrap_or_default();
+    let before = before.rsplit('\n').next().unwrap_or_default();
+    let taken = text.get(span.start..).unwrap_or_default();
+    let line = taken.lines().next().unwrap_or_default();
+    let mut open = 0_usize;
+    for sign in before.chars() {
+        match sign {
+            '{' | '(' => open += 1,
+            '}' | ')' => open = open.saturating_sub(1),
+            _ => {}
+        }
     }
-    let close = Edit::insert(span.source, span.start + taken.len(), " */");
-    vec![Fix::new("close it at the end of the text", [close]), line]
+    let mut comment = line.trim_end();
+    let closing = |comment: &str| comment.strip_suffix(['}', ')']).map(|c| c.trim_end().len());
+    while open > 0
+        && let Some(end) = closing(comment)
+    {
+        comment = comment.get(..end).unwrap_or_default();
+        open -= 1;
+    }
+    let at = span.start + comment.len();
+    vec![
+        Fix::new(
+            "close it in its line",
+            [Edit::insert(span.source, at, " */")],
+        ),
+        Fix::new("begin it with `//`", [Edit::new(span, "//")]),
+    ]
+}
+
+/// A value ends before the name of the next field, or before the brace.
+fn unclosed_parenthesis(span: Span, sources: &Sources) -> Vec<Fix> {
+    /// More words than these are no vector with a parenthesis missing.
+    const MOST: usize = 4;
+    let text = sources.get(span.source).text();
+    let value = text.get(span.end..).unwrap_or_default();
+    let brace = value.find(['{', '}']);
+    let value = value
+        .get(..brace.unwrap_or(value.len()))
+        .unwrap_or_default();
+    let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let starts = value.match_indices(|c: char| c.is_ascii_alphabetic());
+    let starts = starts.map(|(at, _)| at).filter(|&at| {
+        let before = value.get(..at).unwrap_or_default();
+        before.ends_with(char::is_whitespace)
+    });
+    let words = starts.map(|at| {
+        let word = value.get(at..).unwrap_or_default();
+        let word = word.split(|c| !is_of_word(c)).next().unwrap_or_default();
+        (at, word)
+    });
+    let mut ends: Vec<(usize, &str)> = words.take(MOST).collect();
+    ends.extend(brace.map(|brace| (brace, "}")));
+    let fixes = ends.into_iter().map(|(end, next)| {
+        let before = value.get(..end).unwrap_or_default();
+        let at = span.end + before.trim_end().len();
+        let edit = Edit::insert(span.source, at, ")");
+        Fix::new(format!("write `)` before `{}`", shorten(next)), [edit])
+    });
+    fixes.collect()
+}
+
+/// The parentheses right behind a block's head, if that has them in place of braces.
+fn in_parentheses(head: Span, sources: &Sources) -> Option<[Span; 2]> {
+    let text = sources.get(head.source).text();
+    let after = text.get(head.end..)?;
+    let inner = after.trim_start().strip_prefix('(')?;
+    let at = |rest: usize| Span::new(head.source, text.len() - rest - 1, text.len() - rest);
+    let mut open = 1_usize;
+    let close = inner.char_indices().find(|(_, sign)| {
+        open += usize::from(*sign == '(');
+        open -= usize::from(*sign == ')');
+        open == 0
+    });
+    let rest = inner.len() - close?.0 - 1;
+    Some([at(inner.len()), at(rest)])
 }
 
 /// What has no width, as a rule, is not meant to keep words apart.

@@ -3,7 +3,6 @@
 use std::{
     fs,
     io::Write,
-    path::Path,
     process::{Command, Output, Stdio},
 };
 
@@ -12,6 +11,7 @@ use tempfile::TempDir;
 
 #[cfg(unix)]
 use crate::interrupt::interrupted;
+use crate::program::command;
 
 /// A small scene that sees something of everything.
 const SCENE: &str = "\u{feff}// A ball on a floor.\r
@@ -31,19 +31,6 @@ fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.scn"), SCENE).unwrap();
     folder
-}
-
-/// The binary in a folder, with the surroundings that its words depend on.
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command
-        .args(arguments)
-        .current_dir(folder)
-        .env("LC_ALL", "C.UTF-8")
-        .env_remove("NO_COLOR")
-        .env_remove("NO_GRAPHICS")
-        .stdin(Stdio::null());
-    command
 }
 
 fn pinhole(folder: &TempDir, arguments: &[&str]) -> Output {
@@ -607,7 +594,7 @@ fn ctrl_c_leaves_the_old_file() {
 
 #[test]
 fn a_bound_that_is_worth_a_word_gets_one() {
-    let scene = "image { width 4 height 3 }
+    let scene = "image { width 6000 height 3 }
                  camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-14 }
                  sampler { method exact }
                  checkerboard { y 0 square 1e-3 }";
@@ -615,7 +602,7 @@ fn a_bound_that_is_worth_a_word_gets_one() {
     let path = folder.path().join("wide.scn");
     fs::write(&path, scene).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .args(["render", "-o"])
+        .args(["render", "--crop", "5999,0,1,3", "-o"])
         .arg(folder.path().join("wide.png"))
         .arg(&path)
         .output()

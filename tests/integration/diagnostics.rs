@@ -315,18 +315,17 @@ fn json_is_as_the_contract_says() {
 fn labels_at_and_past_the_end_are_drawn() {
     let sources = Sources::new(Source::from_text("a.scn", "sphere {"));
     for (start, end) in [(8, 8), (8, 9), (7, 100), (100, 200), (0, 0)] {
-        let diagnostic = Diagnostic {
-            severity: Severity::Error,
-            code: "pinhole::test".to_owned(),
-            message: "a test".to_owned(),
-            help: None,
-            labels: vec![Label {
-                span: Span::new(SourceId::File, start, end),
-                message: "here it is".to_owned(),
-            }],
-            fixes: Vec::new(),
-            is_needless: false,
-        };
+        let nothing = Sources::new(Source::from_text("a.scn", ""));
+        let mut diagnostic = scene::read(&nothing).diagnostics.remove(0);
+        diagnostic.severity = Severity::Error;
+        diagnostic.code = "pinhole::test".to_owned();
+        diagnostic.message = "a test".to_owned();
+        diagnostic.help = None;
+        diagnostic.labels = vec![Label {
+            span: Span::new(SourceId::File, start, end),
+            message: "here it is".to_owned(),
+        }];
+        diagnostic.fixes = Vec::new();
         for drawing in [Drawing::Unicode, Drawing::Ascii, Drawing::Narrated] {
             let style = Style {
                 drawing,

@@ -10,19 +10,17 @@ use std::{
 
 use tempfile::TempDir;
 
+use crate::program::command;
+
 const UNTIDY: &str = "let a=1\nsphere {center (a,2,3)} // c\n";
 const TIDY: &str = "let a = 1\nsphere { center (a, 2, 3) }  // c\n";
 const BROKEN: &str = "let a=1;\nsphere {center (a,2,3)}\n";
 
 /// Runs `pinhole fmt`: its status, standard output and standard error.
 fn fmt(folder: &Path, input: &str, arguments: &[&str]) -> (i32, String, String) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .arg("fmt")
-        .args(arguments)
-        .current_dir(folder)
-        .env("LC_ALL", "C.UTF-8")
+    let arguments = [&["fmt"], arguments].concat();
+    let mut child = command(folder, &arguments)
         .env("NO_COLOR", "1")
-        .env_remove("NO_GRAPHICS")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -98,6 +96,19 @@ fn check_prints_a_diff_and_writes_nothing() {
 "
     );
     assert_eq!(read(&folder, "a.scn"), UNTIDY);
+}
+
+#[test]
+fn check_shows_line_ends_where_they_are_all_that_changes() {
+    let text = "let a = 1\r\nlet b = 2\n";
+    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
+    assert_eq!(status, 1);
+    assert!(errors.contains("\n-let a = 1␍\n+let a = 1\n"), "{errors}");
+    // Where all lines have one, there is nothing to show.
+    let text = "let  a = 1\r\nlet b = 2\r\n";
+    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
+    assert_eq!(status, 1);
+    assert!(!errors.contains('␍'), "{errors}");
 }
 
 /// A terminal would obey them.

@@ -16,7 +16,7 @@ use pinhole::{
         tree::{Element, Item, Value, ValueKind},
     },
 };
-use proptest::{prelude::*, sample::select};
+use proptest::{prelude::*, sample::select, strategy::ValueTree};
 
 fn formatted(text: &str) -> Result<String, Vec<String>> {
     let codes = |diagnostics: Vec<pinhole::diagnostic::Diagnostic>| {
@@ -182,6 +182,96 @@ fn the_laws_hold(text: &str, formatted_text: &str) {
         assert_eq!(line.trim_end_matches([' ', '\t']), line);
     }
     assert!(!formatted_text.contains("\n\n\n") && !formatted_text.ends_with("\n\n"));
+    lists_are_open(formatted_text);
+}
+
+/// The lists of a value with their elements, from the outside in.
+fn lists<'v>(value: &'v Value<'v>, found: &mut Vec<(Span, Vec<&'v Value<'v>>)>) {
+    match &value.kind {
+        ValueKind::Call(call) => {
+            let values: Vec<_> = call.arguments.iter().map(|e| &e.value).collect();
+            found.push((call.parentheses, values.clone()));
+            values.into_iter().for_each(|value| lists(value, found));
+        }
+        ValueKind::Parentheses(inner) => {
+            found.push((value.span, vec![&**inner]));
+            lists(inner, found);
+        }
+        ValueKind::Tuple(elements) => {
+            let values: Vec<_> = elements.iter().map(|e| &e.value).collect();
+            found.push((value.span, values.clone()));
+            values.into_iter().for_each(|value| lists(value, found));
+        }
+        ValueKind::Negation { operand, .. } => lists(operand, found),
+        ValueKind::Chain { first, rest } => {
+            lists(first, found);
+            rest.iter().for_each(|step| lists(&step.operand, found));
+        }
+        _ => {}
+    }
+}
+
+/// In a list with a comment that ends or starts a line, every element starts one too, further to the right by two than the
+/// line of the `(`; and the `)` stands below that line's start. Answers how many such lists there are.
+fn lists_are_open(text: &str) -> usize {
+    let source = Source::from_text("a.scn", text);
+    let parsed = syntax::parse(&source, SourceId::File);
+    // A comment of several lines hides where a line began.
+    if parsed
+        .comments
+        .iter()
+        .any(|c| text[c.range()].contains('\n'))
+    {
+        return 0;
+    }
+    let mut found = Vec::new();
+    for item in &parsed.tree.items {
+        match item {
+            Item::Definition(definition) => lists(&definition.value, &mut found),
+            Item::Block(block) => block
+                .fields
+                .iter()
+                .for_each(|f| lists(&f.value, &mut found)),
+            Item::Bad(_) => {}
+        }
+    }
+    let mut bare = text.to_owned();
+    for comment in &parsed.comments {
+        bare.replace_range(comment.range(), &" ".repeat(comment.range().len()));
+    }
+    let start_of_line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let indent = |at: usize| {
+        let line = text[start_of_line(at)..].trim_start_matches('\u{feff}');
+        line.len() - line.trim_start_matches(' ').len()
+    };
+    let before = |at: usize| bare[start_of_line(at)..at].trim();
+    let breaks = |comment: &&Span| {
+        let gap = text[..comment.start].trim_end().len();
+        text[comment.range()].starts_with("//") || text[gap..comment.start].contains('\n')
+    };
+    let mut open = 0;
+    for (span, elements) in found {
+        let close = span.end - 1;
+        let mut inside = parsed
+            .comments
+            .iter()
+            .filter(|c| c.start > span.start && c.end <= close);
+        if !inside.any(|comment| breaks(&comment)) {
+            continue;
+        }
+        open += 1;
+        assert_eq!(
+            (before(close), indent(close)),
+            ("", indent(span.start)),
+            "{text}"
+        );
+        for element in elements {
+            let start = element.span.start;
+            assert!(["", ","].contains(&before(start)), "{text}");
+            assert_eq!(indent(start), indent(span.start) + 2, "{text}");
+        }
+    }
+    open
 }
 
 #[test]
@@ -217,9 +307,27 @@ fn mistakes_of_syntax_are_told_and_no_others() {
     // So it is where the field is no field.
     assert_eq!(formatted("sphere { radus }"), codes(&["missing_value"]));
     assert_eq!(formatted("ball { radius }"), codes(&["missing_value"]));
+    // And so it is with a value that could not be read.
+    for (value, code) in [
+        ("(2", "unclosed_parenthesis"),
+        ("2)", "stray_closing"),
+        ("2.5.5", "bad_number"),
+        ("#ff", "bad_color_code"),
+        (", color red", "needless_separator"),
+        (")", "stray_closing"),
+    ] {
+        let text = format!("sphere {{ center (0, 1, 0)  radus {value} }}");
+        assert_eq!(formatted(&text), codes(&[code]), "{text}");
+    }
     assert_eq!(
         formatted("sphere { center (1"),
         codes(&["unclosed_block", "unclosed_parenthesis"])
+    );
+    // The comment would have to end where it does not.
+    assert_eq!(formatted("// a\rlet a=1\r"), codes(&["odd_space"]));
+    assert_eq!(
+        formatted("let a=1\rlet b=2\r").unwrap(),
+        "let a = 1\nlet b = 2\n"
     );
     let source = Source::from_bytes("a.scn", b"// \xff\nsphere { }".to_vec());
     let mistakes = format(&source).unwrap_err();
@@ -245,8 +353,15 @@ fn little_texts() {
         ("let a=1\r\nlet b=2\n", "let a = 1\nlet b = 2\n"),
         ("/* a \r\n b */let a=1\r\n", "/* a\r\n b */ let a = 1\r\n"),
         ("let a=2/ /* two */3", "let a = 2 / /* two */ 3\n"),
-        ("let a=2/ // two\n3", "let a = 2 / // two\n  3\n"),
-        ("let a=-// minus\n3", "let a = - // minus\n  3\n"),
+        ("let a=2/ // two\n3", "let a = 2 /  // two\n  3\n"),
+        ("let a=-// minus\n3", "let a = -  // minus\n  3\n"),
+        (
+            "let a=max(// c\n1,2/* d */)",
+            "let a = max(  // c\n  1,\n  2  /* d */\n)\n",
+        ),
+        ("let a=f(\n/* c */\n)", "let a = f(\n  /* c */\n)\n"),
+        ("let a=(1,/* c */\n2,3)", "let a = (1, /* c */ 2, 3)\n"),
+        ("let a=(1 // c\n)", "let a = (\n  1  // c\n)\n"),
         ("box A{min a max(b)}", "box A { min a  max (b) }\n"),
     ];
     for (text, expected) in cases {
@@ -363,13 +478,44 @@ fn value() -> impl Strategy<Value = Vec<String>> {
             let sign = ["-".to_owned()];
             sign.into_iter().chain(value).collect()
         });
+        // As it is written by hand: an element a line, and what it is beside it.
+        let remark = select(vec![
+            "",
+            " // x",
+            " // of the left one",
+            " /* y */",
+            "\n// own",
+        ]);
+        let explained = (
+            select(vec!["(", "max("]),
+            prop::collection::vec((inner.clone(), remark), 1..4),
+        )
+            .prop_map(|(open, values)| {
+                let last = values.len() - 1;
+                let mut all: Vec<String> = open.split_inclusive("max").map(str::to_owned).collect();
+                for (index, (value, remark)) in values.into_iter().enumerate() {
+                    all.extend(value);
+                    let comma = if index < last { "," } else { "" };
+                    all.push(format!("{comma}{remark}\n"));
+                }
+                all.push(")".to_owned());
+                all
+            });
         let operator = select(vec!["+", "-", "*", "/"]);
         let operation = (inner.clone(), operator, inner).prop_map(|(mut left, sign, right)| {
             left.push(sign.to_owned());
             left.extend(right);
             left
         });
-        prop_oneof![parentheses, call, minus, operation.clone(), operation]
+        prop_oneof![
+            parentheses,
+            call,
+            explained.clone(),
+            explained,
+            minus,
+            operation.clone(),
+            operation
+        ]
     })
 }
 
@@ -444,10 +590,59 @@ fn text() -> impl Strategy<Value = String> {
     })
 }
 
+/// The generated texts have such lists, also within one another.
+#[test]
+fn lists_with_comments_are_generated() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let count = |runner: &mut _| {
+        let text = text().new_tree(runner).unwrap().current();
+        lists_are_open(&formatted(&text).unwrap())
+    };
+    let counts: Vec<usize> = (0..300).map(|_| count(&mut runner)).collect();
+    assert!(
+        counts.iter().filter(|&&count| count > 1).count() > 30,
+        "{counts:?}"
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
     #[test]
     fn the_laws_hold_of_any_text(text in text()) {
         the_laws_hold(&text, &formatted(&text).unwrap());
     }
+}
+
+/// What is written into a text in the wrong place.
+const SLIPS: &[&str] = &[
+    "", "(", ")", "{", "}", ",", "=", "#ff", "2.5.5", " radus ", " let ", "\"", "/*", "*/", "//",
+    "*", "-", "[", "é", "\r",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
+    /// There is a layout, or something to say.
+    #[test]
+    fn what_is_not_laid_out_has_a_mistake(
+        scene in select(texts_of_scenes()),
+        slips in proptest::collection::vec((any::<prop::sample::Index>(), 0_usize..4, select(SLIPS)), 1..4),
+    ) {
+        let mut letters: Vec<char> = scene.chars().collect();
+        for (place, gone, slip) in slips {
+            let at = place.index(letters.len() + 1);
+            let end = letters.len().min(at + gone);
+            letters.splice(at..end, slip.chars());
+        }
+        let text: String = letters.into_iter().collect();
+        if let Err(mistakes) = formatted(&text) {
+            prop_assert!(!mistakes.is_empty(), "{text}");
+        }
+    }
+}
+
+/// The texts of all scenes, right or wrong, that are not long.
+fn texts_of_scenes() -> Vec<String> {
+    let texts = all_scenes().into_iter().map(|path| fs::read(path).unwrap());
+    let texts = texts.filter_map(|bytes| String::from_utf8(bytes).ok());
+    texts.filter(|text| text.len() < 1000).collect()
 }

@@ -26,6 +26,7 @@ mod lsp;
 mod numerics;
 mod overrides;
 mod parts;
+mod program;
 mod readme;
 mod refine;
 mod render;

@@ -3,7 +3,7 @@
 use std::{
     fs,
     path::Path,
-    process::{Command, Output, Stdio},
+    process::{Command, Output},
     sync::atomic::AtomicBool,
 };
 
@@ -24,6 +24,7 @@ use tempfile::TempDir;
 
 #[cfg(unix)]
 use crate::interrupt::interrupted;
+use crate::program;
 
 const SCENE: &str =
     "image { width 48 height 32 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
@@ -40,14 +41,8 @@ fn folder() -> TempDir {
 }
 
 fn command(folder: &TempDir, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command
-        .arg("report")
-        .args(arguments)
-        .current_dir(folder.path())
-        .env("LC_ALL", "C.UTF-8")
-        .stdin(Stdio::null());
-    command
+    let arguments = [&["report"], arguments].concat();
+    program::command(folder.path(), &arguments)
 }
 
 fn report(folder: &TempDir, arguments: &[&str]) -> Output {

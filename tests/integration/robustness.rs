@@ -177,6 +177,20 @@ fn one_thing_a_million_times() {
     }
 }
 
+/// Each of them looks at what stands around it, and all of them on one line.
+#[test]
+fn definitions_in_the_wrong_order() {
+    let count = if cfg!(debug_assertions) {
+        2_000
+    } else {
+        30_000
+    };
+    let uses = (0..count).map(|n| format!("let a{n} = b{n} /* {n} */ "));
+    let definitions = (0..count).map(|n| format!("/* {n} */ let b{n} = {n} "));
+    let text: String = uses.chain(definitions).collect();
+    assert!(!read(text));
+}
+
 #[test]
 fn deep_values() {
     for (open, inner, close) in [

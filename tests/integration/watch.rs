@@ -6,7 +6,7 @@
 use std::{
     fs,
     io::Read,
-    path::{Path, PathBuf},
+    path::PathBuf,
     process::{Child, Command, ExitStatus, Stdio},
     sync::{Arc, Mutex},
     thread,
@@ -14,6 +14,8 @@ use std::{
 };
 
 use tempfile::TempDir;
+
+use crate::program::command;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -143,17 +145,6 @@ impl Drop for Watch {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command
-        .args(arguments)
-        .current_dir(folder)
-        .env("LC_ALL", "C.UTF-8")
-        .env_remove("NO_GRAPHICS")
-        .stdin(Stdio::null());
-    command
 }
 
 #[test]
@@ -312,16 +303,46 @@ fn ctrl_c_ends_a_render_too() {
 }
 
 #[test]
-fn what_does_not_change_the_text_makes_no_picture() {
+fn what_is_no_save_makes_no_picture() {
     let watch = Watch::start(&scene("red"), &[]);
     watch.wait_for(RED);
     watch.wait("it says so", || watch.count("wrote") == 1);
-    watch.save(&scene("red"));
     fs::write(watch.path("other.txt"), "not a scene").unwrap();
+    // As editors do behind a save, and whoever reads the file.
+    let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
+    fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
+    fs::read(watch.path("a.scn")).unwrap();
+    // Longer than the quiet that ends a burst.
+    thread::sleep(Duration::from_millis(100));
     watch.save(&scene("blue"));
     watch.wait_for(BLUE);
     watch.wait("it says so", || watch.count("wrote") >= 2);
     assert_eq!(watch.count("wrote"), 2, "{}", watch.said());
+}
+
+#[test]
+fn a_save_of_the_text_that_was_there_is_a_save() {
+    let watch = Watch::start(&scene("red"), &[]);
+    watch.wait("it is written", || watch.count("after the start") == 1);
+    fs::remove_file(watch.path("a.png")).unwrap();
+    watch.save(&scene("red"));
+    watch.wait_for(RED);
+    watch.wait("it says so", || watch.count("after the save") == 1);
+    // By another file in its place.
+    fs::remove_file(watch.path("a.png")).unwrap();
+    fs::write(watch.path("new"), scene("red")).unwrap();
+    fs::rename(watch.path("new"), watch.path("a.scn")).unwrap();
+    watch.wait_for(RED);
+    watch.wait("it says so", || watch.count("after the save") == 2);
+    let broken = scene("red").replace("width", "widht");
+    for times in 1..=2 {
+        watch.save(&broken);
+        watch.wait("the mistake is reported", || {
+            watch.count("1 error\n") == times
+        });
+    }
+    // Each save is one rendering, in however many events it comes.
+    assert_eq!(watch.count("wrote"), 3, "{}", watch.said());
 }
 
 #[test]

@@ -5,6 +5,8 @@
 
 mod answers;
 mod inbox;
+mod notices;
+mod outbox;
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -13,16 +15,17 @@ use std::{
 };
 
 use gen_lsp_types as lsp;
-use lsp_server::{ErrorCode, Message, Notification, Request};
-use serde_json::{Value, json};
+use lsp_server::{ErrorCode, Message, Request};
+use serde_json::Value;
 
 use self::{
     answers::{answer, diagnostics},
     inbox::{Inbox, Malformed},
+    outbox::{Answer, Refusal, parsed, publish, respond, written},
 };
 use super::{
     convert::{self, Client, Page},
-    documents::{Document, Encoding},
+    documents::Document,
 };
 use crate::editor::Analysis;
 
@@ -70,12 +73,6 @@ struct Server<'o, W> {
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
 }
-
-/// Why a request gets no answer.
-struct Refusal(ErrorCode, String);
-
-/// A result as JSON, written at once: an answer of thousands of tokens needs no tree of values in between.
-type Answer = Result<String, Refusal>;
 
 impl<W: Write> Server<'_, W> {
     /// Takes messages in their order until the end comes, or the client is gone.
@@ -219,101 +216,6 @@ impl<W: Write> Server<'_, W> {
         self.phase = Phase::Talking(client);
         written(&result)
     }
-
-    /// What the client tells: texts that are opened, changed and closed.
-    fn notice(&mut self, notification: Notification) {
-        let Phase::Talking(client) = &self.phase else {
-            return;
-        };
-        let encoding = client.encoding;
-        let method = notification.method.clone();
-        let noticed = match method.as_str() {
-            "textDocument/didOpen" => {
-                parsed(notification.params).map(|params| self.open(params, encoding))
-            }
-            "textDocument/didChange" => {
-                parsed(notification.params).map(|params| self.change(params))
-            }
-            "textDocument/didClose" => parsed(notification.params).map(|params| self.close(params)),
-            // Others are for servers that know more.
-            _ => Ok(()),
-        };
-        if let Err(Refusal(_, message)) = noticed {
-            (self.log)(&format!("{method}: {message}"));
-        }
-    }
-
-    fn open(&mut self, params: lsp::DidOpenTextDocumentParams, encoding: Encoding) {
-        let lsp::TextDocumentItem {
-            uri, version, text, ..
-        } = params.text_document;
-        let name = uri.0.rsplit('/').next().unwrap_or_default().to_owned();
-        self.changed.insert(uri.0.clone());
-        let document = Document::new(&name, version, text, encoding);
-        self.documents.insert(uri, document);
-    }
-
-    fn change(&mut self, params: lsp::DidChangeTextDocumentParams) {
-        let lsp::VersionedTextDocumentIdentifier {
-            version,
-            text_document_identifier,
-        } = params.text_document;
-        let uri = text_document_identifier.uri;
-        match self.documents.get_mut(&uri) {
-            // An old state that comes late would be put on top of a newer one.
-            Some(document) if version < document.version => {
-                (self.log)(&format!("version {version} of {} is stale", uri.0));
-            }
-            Some(document) => {
-                let changes = params.content_changes.into_iter().map(convert::change);
-                document.change(version, changes.collect());
-                self.changed.insert(uri.0);
-            }
-            None => (self.log)(&format!("{} is not open", uri.0)),
-        }
-    }
-
-    fn close(&mut self, params: lsp::DidCloseTextDocumentParams) {
-        let uri = params.text_document.uri;
-        self.documents.remove(&uri);
-        self.changed.insert(uri.0);
-    }
-}
-
-/// Writes a response.
-fn respond(output: &mut impl Write, id: &impl serde::Serialize, answer: Answer) -> io::Result<()> {
-    let id = json!(id);
-    send(
-        output,
-        &match answer {
-            Ok(result) => format!("{{\"jsonrpc\":\"2.0\",\"id\":{id},\"result\":{result}}}"),
-            Err(Refusal(code, message)) => {
-                let error = json!({ "code": code as i32, "message": message });
-                json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string()
-            }
-        },
-    )
-}
-
-/// Writes what is wrong with a text; nothing is with one that was closed.
-fn publish(
-    output: &mut impl Write,
-    uri: &lsp::Uri,
-    version: Option<i32>,
-    diagnostics: &[lsp::Diagnostic],
-) -> io::Result<()> {
-    let mut params = json!({ "uri": uri, "diagnostics": diagnostics });
-    if let Some(version) = version {
-        params["version"] = version.into();
-    }
-    let method = "textDocument/publishDiagnostics";
-    let message = json!({ "jsonrpc": "2.0", "method": method, "params": params });
-    send(output, &message.to_string())
-}
-
-fn send(output: &mut impl Write, message: &str) -> io::Result<()> {
-    write!(output, "Content-Length: {}\r\n\r\n{message}", message.len())?;
-    output.flush()
 }
 
 /// Whether a request is about the conversation itself.
@@ -335,141 +237,5 @@ fn unharmed(answer: impl FnOnce() -> Answer) -> Answer {
     })
 }
 
-fn parsed<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    serde_json::from_value(params)
-        .map_err(|error| Refusal(ErrorCode::InvalidParams, error.to_string()))
-}
-
-fn written(result: &impl serde::Serialize) -> Answer {
-    serde_json::to_string(result)
-        .map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
-}
-
 #[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use super::*;
-
-    fn request(id: i32, method: &str, params: Value) -> Message {
-        Request::new(id.into(), method.to_owned(), params).into()
-    }
-
-    fn notification(method: &str, params: Value) -> Message {
-        Notification::new(method.to_owned(), params).into()
-    }
-
-    fn open(text: &str) -> Message {
-        let document =
-            json!({ "uri": "file:///a.scn", "languageId": "scn", "version": 1, "text": text });
-        notification("textDocument/didOpen", json!({ "textDocument": document }))
-    }
-
-    fn change(version: i32, text: &str) -> Message {
-        let document = json!({ "uri": "file:///a.scn", "version": version });
-        let changes = json!([{ "text": text }]);
-        notification(
-            "textDocument/didChange",
-            json!({ "textDocument": document, "contentChanges": changes }),
-        )
-    }
-
-    fn hover(id: i32) -> Message {
-        let position = json!({ "line": 0, "character": 4 });
-        let document = json!({ "uri": "file:///a.scn" });
-        request(
-            id,
-            "textDocument/hover",
-            json!({ "textDocument": document, "position": position }),
-        )
-    }
-
-    /// What is answered to messages that have all come before the first is taken.
-    fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
-        let (sender, receiver) = std::sync::mpsc::channel();
-        let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
-        for message in [hello].into_iter().chain(messages) {
-            sender.send(Ok(message)).expect("it is kept");
-        }
-        drop(sender);
-        let mut output = Vec::new();
-        let mut server = Server {
-            output: &mut output,
-            log: |_| {},
-            phase: Phase::Silent,
-            documents: HashMap::new(),
-            changed: BTreeSet::new(),
-        };
-        let ended = server.run(&mut Inbox::new(receiver));
-        assert_eq!(ended.expect("a vector takes everything"), Ended::Abruptly);
-        let mut output = output.as_slice();
-        let mut answers = Vec::new();
-        while let Some(message) = Message::read(&mut output).expect("a message") {
-            answers.push(serde_json::to_value(message).expect("a value"));
-        }
-        answers.split_off(1)
-    }
-
-    #[test]
-    fn what_was_cancelled_in_the_meantime_is_not_answered() {
-        let cancel = notification("$/cancelRequest", json!({ "id": 1 }));
-        let found = answers(
-            json!({}),
-            vec![open("let a = 1"), hover(1), hover(2), cancel],
-        );
-        assert_eq!(found[0]["id"], 1);
-        assert_eq!(found[0]["error"]["code"], -32800);
-        assert_eq!(found[1]["id"], 2);
-        assert_eq!(found[1]["result"]["range"]["start"]["character"], 4);
-    }
-
-    #[test]
-    fn of_several_states_the_last_is_judged_and_each_request_is_about_its_own() {
-        let messages = vec![
-            open("let a = 1"),
-            hover(1),
-            change(2, "let b = oops"),
-            hover(2),
-            change(3, "let c = 3"),
-            // It comes too late to count.
-            change(2, "let d = oops"),
-            hover(3),
-        ];
-        let found = answers(json!({}), messages);
-        for (answer, name) in found
-            .iter()
-            .zip(["`let a = 1`", "`let b = oops`", "`let c = 3`"])
-        {
-            let text = answer["result"]["contents"]["value"].to_string();
-            assert!(text.contains(&name.replace('`', "")), "{answer}");
-        }
-        assert_eq!(found.len(), 4);
-        assert_eq!(found[3]["method"], "textDocument/publishDiagnostics");
-        assert_eq!(found[3]["params"]["version"], 3);
-        let codes: Vec<&Value> = found[3]["params"]["diagnostics"]
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(|diagnostic| &diagnostic["code"])
-            .collect();
-        assert_eq!(codes, ["missing_camera", "no_objects"]);
-    }
-
-    #[test]
-    fn a_client_that_asks_for_diagnostics_is_not_told() {
-        let capabilities = json!({ "textDocument": { "diagnostic": {} } });
-        let params = json!({ "textDocument": { "uri": "file:///a.scn" } });
-        let ask = request(1, "textDocument/diagnostic", params);
-        let found = answers(capabilities, vec![open("let a = oops"), ask]);
-        assert_eq!(found.len(), 1);
-        assert_eq!(found[0]["result"]["kind"], "full");
-        assert_eq!(found[0]["result"]["items"][2]["code"], "unknown_name");
-    }
-
-    #[test]
-    fn an_answer_that_fails_is_an_answer() {
-        let answer = unharmed(|| panic!("on purpose"));
-        let code = answer.err().map(|Refusal(code, _)| code as i32);
-        assert_eq!(code, Some(ErrorCode::InternalError as i32));
-    }
-}
+mod tests;

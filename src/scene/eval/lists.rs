@@ -98,11 +98,13 @@ impl<'s> Evaluator<'_, 's> {
             .map(|element| shorten(self.sources.text(element.value.span)))
             .collect();
         let wanted = if pair { 2 } else { 3 };
-        let instead = match texts.get(..wanted) {
-            Some(kept) if kept.iter().all(|text| is_whole(text)) => {
-                vec![format!("({})", kept.join(", "))]
-            }
-            _ => Vec::new(),
+        let instead = match (texts.get(..wanted), texts.as_slice()) {
+            _ if !texts.iter().all(|text| is_whole(text)) => Vec::new(),
+            (Some(kept), _) => vec![format!("({})", kept.join(", "))],
+            (None, []) if pair => vec!["(gray, white)".to_owned()],
+            (None, []) => vec!["(0, 1, 0)".to_owned()],
+            (None, [x, y]) => vec![format!("({x}, {y}, 1)")],
+            (None, _) => Vec::new(),
         };
         if pair {
             self.problems.push(Problem::PartCount {

@@ -53,7 +53,7 @@ impl<'s> Evaluator<'_, 's> {
             ValueKind::Parentheses(inner) => self.value(inner, wanted),
             ValueKind::Tuple(elements) => self.tuple(elements, value.span, wanted),
             ValueKind::Negation { sign, operand } => self.negation(*sign, operand),
-            ValueKind::Chain { first, rest } => self.chain(first, rest),
+            ValueKind::Chain { first, rest } => self.chain(first, rest, wanted),
             ValueKind::Missing | ValueKind::Bad => None,
         }
     }

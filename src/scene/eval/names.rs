@@ -80,6 +80,11 @@ impl<'s> Names<'s> {
         self.asked_early.get()
     }
 
+    /// Asks for what stands elsewhere in the file: it has to be read as a whole.
+    pub fn ask_for_all(&self) {
+        self.whole();
+    }
+
     fn whole(&self) -> Option<&Whole<'s>> {
         if self.whole.is_none() {
             self.asked_early.set(true);
@@ -228,6 +233,7 @@ impl<'s> Evaluator<'_, 's> {
             span,
             definition,
             more: Vec::new(),
+            fixes: Vec::new(),
         }
     }
 

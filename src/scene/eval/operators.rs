@@ -2,7 +2,7 @@
 
 use super::Evaluator;
 use crate::{
-    diagnostic::Fix,
+    diagnostic::{Edit, Fix},
     math::Angle,
     scene::{
         error::Problem,
@@ -36,7 +36,14 @@ impl<'s> Evaluator<'_, 's> {
         negative
     }
 
-    pub(super) fn chain(&mut self, first: &tree::Value<'s>, rest: &[Step<'s>]) -> Option<Value> {
+    pub(super) fn chain(
+        &mut self,
+        first: &tree::Value<'s>,
+        rest: &[Step<'s>],
+        wanted: Option<Type>,
+    ) -> Option<Value> {
+        // What an operation among others should give is not known.
+        let wanted = wanted.filter(|_| rest.len() == 1);
         let mut left = self.value(first, None);
         let mut span = first.span;
         for (index, step) in rest.iter().enumerate() {
@@ -44,7 +51,7 @@ impl<'s> Evaluator<'_, 's> {
             left = match (left, right) {
                 (Some(a), Some(b)) => {
                     let named = (index == 0).then_some(first);
-                    self.step(step, (a, span, named), b)
+                    self.step(step, (a, span, named), b, wanted)
                 }
                 _ => None,
             };
@@ -59,6 +66,7 @@ impl<'s> Evaluator<'_, 's> {
         step: &Step<'s>,
         (left, left_span, left_tree): (Value, Span, Option<&tree::Value<'s>>),
         right: Value,
+        wanted: Option<Type>,
     ) -> Option<Value> {
         let Some(result) = value::operate(step.operator, left, right) else {
             let left_label = match left_tree {
@@ -75,7 +83,7 @@ impl<'s> Evaluator<'_, 's> {
                 left_label,
                 right: step.operand.span,
                 right_label,
-                fixes: self.operand_fixes(step, (left, left_tree), right),
+                fixes: self.operand_fixes(step, (left, left_span, left_tree), right, wanted),
             });
             return None;
         };
@@ -156,25 +164,74 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// In a sum with an angle a number gets a unit.
+    /// What the help says, as edits: those that give what is wanted.
     fn operand_fixes(
         &self,
         step: &Step<'s>,
-        (left, left_tree): (Value, Option<&tree::Value<'s>>),
+        (left, left_span, left_tree): (Value, Span, Option<&tree::Value<'s>>),
         right: Value,
+        wanted: Option<Type>,
     ) -> Vec<Fix> {
+        use Type::{Angle, Number, Vector};
         let sum = matches!(step.operator, Operator::Add | Operator::Subtract);
-        let number = match (left.kind(), right.kind()) {
-            (Type::Angle, Type::Number) if sum => Some(&step.operand),
-            (Type::Number, Type::Angle) if sum => left_tree,
-            _ => None,
-        };
-        let with_units = number.map(|number| {
+        let right_span = step.operand.span;
+        let (a, b) = (self.sources.text(left_span), self.sources.text(right_span));
+        let with_units = |number: &tree::Value<'s>| {
             let units = self.as_angle(number);
             units.map(|angle| Fix::write(number.span, angle)).to_vec()
+        };
+        let three = |span, text: &str| Fix::write(span, format!("({text}, {text}, {text})"));
+        // The factor takes what stands right before the sign: of several summands the last one.
+        let scaled = left_tree.map(|_| {
+            let title = format!("scale it: `{} * {}`", shorten(a), shorten(b));
+            Fix::new(title, [Edit::new(step.sign, "*")])
         });
-        with_units.unwrap_or_default()
+        let as_number = || Fix::write(right_span, format!("({b} / 1deg)"));
+        let is_zero =
+            value::operate(Operator::Divide, right, right).is_none_or(|one| !one.is_finite());
+        let (gives, fixes) = match (left.kind(), right.kind(), step.operator) {
+            (Angle, Number, _) if sum => (Angle, with_units(&step.operand)),
+            (Number, Angle, _) if sum => (Angle, left_tree.map(with_units).unwrap_or_default()),
+            (Vector, Number, _) if sum => {
+                let fixes = [Some(three(right_span, b)), scaled];
+                (Vector, fixes.into_iter().flatten().collect())
+            }
+            (Number, Vector, _) if sum => {
+                let fixes = [Some(three(left_span, a)), scaled];
+                (Vector, fixes.into_iter().flatten().collect())
+            }
+            (Vector, Vector, Operator::Multiply) => {
+                let ways = [("dot", Number), ("cross", Vector)].into_iter();
+                let ways = ways.filter(|(_, gives)| wanted.is_none_or(|wanted| wanted == *gives));
+                let whole = left_span.to(right_span);
+                // A comment between the two is not to be lost.
+                let between = Span::new(whole.source, left_span.end, right_span.start);
+                let ways = ways.filter(|_| self.sources.text(between).trim() == "*");
+                let fixes = ways.map(|(name, _)| Fix::write(whole, format!("{name}({a}, {b})")));
+                (wanted.unwrap_or(Vector), fixes.collect())
+            }
+            (given @ (Number | Angle | Vector), Vector, Operator::Divide)
+                if !is_zero_vector(right) =>
+            {
+                (given, vec![Fix::write(right_span, format!("length({b})"))])
+            }
+            (Angle, Angle, Operator::Multiply) => (Angle, vec![as_number()]),
+            (Number, Angle, Operator::Divide) if !is_zero => (Number, vec![as_number()]),
+            _ => return Vec::new(),
+        };
+        let is_written_once = |text: &str| !text.contains(['\n', '\r']) && !text.contains("//");
+        match wanted.is_none_or(|wanted| wanted == gives)
+            && is_written_once(a)
+            && is_written_once(b)
+        {
+            true => fixes,
+            false => Vec::new(),
+        }
     }
+}
+
+fn is_zero_vector(value: Value) -> bool {
+    matches!(value, Value::Vector(v) if v == glam::DVec3::ZERO)
 }
 
 fn cannot(operator: Operator, left: Type, right: Type) -> String {

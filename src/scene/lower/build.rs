@@ -326,7 +326,7 @@ impl<'s> Lowering<'s> {
                     Edit::new(given.span, text(near_given)),
                 ],
             ),
-            _ => Fix::remove("leave `far` out", given.field(), self.sources),
+            _ => Fix::remove_whole("leave `far` out", [given.field()], self.sources),
         };
         self.problems.push(Problem::EmptyDepth {
             fixes: vec![fix],

@@ -3,10 +3,9 @@
 use super::{Block, Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
-    numbers,
     scene::{
+        example_beside,
         schema::{Field, Preset},
-        value::Value,
     },
     source::{SourceId, Span},
     suggest,
@@ -71,7 +70,6 @@ impl Lowering<'_> {
             }
             let spans = removed.iter().filter_map(|name| block.given(name));
             let spans = self.joined(spans.map(|given| given.field()).collect());
-            let edits = spans.into_iter().map(|s| Edit::remove(s, self.sources));
             let alike = block
                 .row
                 .fields
@@ -80,13 +78,11 @@ impl Lowering<'_> {
                 .map(|field| field.name);
             let kept: Vec<&str> = alike.filter(|name| given(name)).collect();
             let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
-            Some(Fix::new(title, edits))
+            Some(Fix::remove_whole(title, spans, self.sources))
         });
         ways.collect()
     }
-}
 
-impl Lowering<'_> {
     /// Places in their order; those with nothing but white space between are one.
     fn joined(&self, mut places: Vec<Span>) -> Vec<Span> {
         places.sort();
@@ -118,35 +114,14 @@ pub(super) fn quoted(names: &[&str]) -> String {
     suggest::list(names.iter().map(String::as_str))
 }
 
-/// Fields with values that they can have.
+/// Fields with values that they can have beside those that are given.
 pub(super) fn examples(block: &Block<'_>, names: &[&str]) -> Vec<String> {
     let rows = names.iter().filter_map(|name| block.row.field(name));
     rows.map(|row| {
-        let value = corner(block, row.name).unwrap_or_else(|| row.example());
+        let value = example_beside(row, &|other| block.given(other)?.value);
         format!("{} {value}", row.name)
     })
     .collect()
-}
-
-/// A corner of a box whose other one is given: 1 away from it on every axis.
-fn corner(block: &Block<'_>, name: &str) -> Option<String> {
-    let (other, away) = match name {
-        "min" => ("max", -1.0),
-        "max" => ("min", 1.0),
-        _ => return None,
-    };
-    let Value::Vector(other) = block.given(other)?.value? else {
-        return None;
-    };
-    let parts = other.to_array().map(|x| (x, numbers::short(x + away)));
-    // So far from the origin that 1 is lost in rounding, the example is as good as any.
-    let is_away = |(x, text): &(f64, String)| {
-        let part: Option<f64> = text.parse().ok();
-        part.is_some_and(|part| (part - x) * away > 0.0)
-    };
-    let is_corner = parts.iter().all(is_away);
-    let [x, y, z] = parts.map(|(_, text)| text);
-    is_corner.then(|| format!("({x}, {y}, {z})"))
 }
 
 /// What stands before the first text of a block's lines behind that of its `{`.

@@ -146,6 +146,7 @@ pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, found: Type, text: &st
     let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
     match (row.takes, found, &tree.kind) {
         (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => vec![(*number).to_owned()],
+        (Type::Number, Type::Angle, _) => vec![in_degrees(tree, text)],
         (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
             vec![format!("length({text})")]
         }
@@ -169,7 +170,8 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
             format!("write `{number}`, without a unit")
         }
         (Type::Number, Type::Angle, _) => {
-            format!("an angle divided by `1deg` is a number: `{text} / 1deg`")
+            let number = in_degrees(tree, text);
+            format!("an angle divided by `1deg` is a number: `{number}`")
         }
         (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
             format!("write a number, such as the length of the vector: `length({text})`")
@@ -201,6 +203,14 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
             format!("write two colours: `({text}, {other})`")
         }
         _ => format!("write {}, such as `{}`", row.takes.noun(), row.example()),
+    }
+}
+
+/// The number of degrees of an angle.
+fn in_degrees(tree: &tree::Value<'_>, text: &str) -> String {
+    match tree.kind {
+        ValueKind::Chain { .. } => format!("({text}) / 1deg"),
+        _ => format!("{text} / 1deg"),
     }
 }
 

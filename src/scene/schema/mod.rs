@@ -47,7 +47,7 @@ pub struct Block {
     pub help: &'static str,
     /// Its fields.
     pub fields: &'static [Field],
-    /// Conditions between fields.
+    /// Conditions between fields, each by its name.
     pub together: &'static [&'static str],
     /// Other words that people try for it.
     pub also_tried: &'static [&'static str],
@@ -227,6 +227,15 @@ impl Block {
     /// The names of its fields.
     pub fn field_names(&self) -> impl Iterator<Item = &'static str> + use<> {
         self.fields.iter().map(|field| field.name)
+    }
+
+    /// The conditions that hold between a field and others, or something else: those that name it.
+    pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        let rules = self.together.iter().copied();
+        rules.filter(move |rule| {
+            let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            words.any(|word| word == field)
+        })
     }
 
     /// The fields without which there is no such block: those that have no default, and of alternatives the first.

@@ -88,10 +88,8 @@ pub fn head<'s>(
         "" => "write the block's kind before it, such as `sphere {`".to_owned(),
         right => format!("write `{right}{{`"),
     };
-    // Numbers may be a field's value, which is not to be lost.
-    let is_lossless = tokens.iter().all(|token| token.kind != Kind::Number);
-    let instead = (is_lossless && !right.is_empty())
-        .then(|| (first.span(odd).to(to), right.trim_end().to_owned()));
+    let instead =
+        (!right.is_empty()).then(|| (first.span(odd).to(to), right.trim_end().to_owned()));
     let problem = Problem::BadHead {
         help,
         span: from.to(to),

@@ -11,14 +11,15 @@ mod values;
 pub use items::{head, lines};
 pub use known::is_kind;
 pub use values::{
-    is_unit, missing_operator, odd_number, unexpected_value, unknown_operator, value,
+    is_unit, missing_field, missing_operator, odd_number, power, unexpected_value,
+    unknown_operator, value,
 };
 
 use self::{
     tokens::{Kind, Token, Tokens, tokens},
     values::{stray_parenthesis, wrong_value},
 };
-use super::{Problem, tree::Name};
+use super::{Problem, error::Meant, tree::Name};
 use crate::source::Span;
 
 /// What stands at some place, in a message: on one line, and not too long.
@@ -63,10 +64,36 @@ pub fn field<'s>(text: &'s str, span: Span) -> (Option<Name<'s>>, Option<Problem
     let problem = match (&name, tokens.is_empty()) {
         (Some(_), true) => None,
         (None, true) => Some(unexpected("", span)),
-        (Some(_), false) => wrong_value(text, span, &tokens),
+        (Some(_), false) => {
+            wrong_value(text, span, &tokens).map(|problem| of_field(problem, &tokens, span))
+        }
         (None, false) => Some(no_field(text, span, &tokens)),
     };
     (name, problem)
+}
+
+/// What stands behind a field's vector may be another field's, unless it stands in parentheses with it.
+fn of_field(problem: Problem, tokens: &[Token<'_>], within: Span) -> Problem {
+    let Problem::MissingOperator {
+        left,
+        right,
+        span,
+        meant: Meant::Unclear,
+        ..
+    } = &problem
+    else {
+        return problem;
+    };
+    let before = tokens
+        .iter()
+        .filter(|token| token.span(within).end <= span.start);
+    let open = before.fold(0_i64, |open, token| {
+        open + i64::from(token.is("(")) - i64::from(token.is(")"))
+    });
+    match open {
+        0 => missing_field(left, right, *span),
+        _ => problem,
+    }
 }
 
 fn no_field(text: &str, span: Span, tokens: &[Token<'_>]) -> Problem {

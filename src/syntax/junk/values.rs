@@ -7,7 +7,11 @@ use super::{
 };
 use crate::{
     source::Span,
-    syntax::{Problem, error::Meant},
+    syntax::{
+        Problem,
+        error::Meant,
+        tree::{Value, ValueKind},
+    },
 };
 
 /// A value of a `--set` argument that could not be understood.
@@ -202,6 +206,20 @@ pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
     if is_function(left) {
         return call_without_parentheses(left, right, span);
     }
+    let colors = [left, right].map(|value| value.starts_with('#'));
+    if is_vector(left) | colors[0] && is_vector(right) | colors[1] {
+        let help = match colors {
+            [false, false] => "write `+` or `-` between them, or take one of them away",
+            _ => "take one of them away",
+        };
+        return Problem::MissingOperator {
+            help: help.to_owned(),
+            left: shorten(left),
+            right: shorten(right),
+            span,
+            meant: Meant::Unclear,
+        };
+    }
     let (left, right) = (shorten(left), shorten(right));
     Problem::MissingOperator {
         help: format!("write `{left} * {right}` to multiply them"),
@@ -210,6 +228,31 @@ pub fn missing_operator(left: &str, right: &str, span: Span) -> Problem {
         span,
         meant: Meant::Product,
     }
+}
+
+/// A value behind that of a field, where the two have no product.
+pub fn missing_field(left: &str, right: &str, span: Span) -> Problem {
+    let right = shorten(right);
+    Problem::MissingOperator {
+        help: format!("write the name of the field that `{right}` is for before it"),
+        left: shorten(left),
+        right,
+        span,
+        meant: Meant::Field,
+    }
+}
+
+/// Whether a value is written as a vector: commas stand in the parentheses around it, and in no inner ones.
+fn is_vector(value: &str) -> bool {
+    let mut depth = 0_usize;
+    let parts = value.strip_prefix('(').map(|parts| {
+        parts.chars().any(|c| {
+            depth += usize::from(c == '(');
+            depth = depth.saturating_sub(usize::from(c == ')'));
+            c == ',' && depth == 0
+        })
+    });
+    parts.unwrap_or(false)
 }
 
 /// A number and a word that is a unit elsewhere.
@@ -271,11 +314,62 @@ pub fn unknown_operator(sign: &str, span: Span) -> Problem {
         "−" => "write a plain `-`; this is the minus sign of a typesetter".to_owned(),
         _ => "the operators are `+`, `-`, `*` and `/`".to_owned(),
     };
+    let known = match sign {
+        "×" | "·" => Some("*"),
+        "÷" => Some("/"),
+        "−" => Some("-"),
+        _ => None,
+    };
     Problem::UnknownOperator {
         sign: shorten(sign),
         help,
         span,
+        instead: known.map(|known| (span, known.to_owned())),
     }
+}
+
+/// A power: a square and a cube can be written as products.
+pub fn power(
+    text: &str,
+    (base, sign, exponent): (&Value<'_>, Span, &Value<'_>),
+    is_divisor: bool,
+) -> Problem {
+    let written = |span: Span| text.get(span.range()).unwrap_or_default();
+    let mut problem = unknown_operator(written(sign), sign);
+    let times = match exponent.kind {
+        ValueKind::Number("2") => 2,
+        ValueKind::Number("3") => 3,
+        _ => return problem,
+    };
+    // `-x^2` is the negative of the square.
+    let mut factor = base;
+    while let ValueKind::Negation { operand, .. } = &factor.kind {
+        factor = operand;
+    }
+    let signs = written(Span::new(
+        base.span.source,
+        base.span.start,
+        factor.span.start,
+    ));
+    let factor_text = written(factor.span);
+    let can_stand_twice = matches!(
+        factor.kind,
+        ValueKind::Number(_) | ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Parentheses(_)
+    ) && shorten(factor_text) == factor_text
+        && !factor_text.contains("//");
+    // A comment between the two is not to be lost.
+    let between = Span::new(sign.source, base.span.end, exponent.span.start);
+    let can_stand_twice = can_stand_twice && written(between).trim() == written(sign);
+    if let (true, Problem::UnknownOperator { help, instead, .. }) = (can_stand_twice, &mut problem)
+    {
+        let mut product = format!("{signs}{}", vec![factor_text; times].join(" * "));
+        if is_divisor {
+            product = format!("({product})");
+        }
+        *help = format!("multiply instead: `{product}`");
+        *instead = Some((base.span.to(exponent.span), product));
+    }
+    problem
 }
 
 fn degree_sign(before: Option<&Token<'_>>, sign: &Token<'_>, span: Span) -> Problem {
@@ -297,10 +391,12 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
     let (number, word) = written.split_at_checked(digits).unwrap_or((written, ""));
     let lower = word.to_ascii_lowercase();
     let at = number.len();
-    let (help, label) = match lower.as_str() {
+    // With a unit that the number was to have, what is meant can be written.
+    let (help, label, unit) = match lower.as_str() {
         "" if number.matches('.').count() > 1 => (
             "write one decimal point".to_owned(),
             "more than one point".to_owned(),
+            None,
         ),
         "" => (
             format!(
@@ -308,26 +404,32 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
                 number.replace('_', "")
             ),
             "`_` stands between two digits".to_owned(),
+            Some(""),
         ),
         "px" | "s" => (
             format!("write `{number}`; only angles have a unit"),
             format!("`{word}` is no unit"),
+            Some(""),
         ),
         "m" | "cm" | "mm" | "km" | "in" | "ft" => (
             format!("write `{number}`; all lengths are in metres"),
             format!("`{word}` is no unit; only angles have one"),
+            Some(""),
         ),
         "d" | "de" | "degs" | "degree" | "degrees" | "grad" | "dge" | "deg" => (
             format!("write `{number}deg`"),
             format!("`{word}` is no unit"),
+            Some("deg"),
         ),
         "r" | "ra" | "rads" | "radian" | "radians" | "rda" | "rad" => (
             format!("write `{number}rad`"),
             format!("`{word}` is no unit"),
+            Some("rad"),
         ),
         "e" => (
             format!("write the exponent, such as `{number}e3`"),
             "the digits of the exponent are missing".to_owned(),
+            None,
         ),
         _ if lower
             .strip_prefix('e')
@@ -336,19 +438,23 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
             (
                 format!("write a whole exponent, such as `{number}e3`"),
                 "the exponent is no whole number".to_owned(),
+                None,
             )
         }
         _ if number == "0" && lower.starts_with(['x', 'b', 'o']) => (
             "write it in decimal digits; a colour is written `#ffaa00`".to_owned(),
             "numbers are decimal".to_owned(),
+            None,
         ),
         _ if !number.contains("__") && !number.ends_with('_') => (
             format!("write `{number} * {word}` to multiply; the units are `deg` and `rad`"),
             format!("`{word}` is no unit"),
+            Some(" * "),
         ),
         _ => (
             "write digits, with one `.` among them if need be".to_owned(),
             "not a number".to_owned(),
+            None,
         ),
     };
     let start = if word.is_empty() {
@@ -356,16 +462,12 @@ pub fn odd_number(written: &str, span: Span) -> Problem {
     } else {
         span.start + at
     };
-    let is_unit = |unit: &str| help.starts_with(&format!("write `{number}{unit}`"));
-    let units = ["", "deg", "rad"].into_iter().find(|unit| is_unit(unit));
-    let instead = match units {
-        _ if word.is_empty() && number.matches('.').count() < 2 => {
-            let digits = number.replace('_', "");
-            Some([digits.clone(), digits])
-        }
-        Some(unit) if !word.is_empty() => Some([format!("{number}{unit}"), unit.to_owned()]),
-        _ => None,
-    };
+    let digits = number.replace('_', "");
+    let instead = unit.map(|unit| match word {
+        "" => [digits.clone(), digits],
+        _ if unit == " * " => [format!("{number} * {word}"), format!(" * {word}")],
+        _ => [format!("{number}{unit}"), unit.to_owned()],
+    });
     Problem::BadNumber {
         written: shorten(written),
         help,

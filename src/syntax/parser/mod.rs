@@ -128,9 +128,14 @@ impl<'s> Parser<'s> {
             self.problems.push(Problem::TooDeep { span });
         }
         self.odd_spaces(&walk.odd_spaces);
-        let cut = walk.comments.last().filter(|_| walk.unclosed);
-        let cut = cut.map(|comment| comment.start);
-        if let Some(start) = cut {
+        self.lone_return(&walk.comments);
+        let last = walk.comments.last();
+        let unclosed = last.filter(|_| walk.unclosed).map(|last| last.start);
+        // What the comment took may be all that seems to be missing.
+        let took_all =
+            last.filter(|last| last.end == self.text.len() && self.has_lone_return(last));
+        let cut = unclosed.or(took_all.map(|last| last.start));
+        if let Some(start) = unclosed {
             // What the comment took is no second mistake.
             self.problems
                 .retain(|problem| starts_before(problem, start));
@@ -146,6 +151,26 @@ impl<'s> Parser<'s> {
             problems: self.problems,
             cut,
         }
+    }
+
+    /// Where lines end at carriage returns alone, a comment of one line takes all that follows.
+    fn lone_return(&mut self, comments: &[Range<usize>]) {
+        let comment = comments
+            .iter()
+            .find(|comment| self.has_lone_return(comment));
+        let at = comment.and_then(|comment| {
+            let written = self.text.get(comment.clone())?;
+            Some(comment.start + written.find('\r')?)
+        });
+        if let Some(at) = at {
+            let span = Span::new(self.id, at, at + 1);
+            self.problems.push(Problem::LoneReturn { span });
+        }
+    }
+
+    fn has_lone_return(&self, comment: &Range<usize>) -> bool {
+        let written = self.text.get(comment.clone()).unwrap_or_default();
+        written.starts_with("//") && written.trim_end_matches('\r').contains('\r')
     }
 
     /// One report for each sort of character, at the first one.

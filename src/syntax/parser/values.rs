@@ -32,6 +32,13 @@ impl<'s> Parser<'s> {
         let mut rest: Vec<Step<'s>> = Vec::new();
         while let Some((operator, sign)) = self.operator(parts, precedence) {
             let operand = self.link(parts, precedence);
+            if matches!(self.written(sign), "**" | "^") {
+                let before = rest.last();
+                let base = before.map_or(&first, |step: &Step<'s>| &step.operand);
+                let is_divisor = before.is_some_and(|step| step.operator == Operator::Divide);
+                let power = junk::power(self.text, (base, sign, &operand), is_divisor);
+                self.problems.push(power);
+            }
             rest.push(Step {
                 operator,
                 sign,
@@ -86,7 +93,10 @@ impl<'s> Parser<'s> {
         }
         if !matches!(written, "+" | "-" | "*" | "/") {
             parts.broken |= matches!(written, "**" | "^" | "%");
-            self.problems.push(junk::unknown_operator(written, span));
+            // A power is reported when its exponent is read.
+            if !matches!(written, "**" | "^") {
+                self.problems.push(junk::unknown_operator(written, span));
+            }
         }
         Some((operator, span))
     }

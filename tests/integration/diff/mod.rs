@@ -4,15 +4,13 @@ mod mistakes;
 mod pictures;
 mod samples;
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output, Stdio},
-};
+use std::{fs, path::Path, process::Output};
 
 use image::DynamicImage;
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::program::command;
 
 /// A small scene that sees something of everything.
 const SCENE: &str = "image { width 96 height 64 background navy }
@@ -33,15 +31,7 @@ fn folder() -> TempDir {
 }
 
 fn pinhole(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .args(arguments)
-        .current_dir(folder)
-        .env("LC_ALL", "C.UTF-8")
-        .env_remove("NO_COLOR")
-        .env_remove("NO_GRAPHICS")
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
+    command(folder, arguments).output().unwrap()
 }
 
 fn render(folder: &TempDir, arguments: &[&str]) {

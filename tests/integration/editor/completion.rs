@@ -5,11 +5,10 @@ use pinhole::{
     editor::{Analysis, Completion, CompletionKind, Piece, completions},
 };
 
-use super::cursor;
+use super::{at_cursor, cursor, of_whole};
 
 fn complete(text: &str) -> Vec<Completion> {
-    let (sources, at) = cursor(text);
-    completions(&Analysis::new(&sources), at)
+    at_cursor(text, completions)
 }
 
 fn labels(text: &str) -> String {
@@ -235,4 +234,70 @@ fn a_pair_of_colors_is_no_single_color() {
     let text = "let sky = #123456 let pair = (red, white) let n = 1 checkerboard { colors $0 }";
     assert_eq!(labels(text), "(gray, white) pair");
     assert_eq!(labels(&text.replace("$0", "p$0")), "pair");
+}
+
+#[test]
+fn what_is_put_in_fits_what_is_there() {
+    for (text, label, end) in [
+        ("box { min (5, 5, 5) $0 }", "max", "max (‹6›, ‹6›, ‹6›) }"),
+        (
+            "let a = (5, 5, 5) box { $0 max a }",
+            "min",
+            "min (‹4›, ‹4›, ‹4›) max a }",
+        ),
+        (
+            "box { min (5, 5, 5) max $0 }",
+            "(6, 6, 6)",
+            "max (‹6›, ‹6›, ‹6›) }",
+        ),
+        ("camera { near 500 $0 }", "far", "far ‹1000› }"),
+        ("camera {\n  near 500\n  $0", "far", "far ‹1000›"),
+        ("camera { near 5 $0 }", "far", "far ‹100› }"),
+        (
+            "camera { eye (0, 1, 0) $0 }",
+            "lookat",
+            "lookat (‹0›, ‹1›, ‹-1›) }",
+        ),
+        // Not straight down, either, nor along an `up` of its own.
+        (
+            "camera { eye (0, 5, 0) $0 }",
+            "lookat",
+            "lookat (‹0›, ‹5›, ‹-1›) }",
+        ),
+        (
+            "camera { lookat (0, 2, 8) $0 }",
+            "eye",
+            "eye (‹0›, ‹2›, ‹9›) }",
+        ),
+        (
+            "camera { up (0, 0, 1) $0 }",
+            "direction",
+            "direction (‹1›, ‹0›, ‹0›) }",
+        ),
+        (
+            "camera { eye (0, 5, 0) lookat (0, 0, 0) $0 }",
+            "up",
+            "up (‹0›, ‹0›, ‹-1›) }",
+        ),
+    ] {
+        let found = done(text, label);
+        assert!(found.ends_with(end), "{found}");
+    }
+}
+
+#[test]
+fn no_function_is_offered_with_a_value_that_is_an_error() {
+    for block in [
+        "sphere { center (0, 1, 0) radius $0 }",
+        "checkerboard { square $0 }",
+    ] {
+        let functions = complete(block).into_iter();
+        let functions = functions.filter(|c| c.kind == CompletionKind::Function && c.rank <= 3);
+        for function in functions {
+            let text = done(block, &function.label).replace(['‹', '›'], "");
+            let text = format!("camera {{ eye (0, 1, 5) lookat (0, 1, 0) }} {text}");
+            let found = of_whole(&text, |analysis| analysis.diagnostics().len());
+            assert_eq!(found, 0, "{text}");
+        }
+    }
 }

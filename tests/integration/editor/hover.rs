@@ -1,17 +1,19 @@
 //! What the word under the cursor means.
 
-use pinhole::editor::{Analysis, hover, signature};
+use pinhole::{
+    editor::{hover, signature},
+    explain,
+    scene::schema::BLOCKS,
+};
 
-use super::{cursor, under};
+use super::{at_cursor, under};
 
 /// The text that the answer is about, and the answer.
 fn hovered(text: &str) -> (String, String) {
-    let (sources, at) = cursor(text);
-    let analysis = Analysis::new(&sources);
-    match hover(&analysis, at) {
-        Some(hover) => (under(&analysis, hover.span).to_owned(), hover.markdown),
+    at_cursor(text, |analysis, at| match hover(analysis, at) {
+        Some(hover) => (under(analysis, hover.span).to_owned(), hover.markdown),
         None => (String::new(), String::new()),
-    }
+    })
 }
 
 fn markdown(text: &str) -> String {
@@ -32,6 +34,22 @@ fn fields_say_what_the_table_says() {
         markdown("camera { fo$0v 40deg }"),
         "`fov` of a camera: the angle that the window's height takes up, instead of d\n\n(angle); must be more than 0 and less than 180deg; not together with `d`"
     );
+    for (text, rule) in [
+        ("camera { fa$0r 5 }", "near < far"),
+        ("camera { loo$0kat 5 }", "lookat ≠ eye"),
+        ("box { mi$0n 5 }", "min < max on every axis"),
+        (
+            "triangle { sid$0es 5 }",
+            "each is shorter than the two others together",
+        ),
+        (
+            "sampler { per_p$0ixel 5 }",
+            "per_pixel times the number of pixels is at most 2^53",
+        ),
+    ] {
+        assert!(markdown(text).contains(rule), "{}", markdown(text));
+    }
+    assert!(!markdown("camera { ro$0ll 5deg }").contains('<'));
     // A number is about its field.
     assert_eq!(hovered("sphere { radius $02 }").0, "2");
     assert_eq!(
@@ -126,8 +144,7 @@ fn colors_are_shown_in_every_spelling() {
         markdown("let a = #f$000"),
         "a colour: `#ff0000`, `rgb(255, 0, 0)`; in linear light (1, 0, 0)"
     );
-    let (sources, at) = cursor("checkerboard { colors $0(gray, white) }");
-    let hover = hover(&Analysis::new(&sources), at).expect("an answer");
+    let hover = at_cursor("checkerboard { colors $0(gray, white) }", hover).expect("an answer");
     assert_eq!(hover.colors.len(), 2);
 }
 
@@ -173,22 +190,31 @@ fn objects_say_what_they_are() {
 }
 
 #[test]
-fn mistakes_say_where_they_are_explained() {
+fn mistakes_are_explained() {
     let (about, text) = hovered("sphere { center (0, 1, 0) rad$0us 2 }");
     assert_eq!(about, "radus");
-    assert!(
-        text.ends_with(": `pinhole explain unknown_field`"),
-        "{text}"
-    );
+    let page = |code| explain::page(code).expect("a page").text.trim_end();
+    assert_eq!(text, page("unknown_field"));
     let text = markdown("camera { eye (0, 0, 0) lookat (1, 0, 0) roll $030 }");
     assert!(text.starts_with("`roll` of a camera: "), "{text}");
-    assert!(text.ends_with(": `pinhole explain bare_angle`"), "{text}");
+    let end = format!("\n\n---\n\n{}", page("bare_angle"));
+    assert!(text.ends_with(&end), "{text}");
+}
+
+#[test]
+fn every_rule_between_fields_is_told_of_one_of_them() {
+    for row in BLOCKS {
+        for rule in row.together {
+            let mut fields = row.fields.iter();
+            let is_told = fields.any(|field| row.rules_of(field.name).any(|told| told == *rule));
+            assert!(is_told, "{rule}");
+        }
+    }
 }
 
 /// The label with the active parameter in `‹›`.
 fn called(text: &str) -> Option<String> {
-    let (sources, at) = cursor(text);
-    let found = signature(&Analysis::new(&sources), at)?;
+    let found = at_cursor(text, signature)?;
     let mut label = found.label;
     if let Some(parameter) = found.parameters.get(found.active) {
         label.insert(parameter.end, '›');

@@ -19,6 +19,17 @@ fn cursor(text: &str) -> (Sources, usize) {
     (sources(&text), at)
 }
 
+/// What is asked at the cursor of a text.
+fn at_cursor<T>(text: &str, ask: impl FnOnce(&Analysis<'_>, usize) -> T) -> T {
+    let (sources, at) = cursor(text);
+    ask(&Analysis::new(&sources), at)
+}
+
+/// What is asked of a whole text.
+fn of_whole<T>(text: &str, ask: impl FnOnce(&Analysis<'_>) -> T) -> T {
+    ask(&Analysis::new(&sources(text)))
+}
+
 fn sources(text: &str) -> Sources {
     Sources::new(Source::from_text("test.scn", text))
 }

@@ -1,20 +1,20 @@
 //! Definitions, uses and new names.
 
-use pinhole::editor::{Analysis, definition, occurrences, renamable, rename};
+use pinhole::editor::{definition, occurrences, renamable, rename};
 
-use super::cursor;
+use super::at_cursor;
 
 const SCENE: &str = "let ball = 1\nlet b = ball + ball\nsphere ball { radius ball }\n";
 
 /// The text with the name at the cursor changed; or why it cannot be.
 fn renamed(text: &str, new: &str) -> Result<String, String> {
-    let (sources, at) = cursor(text);
-    let analysis = Analysis::new(&sources);
-    let mut text = analysis.text().to_owned();
-    for span in rename(&analysis, at, new)?.into_iter().rev() {
-        text.replace_range(span.range(), new);
-    }
-    Ok(text)
+    at_cursor(text, |analysis, at| {
+        let mut text = analysis.text().to_owned();
+        for span in rename(analysis, at, new)?.into_iter().rev() {
+            text.replace_range(span.range(), new);
+        }
+        Ok(text)
+    })
 }
 
 #[test]
@@ -27,22 +27,25 @@ fn every_use_of_a_definition_is_found_from_everywhere() {
         "{ radius ball$0 }",
     ] {
         let text = SCENE.replacen(&place.replace("$0", ""), place, 1);
-        let (sources, at) = cursor(&text);
-        let analysis = Analysis::new(&sources);
-        let found = occurrences(&analysis, at);
-        let places: Vec<usize> = found.iter().map(|found| found.span.start).collect();
-        assert_eq!(places, [4, 21, 28, 54], "{place}");
-        assert!(found[0].is_definition && !found[1].is_definition);
-        assert_eq!(definition(&analysis, at).map(|span| span.start), Some(4));
+        at_cursor(&text, |analysis, at| {
+            let found = occurrences(analysis, at);
+            let places: Vec<usize> = found.iter().map(|found| found.span.start).collect();
+            assert_eq!(places, [4, 21, 28, 54], "{place}");
+            assert!(found[0].is_definition && !found[1].is_definition);
+            assert_eq!(definition(analysis, at).map(|span| span.start), Some(4));
+        })
     }
     // The object of the same name is another one.
-    let (sources, at) = cursor(&SCENE.replace("sphere ball", "sphere $0ball"));
-    let analysis = Analysis::new(&sources);
-    let places: Vec<usize> = occurrences(&analysis, at)
-        .iter()
-        .map(|found| found.span.start)
-        .collect();
-    assert_eq!(places, [40]);
+    at_cursor(
+        &SCENE.replace("sphere ball", "sphere $0ball"),
+        |analysis, at| {
+            let places: Vec<usize> = occurrences(analysis, at)
+                .iter()
+                .map(|found| found.span.start)
+                .collect();
+            assert_eq!(places, [40]);
+        },
+    )
 }
 
 #[test]
@@ -90,6 +93,11 @@ fn names_that_will_not_do_are_refused_with_the_reason() {
         refused("let a = 1\nlet b = $0a", "b"),
         "`b` is taken: it is defined in line 2"
     );
+    // Nothing defines it yet, and it would be another value from then on.
+    assert_eq!(
+        refused("let $0a = 1\nsphere { center (0, 0, 0) radius q }", "q"),
+        "`q` is taken: line 2 uses it, though nothing defines it"
+    );
     assert_eq!(
         refused("let $0a = 1", "Olive"),
         "`Olive` is a colour of the language"
@@ -118,10 +126,7 @@ fn names_that_will_not_do_are_refused_with_the_reason() {
 
 #[test]
 fn words_of_the_language_have_no_other_name() {
-    let refused = |text| {
-        let (sources, at) = cursor(text);
-        renamable(&Analysis::new(&sources), at).expect_err("it cannot be changed")
-    };
+    let refused = |text| at_cursor(text, renamable).expect_err("it cannot be changed");
     assert_eq!(
         refused("sphere { $0radius 1 }"),
         "`radius` is a word of the language"

@@ -9,84 +9,85 @@ use pinhole::{
     source::{SourceId, Span},
 };
 
-use super::{cursor, sources, under};
+use super::{at_cursor, of_whole, sources, under};
 
 #[test]
 fn the_outline_has_definitions_blocks_and_fields() {
     let text =
         "let a = 1\ncamera {\n  eye a\n}\nsphere Ball { center (0, 1, 0) radius 2 * a }\nbox {";
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
-    let sources = sources(text);
-    let analysis = Analysis::new(&sources);
-    let outline: Vec<String> = symbols(&analysis)
-        .iter()
-        .flat_map(|symbol| {
-            assert!(
-                symbol.span.start <= symbol.selection.start
-                    && symbol.selection.end <= symbol.span.end
-            );
-            std::iter::once(shown(symbol)).chain(
-                symbol
-                    .children
-                    .iter()
-                    .map(|child| format!("  {}", shown(child))),
-            )
-        })
-        .collect();
-    let expected = [
-        "Definition a 1",
-        "Setting camera ",
-        "  Field eye a",
-        "Object Ball sphere",
-        "  Field center (0, 1, 0)",
-        "  Field radius 2 * a",
-        "Object box ",
-    ];
-    assert_eq!(outline, expected);
+    of_whole(text, |analysis| {
+        let outline: Vec<String> = symbols(analysis)
+            .iter()
+            .flat_map(|symbol| {
+                assert!(
+                    symbol.span.start <= symbol.selection.start
+                        && symbol.selection.end <= symbol.span.end
+                );
+                std::iter::once(shown(symbol)).chain(
+                    symbol
+                        .children
+                        .iter()
+                        .map(|child| format!("  {}", shown(child))),
+                )
+            })
+            .collect();
+        let expected = [
+            "Definition a 1",
+            "Setting camera ",
+            "  Field eye a",
+            "Object Ball sphere",
+            "  Field center (0, 1, 0)",
+            "  Field radius 2 * a",
+            "Object box ",
+        ];
+        assert_eq!(outline, expected);
+    })
 }
 
 #[test]
 fn blocks_and_runs_of_comments_fold() {
     let text = "// a\n// b\n\n// c\nsphere { // x\n  // y\n  // z\n}\nbox {} // d\n// e\n// f\n/* g\n */\nlet a /* h\n */ = 1\n";
-    let sources = sources(text);
-    let analysis = Analysis::new(&sources);
-    let folds: Vec<(FoldKind, &str)> = folds(&analysis)
-        .into_iter()
-        .map(|fold| (fold.kind, under(&analysis, fold.span)))
-        .collect();
-    let expected = [
-        (FoldKind::Comment, "// a\n// b"),
-        (FoldKind::Block, "sphere { // x\n  // y\n  // z\n}"),
-        (FoldKind::Comment, "// y\n  // z"),
-        (FoldKind::Comment, "// e\n// f\n/* g\n */"),
-        (FoldKind::Comment, "/* h\n */"),
-    ];
-    assert_eq!(folds, expected);
+    of_whole(text, |analysis| {
+        let folds: Vec<(FoldKind, &str)> = folds(analysis)
+            .into_iter()
+            .map(|fold| (fold.kind, under(analysis, fold.span)))
+            .collect();
+        let expected = [
+            (FoldKind::Comment, "// a\n// b"),
+            (FoldKind::Block, "sphere { // x\n  // y\n  // z\n}"),
+            (FoldKind::Comment, "// y\n  // z"),
+            (FoldKind::Comment, "// e\n// f\n/* g\n */"),
+            (FoldKind::Comment, "/* h\n */"),
+        ];
+        assert_eq!(folds, expected);
+    })
 }
 
 #[test]
 fn a_selection_grows_from_the_word_to_the_file() {
-    let (sources, at) = cursor("let a = 1\nsphere { center 2 * (0, $0a + 1, 0)  radius 1 }\n");
-    let analysis = Analysis::new(&sources);
-    let grown: Vec<&str> = selection(&analysis, at)
-        .into_iter()
-        .map(|span| under(&analysis, span))
-        .collect();
-    let expected = [
-        "a",
-        "a + 1",
-        "(0, a + 1, 0)",
-        "2 * (0, a + 1, 0)",
-        "center 2 * (0, a + 1, 0)",
-        "center 2 * (0, a + 1, 0)  radius 1",
-        "sphere { center 2 * (0, a + 1, 0)  radius 1 }",
-        "let a = 1\nsphere { center 2 * (0, a + 1, 0)  radius 1 }\n",
-    ];
-    assert_eq!(grown, expected);
+    at_cursor(
+        "let a = 1\nsphere { center 2 * (0, $0a + 1, 0)  radius 1 }\n",
+        |analysis, at| {
+            let grown: Vec<&str> = selection(analysis, at)
+                .into_iter()
+                .map(|span| under(analysis, span))
+                .collect();
+            let expected = [
+                "a",
+                "a + 1",
+                "(0, a + 1, 0)",
+                "2 * (0, a + 1, 0)",
+                "center 2 * (0, a + 1, 0)",
+                "center 2 * (0, a + 1, 0)  radius 1",
+                "sphere { center 2 * (0, a + 1, 0)  radius 1 }",
+                "let a = 1\nsphere { center 2 * (0, a + 1, 0)  radius 1 }\n",
+            ];
+            assert_eq!(grown, expected);
+        },
+    );
     for text in ["$0", "/* a $0*/", "let a = $0", "sphere { } $0 "] {
-        let (sources, at) = cursor(text);
-        let analysis = Analysis::new(&sources);
-        for pair in selection(&analysis, at).windows(2) {
+        for pair in at_cursor(text, selection).windows(2) {
             assert!(
                 pair[1].start <= pair[0].start && pair[0].end <= pair[1].end && pair[0] != pair[1]
             );
@@ -96,35 +97,57 @@ fn a_selection_grows_from_the_word_to_the_file() {
 
 #[test]
 fn colors_are_found_wherever_they_are_written_out() {
-    let text = "let olivey = Olive let c = rgb(1, 2 + 3, 4) image { background #fA0 } sampler { method tan } checkerboard { colors (c, #123456) } sphere { color olivey }";
-    let sources = sources(text);
-    let analysis = Analysis::new(&sources);
-    let found: Vec<(&str, String)> = swatches(&analysis)
-        .into_iter()
-        .map(|s| (under(&analysis, s.span), s.color.to_string()))
-        .collect();
-    let expected = [
-        ("Olive", "#808000"),
-        ("rgb(1, 2 + 3, 4)", "#010504"),
-        ("#fA0", "#ffaa00"),
-        ("#123456", "#123456"),
-    ];
-    assert_eq!(
-        found
-            .iter()
-            .map(|(text, color)| (*text, color.as_str()))
-            .collect::<Vec<_>>(),
-        expected
-    );
+    let text = "let olivey = Olive let c = rgb(1, 5, 4) image { background #fA0 } sampler { method tan } checkerboard { colors (c, #123456) } sphere { color olivey }";
+    of_whole(text, |analysis| {
+        let found: Vec<(&str, String)> = swatches(analysis)
+            .into_iter()
+            .map(|s| (under(analysis, s.span), s.color.to_string()))
+            .collect();
+        let expected = [
+            ("Olive", "#808000"),
+            ("rgb(1, 5, 4)", "#010504"),
+            ("#fA0", "#ffaa00"),
+            ("#123456", "#123456"),
+        ];
+        assert_eq!(
+            found
+                .iter()
+                .map(|(text, color)| (*text, color.as_str()))
+                .collect::<Vec<_>>(),
+            expected
+        );
+    })
+}
+
+#[test]
+fn a_color_that_is_more_than_numbers_has_no_picker() {
+    for text in [
+        "rgb(1, /*c*/ 2, 3)",
+        "rgb(1.5, 2 + 1, min(3, 4))",
+        "rgb(a, 2, 3)",
+        "rgb((1), 2, 3)",
+        "rgb(1, 2, 3 // blue\n)",
+    ] {
+        of_whole(&format!("let a = 1 let c = {text} // c"), |analysis| {
+            assert_eq!(swatches(analysis), [], "{text}");
+            let start = analysis.text().find("rgb").unwrap();
+            let span = Span::new(SourceId::File, start, start + text.len());
+            let found = presentations(analysis, span, Color::from_bytes([1, 2, 3]));
+            assert!(found.is_empty(), "{found:?}");
+        });
+    }
+    of_whole("let c = /* a */ rgb(1.5, 2, 3) // b", |analysis| {
+        assert_eq!(swatches(analysis).len(), 1);
+    });
 }
 
 #[test]
 fn colors_are_written_back_in_their_spelling() {
     let written = |text: &str, bytes: [u8; 3]| {
-        let sources = sources(&format!("let a = {text}"));
-        let analysis = Analysis::new(&sources);
-        let swatch = swatches(&analysis)[0];
-        presentations(&analysis, swatch.span, Color::from_bytes(bytes)).join(" | ")
+        of_whole(&format!("let a = {text}"), |analysis| {
+            let swatch = swatches(analysis)[0];
+            presentations(analysis, swatch.span, Color::from_bytes(bytes)).join(" | ")
+        })
     };
     assert_eq!(
         written("olive", [0, 128, 128]),
@@ -155,13 +178,13 @@ fn colors_are_written_back_in_their_spelling() {
 
 /// The text with its remarks in `‹›`.
 fn remarked(text: &str) -> String {
-    let sources = sources(text);
-    let analysis = Analysis::new(&sources);
-    let mut text = analysis.text().to_owned();
-    for hint in hints(&analysis, 0..text.len()).into_iter().rev() {
-        text.insert_str(hint.at, &format!("‹{}›", hint.text));
-    }
-    text
+    of_whole(text, |analysis| {
+        let mut text = analysis.text().to_owned();
+        for hint in hints(analysis, 0..text.len()).into_iter().rev() {
+            text.insert_str(hint.at, &format!("‹{}›", hint.text));
+        }
+        text
+    })
 }
 
 #[test]
@@ -234,17 +257,17 @@ fn the_layout_changes_white_space_only_where_it_must() {
 #[test]
 fn fixes_are_offered_where_the_problem_is() {
     let offered = |text: &str| {
-        let (sources, at) = cursor(text);
-        let analysis = Analysis::new(&sources);
-        let found = fixes(&analysis, Span::new(SourceId::File, at, at));
-        let shown = found.into_iter().map(|(diagnostic, fix)| {
-            let mut text = analysis.text().to_owned();
-            for edit in fix.edits.iter().rev() {
-                text.replace_range(edit.span.range(), &edit.text);
-            }
-            format!("{}: {text}", diagnostic.code)
-        });
-        shown.collect::<Vec<_>>()
+        at_cursor(text, |analysis, at| {
+            let found = fixes(analysis, Span::new(SourceId::File, at, at));
+            let shown = found.into_iter().map(|(diagnostic, fix)| {
+                let mut text = analysis.text().to_owned();
+                for edit in fix.edits.iter().rev() {
+                    text.replace_range(edit.span.range(), &edit.text);
+                }
+                format!("{}: {text}", diagnostic.code)
+            });
+            shown.collect::<Vec<_>>()
+        })
     };
     assert_eq!(
         offered("sphere { center (0, 1, 0) rad$0us 2 }"),

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use pinhole::{
-    editor::{Analysis, SemanticKind, semantic_tokens},
+    editor::{SemanticKind, semantic_tokens},
     scene,
     source::{SourceId, Span},
     syntax::{
@@ -12,17 +12,17 @@ use pinhole::{
     },
 };
 
-use super::{sources, under};
+use super::{of_whole, sources, under};
 
 /// The tokens, each with the first letters of what it is.
 fn shown(text: &str) -> String {
-    let sources = sources(text);
-    let analysis = Analysis::new(&sources);
-    let tokens = semantic_tokens(&analysis).into_iter().map(|token| {
-        let mark = if token.is_declaration { "!" } else { "" };
-        format!("{}:{:?}{mark}", under(&analysis, token.span), token.kind)
-    });
-    tokens.collect::<Vec<_>>().join(" ")
+    of_whole(text, |analysis| {
+        let tokens = semantic_tokens(analysis).into_iter().map(|token| {
+            let mark = if token.is_declaration { "!" } else { "" };
+            format!("{}:{:?}{mark}", under(analysis, token.span), token.kind)
+        });
+        tokens.collect::<Vec<_>>().join(" ")
+    })
 }
 
 #[test]
@@ -142,21 +142,21 @@ fn places_and_trees_agree() {
                 continue;
             };
             files += 1;
-            let sources = sources(&text);
-            let analysis = Analysis::new(&sources);
-            let tokens = semantic_tokens(&analysis).into_iter();
-            let tokens: BTreeMap<Span, SemanticKind> =
-                tokens.map(|token| (token.span, token.kind)).collect();
-            for (span, kind) in words {
-                let found = tokens.get(&span);
-                assert_eq!(
-                    found,
-                    Some(&kind),
-                    "{} {:?}",
-                    path.display(),
-                    under(&analysis, span)
-                );
-            }
+            of_whole(&text, |analysis| {
+                let tokens = semantic_tokens(analysis).into_iter();
+                let tokens: BTreeMap<Span, SemanticKind> =
+                    tokens.map(|token| (token.span, token.kind)).collect();
+                for (span, kind) in words {
+                    let found = tokens.get(&span);
+                    assert_eq!(
+                        found,
+                        Some(&kind),
+                        "{} {:?}",
+                        path.display(),
+                        under(analysis, span)
+                    );
+                }
+            })
         }
     }
     assert!(files > 40, "{files}");

@@ -385,6 +385,15 @@ fn what_is_no_request_is_refused() {
             json!({ "jsonrpc": "2.0", "id": 1.5, "method": "shutdown" }),
             json!(1.5),
         ),
+        // Beyond the protocol's whole numbers.
+        (
+            json!({ "jsonrpc": "2.0", "id": 99_999_999_999_u64, "method": "shutdown" }),
+            json!(99_999_999_999_u64),
+        ),
+        (
+            json!({ "jsonrpc": "2.0", "id": -2_147_483_649_i64, "method": "shutdown" }),
+            json!(-2_147_483_649_i64),
+        ),
         (
             json!({ "jsonrpc": "2.0", "id": {}, "method": [] }),
             Value::Null,

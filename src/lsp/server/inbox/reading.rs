@@ -102,8 +102,10 @@ fn message(content: &[u8]) -> Result<Incoming, Failed> {
         .get("id")
         .filter(|id| id.is_string() || id.is_number());
     let id = id.cloned().unwrap_or_default();
-    // What has an identifier and nothing else would pass for a response, and a request with an odd one for a notification.
-    let is_odd = |id: &Value| !id.is_string() && !id.is_i64();
+    // What has an identifier and nothing else would pass for a response, and a request with an odd one for a notification; the
+    // protocol's whole numbers have 32 bits.
+    let is_whole = |id: &Value| id.as_i64().is_some_and(|id| i32::try_from(id).is_ok());
+    let is_odd = |id: &Value| !id.is_string() && !is_whole(id);
     let is_call =
         value.get("method").is_some_and(Value::is_string) && !value.get("id").is_some_and(is_odd);
     match serde_json::from_value(value) {

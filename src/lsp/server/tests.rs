@@ -1,0 +1,129 @@
+//! The order of things, with messages that all wait already.
+
+use serde_json::json;
+
+use lsp_server::Notification;
+
+use super::*;
+
+fn request(id: i32, method: &str, params: Value) -> Message {
+    Request::new(id.into(), method.to_owned(), params).into()
+}
+
+fn notification(method: &str, params: Value) -> Message {
+    Notification::new(method.to_owned(), params).into()
+}
+
+fn open(text: &str) -> Message {
+    let document =
+        json!({ "uri": "file:///a.scn", "languageId": "scn", "version": 1, "text": text });
+    notification("textDocument/didOpen", json!({ "textDocument": document }))
+}
+
+fn change(version: i32, text: &str) -> Message {
+    let document = json!({ "uri": "file:///a.scn", "version": version });
+    let changes = json!([{ "text": text }]);
+    notification(
+        "textDocument/didChange",
+        json!({ "textDocument": document, "contentChanges": changes }),
+    )
+}
+
+fn hover(id: i32) -> Message {
+    let position = json!({ "line": 0, "character": 4 });
+    let document = json!({ "uri": "file:///a.scn" });
+    request(
+        id,
+        "textDocument/hover",
+        json!({ "textDocument": document, "position": position }),
+    )
+}
+
+/// What is answered to messages that have all come before the first is taken.
+fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
+    for message in [hello].into_iter().chain(messages) {
+        sender.send(Ok(message)).expect("it is kept");
+    }
+    drop(sender);
+    let mut output = Vec::new();
+    let mut server = Server {
+        output: &mut output,
+        log: |_| {},
+        phase: Phase::Silent,
+        documents: HashMap::new(),
+        changed: BTreeSet::new(),
+    };
+    let ended = server.run(&mut Inbox::new(receiver));
+    assert_eq!(ended.expect("a vector takes everything"), Ended::Abruptly);
+    let mut output = output.as_slice();
+    let mut answers = Vec::new();
+    while let Some(message) = Message::read(&mut output).expect("a message") {
+        answers.push(serde_json::to_value(message).expect("a value"));
+    }
+    answers.split_off(1)
+}
+
+#[test]
+fn what_was_cancelled_in_the_meantime_is_not_answered() {
+    let cancel = notification("$/cancelRequest", json!({ "id": 1 }));
+    let found = answers(
+        json!({}),
+        vec![open("let a = 1"), hover(1), hover(2), cancel],
+    );
+    assert_eq!(found[0]["id"], 1);
+    assert_eq!(found[0]["error"]["code"], -32800);
+    assert_eq!(found[1]["id"], 2);
+    assert_eq!(found[1]["result"]["range"]["start"]["character"], 4);
+}
+
+#[test]
+fn of_several_states_the_last_is_judged_and_each_request_is_about_its_own() {
+    let messages = vec![
+        open("let a = 1"),
+        hover(1),
+        change(2, "let b = oops"),
+        hover(2),
+        change(3, "let c = 3"),
+        // It comes too late to count.
+        change(2, "let d = oops"),
+        hover(3),
+    ];
+    let found = answers(json!({}), messages);
+    for (answer, name) in found
+        .iter()
+        .zip(["`let a = 1`", "`let b = oops`", "`let c = 3`"])
+    {
+        let text = answer["result"]["contents"]["value"].to_string();
+        assert!(text.contains(&name.replace('`', "")), "{answer}");
+    }
+    assert_eq!(found.len(), 4);
+    assert_eq!(found[3]["method"], "textDocument/publishDiagnostics");
+    assert_eq!(found[3]["params"]["version"], 3);
+    let codes: Vec<&Value> = found[3]["params"]["diagnostics"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|diagnostic| &diagnostic["code"])
+        .collect();
+    assert_eq!(codes, ["missing_camera", "no_objects"]);
+}
+
+#[test]
+fn a_client_that_asks_for_diagnostics_is_not_told() {
+    let capabilities = json!({ "textDocument": { "diagnostic": {} } });
+    let params = json!({ "textDocument": { "uri": "file:///a.scn" } });
+    let ask = request(1, "textDocument/diagnostic", params);
+    let found = answers(capabilities, vec![open("let a = oops"), ask]);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0]["result"]["kind"], "full");
+    assert_eq!(found[0]["result"]["items"][2]["code"], "unknown_name");
+}
+
+#[test]
+fn an_answer_that_fails_is_an_answer() {
+    let answer = unharmed(|| panic!("on purpose"));
+    let code = answer.err().map(|Refusal(code, _)| code as i32);
+    assert_eq!(code, Some(ErrorCode::InternalError as i32));
+}

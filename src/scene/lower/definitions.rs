@@ -1,0 +1,287 @@
+//! Edits of definitions, for problems of their names.
+//!
+//! In: the problems that were found and the tree of the whole file. A problem is written where a name is met; what could be
+//! done about it depends on what stands elsewhere, so it is added when all is read.
+
+use std::collections::HashMap;
+
+use super::Lowering;
+use crate::{
+    diagnostic::{Edit, Fix, with_comments},
+    scene::{
+        error::Problem,
+        eval::predefined,
+        schema::{self, Type},
+    },
+    source::{SourceId, Span},
+    syntax::{
+        Parsed,
+        tree::{Definition, Item, Value, ValueKind},
+    },
+};
+
+impl<'s> Lowering<'s> {
+    /// Says of the problems with definitions what can be done about them.
+    pub(super) fn fix_definitions(&mut self, parsed: &Parsed<'s>) {
+        let mut problems = std::mem::take(&mut self.problems);
+        let is_predefined = |problem: &Problem| matches!(problem, Problem::PredefinedName { .. });
+        let uses = match problems.iter().any(is_predefined) {
+            true => uses_of_predefined(&parsed.tree.items),
+            false => HashMap::new(),
+        };
+        for problem in &mut problems {
+            match problem {
+                Problem::UsedBeforeDefinition {
+                    name,
+                    span,
+                    definition,
+                    fixes,
+                    ..
+                } => fixes.extend(self.moved(name, *span, *definition, parsed)),
+                Problem::PredefinedName {
+                    name,
+                    span,
+                    found,
+                    fixes,
+                    ..
+                } => {
+                    let uses = uses.get(name.as_str());
+                    fixes.extend(uses.and_then(|uses| self.renamed(name, *span, *found, uses)));
+                }
+                _ => {}
+            }
+        }
+        // What a definition that failed was to give its name explains what is wrong where that is used.
+        let mut explained: Vec<Span> = uses.into_values().flat_map(Uses::all).collect();
+        explained.sort_unstable();
+        problems.retain(|problem| {
+            let place = problem.place_of_value();
+            !place.is_some_and(|place| holds_one(place, &explained))
+        });
+        self.problems = problems;
+    }
+
+    /// Moves a definition with its comments before the item that uses it first, if it can stand there.
+    fn moved(&self, name: &str, used: Span, defined: Span, parsed: &Parsed<'s>) -> Option<Fix> {
+        let items = &parsed.tree.items;
+        let item_at = |at: usize| {
+            let next = items.partition_point(|item| item.span().start <= at);
+            items.get(next.checked_sub(1)?)
+        };
+        if used.source != SourceId::File || defined.source != SourceId::File {
+            return None;
+        }
+        let (user, definition) = (item_at(used.start)?.span(), item_at(defined.start)?);
+        let Item::Definition(definition) = definition else {
+            return None;
+        };
+        let (whole, is_written) = (definition.span, !definition.keyword.range().is_empty());
+        let is_above = |place: Span| place.source == SourceId::File && place.end <= user.start;
+        let mut can_move = is_written && definition.equals.is_some() && user.end <= whole.start;
+        can_move &= used.end <= user.end && !is_unfinished(&definition.value);
+        for_each_name(&definition.value, &mut |used, _| {
+            let is_known = self.names.place(used).is_some_and(is_above);
+            can_move &=
+                is_known || (self.names.place(used).is_none() && predefined(used).is_some());
+        });
+        if !can_move {
+            return None;
+        }
+        let text = self.sources.file.text();
+        let comments = &parsed.comments;
+        let from = with_comments_above(with_comments(whole, self.sources), text, comments);
+        let to = with_comments_above(user, text, comments);
+        // The comment at a file's start is about all of it.
+        let is_first = text
+            .get(self.sources.file.bom_len()..to.start)?
+            .trim()
+            .is_empty();
+        let to = if is_first { user.start } else { to.start };
+        let moved = text.get(from.range())?;
+        let before = text.get(..to)?;
+        let apart = match indent_of_line(before) {
+            Some(indent) => format!("{}{indent}", self.sources.file.line_end()),
+            None if moved.contains("//") => self.sources.file.line_end().to_owned(),
+            None => " ".to_owned(),
+        };
+        Some(Fix::new(
+            format!("move `let {name}` before its first use"),
+            [
+                Edit::insert(SourceId::File, to, format!("{moved}{apart}")),
+                Edit::remove(from, self.sources),
+            ],
+        ))
+    }
+
+    /// Gives a definition, and what uses it, the name that the help suggests.
+    fn renamed(&self, name: &str, span: Span, found: Option<Type>, uses: &Uses) -> Option<Fix> {
+        let new = format!("my_{name}");
+        let is_set = self.targets.contains_key(&(None, name));
+        if uses.definitions != 1 || self.names.knows(&new) || is_set {
+            return None;
+        }
+        let kind = match predefined(name)? {
+            "a colour" => Some(Type::Color),
+            "a number" => Some(Type::Number),
+            "a unit" => Some(Type::Angle),
+            _ => None,
+        };
+        let mut places = vec![span];
+        places.extend(&uses.others);
+        if kind.is_none() || kind == found {
+            // As a value a function's name means nothing; and what is of one type can stand for each other.
+            places.extend(&uses.of_colors);
+            places.extend(&uses.unclear);
+        } else {
+            // Where a colour is wanted, the colour is meant; elsewhere the definition. Which number is meant does not show.
+            let is_clear = kind == Some(Type::Color) && found.is_some() && uses.unclear.is_empty();
+            if !is_clear && !uses.is_empty() {
+                return None;
+            }
+        }
+        let edits = places.into_iter().map(|place| Edit::new(place, &new));
+        Some(Fix::new(format!("call it `{new}`"), edits))
+    }
+}
+
+/// Where a name is used that the language has already, below its definition.
+#[derive(Debug, Default)]
+struct Uses {
+    /// How many definitions there are.
+    definitions: usize,
+    /// Where a colour is wanted.
+    of_colors: Vec<Span>,
+    /// Where it is all of another definition.
+    unclear: Vec<Span>,
+    others: Vec<Span>,
+}
+
+impl Uses {
+    fn all(self) -> impl Iterator<Item = Span> {
+        let uses = [self.of_colors, self.unclear, self.others];
+        uses.into_iter().flatten()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.of_colors.is_empty() && self.unclear.is_empty() && self.others.is_empty()
+    }
+}
+
+fn uses_of_predefined<'s>(items: &[Item<'s>]) -> HashMap<&'s str, Uses> {
+    let mut found: HashMap<&'s str, Uses> = HashMap::new();
+    for item in items {
+        match item {
+            Item::Definition(Definition { name, value, .. }) => {
+                let is_part = !is_color_or_pair(value);
+                for_each_name(value, &mut |used, span| {
+                    let uses = found.get_mut(used);
+                    uses.into_iter().for_each(|uses| match is_part {
+                        true => uses.others.push(span),
+                        false => uses.unclear.push(span),
+                    });
+                });
+                let name = name.filter(|name| predefined(name.text).is_some());
+                if let Some(name) = name {
+                    found.entry(name.text).or_default().definitions += 1;
+                }
+            }
+            Item::Block(block) => {
+                let row = block.kind.and_then(|kind| schema::block(kind.text));
+                for field in &block.fields {
+                    let takes = row
+                        .and_then(|row| row.field(field.name.text))
+                        .map(|row| row.takes);
+                    let wants_color = matches!(takes, Some(Type::Color | Type::Colors));
+                    let is_color = wants_color && is_color_or_pair(&field.value);
+                    if takes == Some(Type::Method) {
+                        continue;
+                    }
+                    for_each_name(&field.value, &mut |used, span| {
+                        let uses = found.get_mut(used);
+                        uses.into_iter().for_each(|uses| match is_color {
+                            true => uses.of_colors.push(span),
+                            false => uses.others.push(span),
+                        });
+                    });
+                }
+            }
+            Item::Bad(_) => {}
+        }
+    }
+    found
+}
+
+/// Whether one of some places, which are in their order, lies in another one.
+fn holds_one(whole: Span, places: &[Span]) -> bool {
+    let next = places.partition_point(|place| *place < Span { end: 0, ..whole });
+    let place = places.get(next);
+    place.is_some_and(|place| place.source == whole.source && place.end <= whole.end)
+}
+
+/// Whether a value is a name, or several in parentheses.
+fn is_color_or_pair(value: &Value<'_>) -> bool {
+    match &value.kind {
+        ValueKind::Name(_) => true,
+        ValueKind::Parentheses(inner) => is_color_or_pair(inner),
+        ValueKind::Tuple(parts) => {
+            parts.len() == 2 && parts.iter().any(|part| is_color_or_pair(&part.value))
+        }
+        _ => false,
+    }
+}
+
+fn is_unfinished(value: &Value<'_>) -> bool {
+    matches!(value.kind, ValueKind::Missing | ValueKind::Bad)
+}
+
+/// Calls a function with every name that stands for a value, in order.
+fn for_each_name<'s>(value: &Value<'s>, call: &mut impl FnMut(&'s str, Span)) {
+    match &value.kind {
+        ValueKind::Name(name) => call(name, value.span),
+        ValueKind::Call(made) => {
+            for argument in &made.arguments {
+                for_each_name(&argument.value, call);
+            }
+        }
+        ValueKind::Parentheses(inner) => for_each_name(inner, call),
+        ValueKind::Tuple(elements) => {
+            for element in elements {
+                for_each_name(&element.value, call);
+            }
+        }
+        ValueKind::Negation { operand, .. } => for_each_name(operand, call),
+        ValueKind::Chain { first, rest } => {
+            for_each_name(first, call);
+            for step in rest {
+                for_each_name(&step.operand, call);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The blanks at the end of a text, if they start a line.
+fn indent_of_line(before: &str) -> Option<&str> {
+    let outer = before.trim_end_matches([' ', '\t']);
+    let starts = outer.is_empty() || outer.ends_with(['\n', '\u{feff}']);
+    before.get(outer.len()..).filter(|_| starts)
+}
+
+/// An item with the lines of comments right above it.
+fn with_comments_above(item: Span, text: &str, comments: &[Span]) -> Span {
+    let mut start = item.start;
+    let starts_line = |at: usize| text.get(..at).and_then(indent_of_line).is_some();
+    while starts_line(start) {
+        let above = comments.partition_point(|comment| comment.start < start);
+        let Some(comment) = above.checked_sub(1).and_then(|above| comments.get(above)) else {
+            break;
+        };
+        let between = text.get(comment.end..start).unwrap_or_default();
+        let is_above = between.trim().is_empty() && between.matches('\n').count() == 1;
+        if !is_above || !starts_line(comment.start) {
+            break;
+        }
+        start = comment.start;
+    }
+    Span::new(item.source, start, item.end)
+}

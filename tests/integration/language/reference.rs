@@ -1,0 +1,97 @@
+//! The language's reference, held against the program.
+
+use std::{fs, path::Path};
+
+use pinhole::scene::schema;
+
+use super::codes;
+
+#[test]
+fn the_reference_has_every_row_of_the_table() {
+    let reference = file("grammar/language.md");
+    let mut block = String::new();
+    let mut rows = Vec::new();
+    for line in reference.lines().filter(|line| line.starts_with('|')) {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        if let [kind, field, takes, preset, must] = cells[..] {
+            if !kind.is_empty() {
+                block = kind.to_owned();
+            }
+            rows.push((block.clone(), field, takes, preset, must));
+        }
+    }
+    let mut fields = 0;
+    for kind in schema::BLOCKS {
+        for field in kind.fields {
+            fields += 1;
+            let place = format!("{}.{}", kind.name, field.name);
+            let row = rows
+                .iter()
+                .find(|row| row.0 == kind.name && row.1 == field.name);
+            let &(_, _, takes, preset, must) = row.unwrap_or_else(|| panic!("no row {place}"));
+            let noun = field.takes.noun();
+            let takes_noun = noun.trim_start_matches("a ").trim_start_matches("an ");
+            assert_eq!(takes, takes_noun, "{place}");
+            match field.preset {
+                schema::Preset::Value(value) => assert_eq!(preset, value.to_string(), "{place}"),
+                schema::Preset::Required => assert_eq!(preset, "required", "{place}"),
+                schema::Preset::Nothing => assert_eq!(preset, "none", "{place}"),
+                schema::Preset::Alternative => {
+                    for other in field.excludes {
+                        assert!(preset.contains(other) || must.contains(other), "{place}");
+                    }
+                }
+            }
+            for condition in field.must {
+                assert!(
+                    must.contains(&condition.to_string()),
+                    "{place}: {condition}"
+                );
+            }
+            if field.preset != schema::Preset::Alternative && !field.excludes.is_empty() {
+                let excludes = format!("not with {}", field.excludes.join(", "));
+                assert!(must.contains(&excludes), "{place}: {excludes}");
+            }
+        }
+        for together in kind.together {
+            assert!(reference.contains(together), "{together}");
+        }
+    }
+    let header_and_rule = 2;
+    assert_eq!(rows.len(), fields + header_and_rule);
+}
+
+#[test]
+fn the_reference_has_every_method_function_and_name() {
+    let reference = file("grammar/language.md");
+    for (method, _) in schema::METHODS {
+        assert!(reference.contains(&format!("| {} |", method.name())));
+    }
+    for function in schema::FUNCTIONS {
+        assert!(
+            reference.contains(&format!("`{}", function.name)),
+            "{}",
+            function.name
+        );
+    }
+    for (name, _) in schema::CONSTANTS {
+        assert!(reference.contains(&format!("`{name}`")));
+    }
+}
+
+#[test]
+fn every_scene_of_the_reference_checks_clean() {
+    let reference = file("grammar/language.md");
+    let mut scenes = 0;
+    for part in reference.split("```scn\n").skip(1) {
+        let scene = part.split("```").next().expect("a part");
+        assert_eq!(codes(scene), [""; 0], "{scene}");
+        scenes += 1;
+    }
+    assert!(scenes >= 4);
+}
+
+fn file(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    fs::read_to_string(path).expect("the file can be read")
+}
