@@ -10,7 +10,7 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grade::{self, Verdict},
+    grade::{self, Grade},
     numbers::{grouped, short},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
@@ -81,13 +81,13 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let comparison = film::compare(&a.film, other.film(), tolerance);
     let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
-    let verdicts = match (&other, is_equal) {
-        (_, true) => Ok(Vec::new()),
+    let grade = match (&other, is_equal) {
+        (_, true) => Ok(Grade::default()),
         (Other::Picture(b), false) => Ok(grade::pictures(&a.film, &b.film)),
         (Other::Scene(scene, exact), false) => grade::scene(&a.film, scene, &exact.film, &control),
     };
-    let verdicts = match verdicts {
-        Ok(verdicts) => verdicts,
+    let grade = match grade {
+        Ok(grade) => grade,
         Err(error) => return ended(error),
     };
     let report = Report {
@@ -96,7 +96,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         is_scene: matches!(other, Other::Scene(..)),
         comparison,
         tolerance: steps,
-        verdicts,
+        grade,
     };
     match args.format.format {
         Format::Human => output::to_people(&report.human()),
@@ -235,7 +235,7 @@ struct Report {
     is_scene: bool,
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    verdicts: Vec<Verdict>,
+    grade: Grade,
 }
 
 impl Report {
@@ -282,6 +282,17 @@ impl Report {
                         percent(found.share())
                     )?;
                 }
+                if found.undecided > 0 {
+                    writeln!(
+                        out,
+                        "open      {} {} judged: the exact picture's bound there is too large to say that they are within the tolerance",
+                        grouped(found.undecided),
+                        match found.undecided {
+                            1 => "pixel cannot be",
+                            _ => "pixels cannot be",
+                        }
+                    )?;
+                }
                 let largest = found.largest;
                 match largest.steps {
                     0.0 => writeln!(out, "largest   0: the same in every bit")?,
@@ -303,7 +314,7 @@ impl Report {
                 )?;
             }
         }
-        for (place, verdict) in self.verdicts.iter().enumerate() {
+        for (place, verdict) in self.grade.likely.iter().enumerate() {
             let word = if place == 0 { "likely" } else { "or" };
             writeln!(out)?;
             writeln!(out, "{word:<9} {}", verdict.message)?;
@@ -316,13 +327,17 @@ impl Report {
             }
             writeln!(out, "          help: {}", verdict.help)?;
         }
-        if self.verdicts.is_empty()
-            && self.is_scene
-            && self
-                .comparison
-                .as_ref()
-                .is_ok_and(|found| !found.is_equal())
-        {
+        let differs = self
+            .comparison
+            .as_ref()
+            .is_ok_and(|found| !found.is_equal());
+        if self.grade.is_thin {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "A simple mistake would explain it, but so few pixels tell of it that chance would, too."
+            )?;
+        } else if self.grade.likely.is_empty() && self.is_scene && differs {
             writeln!(out)?;
             writeln!(
                 out,
@@ -345,7 +360,7 @@ impl Report {
                 "b": largest.b,
             })
         });
-        let likely = self.verdicts.iter().map(|verdict| {
+        let likely = self.grade.likely.iter().map(|verdict| {
             json!({
                 "mistake": verdict.mistake,
                 "message": verdict.message,
@@ -363,6 +378,7 @@ impl Report {
             "rmse": found.map(|found| found.rmse),
             "largest": largest,
             "beyond": found.map(|found| json!({ "pixels": found.beyond, "share": found.share() })),
+            "undecided": found.map(|found| found.undecided),
             "tolerance": self.tolerance,
             "equal": found.is_some_and(Comparison::is_equal),
             "likely": likely.collect::<Vec<_>>(),

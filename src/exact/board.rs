@@ -1,6 +1,6 @@
 //! The integral of the board's sign over a convex polygon of the picture.
 
-use std::array;
+use std::{array, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
@@ -208,18 +208,19 @@ impl Board {
     }
 
     /// The integral of s(a)·s(b) over what a convex polygon shows of the floor, in square pixels; positive where the
-    /// squares are, however the polygon is oriented.
-    pub(crate) fn over(&self, polygon: &[DVec2]) -> Sum {
-        self.over_known(polygon, None)
-    }
-
-    /// The same for a whole pixel, some of whose sides may be known.
-    pub(crate) fn over_known(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
-        self.unchecked(polygon, known)
+    /// squares are, however the polygon is oriented. Some of its sides may be known, if it is a whole pixel. Once it is cancelled
+    /// any sum will do.
+    pub(super) fn over(
+        &self,
+        polygon: &[DVec2],
+        known: Option<&mut Known>,
+        cancel: &AtomicBool,
+    ) -> Sum {
+        self.unchecked(polygon, known, cancel)
             .within(polygon.iter().copied())
     }
 
-    fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>) -> Sum {
+    fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
         let corners = self.visible(polygon);
         let first = match corners.first() {
             Some(first) if corners.len() > 2 => first,
@@ -227,7 +228,7 @@ impl Board {
         };
         let endless = corners.iter().any(|c| c.depth.is_infinite());
         if endless {
-            return self.far_or_both(&corners, known);
+            return self.far_or_both(&corners, known, cancel);
         }
         let spans = spans(&corners);
         if spans == [1.0, 1.0] {
@@ -244,9 +245,9 @@ impl Board {
             };
         }
         if squares(&corners).min(spans[0] * spans[1]) <= FEW {
-            return cells::sum(self, &corners);
+            return cells::sum(self, &corners, cancel);
         }
-        self.far_or_both(&corners, known)
+        self.far_or_both(&corners, known, cancel)
     }
 
     /// By how much rounding may change what a polygon shows of the board: the displacement of its boundary.
@@ -330,30 +331,35 @@ impl Board {
     }
 
     /// Along the boundary where the board is far enough for it, square by square where it is not.
-    fn far_or_both(&self, corners: &[Corner], known: Option<&mut Known>) -> Sum {
+    fn far_or_both(
+        &self,
+        corners: &[Corner],
+        known: Option<&mut Known>,
+        cancel: &AtomicBool,
+    ) -> Sum {
         let depth = FAR * (self.slope[0].abs() + self.slope[1].abs());
         let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
         let furthest = corners.iter().fold(0.0, |m: f64, c| m.max(c.depth));
         if nearest >= depth {
-            return self.far(corners, known);
+            return self.far(corners, known, cancel);
         }
         if depth.min(furthest) > DEEP {
             let [near, behind] = self.split(corners, DEEP);
-            let mut sum = cells::sum(self, &near);
+            let mut sum = cells::sum(self, &near, cancel);
             sum.bound += measure(behind.iter().map(|c| c.at)).0.abs();
             return sum;
         }
         if furthest <= depth {
-            return cells::sum(self, corners);
+            return cells::sum(self, corners, cancel);
         }
         let [near, far] = self.split(corners, depth);
-        let mut sum = cells::sum(self, &near);
-        sum.add(self.far(&far, known));
+        let mut sum = cells::sum(self, &near, cancel);
+        sum.add(self.far(&far, known, cancel));
         sum
     }
 
     /// Along the boundary; or, where corners as they are rounded do not tell m from a and b, as if it were near, but for next to nothing.
-    fn far(&self, corners: &[Corner], known: Option<&mut Known>) -> Sum {
+    fn far(&self, corners: &[Corner], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
         let along = |corners: &[Corner], known| {
             edge::sum(self, corners, known).within(corners.iter().map(|c| c.at))
         };
@@ -362,7 +368,7 @@ impl Board {
             return sum;
         }
         let [near, behind] = self.split(corners, NEXT_TO_NOTHING);
-        let mut other = cells::sum(self, &near);
+        let mut other = cells::sum(self, &near, cancel);
         other.add(along(&behind, None));
         if other.bound < sum.bound { other } else { sum }
     }

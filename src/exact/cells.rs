@@ -1,5 +1,7 @@
 //! The board's integral where its squares are near: row by row, and square by square at the ends of the rows.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec2;
 
 use super::block::Block;
@@ -32,13 +34,19 @@ pub(super) fn along(board: &Board) -> usize {
 /// The integral over a convex polygon that does not reach the horizon.
 ///
 /// The squares of a row that lie wholly inside have a closed form each, and where a row is long most of it is summed at
-/// once; what is left of it at the polygon's sides is cut out of the picture square by square.
-pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
-    sum_with_blocks(board, corners, BLOCK)
+/// once; what is left of it at the polygon's sides is cut out of the picture square by square. There may be a million rows: once it is
+/// cancelled the rest of them is left out.
+pub(super) fn sum(board: &Board, corners: &[Corner], cancel: &AtomicBool) -> Sum {
+    sum_with_blocks(board, corners, BLOCK, cancel)
 }
 
 /// The same with blocks of more rows than `least`.
-pub(super) fn sum_with_blocks(board: &Board, corners: &[Corner], least: f64) -> Sum {
+pub(super) fn sum_with_blocks(
+    board: &Board,
+    corners: &[Corner],
+    least: f64,
+    cancel: &AtomicBool,
+) -> Sum {
     let along = along(board);
     let mut tally = Tally::default();
     let moved = board.displaced(corners.iter().map(|c| c.at));
@@ -49,6 +57,7 @@ pub(super) fn sum_with_blocks(board: &Board, corners: &[Corner], least: f64) -> 
         lines: Cutter::new(board, 1 - along),
         inside: Cutter::new(board, along),
         squares: Cutter::new(board, along),
+        cancel,
     };
     let polygon: Vec<DVec2> = corners.iter().map(|c| c.at).collect();
     let mut blocks = Cutter::new(board, 1 - along);
@@ -82,6 +91,7 @@ struct Rows<'a> {
     lines: Cutter,
     inside: Cutter,
     squares: Cutter,
+    cancel: &'a AtomicBool,
 }
 
 impl Rows<'_> {
@@ -93,6 +103,7 @@ impl Rows<'_> {
             lines,
             inside,
             squares,
+            cancel,
         } = self;
         let (board, along) = (*board, *along);
         lines.start(polygon.iter().copied());
@@ -105,6 +116,9 @@ impl Rows<'_> {
             return tally.add(0.0, area.abs());
         }
         while let Some(number) = lines.next(tally) {
+            if cancel.load(Ordering::Relaxed) {
+                return;
+            }
             let row = Row {
                 board,
                 along,

@@ -344,7 +344,7 @@ mod tests {
             let round = |x: f64| if whole { (2.0 * x).round() * 0.5 } else { x };
             let board = seen([a.map(round), b.map(round)], place.map(round), tilt);
             let Some(sum) = sum(&board) else { return Ok(()) };
-            let other = board::Board::new(board.across, board.below).over(&PIXEL);
+            let other = board::Board::new(board.across, board.below).alone(&PIXEL);
             let off = (sum.value - other.value).abs();
             prop_assert!(off <= sum.bound + other.bound + 1e-13, "{sum:?} and {other:?}");
         }

@@ -102,7 +102,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// The pixels of a part of the picture, row by row; none once it is cancelled.
+    /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends within a pixel, too.
     pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<Pixel>> {
         let black = Pixel {
             mean: [0.0; 3],
@@ -123,7 +123,7 @@ impl<'a> Integrator<'a> {
                 Part::Open { x, y, live } => {
                     let spot = Spot::pixel(x, y);
                     let pixel = self.floor(spot, live).unwrap_or_else(|| {
-                        let shares = self.shares(spot, live, &mut scratch);
+                        let shares = self.shares(spot, live, &mut scratch, cancel);
                         self.mean(&shares.by_slot, shares.bound)
                     });
                     film.set(x, y, pixel);
@@ -153,9 +153,15 @@ impl<'a> Integrator<'a> {
     ///
     /// A part has coordinates of its own, in which roundings are smaller: the widest views need that, in which a pixel sees
     /// squares both near and far.
-    fn shares(&self, spot: Spot, live: &[Live], scratch: &mut Scratch) -> Shares {
+    fn shares(
+        &self,
+        spot: Spot,
+        live: &[Live],
+        scratch: &mut Scratch,
+        cancel: &AtomicBool,
+    ) -> Shares {
         const FINEST: f64 = 0.5;
-        let shares = self.shares_at_once(spot, live, scratch);
+        let shares = self.shares_at_once(spot, live, scratch, cancel);
         let enough = if shares.is_endless {
             ENOUGH_ENDLESS
         } else {
@@ -166,7 +172,7 @@ impl<'a> Integrator<'a> {
         }
         let mut together = Shares::default();
         for quarter in spot.quarters() {
-            together.add_quarter(&self.shares(quarter, live, scratch));
+            together.add_quarter(&self.shares(quarter, live, scratch, cancel));
         }
         if together.bound < shares.bound {
             together
@@ -175,10 +181,16 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    fn shares_at_once(&self, spot: Spot, live: &[Live], scratch: &mut Scratch) -> Shares {
+    fn shares_at_once(
+        &self,
+        spot: Spot,
+        live: &[Live],
+        scratch: &mut Scratch,
+        cancel: &AtomicBool,
+    ) -> Shares {
         let Scratch { curves, sides, .. } = scratch;
-        self.world.curves(spot, live, curves);
-        let regions = Regions::new(self.world, spot, live, sides);
+        self.world.curves(spot, live, cancel, curves);
+        let regions = Regions::new(self.world, spot, live, sides, cancel);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         if lines_alone {
             polygon::shares(curves, regions)

@@ -1,5 +1,7 @@
 //! Pixels whose boundaries are all straight: each line cuts the convex polygons that the lines before it left.
 
+use std::mem;
+
 use glam::DVec2;
 
 use crate::{
@@ -34,12 +36,17 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         // The true line is within 2 rad of the computed one, the greater of whose slopes is at least 1/2, over a length of
         // at most √2; and on both sides of it vertices are rounded.
         regions.doubt(3.0 * (line.rad + ROUNDING));
-        polygons = polygons
-            .into_iter()
-            .flat_map(|polygon| cut(polygon, line))
-            .collect();
+        for polygon in mem::take(&mut polygons) {
+            if regions.is_cancelled() {
+                return regions.finish();
+            }
+            polygons.extend(cut(polygon, line));
+        }
     }
     for polygon in &polygons {
+        if regions.is_cancelled() {
+            return regions.finish();
+        }
         let area = measure(polygon.iter().copied()).0.abs();
         if area < SPECK {
             regions.doubt(area);

@@ -1,5 +1,7 @@
 //! The regions of a spot, and what is seen in each.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec2;
 
 use crate::{
@@ -34,6 +36,7 @@ pub struct Regions<'a> {
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
+    cancel: &'a AtomicBool,
 }
 
 struct Checkered {
@@ -57,7 +60,13 @@ pub struct Region<'a> {
 
 impl<'a> Regions<'a> {
     /// For a spot in which no other objects are seen than some.
-    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], sides: &'a mut Sides) -> Self {
+    pub fn new(
+        world: &'a World,
+        spot: Spot,
+        live: &'a [Live],
+        sides: &'a mut Sides,
+        cancel: &'a AtomicBool,
+    ) -> Self {
         Self {
             world,
             spot,
@@ -65,7 +74,13 @@ impl<'a> Regions<'a> {
             sides,
             boards: Vec::new(),
             shares: Shares::default(),
+            cancel,
         }
+    }
+
+    /// Whether nobody wants the shares any more.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
     }
 
     /// Adds a region in which no boundary lies.
@@ -98,9 +113,9 @@ impl<'a> Regions<'a> {
         };
         let is_pixel = self.spot.side == 1.0;
         let known = is_pixel.then_some(&mut known);
-        let mut sum = checkered.board.over_known(region.polygon, known);
+        let mut sum = checkered.board.over(region.polygon, known, self.cancel);
         for (bulge, arc) in region.arcs {
-            let sliver = checkered.board.sliver(arc);
+            let sliver = checkered.board.sliver(arc, self.cancel);
             sum.value += bulge * sliver.value;
             sum.bound += sliver.bound;
         }

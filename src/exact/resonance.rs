@@ -40,7 +40,7 @@ impl Resonances {
     /// Of waves each of which turns by so many half turns, at most 1, more than the one before: from wave 0 on those within so many half
     /// turns of a whole turn.
     pub(super) fn new(half_turns: &Double, within: f64) -> Self {
-        let fixed = |x: f64| (x * (1u128 << 127) as f64) as i128 as u128;
+        let fixed = |x: f64| ((x * (1u128 << 126) as f64) as i128 as u128) << 1;
         let angle = fixed(half_turns.hi).wrapping_add(fixed(half_turns.lo));
         Self {
             angle,

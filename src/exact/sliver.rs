@@ -1,5 +1,7 @@
 //! The integral of the board's sign between an arc of a conic and its chord.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::DVec2;
 
 use super::arc::Arc;
@@ -18,7 +20,7 @@ impl Board {
     /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one square, and what is left
     /// is a convex polygon. Where the lines are too many, toward the horizon, chords take the place of pieces so short that
     /// their slivers may be neglected.
-    pub(crate) fn sliver(&self, arc: &Arc) -> Sum {
+    pub(super) fn sliver(&self, arc: &Arc, cancel: &AtomicBool) -> Sum {
         if let Some(sign) = self.one_square(arc) {
             return within_a_square(arc, sign);
         }
@@ -27,7 +29,7 @@ impl Board {
             sum: Sum::default(),
         };
         self.cut(arc, &mut chords);
-        chords.sum.add(self.over(&chords.points));
+        chords.sum.add(self.over(&chords.points, None, cancel));
         let area = arc.area();
         if chords.sum.value.is_finite() && chords.sum.bound < area {
             return chords.sum;

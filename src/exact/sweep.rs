@@ -69,6 +69,9 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         .map(|pair| (pair[0], pair[1]))
         .collect();
     while let Some((left, right)) = stack.pop() {
+        if sweep.regions.is_cancelled() {
+            break;
+        }
         if let Some(at) = sweep.slab(left, right) {
             stack.extend([(at, right), (left, at)]);
         }

@@ -1,5 +1,7 @@
 //! The board's integral against a sum over squares that shares nothing with it, against itself in pieces, and at the horizon.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::{DMat3, DVec2};
 use proptest::prelude::*;
 
@@ -15,6 +17,16 @@ const PIXEL: [DVec2; 4] = [
     DVec2::new(0.5, 0.5),
     DVec2::new(-0.5, 0.5),
 ];
+
+/// Nothing is cancelled here.
+static WANTED: AtomicBool = AtomicBool::new(false);
+
+impl Board {
+    /// The integral over a polygon of which no side is known.
+    pub(super) fn alone(&self, polygon: &[DVec2]) -> Sum {
+        self.over(polygon, None, &WANTED)
+    }
+}
 
 /// What a level camera sees: its height in squares, its focal length in pixels, where it looks in degrees, and the pixel's
 /// place from the centre of the horizon, rightwards and downwards.
@@ -168,7 +180,7 @@ fn pixels_of_many_squares() {
         for depth in [5.0, 20.0, 60.0, 120.0, 250.0, 500.0, 800.0, 1200.0, 1700.0] {
             let view = view(degrees, depth);
             agree(
-                view.board().over(&PIXEL),
+                view.board().alone(&PIXEL),
                 brute(view.forms(), &PIXEL),
                 1e-12,
                 view,
@@ -189,7 +201,7 @@ fn wide_views() {
                 place: DVec2::new(across, 0.5 + 1.7 * focal / depth),
                 foot: DVec2::new(0.3, 0.45),
             };
-            let found = view.board().over(&PIXEL);
+            let found = view.board().alone(&PIXEL);
             agree(found, brute(view.forms(), &PIXEL), 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
         }
@@ -223,8 +235,8 @@ fn blocks_of_rows() {
                 corner(-0.5, high * (1.0 - slant)),
             ];
             let corners = board.visible(&polygon);
-            let found = cells::sum(&board, &corners);
-            let rows = cells::sum_with_blocks(&board, &corners, ROWS);
+            let found = cells::sum(&board, &corners, &WANTED);
+            let rows = cells::sum_with_blocks(&board, &corners, ROWS, &WANTED);
             let error = (found.value - rows.value).abs();
             assert!(found.value != rows.value, "{degrees}: no block");
             assert!(
@@ -255,13 +267,13 @@ fn a_million_lines() {
         let a = [squares * cos, -squares * sin, 0.25 * squares];
         let b = [squares * sin, squares * cos, 0.15 * squares];
         let board = Board::new([a, b], [tilt, 0.3 * tilt, 1.0]);
-        let whole = board.over(&PIXEL);
+        let whole = board.alone(&PIXEL);
         let strips = 16;
         let mut pieces = Sum::default();
         for i in 0..strips * strips {
             let low = DVec2::new(f64::from(i / strips), f64::from(i % strips)) / f64::from(strips);
             let square = PIXEL.map(|p| low + (p + 0.5) / f64::from(strips) - 0.5);
-            pieces.add(board.over(&square));
+            pieces.add(board.alone(&square));
         }
         let error = (whole.value - pieces.value).abs();
         assert!(
@@ -292,7 +304,7 @@ fn the_horizon() {
             let quick = view.board();
             let mut deep = quick.clone();
             deep.tail = 1e-13;
-            let (found, expected) = (quick.over(&PIXEL), deep.over(&PIXEL));
+            let (found, expected) = (quick.alone(&PIXEL), deep.alone(&PIXEL));
             // Of the sum of signs: twice what the mean may be off.
             assert!(found.bound < 1.1e-9, "{view:?}: {found:?}");
             let error = (found.value - expected.value).abs();
@@ -313,10 +325,10 @@ fn the_end_is_the_limit() {
         let board = view.board();
         let line = -0.5 + 2464.0 / 5000.0;
         let [a, b, c, d] = PIXEL;
-        let upper = board.over(&[a, b, DVec2::new(0.5, line), DVec2::new(-0.5, line)]);
+        let upper = board.alone(&[a, b, DVec2::new(0.5, line), DVec2::new(-0.5, line)]);
         let lower = [DVec2::new(-0.5, line), DVec2::new(0.5, line), c, d];
         let expected = brute(view.forms(), &lower);
-        let all = board.over(&PIXEL);
+        let all = board.alone(&PIXEL);
         let difference = Sum {
             value: all.value - upper.value,
             bound: all.bound + upper.bound,
@@ -382,7 +394,7 @@ fn the_widest_views() {
                 view.place.y = 0.5;
                 let polygon =
                     PIXEL.map(|p| DVec2::new(p.x, low - 0.5 + (high - low) * (p.y + 0.5)));
-                let found = view.board().over(&polygon);
+                let found = view.board().alone(&polygon);
                 let (expected, _) = brute_limit(&view, &polygon, f64::INFINITY);
                 let error = (found.value - expected).abs();
                 // The limit is off by lines that are displaced by the focal length.
@@ -401,7 +413,7 @@ fn the_horizon_of_the_widest_views() {
         for focal in [1e-7, 1e-10, 1e-16, 1e-300] {
             let mut view = widest(focal, degrees);
             view.place.y = 0.2;
-            let found = view.board().over(&PIXEL);
+            let found = view.board().alone(&PIXEL);
             let visible = clip(&PIXEL, |p| p.y + view.place.y);
             let (expected, left) = brute_limit(&view, &visible, 5e4);
             let error = (found.value - expected).abs();
@@ -423,8 +435,8 @@ fn blocks_of_narrow_rows() {
             let polygon = PIXEL.map(|p| DVec2::new(p.x, 5e-4 - 0.5 + 0.02 * (p.y + 0.5)));
             let board = view.board();
             let corners = board.visible(&polygon);
-            let found = cells::sum(&board, &corners);
-            let rows = cells::sum_with_blocks(&board, &corners, f64::INFINITY);
+            let found = cells::sum(&board, &corners, &WANTED);
+            let rows = cells::sum_with_blocks(&board, &corners, f64::INFINITY, &WANTED);
             let error = (found.value - rows.value).abs();
             assert!(found.value != rows.value, "{degrees} {focal}: no block");
             assert!(
@@ -440,18 +452,18 @@ proptest! {
     fn pieces_add_up(degrees in 0.0..360.0, depth in 2.0_f64..40_000.0, s in -0.45..0.45, t in -0.45..0.45, w in 0.2..3.0, bend in 0.0..0.4) {
         let view = view(degrees, depth);
         let board = view.board();
-        let whole = board.over(&PIXEL);
+        let whole = board.alone(&PIXEL);
         let arc = Arc { start: DVec2::new(s, -0.5), control: DVec2::new(0.5 * (s + t) + bend, 0.1 * bend), end: DVec2::new(t, 0.5), weight: w };
         let [a, b, c, d] = PIXEL;
-        let left = board.over(&[a, arc.start, arc.end, d]);
-        let right = board.over(&[arc.start, b, c, arc.end]);
+        let left = board.alone(&[a, arc.start, arc.end, d]);
+        let right = board.alone(&[arc.start, b, c, arc.end]);
         let pieces = left.value + right.value;
         let bound = whole.bound + left.bound + right.bound;
         prop_assert!((pieces - whole.value).abs() <= bound, "{} {} {bound}", whole.value, pieces);
         // The region between the arc and its chord, by the exact cuts and by many chords.
-        let sliver = board.sliver(&arc);
+        let sliver = board.sliver(&arc, &WANTED);
         let points: Vec<DVec2> = (0..=400).map(|i| arc.at(f64::from(i) / 400.0)).collect();
-        let chords = board.over(&points);
+        let chords = board.alone(&points);
         let neglected: f64 = (0..400).map(|i| arc.between(f64::from(i) / 400.0, f64::from(i + 1) / 400.0).area()).sum();
         prop_assert!((sliver.value - chords.value).abs() <= sliver.bound + chords.bound + neglected, "{sliver:?} {chords:?} {neglected}");
     }
@@ -463,7 +475,7 @@ proptest! {
         let b = [m[3], m[4], m[5] + centre[1] * below[2]];
         let matrix = DMat3::from_cols_array_2d(&[a, b, below]);
         prop_assume!(matrix.determinant().abs() > 1e-3);
-        let found = Board::new([a, b], below).over(&PIXEL);
+        let found = Board::new([a, b], below).alone(&PIXEL);
         let expected = brute([a, b, below], &PIXEL);
         // What is expected takes corners of squares to the picture by the inverse, which is as good as the matrix's condition.
         let size = |matrix: DMat3| matrix.to_cols_array().map(f64::abs).iter().sum::<f64>();
@@ -479,5 +491,20 @@ fn from_straight_above() {
         [[1000.5, 0.0, 500.25], [0.0, 1000.5, 500.25]],
         [0.0, 0.0, 1.0],
     );
-    agree(board.over(&PIXEL), 0.25 / (1000.5 * 1000.5), 1e-14, "above");
+    agree(
+        board.alone(&PIXEL),
+        0.25 / (1000.5 * 1000.5),
+        1e-14,
+        "above",
+    );
+}
+
+#[test]
+fn rows_are_not_summed_once_they_are_cancelled() {
+    let below = [0.0, 0.0, 1.0];
+    let board = Board::new([[31.0, 2.0, 0.3], [3.0, 29.0, 0.2]], below);
+    let corners = board.visible(&PIXEL);
+    let [all, none] = [false, true]
+        .map(|is_cancelled| cells::sum(&board, &corners, &AtomicBool::new(is_cancelled)));
+    assert!(all.value != 0.0 && none.value == 0.0);
 }

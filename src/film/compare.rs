@@ -44,6 +44,8 @@ pub struct Comparison {
     pub largest: Largest,
     /// How many pixels differ by more than the tolerance.
     pub beyond: u64,
+    /// How many of the others may do so for all that is known: their bound leaves it open.
+    pub undecided: u64,
 }
 
 /// The largest difference.
@@ -89,9 +91,10 @@ impl Comparison {
 pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, SizesDiffer> {
     check_sizes(a, b)?;
     let mut largest = Largest::default();
-    let mut beyond = 0;
+    let (mut beyond, mut undecided) = (0, 0);
     for (at, (p, q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
-        if p == q {
+        let bound = tolerance.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
+        if p == q && bound == 0.0 {
             continue;
         }
         let (x, y) = (
@@ -114,8 +117,10 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
                 };
             }
         }
-        let bound = tolerance.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
-        beyond += u64::from(most > tolerance.steps + SLACK + bound * STEEPEST);
+        let (limit, open) = (tolerance.steps + SLACK, bound * STEEPEST);
+        let is_beyond = most > limit + open;
+        beyond += u64::from(is_beyond);
+        undecided += u64::from(!is_beyond && most + open > limit);
     }
     Ok(Comparison {
         width: a.width,
@@ -123,6 +128,7 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
         rmse: rmse(a, b),
         largest,
         beyond,
+        undecided,
     })
 }
 
@@ -251,7 +257,15 @@ mod tests {
         };
         let (dark, light) = (film(&[[0.0; 3]]), film(&[[1e-3 + 0.4 / STEEPEST; 3]]));
         assert!(!compare(&dark, &light, HALF).unwrap().is_equal());
-        assert!(compare(&dark, &light, bounded).unwrap().is_equal());
+        let found = compare(&dark, &light, bounded).unwrap();
+        assert!(found.is_equal() && found.undecided == 1);
+        // As far as the bound alone may reach, too.
+        assert_eq!(compare(&dark, &dark, bounded).unwrap().undecided, 1);
+        let little = Tolerance {
+            bounds: Some(&[1e-6]),
+            ..HALF
+        };
+        assert_eq!(compare(&dark, &dark, little).unwrap().undecided, 0);
     }
 
     #[test]

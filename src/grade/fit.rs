@@ -3,11 +3,10 @@
 //! Exact pictures are smooth functions of the scene, without any noise of samples, so that the method of Gauss and Newton works: a few
 //! pictures beside the current one give the slopes, and the linear problem's solution the next point.
 
-use super::level::Level;
+use super::{Make, level::Level};
 use crate::{
     film::{Film, rmse},
     render::{Control, RenderError},
-    scene::Scene,
 };
 
 /// So many steps are taken at most.
@@ -16,17 +15,17 @@ const STEPS: usize = 8;
 /// A step that brings less than this share ends the search.
 const GAIN: f64 = 1e-3;
 
-/// Finds the numbers from a start on; `widths` are steps that move the picture by a part of a pixel. `make` is of scenes in the whole
+/// Finds the numbers from a start on; `widths` are steps that move the picture by a part of a pixel. `make` is of mistakes in the whole
 /// picture's size. Nothing, if no step from the start is downhill.
 pub fn fit(
     level: &Level,
     control: &Control,
     start: &[f64],
     widths: &[f64],
-    make: &dyn Fn(&[f64]) -> Option<Scene>,
+    make: &dyn Fn(&[f64]) -> Option<Make>,
 ) -> Result<Option<Vec<f64>>, RenderError> {
     let film = |at: &[f64]| match make(at) {
-        Some(scene) => level.exact_of(&scene, control).map(Some),
+        Some(make) => level.made(&make, control).map(Some),
         None => Ok(None),
     };
     let Some(mut current) = film(start)? else {

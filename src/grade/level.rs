@@ -4,14 +4,15 @@ use std::borrow::Cow;
 
 use glam::{DVec2, DVec3};
 
-use super::{Make, exact, sampled};
+use super::{Make, exact, extent::View, sampled};
 use crate::{
-    color::srgb_to_linear,
+    area::Area,
     film::{Film, TooLarge},
     math::{Big, Real},
-    render::{Control, RenderError},
-    scene::{Image, Lens, Scene},
-    tracer::Basis,
+    render::{self, Control, RenderError},
+    sampling::Sampling,
+    scene::{Count, Image, Lens, Method, Sampler, Scene, Shape},
+    tracer::{Basis, World},
 };
 
 /// A picture for searches has about so many columns and rows at most.
@@ -86,9 +87,10 @@ impl<'a> Level<'a> {
         match make {
             Make::Film(make) => Ok(make(&self.exact)?),
             Make::Scene(scene) => exact(&self.sized(scene), control),
-            Make::Decoded(scene) => {
+            Make::Object(scene, shapes) => self.with_object(scene, shapes, control),
+            Make::Curved(scene, curve) => {
                 let film = exact(&self.sized(scene), control)?;
-                Ok(map(&film, srgb_to_linear)?)
+                Ok(map(&film, curve.to)?)
             }
             Make::Floor(scene, holds) => {
                 let other = exact(&self.sized(scene), control)?;
@@ -100,9 +102,25 @@ impl<'a> Level<'a> {
                 Ok(Film::from_fn(self.a.width(), self.a.height(), pixel)?)
             }
             Make::Is(film) => Ok(film.clone()),
-            Make::Sample(offset) => Ok(sampled(&self.scene, *offset)?),
+            Make::Sample(offset) => sampled(&self.scene, *offset, control),
             Make::Squeezed => squeezed(&self.scene, control),
         }
+    }
+
+    /// The picture with one shape changed: rendered anew where the shape was and where it is.
+    fn with_object(
+        &self,
+        scene: &Scene,
+        shapes: &[Option<Shape>; 2],
+        control: &Control,
+    ) -> Result<Film, RenderError> {
+        let scene = self.sized(scene);
+        let mut film = Film::clone(&self.exact);
+        if let Some(part) = View::of(&scene).extents(shapes) {
+            let changed = render::render_exact(&World::new(&scene), part, control)?.film;
+            film.put(part, changed.pixels());
+        }
+        Ok(film)
     }
 
     /// A scene of the whole picture's size in this one's.
@@ -113,9 +131,24 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// The exact picture of a scene of the whole picture's size, in this one's.
-    pub fn exact_of(&self, scene: &Scene, control: &Control) -> Result<Film, RenderError> {
-        exact(&self.sized(scene), control)
+    /// A scene of the whole picture's size, in this one's, by so many samples in a pixel: where many objects are seen in each, that takes a
+    /// small part of the exact one's time.
+    pub fn tried(
+        &self,
+        scene: &Scene,
+        samples: u64,
+        control: &Control,
+    ) -> Result<Film, RenderError> {
+        let scene = self.sized(scene);
+        let sampler = Sampler {
+            method: Method::Regular,
+            count: Count::PerPixel(samples),
+            seed: 0,
+        };
+        let (width, height) = (scene.image.width, scene.image.height);
+        let sampling = Sampling::new(&sampler, width, height);
+        let whole = Area::whole(width, height);
+        render::render(&World::new(&scene), &sampling, whole, control)
     }
 }
 

@@ -5,10 +5,13 @@
 //! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
 //!
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of samples in `noise` and
-//! `shift`. `level` makes pictures smaller, so that `fit` can afford to search.
+//! `shift`. `evidence` says how many pixels it takes to name one. `level` makes pictures smaller, so that `fit` can afford to search, and
+//! `extent` says in which part of one an object can make a difference.
 
 mod board;
 mod camera;
+mod evidence;
+mod extent;
 mod fit;
 mod level;
 mod noise;
@@ -16,19 +19,23 @@ mod objects;
 mod shift;
 mod whole;
 
+use std::{cell::Cell, sync::atomic::Ordering};
+
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
     area::Area,
-    color::linear_to_srgb,
     film::{Film, Tolerance, TooLarge, compare, rmse},
     render::{self, Control, RenderError},
-    scene::Scene,
+    scene::{Scene, Shape},
     tracer::World,
 };
 
-use self::level::Level;
+use self::{
+    extent::{Differences, View},
+    level::Level,
+};
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square.
 const LEFT: f64 = 0.2;
@@ -61,6 +68,15 @@ pub struct Verdict {
     pub explains: Option<f64>,
 }
 
+/// What is found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Grade {
+    /// The mistakes that explain the difference, best first; none, if none does.
+    pub likely: Vec<Verdict>,
+    /// Whether a mistake would explain it that too few pixels tell of.
+    pub is_thin: bool,
+}
+
 /// A mistake that somebody may have made.
 struct Idea {
     mistake: &'static str,
@@ -78,8 +94,10 @@ enum Make {
     Film(Box<Change>),
     /// The exact picture of another scene.
     Scene(Box<Scene>),
-    /// That, decoded as if its numbers were sRGB.
-    Decoded(Box<Scene>),
+    /// That of a scene with one shape changed, which was and is one of these.
+    Object(Box<Scene>, Box<[Option<Shape>; 2]>),
+    /// That of a scene, its light taken through a curve.
+    Curved(Box<Scene>, Curve),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
     Floor(Box<Scene>, fn(DVec2) -> bool),
     /// This picture.
@@ -90,17 +108,38 @@ enum Make {
     Squeezed,
 }
 
+/// A curve and its inverse.
+#[derive(Clone, Copy)]
+struct Curve {
+    to: fn(f64) -> f64,
+    back: fn(f64) -> f64,
+}
+
 /// Names the mistakes that explain why `a` is not the exact picture of a scene.
 pub fn scene(
     a: &Film,
     scene: &Scene,
     exact: &Film,
     control: &Control,
-) -> Result<Vec<Verdict>, RenderError> {
+) -> Result<Grade, RenderError> {
     if size(a) != size(exact) {
-        return Ok(whole::sizes(a, exact));
+        return Ok(Grade {
+            likely: whole::sizes(a, exact),
+            is_thin: false,
+        });
     }
     let case = Case::new(a, scene, exact, control)?;
+    let likely = explained(&case)?;
+    Ok(Grade {
+        is_thin: likely.is_empty() && case.is_thin.get(),
+        likely,
+    })
+}
+
+/// The mistakes that explain a difference, from the likeliest kind on.
+fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
+    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+    let control = &case.control;
     // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer.
     let found = case.named(noise::ideas())?;
     if !found.is_empty() {
@@ -114,8 +153,8 @@ pub fn scene(
         .into_iter()
         .chain(camera::ideas(scene))
         .chain(board::ideas(scene))
-        .chain(objects::ideas(a, exact, scene))
-        .chain(objects::colors(a, exact, scene));
+        .chain(objects::ideas(case))
+        .chain(objects::colors(case));
     let mut found = case.named(ideas.collect())?;
     if let [first, others @ ..] = found.as_slice()
         && first.mistake != "colors"
@@ -128,29 +167,46 @@ pub fn scene(
         return Ok(found);
     }
     // What has to be searched for takes longer, what comes last longest.
-    for search in [objects::search, camera::search, shift::search] {
-        let found = case.named(search(&case)?)?;
-        if !found.is_empty() {
-            return Ok(found);
-        }
+    let found = case.named(objects::search(case)?)?;
+    if !found.is_empty() {
+        return Ok(found);
     }
-    Ok(Vec::new())
+    // A camera that moved a little displaces the picture, nearly.
+    let mut ideas = shift::search(case)?;
+    ideas.extend(camera::search(case)?);
+    case.named(ideas)
 }
 
 /// Names the mistakes that explain why one picture is not another, of which no scene is known.
-pub fn pictures(a: &Film, b: &Film) -> Vec<Verdict> {
+pub fn pictures(a: &Film, b: &Film) -> Grade {
     if size(a) != size(b) {
-        return whole::sizes(a, b);
+        return Grade {
+            likely: whole::sizes(a, b),
+            is_thin: false,
+        };
     }
     let difference = rmse(a, b);
+    let mut is_thin = false;
     let found = whole::films().into_iter().filter_map(|idea| {
         let Make::Film(make) = &idea.make else {
             return None;
         };
-        let left = rmse(a, &make(b).ok()?);
-        (left < LEFT * difference).then(|| idea.verdict(left, difference))
+        let made = make(b).ok()?;
+        let left = rmse(a, &made);
+        if left >= LEFT * difference {
+            return None;
+        }
+        if !evidence::is_enough(a, b, &made) {
+            is_thin = true;
+            return None;
+        }
+        Some(idea.verdict(left, difference))
     });
-    best(found.collect())
+    let likely = best(found.collect());
+    Grade {
+        is_thin: likely.is_empty() && is_thin,
+        likely,
+    }
 }
 
 fn size(film: &Film) -> [u32; 2] {
@@ -188,6 +244,11 @@ struct Case<'a> {
     difference: f64,
     /// Of the small one.
     small_difference: f64,
+    /// Where in the whole picture the difference is.
+    differences: Differences,
+    view: View,
+    /// A mistake was passed over of which too few pixels tell.
+    is_thin: Cell<bool>,
     control: Control<'a>,
 }
 
@@ -209,6 +270,9 @@ impl<'a> Case<'a> {
             small_difference: rmse(&small.a, &small.exact),
             small,
             difference: rmse(a, exact),
+            differences: Differences::new(a, exact),
+            view: View::of(scene),
+            is_thin: Cell::new(false),
             control,
         })
     }
@@ -224,10 +288,15 @@ impl<'a> Case<'a> {
         Ok(best(found))
     }
 
-    /// What a mistake leaves of the difference, if it explains it.
+    /// What a mistake leaves of the difference, if it explains it, and enough pixels tell of it.
     fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
+        if let Make::Object(_, shapes) = make
+            && self.is_elsewhere(shapes)
+        {
+            return Ok(None);
+        }
         // Neither single samples nor decoding mean the same in a small picture; and what is known need not be guessed.
-        if !matches!(make, Make::Sample(_) | Make::Decoded(_) | Make::Is(_)) {
+        if !matches!(make, Make::Sample(_) | Make::Curved(..) | Make::Is(_)) {
             let small = self.small.made(make, &self.control)?;
             let hope = match self.small.factor {
                 FEW.. => SMALL_HOPE,
@@ -239,19 +308,35 @@ impl<'a> Case<'a> {
         }
         let made = self.full.made(make, &self.control)?;
         let left = rmse(&self.full.a, &made);
-        if left < LEFT * self.difference {
-            return Ok(Some(left));
-        }
-        if left > HOPE * self.difference {
+        if left > HOPE * self.difference || !self.explains(make, &made, left)? {
             return Ok(None);
+        }
+        let is_enough = evidence::is_enough(&self.full.a, &self.full.exact, &made);
+        if !is_enough {
+            self.is_thin.set(true);
+        }
+        Ok(is_enough.then_some(left))
+    }
+
+    /// Whether most of the difference is where no change of an object from one shape to another makes any.
+    fn is_elsewhere(&self, shapes: &[Option<Shape>; 2]) -> bool {
+        let part = self.view.extents(shapes);
+        let inside = part.map_or(0.0, |part| self.differences.share(part));
+        (1.0 - inside).sqrt() > HOPE
+    }
+
+    /// Whether what a mistake makes leaves little of the difference, or nothing but roundings or noise.
+    fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
+        if left < LEFT * self.difference {
+            return Ok(true);
         }
         // The mistake may be small, and the rest rounding.
         let rounding = Tolerance {
             steps: 0.501,
             bounds: None,
         };
-        if compare(&self.full.a, &made, rounding).is_ok_and(|found| found.is_equal()) {
-            return Ok(Some(left));
+        if compare(&self.full.a, made, rounding).is_ok_and(|found| found.is_equal()) {
+            return Ok(true);
         }
         // The picture may have the mistake and noise.
         let (full, control) = (&self.full, &self.control);
@@ -260,18 +345,17 @@ impl<'a> Case<'a> {
                 let right = noise::variance(&full.scene, &full.exact, control)?;
                 make(&right)?
             }
-            Make::Scene(scene) => noise::variance(scene, &made, control)?,
-            Make::Decoded(scene) => {
-                // Noise was averaged before decoding, so it is looked at there.
+            Make::Scene(scene) | Make::Object(scene, _) => noise::variance(scene, made, control)?,
+            Make::Curved(scene, curve) => {
+                // Noise was averaged before the curve, so it is looked at there.
                 let means = exact(scene, control)?;
                 let variance = noise::variance(scene, &means, control)?;
-                let encoded = level::map(&full.a, linear_to_srgb)?;
-                return Ok(noise::judge(&encoded, &means, &variance).map(|_| left));
+                let before = level::map(&full.a, curve.back)?;
+                return Ok(noise::judge(&before, &means, &variance).is_some());
             }
-            _ => return Ok(None),
+            _ => return Ok(false),
         };
-        let noise = noise::judge(&full.a, &made, &variance);
-        Ok(noise.map(|_| left))
+        Ok(noise::judge(&full.a, made, &variance).is_some())
     }
 }
 
@@ -289,7 +373,7 @@ impl Idea {
 }
 
 /// One sample in each pixel, at an offset from its centre.
-fn sampled(scene: &Scene, offset: DVec2) -> Result<Film, TooLarge> {
+fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, RenderError> {
     let world = World::new(scene);
     let colors: Vec<_> = world
         .palette()
@@ -301,10 +385,13 @@ fn sampled(scene: &Scene, offset: DVec2) -> Result<Film, TooLarge> {
     let rows: Vec<Vec<_>> = (0..height)
         .into_par_iter()
         .map(|y| {
+            if control.cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
             let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
-            row.collect()
+            Ok(row.collect())
         })
-        .collect();
+        .collect::<Result<_, _>>()?;
     for (y, row) in (0..).zip(rows) {
         film.put(
             Area {
@@ -317,4 +404,21 @@ fn sampled(scene: &Scene, offset: DVec2) -> Result<Film, TooLarge> {
         );
     }
     Ok(film)
+}
+
+/// A scene and its exact picture, for tests.
+#[cfg(test)]
+fn scene_of(text: &str) -> (Scene, Film) {
+    use crate::source::{Source, Sources};
+    use std::sync::atomic::AtomicBool;
+
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    let scene = crate::scene::read(&sources).scene.unwrap();
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let film = exact(&scene, &control).unwrap();
+    (scene, film)
 }

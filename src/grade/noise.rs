@@ -28,6 +28,16 @@ const STRAYS: f64 = 0.005;
 const SIGMAS: f64 = 5.0;
 const BIAS: f64 = 0.12;
 
+/// A mean of samples of at most so many is seldom right: they are multiples of a part, and few of those are what a pixel's mean is. It is so
+/// that in a pixel of two colours n samples may be right within [`FLAT`] of one of n + 1 numbers, out of 255.
+const RIGHT: f64 = 2.0 * FLAT / 255.0;
+
+/// Pixels are looked at for that if one sample has at least this variance there.
+const WIDE: f64 = 0.02;
+
+/// With a probability below this some pixel of a picture is farther off than is thought possible.
+const CHANCE: f64 = 1e-3;
+
 /// Noise that looks as if there were so many independent samples in a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
@@ -77,6 +87,7 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
     let (mut mixed, mut strays) = (0u64, 0u64);
     let (mut variances, mut squares) = (0.0, 0.0);
     let mut sums = [[0.0f64; 3]; 3];
+    let mut spread = Spread::default();
     let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
     for ((p, q), variance) in pixels {
         if variance.iter().all(|&variance| variance < NO_VARIANCE) {
@@ -90,6 +101,7 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
             continue;
         }
         mixed += 1;
+        spread.add(p, q, variance);
         for i in 0..3 {
             let error = p[i] - q[i];
             variances += variance[i].max(0.0);
@@ -104,12 +116,46 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
     };
     let samples = variances / squares;
     // A single sample already has the whole variance; more than that is no noise.
-    let is_noise = mixed > 0
+    // As many errors of one sign and size pass for even.
+    let is_noise = mixed as f64 > SIGMAS * SIGMAS
+        && spread.is_everywhere(mixed)
         && strays as f64 <= STRAYS * mixed as f64
         && sums.into_iter().all(is_even)
         && samples > 0.75
         && samples.is_finite();
     is_noise.then_some(Noise { samples })
+}
+
+/// Whether errors are all over, as those of samples are, or large and in a few places.
+#[derive(Default)]
+struct Spread {
+    largest: f64,
+    /// Pixels with a notable variance, and those among them that are right.
+    wide: u64,
+    right: u64,
+}
+
+impl Spread {
+    fn add(&mut self, p: &[f64; 3], q: &[f64; 3], variance: &[f64; 3]) {
+        let errors = [0, 1, 2].map(|i| (p[i] - q[i]).abs());
+        self.largest = errors.into_iter().fold(self.largest, f64::max);
+        if variance.iter().any(|&variance| variance > WIDE) {
+            self.wide += 1;
+            let is_near =
+                |i: usize| 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() <= FLAT;
+            self.right += u64::from((0..3).all(is_near));
+        }
+    }
+
+    /// The mean of n samples is off by more than t with a probability of at most 2 exp(−2nt²) (Hoeffding 1963): the largest of all errors
+    /// bounds n, and n the share of pixels that are right.
+    fn is_everywhere(&self, mixed: u64) -> bool {
+        let means = 3.0 * mixed as f64;
+        let samples = libm::log(2.0 * means / CHANCE) / (2.0 * self.largest * self.largest);
+        let wide = self.wide as f64;
+        let right = (RIGHT * (samples + 1.0)).min(1.0) * wide;
+        self.right as f64 <= right + SIGMAS * wide.sqrt()
+    }
 }
 
 impl Noise {

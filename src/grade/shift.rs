@@ -1,15 +1,15 @@
 //! Pictures that are displaced as a whole, by halves of a pixel up to a few.
 //!
 //! A pixel of the exact picture with twice the columns and rows is a quarter of a pixel, so that four of them make each pixel of the
-//! picture displaced by any number of halves.
+//! picture displaced by any number of halves. What comes in at an edge is what the scene shows there, nothing at all, or what went out at the
+//! other edge, so that the displacement itself is sought away from the edges.
+
+use std::ops::Range;
+
+use glam::DVec3;
 
 use super::{Case, Idea, Make, exact};
-use crate::{
-    film::{Film, rmse},
-    numbers::short,
-    render::RenderError,
-    scene::Image,
-};
+use crate::{film::Film, numbers::short, render::RenderError, scene::Image};
 
 /// The farthest displacement, in halves of a pixel.
 const REACH: i32 = 8;
@@ -34,17 +34,18 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
         })
     };
     let mut at = [0, 0];
-    let mut left = case.difference;
+    let inside = Inside::of(&level.a);
+    let mut left = inside.rmse(&level.a, &level.exact);
     // Downhill in the grid of displacements: the differences' slopes say where to go.
     for _ in 0..6 {
         let here = moved(at)?;
-        let [x, y] = slope(&level.a, &here);
+        let [x, y] = inside.slope(&level.a, &here);
         let step = |by: f64| (2.0 * by).round().clamp(-4.0, 4.0) as i32;
         let next = [at[0] + step(x), at[1] + step(y)].map(|by| by.clamp(-REACH, REACH));
         if next == at {
             break;
         }
-        let left_there = rmse(&level.a, &moved(next)?);
+        let left_there = inside.rmse(&level.a, &moved(next)?);
         if left_there >= left {
             break;
         }
@@ -62,15 +63,46 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
             way.push(format!("{} {pixels} {side}", short(by.abs())));
         }
     }
-    let film = moved(at)?;
-    Ok(vec![Idea {
+    let message = format!("the whole picture is displaced by {}", way.join(" and "));
+    let idea = |message: String, film: Film| {
+        Idea {
         mistake: "shifted",
-        message: format!("the whole picture is displaced by {}", way.join(" and ")),
+        message,
         help: "the window's middle is between the pixels, at (width/2, height/2), and pixel (x, y) goes from x to x + 1 and y to y + 1: \
                its centre is at (x + 0.5, y + 0.5)"
             .to_owned(),
         make: Make::Is(film),
-    }])
+    }
+    };
+    let mut ideas = vec![idea(message.clone(), moved(at)?)];
+    if at.iter().all(|by| by % 2 == 0) {
+        // Whole pixels.
+        let from = |pixel: u32, by: i32| i64::from(pixel) - i64::from(by / 2);
+        let empty = Film::from_fn(width, height, |x, y| {
+            let (column, row) = (from(x, at[0]), from(y, at[1]));
+            match (u32::try_from(column), u32::try_from(row)) {
+                (Ok(column), Ok(row)) if column < width && row < height => {
+                    level.exact.pixel(column, row)
+                }
+                _ => [0.0; 3],
+            }
+        })?;
+        ideas.push(idea(
+            format!("{message}, and black where it is missing then"),
+            empty,
+        ));
+        let wrapped = Film::from_fn(width, height, |x, y| {
+            let wrap = |at: i64, size: u32| at.rem_euclid(i64::from(size)) as u32;
+            level
+                .exact
+                .pixel(wrap(from(x, at[0]), width), wrap(from(y, at[1]), height))
+        })?;
+        ideas.push(idea(
+            format!("{message}, and what goes out at one edge comes in at the other"),
+            wrapped,
+        ));
+    }
+    Ok(ideas)
 }
 
 /// Twice the columns and rows, and a margin of [`REACH`] of them on all sides.
@@ -87,12 +119,43 @@ fn fine(case: &Case) -> Result<Film, RenderError> {
     exact(&fine, &case.control)
 }
 
-/// How far `a` is displaced against `b`, in pixels to the right and down: the least-squares solution of a − b ≈ −x ∂b/∂x − y ∂b/∂y.
-fn slope(a: &Film, b: &Film) -> [f64; 2] {
-    let [width, height] = super::size(b);
-    let mut m = [0.0; 5];
-    for y in 1..height.saturating_sub(1) {
-        for x in 1..width.saturating_sub(1) {
+/// The pixels of a picture that no displacement brings in from outside, or all but the outermost if it is too small for that.
+struct Inside {
+    columns: Range<u32>,
+    rows: Range<u32>,
+}
+
+impl Inside {
+    fn of(film: &Film) -> Self {
+        let [columns, rows] = super::size(film).map(|side| {
+            // Half as many pixels as halves, and one for the slopes.
+            let margin = REACH as u32 / 2 + 1;
+            match side > 4 * margin {
+                true => margin..side - margin,
+                false => 1..side.saturating_sub(1),
+            }
+        });
+        Self { columns, rows }
+    }
+
+    fn pixels(&self) -> impl Iterator<Item = (u32, u32)> {
+        let columns = self.columns.clone();
+        self.rows
+            .clone()
+            .flat_map(move |y| columns.clone().map(move |x| (x, y)))
+    }
+
+    /// Up to a factor, which does not matter here.
+    fn rmse(&self, a: &Film, b: &Film) -> f64 {
+        let square =
+            |(x, y)| (DVec3::from(a.pixel(x, y)) - DVec3::from(b.pixel(x, y))).length_squared();
+        self.pixels().map(square).sum::<f64>().sqrt()
+    }
+
+    /// How far `a` is displaced against `b`, in pixels to the right and down: the least-squares solution of a − b ≈ −x ∂b/∂x − y ∂b/∂y.
+    fn slope(&self, a: &Film, b: &Film) -> [f64; 2] {
+        let mut m = [0.0; 5];
+        for (x, y) in self.pixels() {
             let [left, right] = [b.pixel(x - 1, y), b.pixel(x + 1, y)];
             let [above, below] = [b.pixel(x, y - 1), b.pixel(x, y + 1)];
             let (p, q) = (a.pixel(x, y), b.pixel(x, y));
@@ -106,13 +169,13 @@ fn slope(a: &Film, b: &Film) -> [f64; 2] {
                 m[4] += gy * error;
             }
         }
+        let determinant = m[0] * m[2] - m[1] * m[1];
+        if determinant <= 1e-12 * m[0] * m[2] || determinant == 0.0 {
+            return [0.0; 2];
+        }
+        [
+            (m[3] * m[2] - m[4] * m[1]) / determinant,
+            (m[0] * m[4] - m[1] * m[3]) / determinant,
+        ]
     }
-    let determinant = m[0] * m[2] - m[1] * m[1];
-    if determinant <= 1e-12 * m[0] * m[2] || determinant == 0.0 {
-        return [0.0; 2];
-    }
-    [
-        (m[3] * m[2] - m[4] * m[1]) / determinant,
-        (m[0] * m[4] - m[1] * m[3]) / determinant,
-    ]
 }

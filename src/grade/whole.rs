@@ -1,6 +1,6 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
-use super::{Idea, Make, Verdict, level::map, noise::with_colors, size};
+use super::{Curve, Idea, Make, Verdict, level::map, noise::with_colors, size};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::{Film, TooLarge, rmse},
@@ -124,7 +124,33 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
         mistake: "averaged_encoded",
         message: "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark".to_owned(),
         help: "decode a scene's colours to linear light, average there, and encode once".to_owned(),
-        make: Make::Decoded(Box::new(encoded)),
+        make: Make::Curved(
+            Box::new(encoded),
+            Curve {
+                to: srgb_to_linear,
+                back: linear_to_srgb,
+            },
+        ),
+    });
+    let power = with_colors(scene, |color| Color {
+        srgb: color
+            .srgb
+            .map(|channel| 255.0 * linear_to_srgb(libm::pow(channel / 255.0, 2.2))),
+    });
+    ideas.push(Idea {
+        mistake: "gamma_22_averaged",
+        message: "colours were decoded with the power 2.2 and encoded with 1/2.2, which is near sRGB but not it: flat colours are right, and \
+                  edges a little off"
+            .to_owned(),
+        help: "use the curve of sRGB both ways: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055, and its inverse"
+            .to_owned(),
+        make: Make::Curved(
+            Box::new(power),
+            Curve {
+                to: |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2)),
+                back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
+            },
+        ),
     });
     if scene.image.width != scene.image.height {
         ideas.push(Idea {

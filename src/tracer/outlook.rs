@@ -1,6 +1,8 @@
 //! What may be seen in a part of the picture: the objects that are not certain to be missed or hidden there, and in a single
 //! pixel the curves that bound what is seen of them.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec2;
 
 use crate::{
@@ -233,21 +235,28 @@ impl World {
     }
 
     /// The curves in a spot that may bound what is seen there of some objects: outlines, where surfaces cross each other, and
-    /// where the near and the far plane cut them.
-    pub fn curves(&self, spot: Spot, live: &[Live], out: &mut Vec<Curve>) {
+    /// where the near and the far plane cut them. There may be as many as pairs of objects: once it is cancelled the rest of them is
+    /// left out.
+    pub fn curves(&self, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
         out.clear();
-        self.curves_in::<Double>(spot, live, out);
+        self.curves_in::<Double>(spot, live, cancel, out);
         let is_tight = |curve: &Curve| match curve {
             Curve::Line(line) => line.rad < LOOSE_LINE,
             Curve::Conic(conic) => conic.doubtful_area() < LOOSE_CONIC,
         };
         if !out.iter().all(is_tight) {
             out.clear();
-            self.curves_in::<Big>(spot, live, out);
+            self.curves_in::<Big>(spot, live, cancel, out);
         }
     }
 
-    fn curves_in<T: Level>(&self, spot: Spot, live: &[Live], out: &mut Vec<Curve>) {
+    fn curves_in<T: Level>(
+        &self,
+        spot: Spot,
+        live: &[Live],
+        cancel: &AtomicBool,
+        out: &mut Vec<Curve>,
+    ) {
         let frame = T::frame(self);
         let place = Place::new(&frame.camera, spot);
         let mut push = |curve: Curve| {
@@ -266,6 +275,9 @@ impl World {
             })
         };
         for (i, a) in live.iter().enumerate() {
+            if cancel.load(Ordering::Relaxed) {
+                return;
+            }
             if !a.is_whole {
                 objects[i].outline(&place).into_iter().for_each(&mut push);
                 let clips = [&frame.near, &frame.far];

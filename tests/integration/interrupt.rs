@@ -1,13 +1,23 @@
-//! Ctrl-C, as a terminal sends it.
+//! Ctrl-C as a terminal sends it, and the signal by which a system ends a program.
 
 use std::{
+    fs,
     process::{Command, Output, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
+use crate::program::command;
+
 /// A command that is interrupted after so many milliseconds: long enough to have begun, and far from long enough to be done. What it says then.
 pub fn interrupted(command: &mut Command, after: u64) -> Output {
+    let (output, time) = ended_by("INT", command, after);
+    assert!(time < Duration::from_secs(5));
+    output
+}
+
+/// The same by any signal, and how long it took to end.
+fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Output, Duration) {
     let mut child = command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -19,18 +29,66 @@ pub fn interrupted(command: &mut Command, after: u64) -> Output {
         "it was over before it was interrupted"
     );
     let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args([format!("-{signal}"), child.id().to_string()])
         .status()
         .unwrap();
     assert!(killed.success());
     let start = Instant::now();
     let output = child.wait_with_output().unwrap();
-    assert!(start.elapsed() < Duration::from_secs(5));
+    let time = start.elapsed();
     assert_eq!(
         output.status.code(),
         Some(130),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    output
+    (output, time)
+}
+
+/// A picture of one pixel, in which triangles pierce each other so often that its exact mean takes more than a minute.
+pub fn long_pixel() -> String {
+    let mut scene = "image { width 1  height 1 }\n\
+                     camera { eye (0, 0, 2)  direction (0, 0, -1)  d 2 }\n\
+                     sampler { method exact }\n"
+        .to_owned();
+    for i in 0..150 {
+        // Spread evenly, by irrational steps.
+        let [x, y, z, right, up] = [0.618, 0.755, 0.570, 0.414, 0.732]
+            .map(|step: f64| (step * f64::from(i)).fract() - 0.5);
+        scene += &format!(
+            "triangle {{ centroid ({x:.3}, {y:.3}, {z:.3})  normal ({right:.3}, {up:.3}, 1) }}\n"
+        );
+    }
+    scene
+}
+
+#[test]
+fn one_signal_ends_it_within_a_pixel() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("long.scn"), long_pixel()).unwrap();
+    image::RgbImage::new(1, 1)
+        .save(folder.path().join("black.png"))
+        .unwrap();
+    let before = ["black.png", "long.scn"];
+    for arguments in [
+        &["render", "long.scn", "-o", "long.png"][..],
+        &["render", "long.scn", "-o", "long.exr"],
+        &["diff", "black.png", "long.scn", "-o", "heat.png"],
+        &["report", "long.scn"],
+    ] {
+        if arguments[0] == "report" && !cfg!(feature = "report") {
+            continue;
+        }
+        for signal in ["INT", "TERM"] {
+            let (_, time) = ended_by(signal, &mut command(folder.path(), arguments), 500);
+            assert!(
+                time < Duration::from_millis(900),
+                "{arguments:?} took {time:?} to end"
+            );
+            let entries = fs::read_dir(folder.path()).unwrap();
+            let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+            names.sort();
+            assert_eq!(names, before, "{arguments:?}");
+        }
+    }
 }

@@ -13,7 +13,7 @@ use pinhole::{
     render::Control,
     report::speed::{
         self, Checks, Plan, Request, Subject,
-        fit::{Fit, median, quantile, root_mean_square},
+        fit::{Fit, log_error, median, quantile, root_mean_square},
         measure,
     },
     scene::{self, Method},
@@ -97,6 +97,30 @@ fn the_slopes_uncertainty_is_that_of_the_textbook() {
     let fit = Fit::of(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
+}
+
+#[test]
+fn points_on_a_line_by_luck_have_the_uncertainty_of_their_runs() {
+    // Squares 1 and 3: mean 2, variance 2, so √(2/2) / (2 · 2).
+    let error = log_error(&[1.0, 3.0f64.sqrt()]).unwrap();
+    assert!((error - 0.25).abs() < 1e-15, "{error}");
+    assert_eq!((log_error(&[1.0]), log_error(&[])), (None, None));
+    assert_eq!(log_error(&[0.5, 0.5, 0.5]), Some(0.0));
+    // No residuals, and every ln y known to 0.1: 0.1/√S, S = 5 ln² 2.
+    let points = [1.0, 2.0, 4.0, 8.0].map(|n: f64| (n, 0.3 / n));
+    let fit = Fit::of_measured(&points, &[Some(0.1); 4]).unwrap();
+    let expected = 0.1 / (5.0f64.sqrt() * std::f64::consts::LN_2);
+    assert!((fit.slope_error.unwrap() - expected).abs() < 1e-14);
+    assert!(fit.residual_error.unwrap() < 1e-14);
+    // What it reaches is as doubtful: s/|b| · √(1/4 + 0) in the middle.
+    let doubt = fit.doubt(libm::exp2(1.5)).unwrap();
+    assert!((libm::log(doubt) - 0.1 * 0.5).abs() < 1e-14, "{doubt}");
+    // One point of which nothing is known; and residuals that say more.
+    let errors = [Some(0.1), None, Some(0.1), Some(0.1)];
+    assert_eq!(Fit::of_measured(&points, &errors), Fit::of(&points));
+    let bent = [(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)];
+    let fit = Fit::of_measured(&bent, &[Some(1e-3); 4]).unwrap();
+    assert_eq!(fit.slope_error, fit.residual_error);
 }
 
 #[test]

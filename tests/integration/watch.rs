@@ -15,7 +15,7 @@ use std::{
 
 use tempfile::TempDir;
 
-use crate::program::command;
+use crate::{interrupt::long_pixel, program::command};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -288,6 +288,22 @@ fn what_is_superseded_is_cancelled() {
     thread::sleep(Duration::from_millis(300));
     watch.save(&scene("blue"));
     watch.wait_for(BLUE);
+    assert_eq!(watch.names(), ["a.png", "a.scn"]);
+}
+
+#[test]
+fn what_is_superseded_is_cancelled_within_a_pixel() {
+    let mut watch = Watch::start(&scene("red"), &["--threads", "1"]);
+    watch.wait_for(RED);
+    watch.save(&long_pixel());
+    thread::sleep(Duration::from_millis(500));
+    watch.save(&scene("blue"));
+    watch.wait_for(BLUE);
+    watch.save(&long_pixel());
+    thread::sleep(Duration::from_millis(500));
+    let start = Instant::now();
+    assert_eq!(watch.end().code(), Some(130));
+    assert!(start.elapsed() < Duration::from_millis(900));
     assert_eq!(watch.names(), ["a.png", "a.scn"]);
 }
 

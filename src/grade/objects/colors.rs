@@ -1,12 +1,14 @@
 //! Objects of a wrong colour.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
-use super::{ENOUGH, OBJECTS, called};
+use super::{ENOUGH, called};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::Film,
-    grade::{Idea, Make},
+    grade::{Case, Idea, Make},
     scene::{Scene, Shape},
 };
 
@@ -15,32 +17,47 @@ const NEAR: f64 = 2.5;
 
 /// Other colours: those that the picture shows where the exact one shows an object alone; last of all of them at once, if there are
 /// several.
-pub fn colors(a: &Film, exact: &Film, scene: &Scene) -> Vec<Idea> {
+pub fn colors(case: &Case) -> Vec<Idea> {
+    let scene: &Scene = &case.full.scene;
+    let seen = Seen::new(case);
     let mut ideas = Vec::new();
     let mut all = scene.clone();
     let mut messages = Vec::new();
-    let mut change = |wanted: Color, what: String, set: &dyn Fn(&mut Scene, Color)| {
-        let Some(shown) = shown(a, exact, wanted) else {
+    let mut change = |wanted: Color,
+                      what: String,
+                      set: &dyn Fn(&mut Scene, Color) -> Option<Shape>| {
+        let Some(shown) = seen.shown(wanted) else {
             return;
         };
-        let mut other = scene.clone();
-        set(&mut other, shown);
-        set(&mut all, shown);
+        let shape = set(&mut all, shown);
         let message = format!("{what} has the colour {shown} instead of {wanted}");
         messages.push(message.clone());
+        // Where a colour alone cannot explain it, all of them together may.
+        if shape.is_some() && case.is_elsewhere(&[shape, None]) {
+            return;
+        }
+        let mut other = scene.clone();
+        set(&mut other, shown);
+        let make = match shape {
+            Some(_) => Make::Object(Box::new(other), Box::new([shape, None])),
+            None => Make::Scene(Box::new(other)),
+        };
         ideas.push(Idea {
             mistake: "color",
             message,
             help: "colours are sRGB: the number of a channel, 0 to 255, comes out as it is where nothing else is seen".to_owned(),
-            make: Make::Scene(Box::new(other)),
+            make,
         });
     };
     change(
         scene.image.background,
         "the background".to_owned(),
-        &|scene, color| scene.image.background = color,
+        &|scene, color| {
+            scene.image.background = color;
+            None
+        },
     );
-    for (index, object) in scene.objects.iter().enumerate().take(OBJECTS) {
+    for (index, object) in scene.objects.iter().enumerate() {
         let mut shape = object.shape;
         for (slot, wanted) in color(&mut shape).into_iter().enumerate() {
             let what = match (slot, object.shape) {
@@ -53,19 +70,35 @@ pub fn colors(a: &Film, exact: &Film, scene: &Scene) -> Vec<Idea> {
                 _ => called(scene, index),
             };
             change(*wanted, what, &|scene, shown| {
-                *color(&mut scene.objects[index].shape)[slot] = shown;
+                let shape = &mut scene.objects[index].shape;
+                *color(shape)[slot] = shown;
+                Some(*shape)
             });
         }
     }
     if messages.len() > 1 {
         ideas.push(Idea {
             mistake: "colors",
-            message: messages.join("; "),
+            message: listed(&messages),
             help: "are the colours decoded once and encoded once, and are their channels in the order red, green, blue?".to_owned(),
             make: Make::Scene(Box::new(all)),
         });
     }
     ideas
+}
+
+/// The first few, and how many more there are.
+fn listed(messages: &[String]) -> String {
+    const LISTED: usize = 5;
+    let (first, rest) = messages.split_at(messages.len().min(LISTED));
+    let mut text = first.join("; ");
+    if !rest.is_empty() {
+        text += &format!(
+            "; and {} more are another colour than they should be",
+            rest.len()
+        );
+    }
+    text
 }
 
 /// What a shape has one of, in its place in the shape; none of a checkerboard, which has two.
@@ -78,27 +111,48 @@ pub(super) fn color(shape: &mut Shape) -> Vec<&mut Color> {
     }
 }
 
-/// The colour that a picture shows where the exact one shows this one alone, if it is one colour and another.
-fn shown(a: &Film, exact: &Film, wanted: Color) -> Option<Color> {
-    let light = wanted.to_linear();
-    let seen = a.pixels().iter().zip(exact.pixels());
-    let mut found: Vec<_> = seen
-        .filter(|(_, q)| **q == light)
-        .map(|(p, _)| *p)
-        .collect();
-    if (found.len() as u64) < ENOUGH {
-        return None;
+/// The colours that a picture shows where the exact one shows one colour alone, by the bits of that one's light.
+struct Seen(HashMap<[u64; 3], Vec<[f64; 3]>>);
+
+impl Seen {
+    fn new(case: &Case) -> Self {
+        let scene: &Scene = &case.full.scene;
+        let mut seen = HashMap::from([(bits(scene.image.background.to_linear()), Vec::new())]);
+        for object in &scene.objects {
+            let mut shape = object.shape;
+            let colors = color(&mut shape).into_iter();
+            seen.extend(colors.map(|color| (bits(color.to_linear()), Vec::new())));
+        }
+        for (p, q) in case.full.a.pixels().iter().zip(case.full.exact.pixels()) {
+            if let Some(seen) = seen.get_mut(&bits(*q)) {
+                seen.push(*p);
+            }
+        }
+        Self(seen)
     }
-    let middle = found.len() / 2;
-    let median = [0, 1, 2].map(|i| {
-        found.select_nth_unstable_by(middle, |p, q| p[i].total_cmp(&q[i]));
-        found[middle][i]
-    });
-    let near = Near::to(&median);
-    let near = found.iter().filter(|p| near.holds(p)).count();
-    let is_one = near * 10 >= found.len() * 8;
-    let srgb = median.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0));
-    (is_one && !Near::to(&light).holds(&median)).then_some(Color { srgb })
+
+    /// The colour that is shown in place of one, if it is one colour and another.
+    fn shown(&self, wanted: Color) -> Option<Color> {
+        let light = wanted.to_linear();
+        let mut found = self.0.get(&bits(light))?.clone();
+        if (found.len() as u64) < ENOUGH {
+            return None;
+        }
+        let middle = found.len() / 2;
+        let median = [0, 1, 2].map(|i| {
+            found.select_nth_unstable_by(middle, |p, q| p[i].total_cmp(&q[i]));
+            found[middle][i]
+        });
+        let near = Near::to(&median);
+        let near = found.iter().filter(|p| near.holds(p)).count();
+        let is_one = near * 10 >= found.len() * 8;
+        let srgb = median.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0));
+        (is_one && !Near::to(&light).holds(&median)).then_some(Color { srgb })
+    }
+}
+
+fn bits(light: [f64; 3]) -> [u64; 3] {
+    light.map(f64::to_bits)
 }
 
 /// The light of each channel that is near some colour.

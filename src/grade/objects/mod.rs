@@ -5,21 +5,17 @@ mod search;
 
 use glam::DVec3;
 
-use self::colors::{Near, color, share};
 pub use self::{colors::colors, search::search};
-use super::{Idea, Make};
+use super::{Case, Idea, Make};
 use crate::{
-    film::Film,
     math::Angle,
     scene::{Scene, Shape},
     tracer::vertices,
 };
 
-/// Of a scene with more objects only so many are looked at.
-const OBJECTS: usize = 24;
-
-/// An object may be wrong if the pixels of its colour have this share of the squared difference; noise may have the rest.
-const PART: f64 = 0.1;
+/// So many objects are tried as they may be wrong, and so many are searched for, those in whose part of the picture most of the difference is.
+const TRIED: usize = 24;
+const SEARCHED: usize = 6;
 
 /// So many pixels of an object show where it is.
 const ENOUGH: u64 = 6;
@@ -45,43 +41,56 @@ fn called(scene: &Scene, index: usize) -> String {
 
 fn with_shape(scene: &Scene, index: usize, shape: Shape) -> Make {
     let mut scene = scene.clone();
-    scene.objects[index].shape = shape;
-    Make::Scene(Box::new(scene))
+    let before = std::mem::replace(&mut scene.objects[index].shape, shape);
+    Make::Object(Box::new(scene), Box::new([Some(before), Some(shape)]))
 }
 
-/// Those that can be named at once, of objects whose colour has a part in the difference.
-pub fn ideas(a: &Film, exact: &Film, scene: &Scene) -> Vec<Idea> {
+/// Those that can be named at once, of objects in whose part of the picture much of the difference is.
+pub fn ideas(case: &Case) -> Vec<Idea> {
+    let scene = &case.full.scene;
     let mut ideas = Vec::new();
-    for (index, object) in scene.objects.iter().enumerate().take(OBJECTS) {
-        if !has_part(a, exact, object.shape) {
-            continue;
-        }
-        let name = called(scene, index);
-        let mut without = scene.clone();
-        without.objects.remove(index);
-        ideas.push(Idea {
-            mistake: "object_missing",
-            message: format!("{name} is missing"),
-            help: "either it is not drawn, or no ray is found to hit it: look at the equation of its hits, and at their sign (t > 0)".to_owned(),
-            make: Make::Scene(Box::new(without)),
-        });
-        for (mistake, message, help, shape) in wrong_shapes(&object.shape) {
-            ideas.push(Idea {
-                mistake,
-                message: format!("{name} {message}"),
-                help: help.to_owned(),
-                make: with_shape(scene, index, shape),
-            });
-        }
+    // Where an object would be twice as large, it is wherever one of these is; nearly, if it is spun.
+    for (_, index) in likeliest(case, 2.0).into_iter().take(TRIED) {
+        ideas.push(missing(scene, index));
+        ideas.extend(wrong(scene, index));
     }
     ideas
 }
 
-/// Whether the pixels that have a shape's colour in either picture have a part in the difference: where the shape is and should not be, or
-/// is not and should be, one of them has it.
-fn has_part(a: &Film, exact: &Film, mut shape: Shape) -> bool {
-    let mut colors = color(&mut shape).into_iter();
-    colors.any(|color| share(a, exact, &Near::to(&color.to_linear())) > PART)
+/// The objects by the share of the difference in their part of the picture, if they were so much larger; the greatest first.
+fn likeliest(case: &Case, factor: f64) -> Vec<(f64, usize)> {
+    let objects = case.full.scene.objects.iter().enumerate();
+    let mut shares: Vec<_> = objects
+        .map(|(index, object)| {
+            let part = case.view.extent(&moved(&object.shape, DVec3::ZERO, factor));
+            (part.map_or(0.0, |part| case.differences.share(part)), index)
+        })
+        .filter(|(share, _)| *share > 0.0)
+        .collect();
+    shares.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
+    shares
+}
+
+fn missing(scene: &Scene, index: usize) -> Idea {
+    let mut without = Scene::clone(scene);
+    let object = without.objects.remove(index);
+    Idea {
+        mistake: "object_missing",
+        message: format!("{} is missing", called(scene, index)),
+        help: "either it is not drawn, or no ray is found to hit it: look at the equation of its hits, and at their sign (t > 0)".to_owned(),
+        make: Make::Object(Box::new(without), Box::new([Some(object.shape), None])),
+    }
+}
+
+fn wrong(scene: &Scene, index: usize) -> impl Iterator<Item = Idea> {
+    let name = called(scene, index);
+    let wrong = wrong_shapes(&scene.objects[index].shape).into_iter();
+    wrong.map(move |(mistake, message, help, shape)| Idea {
+        mistake,
+        message: format!("{name} {message}"),
+        help: help.to_owned(),
+        make: with_shape(scene, index, shape),
+    })
 }
 
 type Wrong = (&'static str, &'static str, &'static str, Shape);

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    ENOUGH, OBJECTS, called,
+    ENOUGH, SEARCHED, called,
     colors::{Near, color, share},
-    moved,
+    likeliest, moved,
 };
 use crate::{
     film::Film,
@@ -18,11 +18,20 @@ use crate::{
 /// A search for an object's place is worth its time if the pixels of its colour have this share of the squared difference.
 const OWN: f64 = 0.4;
 
+/// And if the part of the picture in which it should be has this share: if it is elsewhere, that has as much, unless what is there is of
+/// about its colour.
+const OWN_PART: f64 = 0.1;
+
 /// Objects in a wrong place or of a wrong size, found by their colours.
 pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
     let mut ideas = Vec::new();
-    for (index, object) in scene.objects.iter().enumerate().take(OBJECTS) {
+    let likely = likeliest(case, 1.0).into_iter();
+    for (_, index) in likely
+        .take_while(|(share, _)| *share > OWN_PART)
+        .take(SEARCHED)
+    {
+        let object = &scene.objects[index];
         let mut shape = object.shape;
         let colors = color(&mut shape);
         let [color] = colors.as_slice() else { continue };
@@ -91,7 +100,9 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
     let with = |by: DVec3, factor: f64| {
         let mut scene = Scene::clone(scene);
         scene.objects[index].shape = moved(&shape, by, factor);
-        (factor > 0.0).then_some(scene)
+        let changed = scene.objects[index].shape;
+        (factor > 0.0)
+            .then(|| Make::Object(Box::new(scene), Box::new([Some(shape), Some(changed)])))
     };
     let (small, control) = (&case.small, &case.control);
 
@@ -123,7 +134,7 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
                 displaced(by)
             ),
             help: format!("its middle is {}", short_vector(middle)),
-            make: Make::Scene(Box::new(other)),
+            make: other,
         });
     }
 
@@ -156,7 +167,7 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
             "its middle is {}; look at its place, its size and the field of view",
             short_vector(middle)
         ),
-        make: Make::Scene(Box::new(other)),
+        make: other,
     });
     Ok(ideas)
 }

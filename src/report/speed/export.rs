@@ -88,9 +88,15 @@ pub fn to_json(measured: &Measurement) -> Value {
 }
 
 fn of_series(series: &Series, errors: &[f64]) -> Value {
-    let fit = series.fit().map(
-        |fit| json!({"slope": fit.slope, "slope_error": fit.slope_error, "points": fit.points}),
-    );
+    let fit = series.fit().map(|fit| {
+        json!({
+            "slope": fit.slope,
+            "slope_error": fit.slope_error,
+            "slope_error_residuals": fit.residual_error,
+            "slope_error_runs": fit.measured_error,
+            "points": fit.points,
+        })
+    });
     let needed = errors.iter().map(|&error| match series.needed(error) {
         None => {
             json!({"error": error, "per_pixel": null, "factor": null, "time": null, "extrapolated": null, "taken": null})

@@ -25,17 +25,37 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
     (squares / values.len() as f64).sqrt()
 }
 
+/// The standard error of the logarithm of the root mean square of some independent values, by the spread of their squares: with n squares, m
+/// their mean and v their variance (by n − 1), √(v/n)/2m to first order. None of fewer than two.
+pub fn log_error(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let mean = values.iter().map(|&value| square(value)).sum::<f64>() / n;
+    let off: f64 = values
+        .iter()
+        .map(|&value| square(square(value) - mean))
+        .sum();
+    let is_known = values.len() > 1 && mean > 0.0;
+    is_known.then(|| (off / (n - 1.0) / n).sqrt() / (2.0 * mean))
+}
+
 /// The line ln y = ln c + b · ln x of least squares.
 ///
 /// With k points, x̄ and ȳ their means (of the logarithms) and S = Σ(x − x̄)², the slope is b = Σ(x − x̄)(y − ȳ) / S and its standard
 /// error √(Σr² / (k − 2) / S), r being the residuals: Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
-/// That takes the residuals for independent and alike; where the true curve bends, they are not, and the error says how much.
+/// That takes the residuals for independent and alike; where the true curve bends, they are not, and the error says how much. But a few
+/// points may lie on a line by luck. So where standard errors e of the ln y are known, the slope has at least the error that they
+/// give it, √(Σ(x − x̄)²e²) / S: of the two the greater one counts. That is the rule by which the Particle Data Group scales the errors of means,
+/// up where points scatter more than their own errors say and never down (Review of Particle Physics 2024, section 5.2.2 of its introduction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// The exponent b of y ∝ x^b.
     pub slope: f64,
-    /// Its standard error, if there are more points than two.
+    /// Its standard error, if there are more points than two: the greater one of the two below.
     pub slope_error: Option<f64>,
+    /// What the residuals say.
+    pub residual_error: Option<f64>,
+    /// What the errors of the points say, if they are known.
+    pub measured_error: Option<f64>,
     /// How many points it goes through.
     pub points: usize,
     /// The means of the logarithms: the line goes through them.
@@ -77,13 +97,32 @@ impl Fit {
             .iter()
             .map(|(x, y)| square(y - center.1 - slope * (x - center.0)))
             .sum();
-        let slope_error = (logs.len() > 2).then(|| (residuals / (k - 2.0) / spread).sqrt());
+        let residual_error = (logs.len() > 2).then(|| (residuals / (k - 2.0) / spread).sqrt());
         Some(Self {
             slope,
-            slope_error,
+            slope_error: residual_error,
+            residual_error,
+            measured_error: None,
             points: logs.len(),
             center,
             spread,
+        })
+    }
+
+    /// The same line, where the standard error of each ln y is known. Nothing is changed if it is not known of all points.
+    pub fn of_measured(points: &[(f64, f64)], errors: &[Option<f64>]) -> Option<Self> {
+        let fit = Self::of(points)?;
+        let part = |(&(x, _), error): (&(f64, f64), &Option<f64>)| {
+            error.map(|error| square((libm::log(x) - fit.center.0) * error))
+        };
+        let variance: Option<f64> = points.iter().zip(errors).map(part).sum();
+        let measured_error = variance.map(|variance| variance.sqrt() / fit.spread);
+        Some(Self {
+            slope_error: fit
+                .residual_error
+                .map(|error| error.max(measured_error.unwrap_or(0.0))),
+            measured_error,
+            ..fit
         })
     }
 
@@ -99,7 +138,7 @@ impl Fit {
     }
 
     /// How far the x at which the line [`reaches`](Self::reaches) some y can be trusted: one standard error of ln x, as a factor. With
-    /// s = √(Σr² / (k − 2)) that error is s/|b| · √(1/k + (x − x̄)²/S) to first order, x standing for its logarithm: Draper and Smith,
+    /// s = √(Σr² / (k − 2)), or what the slope's greater error amounts to, that error is s/|b| · √(1/k + (x − x̄)²/S) to first order, x standing for its logarithm: Draper and Smith,
     /// section 3.2, for a y that is known. It takes the true line for straight.
     pub fn doubt(&self, x: f64) -> Option<f64> {
         let s = self.slope_error? * self.spread.sqrt();

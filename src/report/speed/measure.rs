@@ -9,7 +9,7 @@ use std::{num::NonZero, sync::atomic::Ordering, time::Instant};
 
 use super::{
     Machine,
-    fit::{Fit, median, root_mean_square},
+    fit::{Fit, log_error, median, root_mean_square},
     needed::Check,
     plan::Plan,
 };
@@ -141,14 +141,19 @@ impl Point {
 }
 
 impl Series {
-    /// The line through the logarithms of samples and error, if there are errors.
+    /// The line through the logarithms of samples and error, if there are errors. Runs have seeds of their own, and their errors spread.
     pub fn fit(&self) -> Option<Fit> {
         let points: Vec<_> = self
             .points
             .iter()
             .map(|point| (point.per_pixel as f64, point.error()))
             .collect();
-        Fit::of(&points)
+        let errors: Vec<_> = self
+            .points
+            .iter()
+            .map(|point| log_error(&point.rmse))
+            .collect();
+        Fit::of_measured(&points, &errors)
     }
 }
 

@@ -402,11 +402,14 @@ fn method(measurements: &[Measurement]) -> String {
          greatest bound here is {bound}. No error that is smaller means anything.</li>\n\
          <li><b>The slope</b> b of error ∝ samples<sup>b</sup> is the least-squares line through the logarithms of samples and error, one \
          point for each number of samples. With residuals r of k points and x = ln samples, its standard error is \
-         √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4).</li>\n\
+         √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4). A few points may \
+         lie on a line by luck, so that the error is no less than what the spread of the runs gives it, each of which has a seed of its own: \
+         √(Σ(x − x̄)²e²) / Σ(x − x̄)², e being the standard error of the logarithm of a point’s error, √(v/n)/2m by the mean m and the variance v \
+         of the n runs’ squared errors. The greater one is given (as the Particle Data Group scales errors), and JSON has both.</li>\n\
          <li><b>What an error takes</b> is where that line comes down to it, rounded up to a whole number of samples; its time lies on the \
          straight line between the measured neighbours. Beyond the most samples that were measured it is extrapolated, the time in \
-         proportion, and marked. Its standard error is that of ln x, s/|b| · √(1/k + (x − x̄)²/Σ(x − x̄)²) with s = √(Σr² / (k − 2)), to \
-         first order (the same, section 3.2); it takes the line for straight. Where the samples are left to the program and time is \
+         proportion, and marked. Its standard error is that of ln x, s/|b| · √(1/k + (x − x̄)²/Σ(x − x̄)²) where s is √Σ(x − x̄)² \
+         times the slope’s error, to first order (the same, section 3.2); it takes the line for straight. Where the samples are left to the program and time is \
          left, the samples so found are taken once, the fastest methods first, and what they leave of the error stands beside them.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within the standard error of the samples \
          and half of the spread of the times.</li>\n\

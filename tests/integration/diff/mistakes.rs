@@ -78,6 +78,71 @@ fn a_power_in_place_of_the_curve_is_named() {
 }
 
 #[test]
+fn a_power_both_ways_is_named() {
+    let folder = folder();
+    // Decoded and encoded by the power 2.2: flat colours are right.
+    let power = |byte: u8| libm::pow(f64::from(byte) / 255.0, 2.2);
+    render(&folder, &FINE);
+    let fine = open(&folder, "fine.png").to_rgb8();
+    let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+        let mut sum = [0.0; 3];
+        for (i, j) in (0..256).map(|k| (k % 16, k / 16)) {
+            for (sum, byte) in sum.iter_mut().zip(fine.get_pixel(16 * x + i, 16 * y + j).0) {
+                *sum += power(byte) / 256.0;
+            }
+        }
+        Rgb(sum.map(|light| (255.0 * libm::pow(light, 1.0 / 2.2)).round() as u8))
+    });
+    save(&folder, "b.png", picture);
+    assert_eq!(mistake(&folder), "gamma_22_averaged");
+}
+
+/// 256 samples of each pixel, in a picture of them.
+const FINE: [&str; 10] = [
+    "-o",
+    "fine.png",
+    "--set",
+    "image.width=1536",
+    "--set",
+    "image.height=1024",
+    "--set",
+    "sampler.method=regular",
+    "--set",
+    "sampler.per_pixel=1",
+];
+
+#[test]
+fn one_object_among_many_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = SCENE.split("sphere").next().unwrap().to_owned() + "checkerboard {}\n";
+    for i in 0..40 {
+        let (x, z) = (f64::from(i % 8) - 4.0, -f64::from(i / 8));
+        // Each of the same colour.
+        scene += &format!("sphere {{ center ({x}, 0.4, {z}) radius 0.4 color red }}\n");
+    }
+    fs::write(folder.path().join("a.scn"), &scene).unwrap();
+    let changed = |from: &str, to: &str| {
+        assert!(scene.contains(from));
+        fs::write(folder.path().join("b.scn"), scene.replace(from, to)).unwrap();
+        assert!(
+            pinhole(folder.path(), &["render", "b.scn"])
+                .status
+                .success()
+        );
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        let text = |key: &str| first[key].as_str().unwrap_or("none").to_owned();
+        (text("mistake"), text("message"))
+    };
+    let one = "sphere { center (1, 0.4, -4) radius 0.4 color red }\n";
+    let (mistake, message) = changed(one, "");
+    assert_eq!(mistake, "object_missing");
+    assert_eq!(message, "the sphere with the index 38 is missing");
+    let (mistake, message) = changed(one, &one.replace("0.4 color", "0.2 color"));
+    assert_eq!(mistake, "object_size", "{message}");
+}
+
+#[test]
 fn several_wrong_colours_are_named_at_once() {
     let folder = folder();
     let colors = ["--set", "Ball.color=red", "--set", "Crate.color=lime"];
@@ -103,6 +168,12 @@ fn mistakes_that_another_scene_makes_are_named() {
         ("camera.d=1.375", "field_of_view"),
         ("camera.d=4.125", "field_of_view"),
         ("camera.d=2.1", "distance"),
+        ("camera.eye=(3, 3.5, 9)", "eye"),
+        ("camera.eye=(3, 3.5, -8)", "eye"),
+        ("camera.eye=(2, 3.5, 8)", "eye"),
+        ("camera.eye=(3, 3.8, 8)", "eye"),
+        ("camera.lookat=(0.9, 0.8, 0)", "lookat"),
+        ("camera.lookat=(0.2, 0, 0)", "lookat"),
         ("camera.direction=(0.2, 0.8, 0)", "lookat_as_direction"),
         ("camera.direction=(2.8, 2.7, 8)", "looks_back"),
         ("Ball.color=red", "color"),
@@ -122,6 +193,12 @@ fn mistakes_that_another_scene_makes_are_named() {
     render(&folder, &["-o", "b.png", "--set", "camera.d=2.1"]);
     let (_, text) = diff(&folder, &["b.png", "a.scn"]);
     assert!(text.contains("as if d were 2.1 instead of 2.75"), "{text}");
+    render(&folder, &["-o", "b.png", "--set", "camera.eye=(3, 3.5, 9)"]);
+    let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+    assert!(
+        text.contains("likely    eye is in a wrong place: as if its z were 9 instead of 8"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -87,6 +87,100 @@ fn gray_and_transparent_pictures_are_what_is_seen() {
 }
 
 #[test]
+fn palettes_and_few_bits_are_read() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let write =
+        |name: &str, color, depth, edit: &dyn Fn(&mut png::Encoder<fs::File>), data: &[u8]| {
+            let mut encoder = png::Encoder::new(fs::File::create(path(name)).unwrap(), 4, 2);
+            encoder.set_color(color);
+            encoder.set_depth(depth);
+            edit(&mut encoder);
+            let mut writer = encoder.write_header().unwrap();
+            writer.write_image_data(data).unwrap();
+        };
+    let none = |_: &mut png::Encoder<fs::File>| {};
+    let palette = vec![0, 0, 0, 255, 0, 0, 0, 128, 255, 255, 255, 255];
+    let indices = [0u8, 1, 2, 3, 3, 2, 1, 0];
+    let rgb: Vec<u8> = indices
+        .iter()
+        .flat_map(|&i| palette[3 * usize::from(i)..][..3].to_vec())
+        .collect();
+    let (color, depth) = (png::ColorType::Indexed, png::BitDepth::Eight);
+    write("rgb.png", png::ColorType::Rgb, depth, &none, &rgb);
+    let paint = |encoder: &mut png::Encoder<fs::File>| encoder.set_palette(palette.clone());
+    write("byte.png", color, depth, &paint, &indices);
+    let packed = [0b00_01_10_11, 0b11_10_01_00];
+    write("packed.png", color, png::BitDepth::Two, &paint, &packed);
+    let opaque = |encoder: &mut png::Encoder<fs::File>| {
+        paint(encoder);
+        encoder.set_trns(vec![0, 255, 255, 255]);
+    };
+    // Black that is not seen is seen as black.
+    write("seen.png", color, depth, &opaque, &indices);
+    for name in ["byte.png", "packed.png", "seen.png"] {
+        let (status, text) = diff(&folder, &[name, "rgb.png", "--tolerance", "0"]);
+        assert_eq!(status, 0, "{name}: {text}");
+    }
+    let through = |encoder: &mut png::Encoder<fs::File>| {
+        paint(encoder);
+        encoder.set_trns(vec![255, 0, 0, 0]);
+    };
+    write("through.png", color, depth, &through, &indices);
+    write("black.png", png::ColorType::Rgb, depth, &none, &[0; 24]);
+    assert_eq!(
+        diff(&folder, &["through.png", "black.png", "--tolerance", "0"]).0,
+        0
+    );
+    // 0 to 3 of 2 bits, and the same of 16, with and without alpha.
+    let gray: Vec<u8> = indices.iter().map(|&i| 85 * i).collect();
+    write("gray.png", png::ColorType::Grayscale, depth, &none, &gray);
+    write(
+        "gray2.png",
+        png::ColorType::Grayscale,
+        png::BitDepth::Two,
+        &none,
+        &packed,
+    );
+    let wide: Vec<u8> = gray.iter().flat_map(|&byte| [byte, byte]).collect();
+    write(
+        "gray16.png",
+        png::ColorType::Grayscale,
+        png::BitDepth::Sixteen,
+        &none,
+        &wide,
+    );
+    let alpha: Vec<u8> = gray
+        .iter()
+        .flat_map(|&byte| [byte, byte, 255, 255])
+        .collect();
+    let both = png::ColorType::GrayscaleAlpha;
+    write("gray16a.png", both, png::BitDepth::Sixteen, &none, &alpha);
+    for name in ["gray2.png", "gray16.png", "gray16a.png"] {
+        let (status, text) = diff(&folder, &[name, "gray.png", "--tolerance", "0"]);
+        assert_eq!(status, 0, "{name}: {text}");
+    }
+}
+
+#[test]
+fn pixels_that_cannot_be_judged_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene =
+        "image { width 6 height 3 } camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-14 }
+                 sampler { method exact } checkerboard { y 0 square 1e-3 }";
+    fs::write(folder.path().join("a.scn"), scene).unwrap();
+    render(&folder, &["-o", "a.exr"]);
+    let found = json(&folder, &["a.exr", "a.scn", "--tolerance", "0"]);
+    let undecided = found["undecided"].as_u64().unwrap();
+    assert!(undecided > 0, "{found:#}");
+    let (_, text) = diff(&folder, &["a.exr", "a.scn", "--tolerance", "0"]);
+    assert!(
+        text.contains(&format!("\nopen      {undecided} pixel")),
+        "{text}"
+    );
+}
+
+#[test]
 fn json_says_everything() {
     let folder = folder();
     let mut picture = open(&folder, "a.png").to_rgb8();
@@ -106,6 +200,7 @@ fn json_says_everything() {
             "rmse",
             "largest",
             "beyond",
+            "undecided",
             "tolerance",
             "equal",
             "likely"
@@ -127,6 +222,7 @@ fn json_says_everything() {
     assert!((largest["error"].as_f64().unwrap() - 128.0).abs() < 1e-6);
     assert!((largest["b"].as_f64().unwrap() - f64::from(green)).abs() < 1e-6);
     assert_eq!(found["beyond"]["pixels"], 1);
+    assert_eq!(found["undecided"], 0);
     assert_eq!(found["tolerance"], 1.0);
     assert_eq!(found["likely"], Value::Array(Vec::new()));
     assert!(found["rmse"].as_f64().unwrap() > 0.0);

@@ -1,6 +1,7 @@
 //! Mistakes of samples: too few, in the wrong place, averaged wrongly.
 
 use image::{ImageBuffer, Rgb};
+use serde_json::Value;
 
 use super::{diff, folder, json, mistake, open, render, save};
 
@@ -96,6 +97,103 @@ fn a_picture_displaced_by_half_a_pixel_is_named() {
         let message = found["likely"][0]["message"].as_str().unwrap();
         assert!(message.ends_with(words), "{message}");
     }
+}
+
+#[test]
+fn a_picture_displaced_by_pixels_is_named_whatever_comes_in() {
+    let folder = folder();
+    let picture = open(&folder, "a.png").to_rgb8();
+    let (width, height) = picture.dimensions();
+    for (by, words) in [
+        ((1, 0), "1 pixel to the right"),
+        ((0, 1), "1 pixel down"),
+        ((-2, 0), "2 pixels to the left"),
+        ((-1, -1), "1 pixel to the left and 1 pixel up"),
+    ] {
+        let (right, down): (i32, i32) = by;
+        let from = |x: u32, y: u32| (x as i32 - right, y as i32 - down);
+        let empty = ImageBuffer::from_fn(width, height, |x, y| {
+            let (x, y) = from(x, y);
+            let is_in = (0..width as i32).contains(&x) && (0..height as i32).contains(&y);
+            match is_in {
+                true => *picture.get_pixel(x as u32, y as u32),
+                false => Rgb([0; 3]),
+            }
+        });
+        let wrapped = ImageBuffer::from_fn(width, height, |x, y| {
+            let (x, y) = from(x, y);
+            *picture.get_pixel(
+                x.rem_euclid(width as i32) as u32,
+                y.rem_euclid(height as i32) as u32,
+            )
+        });
+        for (picture, rest) in [
+            (empty, ", and black where it is missing then"),
+            (
+                wrapped,
+                ", and what goes out at one edge comes in at the other",
+            ),
+        ] {
+            save(&folder, "b.png", picture);
+            let found = json(&folder, &["b.png", "a.scn"]);
+            assert_eq!(found["likely"][0]["mistake"], "shifted", "{by:?}{rest}");
+            let message = found["likely"][0]["message"].as_str().unwrap();
+            assert_eq!(
+                message,
+                format!("the whole picture is displaced by {words}{rest}")
+            );
+        }
+    }
+}
+
+#[test]
+fn a_pixel_or_two_tell_of_no_mistake() {
+    let folder = folder();
+    for (size, most) in [("1", 1), ("2", 4), ("3", 9)] {
+        let sizes = [
+            format!("image.width={size}"),
+            format!("image.height={size}"),
+        ];
+        let sets: Vec<_> = sizes.iter().flat_map(|set| ["--set", set]).collect();
+        for wrong in [
+            "sampler.per_pixel=1",
+            "camera.roll=-10deg",
+            "camera.d=5.5",
+            "Ball.color=red",
+            "camera.eye=(3, 3.5, 9)",
+        ] {
+            let method = ["--set", "sampler.method=regular", "--set", wrong];
+            render(&folder, &[&["-o", "b.png"], &sets[..], &method].concat());
+            let found = json(&folder, &[&["b.png", "a.scn"], &sets[..]].concat());
+            assert_eq!(found["likely"], Value::Array(Vec::new()), "{size}, {wrong}");
+            assert!(found["beyond"]["pixels"].as_u64().unwrap() <= most);
+        }
+    }
+    let one = ["--set", "image.width=1", "--set", "image.height=1"];
+    let sample = [
+        "--set",
+        "sampler.method=regular",
+        "--set",
+        "sampler.per_pixel=1",
+    ];
+    render(&folder, &[&["-o", "b.png"], &one[..], &sample].concat());
+    let (_, text) = diff(&folder, &[&["b.png", "a.scn"], &one[..]].concat());
+    assert!(
+        text.ends_with(
+            "\nA simple mistake would explain it, but so few pixels tell of it that chance would, too.\n"
+        ),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_wrong_object_is_no_noise() {
+    let folder = folder();
+    let small = ["--set", "Ball.radius=0.4"];
+    let moved = ["-o", "b.png", "--set", "Ball.center=(-1.4, 1, 0)"];
+    render(&folder, &[&moved, &small[..]].concat());
+    let found = json(&folder, &[&["b.png", "a.scn"], &small[..]].concat());
+    assert_eq!(found["likely"][0]["mistake"], "object_place", "{found:#}");
 }
 
 #[test]

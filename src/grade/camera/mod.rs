@@ -1,17 +1,17 @@
 //! Mistakes of the camera.
 
+mod search;
+
 use glam::DVec3;
 
+pub use self::search::search;
 use super::{
-    Case, Idea, Make,
-    fit::fit,
+    Idea, Make,
     level::{distance, with_distance},
 };
 use crate::{
-    film::rmse,
     math::{Angle, trig},
     numbers::short,
-    render::RenderError,
     scene::{Lens, Scene, View},
 };
 
@@ -237,80 +237,4 @@ fn distances(scene: &Scene) -> Vec<Idea> {
             idea(mistake, message, help, with_distance(scene, other))
         })
         .collect()
-}
-
-/// Another distance or roll, whichever it is.
-pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
-    let scene = &case.full.scene;
-    let level = &case.small;
-    let d = distance(scene);
-    let at_distance = |p: &[f64]| Some(with_distance(scene, d * libm::exp2(p[0])));
-    let turned = |p: &[f64]| {
-        Some(changed(scene, |scene| {
-            scene.camera.roll = scene.camera.roll + Angle::from_degrees(p[0]);
-        }))
-    };
-    // The nearest of a few, and then of some closer around it, from which on the way is downhill.
-    let start = |points: Vec<f64>, step: f64, make: &dyn Fn(&[f64]) -> Option<Scene>| {
-        let mut nearest = (f64::INFINITY, 0.0);
-        let mut look = |points: Vec<f64>| {
-            for point in points {
-                let Some(scene) = make(&[point]) else {
-                    continue;
-                };
-                let left = rmse(&level.a, &level.exact_of(&scene, &case.control)?);
-                if left < nearest.0 {
-                    nearest = (left, point);
-                }
-            }
-            Ok::<_, RenderError>(nearest.1)
-        };
-        let middle = look(points)?;
-        let middle = look(vec![middle - step / 2.0, middle + step / 2.0])?;
-        look(vec![middle - step / 4.0, middle + step / 4.0])
-    };
-    let mut ideas = Vec::new();
-    let octaves = (-8..=8).map(|k| f64::from(k) / 4.0).collect();
-    let first = start(octaves, 0.25, &at_distance)?;
-    if let Some(found) = fit(level, &case.control, &[first], &[0.01], &at_distance)? {
-        let other = d * libm::exp2(found[0]);
-        let fov = |d: f64| {
-            let half = trig::atan(scene.camera.view_height / (2.0 * d));
-            short((2000.0 * in_degrees(half)).round() / 1000.0)
-        };
-        ideas.push(idea(
-            "distance",
-            format!(
-                "the view plane is at the wrong distance: as if d were {} instead of {} (a field of view of {} degrees instead of {})",
-                rounded(other),
-                short(d),
-                fov(other),
-                fov(d)
-            ),
-            "look at d, view_height and fov: d = view_height/(2 tan(fov/2)), s = view_height/height",
-            with_distance(scene, other),
-        ));
-    }
-    let turns = (-17..=18).map(|k| 10.0 * f64::from(k)).collect();
-    let first = start(turns, 10.0, &turned)?;
-    if let Some(found) = fit(level, &case.control, &[first], &[0.5], &turned)?
-        && let Some(other) = turned(&found)
-    {
-        ideas.push(idea(
-            "roll",
-            format!(
-                "the camera is rolled wrongly: as if roll were {} degrees instead of {}",
-                rounded(in_degrees(other.camera.roll)),
-                short(in_degrees(scene.camera.roll))
-            ),
-            "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v, with u and v made from up",
-            other,
-        ));
-    }
-    Ok(ideas)
-}
-
-/// What was found by a search has few right digits.
-fn rounded(x: f64) -> String {
-    short(format!("{x:.2e}").parse().unwrap_or(x))
 }
