@@ -19,6 +19,8 @@ pub struct Client {
     pub pulls_diagnostics: bool,
     /// Whether it shows the other places of a diagnostic.
     pub related: bool,
+    /// Whether the code of a diagnostic may be a link.
+    pub linked_codes: bool,
     /// Whether changes may name the version that they are for.
     pub versioned_edits: bool,
     /// Whether an outline may have levels.
@@ -37,6 +39,7 @@ impl Client {
         let workspace = capabilities.workspace.clone().unwrap_or_default();
         let edits = workspace.workspace_edit.unwrap_or_default();
         let published = text.publish_diagnostics.unwrap_or_default();
+        let published = published.diagnostics_capabilities;
         let symbols = text.document_symbol.unwrap_or_default();
         Self {
             encoding: encoding(&general.position_encodings.unwrap_or_default()),
@@ -44,7 +47,8 @@ impl Client {
             markdown: hover.is_some_and(|formats| formats.contains(&lsp::MarkupKind::Markdown)),
             pictures: general.markdown.is_some(),
             pulls_diagnostics: text.diagnostic.is_some(),
-            related: published.diagnostics_capabilities.related_information == Some(true),
+            related: published.related_information == Some(true),
+            linked_codes: published.code_description_support == Some(true),
             versioned_edits: edits.document_changes == Some(true),
             nested_symbols: symbols.hierarchical_document_symbol_support == Some(true),
         }

@@ -18,7 +18,7 @@ fn editor() -> Value {
             "completion": { "completionItem": { "snippetSupport": true } },
             "hover": { "contentFormat": ["markdown", "plaintext"] },
             "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
-            "publishDiagnostics": { "relatedInformation": true, "versionSupport": true },
+            "publishDiagnostics": { "relatedInformation": true, "versionSupport": true, "codeDescriptionSupport": true },
         },
     })
 }
