@@ -144,6 +144,7 @@ fn whole<'s>(
     lowering.items(&tree.items);
     lowering.override_blocks();
     lowering.fix_definitions(parsed);
+    lowering.leave_out_consequences(&tree.items);
     lowering
 }
 
