@@ -345,6 +345,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What of the text decides that it is wrong.
+        found_in: Span,
     },
 
     #[error("{message}")]
@@ -592,7 +594,7 @@ impl Problem {
             | Self::ArgumentType { span, .. }
             | Self::BareAngle { span, .. }
             | Self::WrongType { span, .. }
-            | Self::PartType { span, .. }
+            | Self::PartType { found_in: span, .. }
             | Self::OutOfRange { whole: span, .. } => Some(*span),
             Self::OperandTypes { left, right, .. } => {
                 Some(left.map_or(*right, |left| left.to(*right)))

@@ -140,7 +140,7 @@ impl<'s> Lowering<'s> {
         });
         let first = definition
             .name
-            .is_some_and(|name| self.names.place(name.text).is_none());
+            .is_some_and(|name| self.names.place_of_whole(name.text).is_none());
         let value = match &set {
             Some(set) if first => self.evaluate(&set.value, None),
             Some(_) => None,
@@ -167,7 +167,9 @@ impl<'s> Lowering<'s> {
                 found: value.map(|value| value.kind()),
                 fixes: Vec::new(),
             });
-        } else if let Some(first) = self.names.place(name.text) {
+        } else if definition.is_part_of_name() {
+            self.names.guess(name);
+        } else if let Some(first) = self.names.place_of_whole(name.text) {
             self.problems.push(Problem::DuplicateLet {
                 name: name.text.to_owned(),
                 second: name.span,

@@ -40,13 +40,16 @@ impl<'s> Parser<'s> {
         }));
     }
 
-    /// `let my-x = 5`: where `my-x` is used, `my` and `x` are names that are known.
+    /// `let my-x = 5`, `let mut x = 5`: where `my-x` or `x` is used, `my`, `mut` and `x` are names that are known.
     fn parts_of_bad_name(&mut self, span: Span) {
         const ENOUGH: usize = 8;
+        let is_between = |c: char| !c.is_alphanumeric() && c != '_';
         let mut at = span.start;
-        for word in self.written(span).split('-').take(ENOUGH) {
-            let place = Span::new(self.id, at, at + word.len());
-            at = place.end + 1;
+        for word in self.written(span).split_inclusive(is_between).take(ENOUGH) {
+            let start = at;
+            at += word.len();
+            let word = word.trim_end_matches(is_between);
+            let place = Span::new(self.id, start, start + word.len());
             let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
             if word.starts_with(|c: char| c.is_ascii_alphabetic()) && word.chars().all(letters) {
                 self.items.push(Item::Definition(Definition {
