@@ -16,7 +16,8 @@ impl<'s> Parser<'s> {
         let whole = self.span(&pair);
         let span = self.trimmed(whole.start, whole.end);
         let keyword = self.word_at(span.start);
-        let (name, problem) = junk::definition(self.text, span);
+        let (name, problem) = junk::definition(self.clean(), span);
+        let name = name.map(|name| self.own(name));
         if let Problem::BadName { span, .. } = &problem {
             self.parts_of_bad_name(*span);
         }
@@ -69,7 +70,8 @@ impl<'s> Parser<'s> {
     pub(super) fn bad_field(&mut self, pair: Pairs<'_>, block: &mut Block<'s>) {
         let whole = self.span(&pair);
         let span = self.trimmed(whole.start, whole.end);
-        match junk::field(self.text, span) {
+        let (name, problem) = junk::field(self.clean(), span);
+        match (name.map(|name| self.own(name)), problem) {
             (
                 Some(name),
                 Some(Problem::MissingOperand {
@@ -90,16 +92,19 @@ impl<'s> Parser<'s> {
                 block.bad.push(span);
             }
             (Some(name), problem) => {
-                let after = self.text.get(name.span.end..span.end).unwrap_or_default();
+                let after = self
+                    .clean()
+                    .get(name.span.end..span.end)
+                    .unwrap_or_default();
                 let kind = match matches!(after.trim(), "" | "=" | ":") {
                     true => ValueKind::Missing,
                     false => ValueKind::Bad,
                 };
-                let rest = self.text.get(whole.end..).unwrap_or_default();
+                let rest = self.clean().get(whole.end..).unwrap_or_default();
                 // Braces that follow are reported themselves.
                 let braces = problem.is_none() && rest.trim_start().starts_with('{');
                 if kind == ValueKind::Bad && !braces {
-                    let unexpected = || junk::unexpected_value(self.text, span);
+                    let unexpected = || junk::unexpected_value(self.clean(), span);
                     let problem = problem.unwrap_or_else(unexpected);
                     self.problems.push(problem);
                     block.bad.push(span);
@@ -185,7 +190,8 @@ impl<'s> Parser<'s> {
         });
         if let Some(open) = block.open {
             self.close_block(&mut block);
-            let (kind, name, problem) = junk::head(self.text, odd, open);
+            let (kind, name, problem) = junk::head(self.clean(), odd, open);
+            let [kind, name] = [kind, name].map(|name| name.map(|name| self.own(name)));
             block.kind = kind;
             block.name = name;
             let again = match self.items.last() {
@@ -202,7 +208,7 @@ impl<'s> Parser<'s> {
                 self.items.push(Item::Bad(odd));
                 return;
             }
-            let problem = junk::lines(self.text, odd, block.close, previous);
+            let problem = junk::lines(self.clean(), odd, block.close, previous);
             // Lines without meaning, one after the other, are one mistake.
             let vague = matches!(
                 problem,

@@ -25,6 +25,10 @@ fn an_unclosed_comment_ends_in_its_line() {
                 line,
                 "checkerboard {} // a \r\nsphere { center (0, 1, 0) }\r\n",
             ),
+            (
+                "close it at the end",
+                "checkerboard {} /* a \r\nsphere { center (0, 1, 0) } */\r\n",
+            ),
         ],
     );
     // The block was opened before it, and closed in it.
@@ -33,8 +37,15 @@ fn an_unclosed_comment_ends_in_its_line() {
         &[(close, "sphere { center (0, 1, 0) /* round */ }\n")],
     );
     // What follows may be a part of it, and is no scene.
-    fixes("checkerboard {} /* a\r\nb\r\nc\r\n", &[]);
-    fixes("checkerboard {} /* a\nsphere { radus 2 }\n", &[]);
+    let end = "close it at the end";
+    fixes(
+        "checkerboard {} /* a\r\nb\r\nc\r\n",
+        &[(end, "checkerboard {} /* a\r\nb\r\nc */\r\n")],
+    );
+    fixes(
+        "checkerboard {} /* a\nsphere { radus 2 }\n",
+        &[(end, "checkerboard {} /* a\nsphere { radus 2 } */\n")],
+    );
 }
 
 #[test]
@@ -191,4 +202,66 @@ fn what_a_help_says_is_done() {
     }
     // The numbers are what a field was to have.
     assert!(offered(&format!("sphere (0, 1, 0) {{ radius 2 }}{end}")).is_empty());
+}
+
+#[test]
+fn comments_of_other_languages_get_their_sign() {
+    offers(
+        &of_scene("# a\n  ## b\nlet c = 1"),
+        &[("write `// a`", &of_scene("// a\n  // b\nlet c = 1"))],
+    );
+    offers(
+        &of_scene("let a = 1 -- big"),
+        &[("write `// big`", &of_scene("let a = 1 // big"))],
+    );
+    // A difference, whatever it looks like.
+    for text in [
+        "let a = 1 let b = 2 -- a",
+        "let a = 1 --2",
+        "let a = 2 -- pi",
+        "let a = 2\n-- sqrt(4)",
+        "let a = (#fff, # f00\n)",
+        "let a = \"# no comment\"",
+        "sphere { radus #ff }",
+        "sphere { fill #orange }",
+    ] {
+        let found = diagnostics(&sources(&of_scene(text), &[]));
+        let found = found.iter().map(|d| d.code.as_str());
+        assert!(
+            !found.into_iter().any(|code| code.ends_with("comment_sign")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn what_is_open_at_the_end_is_closed_there() {
+    let scene = of_scene("");
+    offers(
+        &format!("{scene}let v = (1, 2, 3 // far\n"),
+        &[(
+            "write `)` at the end",
+            &format!("{scene}let v = (1, 2, 3) // far\n"),
+        )],
+    );
+    let (close, line) = ("close it in its line", "begin it with `//`");
+    offers(
+        &format!("{scene}/* far"),
+        &[
+            (close, &format!("{scene}/* far */")),
+            (line, &format!("{scene}// far")),
+        ],
+    );
+    // The camera that the comment took is another mistake.
+    offers(
+        "checkerboard {} /* far",
+        &[
+            (close, "checkerboard {} /* far */"),
+            (line, "checkerboard {} // far"),
+        ],
+    );
+    offers(
+        &format!("{scene}/* far\naway\n"),
+        &[("close it at the end", &format!("{scene}/* far\naway */\n"))],
+    );
 }
