@@ -127,7 +127,7 @@ impl Page<'_> {
 
     pub fn hover(&self, hover: Hover) -> lsp::Hover {
         let mut markdown = hover.markdown;
-        if self.client.pictures && self.client.markdown {
+        if self.client.pictures {
             for color in hover.colors {
                 markdown = format!("{}\n\n{markdown}", picture(color));
             }

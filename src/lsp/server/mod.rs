@@ -219,7 +219,8 @@ impl<'o, W: Write> Server<'o, W> {
 
     fn initialize(&mut self, params: Value) -> Answer {
         let params: lsp::InitializeParams = parsed(params)?;
-        let client = Client::new(&params.capabilities);
+        let name = params.client_info.as_ref().map(|info| info.name.as_str());
+        let client = Client::new(&params.capabilities, name);
         let result = lsp::InitializeResult {
             capabilities: convert::capabilities(&client),
             server_info: Some(lsp::ServerInfo {

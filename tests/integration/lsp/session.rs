@@ -422,3 +422,26 @@ fn memory_is_not_taken_for_what_is_only_announced() {
     assert_eq!(status, Some(1));
     assert!(log.contains("after 2 of 1000000000 bytes"), "{log}");
 }
+
+#[test]
+fn colours_are_shown_where_pictures_are() {
+    let markdown = json!({ "textDocument": { "hover": { "contentFormat": ["markdown"] } } });
+    for (name, capabilities, is_shown) in [
+        ("Editor", &markdown, true),
+        ("Neovim", &markdown, false),
+        ("Editor", &json!({}), false),
+    ] {
+        let mut client = Client::start();
+        client.ask(
+            "initialize",
+            json!({ "processId": null, "rootUri": null, "clientInfo": { "name": name }, "capabilities": capabilities }),
+        );
+        client.tell("initialized", json!({}));
+        let document = json!({ "uri": URI, "languageId": "scn", "version": 1, "text": SCENE });
+        client.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        let hover = client.at("hover", 2, 34);
+        let text = hover["contents"]["value"].as_str().expect("a text");
+        assert_eq!(text.contains("data:image/svg"), is_shown, "{text}");
+        assert!(text.contains("rgb(128, 128, 0)"), "{text}");
+    }
+}
