@@ -452,6 +452,8 @@ pub enum Problem {
         lookat: Span,
         #[label("the eye")]
         eye: Span,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("the camera looks straight along its up vector")]

@@ -14,7 +14,7 @@ fn edits_keep_all_that_is_written() {
     assert_eq!(fixes[1].1, text(&format!("({sum}) * 1rad")));
     // Nothing that would be cut is offered.
     assert!(offered(&text(&format!("sqrt({sum}, 2)"))).is_empty());
-    assert!(offered(&text("atan2(0.25)")).is_empty());
+    assert_eq!(offered(&text("atan2(0.25)"))[0].1, text("atan2(0.25, 2)"));
 }
 
 #[test]
@@ -149,4 +149,20 @@ fn a_corner_lies_on_the_right_side_of_the_other() {
     );
     // They would be as wrong the other way round.
     assert!(offered(&format!("{camera}box {{ min (0, 0, 0)  max (1, 0, 1) }}")).is_empty());
+}
+
+#[test]
+fn a_call_keeps_the_numbers_that_it_has() {
+    for (before, after) in [
+        ("atan2(1)", "atan2(1, 2)"),
+        ("atan2(3 + 4)", "atan2(3 + 4, 2)"),
+        ("max(y)", "max(y, 2)"),
+        ("rgb(1, 2)", "rgb(1, 2, 0)"),
+    ] {
+        let scene = |call| of_scene(&format!("let y = 1\nlet a = {call}"));
+        let title = format!("write `{after}`");
+        offers(&scene(before), &[(title.as_str(), &scene(after))]);
+    }
+    // A colour is no number.
+    offers(&of_scene("let a = rgb(olive)"), &[]);
 }
