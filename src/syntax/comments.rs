@@ -91,7 +91,8 @@ pub fn walk(text: &str, start: Start) -> Walk {
                 end
             }
             (b'#', _) | (b'-', Some(b'-'))
-                if !nesting.quote_before
+                if start == Start::Items
+                    && !nesting.quote_before
                     && let Some(sign) = foreign::sign(text, at, &mut lets) =>
             {
                 let end = end_of_line(bytes, at);

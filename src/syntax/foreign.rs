@@ -17,9 +17,14 @@ const CONSTANTS: [&str; 3] = ["pi", "deg", "rad"];
 pub fn sign<'t>(text: &'t str, at: usize, lets: &mut Lets<'t>) -> Option<Range<usize>> {
     let rest = text.get(at..)?;
     let first = rest.chars().next()?;
-    let run = rest.len() - rest.trim_start_matches(first).len();
-    let after = line(rest.get(run..)?);
-    let before = Before::of(text.get(..at)?);
+    let written = text.get(..at)?;
+    if written.ends_with(first) {
+        return None;
+    }
+    // A line may be a megabyte: no more of it is read than it takes.
+    let after = rest.trim_start_matches(first);
+    let run = rest.len() - after.len();
+    let before = Before::of(written);
     let is_comment = match (first, run) {
         ('#', 1) => !before.may_be_color(after),
         ('#', _) => true,
@@ -39,7 +44,7 @@ fn is_dashed<'t>(after: &'t str, before: Before<'_>, lets: &mut Lets<'t>) -> boo
         return false;
     }
     let (word, rest) = split_word(after.trim_start_matches(is_blank));
-    let is_call = rest.trim_start().starts_with('(');
+    let is_call = rest.trim_start_matches(is_blank).starts_with('(');
     word.starts_with(|c: char| c.is_ascii_alphabetic())
         && !is_call
         && !CONSTANTS.contains(&word)
@@ -64,7 +69,6 @@ enum Before<'t> {
 impl<'t> Before<'t> {
     fn of(text: &'t str) -> Self {
         let written = text.trim_end();
-        let written = written.strip_prefix('\u{feff}').unwrap_or(written);
         let gap = text.get(written.len()..).unwrap_or_default();
         let last = written.chars().next_back();
         match last {
@@ -90,7 +94,8 @@ impl<'t> Before<'t> {
         let written = after.trim_start_matches(is_blank);
         let blanks = after.len() - written.len();
         let (code, rest) = split_word(written);
-        let rest = rest.trim();
+        let rest = rest.trim_start_matches(is_blank);
+        let is_last = rest.is_empty() || rest.starts_with(['\n', '\r']);
         let is_hex = !code.is_empty() && code.bytes().all(|byte| byte.is_ascii_hexdigit());
         let is_code = is_hex && matches!(code.len(), 3 | 6);
         // `# fff` is a slip, `# add the ball` a comment; a list goes on behind either.
@@ -108,7 +113,7 @@ impl<'t> Before<'t> {
             Self::Word(_) => blanks == 0 && (is_hex || is_listed || rest.starts_with('}')),
             Self::Value | Self::Edge => blanks == 0 && is_code,
             Self::Line => match blanks {
-                0 => is_code || is_hex && (rest.is_empty() || is_listed),
+                0 => is_code || is_hex && (is_last || is_listed),
                 _ => is_code && is_listed,
             },
         }
@@ -140,10 +145,6 @@ impl<'t> Lets<'t> {
 fn split_word(text: &str) -> (&str, &str) {
     let end = text.find(|c| !is_of_word(c)).unwrap_or(text.len());
     text.split_at_checked(end).unwrap_or((text, ""))
-}
-
-fn line(text: &str) -> &str {
-    text.lines().next().unwrap_or_default()
 }
 
 fn is_of_word(c: char) -> bool {

@@ -200,7 +200,7 @@ impl<'s> Parser<'s> {
                     let words = self.text.get(sign.end..*end).unwrap_or_default();
                     self.problems.push(Problem::ForeignComment {
                         sign: self.short(place),
-                        right: junk::shorten(&format!("// {}", words.trim())),
+                        right: junk::shorten(&format!("//{words}")),
                         span: place,
                         places: vec![place],
                     });

@@ -235,6 +235,12 @@ fn comments_of_other_languages_get_their_sign() {
 }
 
 #[test]
+fn an_argument_may_start_with_two_minuses() {
+    let sources = sources(&of_scene("let a = 1"), &["a=--2".to_owned()]);
+    assert_eq!(diagnostics(&sources), []);
+}
+
+#[test]
 fn what_is_open_at_the_end_is_closed_there() {
     let scene = of_scene("");
     offers(
