@@ -79,12 +79,11 @@ impl Page<'_> {
     fn markup(&self, markdown: String) -> lsp::MarkupContent {
         let kind = match self.client.markdown {
             true => lsp::MarkupKind::Markdown,
-            // Without its signs the text is as plain as it is.
             false => lsp::MarkupKind::PlainText,
         };
         let value = match self.client.markdown {
             true => markdown,
-            false => markdown.replace('`', ""),
+            false => plain(&markdown),
         };
         lsp::MarkupContent { kind, value }
     }
@@ -350,6 +349,22 @@ fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
         SymbolKind::Object => lsp::SymbolKind::Object,
         SymbolKind::Field => lsp::SymbolKind::Property,
     }
+}
+
+/// Markdown without its signs.
+fn plain(markdown: &str) -> String {
+    let mut is_fenced = false;
+    let lines = markdown.lines().filter_map(|line| {
+        if line.starts_with("```") {
+            is_fenced = !is_fenced;
+            return None;
+        }
+        let heading = line.trim_start_matches('#').trim_start();
+        let is_heading = !is_fenced && line.starts_with('#');
+        Some(if is_heading { heading } else { line })
+    });
+    let lines: Vec<&str> = lines.collect();
+    lines.join("\n").replace('`', "")
 }
 
 /// A patch of a colour: an SVG picture within the text itself.

@@ -3,7 +3,7 @@
 use pinhole::{
     editor::{hover, signature},
     explain,
-    scene::schema::BLOCKS,
+    scene::schema::{BLOCKS, METHODS},
 };
 
 use super::{at_cursor, under};
@@ -270,4 +270,13 @@ fn calls_say_what_they_take() {
     assert_eq!(label("let a = 12$0"), "");
     assert_eq!(label("let a = (1, $0"), "");
     assert_eq!(label("let a = sin(1deg) $0"), "");
+}
+
+#[test]
+fn a_method_is_one_of_a_list() {
+    let found = at_cursor("sampler { met$0hod sobol }", hover).expect("a hover");
+    for (method, help) in METHODS {
+        let line = format!("\n- `{}`: {help}", method.name());
+        assert!(found.markdown.contains(&line), "{}", found.markdown);
+    }
 }

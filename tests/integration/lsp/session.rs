@@ -445,3 +445,14 @@ fn colours_are_shown_where_pictures_are() {
         assert!(text.contains("rgb(128, 128, 0)"), "{text}");
     }
 }
+
+#[test]
+fn a_plain_client_gets_no_signs_of_markdown() {
+    let (mut client, _) = Client::open(json!({}), "sphere { radus 2 }\n");
+    let hover = client.at("hover", 0, 10);
+    assert_eq!(hover["contents"]["kind"], "plaintext");
+    let text = hover["contents"]["value"].as_str().expect("a text");
+    assert!(text.contains("\nWrong\n"), "{text}");
+    assert!(!text.contains(['`', '#']), "{text}");
+    assert!(!text.lines().any(|line| line == "scn"), "{text}");
+}
