@@ -66,7 +66,7 @@ macro_rules! pages {
 pub const GROUPS: &[Group] = &[
     Group {
         name: "The text",
-        pages: pages! { invalid_utf8 odd_space unclosed_comment quoted unexpected },
+        pages: pages! { invalid_utf8 odd_space comment_sign unclosed_comment quoted unexpected },
     },
     Group {
         name: "Definitions",

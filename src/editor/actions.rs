@@ -1,14 +1,15 @@
 //! Quick fixes: the ways out of a diagnostic that are edits.
 
-use super::Analysis;
+use super::{Analysis, formatting, words::file};
 use crate::{
-    diagnostic::{Diagnostic, Fix},
-    source::{SourceId, Span},
+    diagnostic::{self, Diagnostic, Edit, Fix},
+    format::format,
+    source::{Source, SourceId, Span},
 };
 
 /// The ways out of the problems that a range touches, each with its problem. A problem counts where its first place is: the place
-/// that an editor underlines.
-pub fn fixes<'a>(analysis: &'a Analysis<'_>, within: Span) -> Vec<(&'a Diagnostic, &'a Fix)> {
+/// that an editor underlines. A text in the canonical layout keeps that.
+pub fn fixes<'a>(analysis: &'a Analysis<'_>, within: Span) -> Vec<(&'a Diagnostic, Fix)> {
     let touches = |diagnostic: &&Diagnostic| {
         let place = diagnostic.labels.first().map(|label| label.span);
         place.is_some_and(|place| place.start <= within.end && within.start <= place.end)
@@ -18,10 +19,49 @@ pub fn fixes<'a>(analysis: &'a Analysis<'_>, within: Span) -> Vec<(&'a Diagnosti
         edits.all(|edit| edit.span.source == SourceId::File)
     };
     let touched = analysis.diagnostics().iter().filter(touches);
-    touched
-        .flat_map(|diagnostic| {
-            let fixes = diagnostic.fixes.iter().filter(is_here);
-            fixes.map(move |fix| (diagnostic, fix))
-        })
-        .collect()
+    let fixes = touched.flat_map(|diagnostic| {
+        let fixes = diagnostic.fixes.iter().filter(is_here);
+        fixes.map(move |fix| (diagnostic, fix))
+    });
+    let fixes: Vec<_> = fixes.collect();
+    let keeps_layout = !fixes.is_empty() && is_laid_out(analysis);
+    let fixes = fixes.into_iter();
+    let fixes = fixes.map(|(diagnostic, fix)| {
+        let laid_out = keeps_layout
+            .then(|| laid_out(analysis.text(), fix))
+            .flatten();
+        (diagnostic, laid_out.unwrap_or_else(|| fix.clone()))
+    });
+    fixes.collect()
+}
+
+/// Whether a text is short, and in the canonical layout.
+fn is_laid_out(analysis: &Analysis<'_>) -> bool {
+    /// To lay a longer one out for every fix would take time that is seen.
+    const LONGEST: usize = 1 << 15;
+    analysis.text().len() <= LONGEST
+        && formatting(analysis).is_some_and(|changes| changes.is_empty())
+}
+
+/// The fix with the text that it leads to laid out, if that changes anything.
+fn laid_out(text: &str, fix: &Fix) -> Option<Fix> {
+    let fixed = diagnostic::apply(fix, SourceId::File, text);
+    let laid_out = format(&Source::from_text("", fixed.as_str())).ok()?;
+    if laid_out == fixed {
+        return None;
+    }
+    let same = |(a, b): &(char, char)| a == b;
+    let width = |(c, _): (char, char)| c.len_utf8();
+    let start: usize = text
+        .chars()
+        .zip(laid_out.chars())
+        .take_while(same)
+        .map(width)
+        .sum();
+    let [old, new] = [text, laid_out.as_str()].map(|text| text.get(start..).unwrap_or_default());
+    let backwards = old.chars().rev().zip(new.chars().rev());
+    let end: usize = backwards.take_while(same).map(width).sum();
+    let place = file(start, text.len() - end);
+    let written = new.get(..new.len() - end).unwrap_or_default();
+    Some(Fix::new(fix.title.as_str(), [Edit::new(place, written)]))
 }

@@ -103,6 +103,12 @@ impl<'s> Analysis<'s> {
         words::situation(self.text(), &self.tokens, self.comments(), at)
     }
 
+    /// The innermost call around a place, by the place of the function's name, and how many commas stand before.
+    pub(super) fn call(&self, at: usize) -> Option<(Span, usize)> {
+        let at = self.source().floor_char_boundary(at);
+        words::call(self.text(), &self.tokens, self.comments(), at)
+    }
+
     /// What stands at a place of the tree.
     pub(super) fn path(&self, at: usize) -> Path<'_, 's> {
         let mut path = Path::default();

@@ -138,11 +138,14 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
         _ => (" {\n  ", "\n  ", "\n}"),
     };
     let mut pieces = vec![text(format!("{}{open}", row.name))];
+    // Values stand in a column, as the formatter has them.
+    let widest = least.iter().map(|field| field.name.len()).max();
+    let width = widest.unwrap_or(0);
     for (index, field) in least.iter().enumerate() {
         if index > 0 {
             pieces.push(text(between));
         }
-        pieces.push(text(format!("{} ", field.name)));
+        pieces.push(text(format!("{:width$} ", field.name)));
         pieces.extend(value_to_type_over(&field.example()));
     }
     if least.is_empty() {
@@ -280,7 +283,7 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     Some(Completion {
         kind: CompletionKind::Value,
         detail: match field.preset {
-            Preset::Value(_) if example == field.example() => "the default".to_owned(),
+            Preset::Value(literal) if example == literal.to_string() => "the default".to_owned(),
             _ => bare(field.takes).to_owned(),
         },
         insert: value_to_type_over(&example),

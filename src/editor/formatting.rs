@@ -34,14 +34,12 @@ fn changes(old: &str, new: &str) -> Vec<(Span, String)> {
         }
         from += before.len();
         to += after.len();
-        let [left, right] = [(old, from), (new, to)].map(|(text, at)| {
-            let rest = text.as_bytes().get(at..).unwrap_or_default();
-            rest.iter()
-                .take_while(|byte| !byte.is_ascii_whitespace())
-                .count()
-        });
-        // One layout may part what the other joins.
-        let ink = left.min(right);
+        // One layout may part what the other joins: no more is looked at than is passed.
+        let [left, right] = [(old, from), (new, to)]
+            .map(|(text, at)| text.as_bytes().get(at..).unwrap_or_default());
+        let is_ink = |byte: &u8| !byte.is_ascii_whitespace();
+        let both = left.iter().zip(right);
+        let ink = both.take_while(|(a, b)| is_ink(a) && is_ink(b)).count();
         if ink == 0 {
             return changes;
         }

@@ -13,7 +13,7 @@ use crate::{
     numbers::{short, short_vector},
     scene::{
         Value, css,
-        schema::{self, Block, Field, Function, Kind, Preset},
+        schema::{self, Block, Field, Function, Kind, Preset, Type},
     },
     source::Span,
     suggest,
@@ -143,6 +143,12 @@ pub(super) fn about_field(row: &Block, field: &Field) -> String {
     }
     for rule in row.rules_of(field.name) {
         text += &format!("; {rule}");
+    }
+    if field.takes == Type::Method {
+        text.push('\n');
+        for (method, help) in schema::METHODS {
+            text += &format!("\n- `{}`: {help}", method.name());
+        }
     }
     text
 }

@@ -24,8 +24,7 @@ pub struct Signature {
 
 /// The innermost call around a place.
 pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
-    let situation = analysis.situation(at)?;
-    let &(span, commas) = situation.calls.last()?;
+    let (span, commas) = analysis.call(at)?;
     let function = schema::function(analysis.slice(span))?;
     let (label, parameters) = label(function);
     let last = parameters.len().saturating_sub(1);

@@ -345,6 +345,8 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+        /// What of the text decides that it is wrong.
+        found_in: Span,
     },
 
     #[error("{message}")]
@@ -450,6 +452,8 @@ pub enum Problem {
         lookat: Span,
         #[label("the eye")]
         eye: Span,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("the camera looks straight along its up vector")]
@@ -592,7 +596,7 @@ impl Problem {
             | Self::ArgumentType { span, .. }
             | Self::BareAngle { span, .. }
             | Self::WrongType { span, .. }
-            | Self::PartType { span, .. }
+            | Self::PartType { found_in: span, .. }
             | Self::OutOfRange { whole: span, .. } => Some(*span),
             Self::OperandTypes { left, right, .. } => {
                 Some(left.map_or(*right, |left| left.to(*right)))

@@ -35,6 +35,7 @@ impl Fixable for Problem {
             } => everywhere(*span, more, near.as_deref()),
             Self::MissingField { fixes, .. }
             | Self::ConflictingFields { fixes, .. }
+            | Self::ViewUndefined { fixes, .. }
             | Self::UpParallel { fixes, .. }
             | Self::EmptyDepth { fixes, .. }
             | Self::EmptyBox { fixes, .. }
@@ -106,7 +107,6 @@ impl Fixable for Problem {
             Self::ArgumentType { .. }
             | Self::PartType { .. }
             | Self::NumberTooLarge { .. }
-            | Self::ViewUndefined { .. }
             | Self::NotATriangle { .. }
             | Self::BoxTooLarge { .. }
             | Self::TooManySamples { .. }

@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use super::foreign::{self, Lets};
+
 /// Parentheses, signs and calls nest at most this deep.
 pub const NESTING_LIMIT: usize = 256;
 
@@ -15,8 +17,10 @@ const DOUBTFUL_LIMIT: usize = 4 * NESTING_LIMIT;
 /// What the walk finds.
 #[derive(Debug, Default)]
 pub struct Walk {
-    /// Every comment, from `//` to before the line's end, or from `/*` to `*/`.
+    /// Every comment, from `//` to before the line's end, or from `/*` to `*/`; those of other languages, too.
     pub comments: Vec<Range<usize>>,
+    /// Comments as other languages write them, each by the sign that it begins with, and where it ends.
+    pub foreign: Vec<(Range<usize>, usize)>,
     /// Whether the last comment has no `*/`.
     pub unclosed: bool,
     /// Values that nest too deep.
@@ -38,6 +42,10 @@ impl Walk {
             .chain(&mut self.odd_spaces)
         {
             *range = range.start + by..range.end + by;
+        }
+        for (sign, end) in &mut self.foreign {
+            *sign = sign.start + by..sign.end + by;
+            *end += by;
         }
         for deep in &mut self.deep {
             deep.at += by;
@@ -64,17 +72,15 @@ pub fn walk(text: &str, start: Start) -> Walk {
         ..Nesting::default()
     };
     let mut found = Walk::default();
+    let mut lets = Lets::of(text);
     let bytes = text.as_bytes();
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
         let next = bytes.get(at + 1).copied();
         let end = match (byte, next) {
             (b'/', Some(b'/')) => {
-                let end = find(bytes, at, b"\n").unwrap_or(bytes.len());
-                // The carriage return of a CRLF belongs to the line's end.
-                let last = bytes.get(end.saturating_sub(1)).copied();
-                let written = end - usize::from(end < bytes.len() && last == Some(b'\r'));
-                found.comments.push(at..written);
+                let end = end_of_line(bytes, at);
+                found.comments.push(at..end);
                 end
             }
             (b'/', Some(b'*')) => {
@@ -82,6 +88,16 @@ pub fn walk(text: &str, start: Start) -> Walk {
                 found.unclosed = close.is_none();
                 let end = close.map_or(bytes.len(), |close| close + 2);
                 found.comments.push(at..end);
+                end
+            }
+            (b'#', _) | (b'-', Some(b'-'))
+                if start == Start::Items
+                    && !nesting.quote_before
+                    && let Some(sign) = foreign::sign(text, at, &mut lets) =>
+            {
+                let end = end_of_line(bytes, at);
+                found.comments.push(at..end);
+                found.foreign.push((sign, end));
                 end
             }
             (b' ' | b'\t' | b'\r', _) => at + 1,
@@ -264,6 +280,13 @@ impl Nesting {
             });
         }
     }
+}
+
+/// Where the line ends; the carriage return of a CRLF belongs to its end.
+fn end_of_line(bytes: &[u8], from: usize) -> usize {
+    let end = find(bytes, from, b"\n").unwrap_or(bytes.len());
+    let last = bytes.get(end.saturating_sub(1)).copied();
+    end - usize::from(end < bytes.len() && last == Some(b'\r'))
 }
 
 fn end_of_word(bytes: &[u8], start: usize) -> usize {

@@ -62,6 +62,18 @@ pub enum Problem {
         span: Span,
     },
 
+    #[error("a comment begins with `//`, not with `{sign}`{}", and_below(places.len() - 1))]
+    #[diagnostic(code(pinhole::comment_sign), help("write `{right}`"))]
+    ForeignComment {
+        sign: String,
+        /// The comment as it should be, for a message.
+        right: String,
+        #[label("`//` should stand here")]
+        span: Span,
+        /// This sign, and those in the lines below that hold nothing else.
+        places: Vec<Span>,
+    },
+
     #[error("this value nests more than {NESTING_LIMIT} levels deep")]
     #[diagnostic(
         code(pinhole::too_deep),
@@ -434,6 +446,14 @@ fn times(more: usize) -> String {
         0 => String::new(),
         1 => ", and at one more place".to_owned(),
         _ => format!(", and at {more} more places"),
+    }
+}
+
+fn and_below(more: usize) -> String {
+    match more {
+        0 => String::new(),
+        1 => ", here and in the next line".to_owned(),
+        _ => format!(", here and in the next {more} lines"),
     }
 }
 

@@ -1,6 +1,10 @@
 //! What can be done about problems of syntax.
 
-use super::{Problem, error::Meant, junk::shorten};
+use super::{
+    Problem,
+    error::Meant,
+    junk::{shorten, written_length},
+};
 use crate::{
     diagnostic::{Edit, Fix, Fixable, with_comments},
     source::{Sources, Span},
@@ -51,6 +55,10 @@ impl Fixable for Problem {
                 });
                 vec![Fix::new("end these lines as text files do", edits)]
             }
+            Self::ForeignComment { right, places, .. } => vec![Fix::new(
+                format!("write `{right}`"),
+                places.iter().map(|place| Edit::new(*place, "//")),
+            )],
             Self::UnclosedComment { span } => unclosed_comment(*span, sources),
             Self::UnclosedParenthesis { span } => unclosed_parenthesis(*span, sources),
             Self::UnclosedBlock {
@@ -152,8 +160,8 @@ impl Fixable for Problem {
                     )],
                 }
             }
-            Self::BadNumber { span, .. } if sources.text(*span) == "°" => {
-                vec![Fix::write(*span, "deg")]
+            Self::BadNumber { span, help, .. } if sources.text(*span) == "°" => {
+                vec![Fix::new(help, [Edit::new(*span, "deg")])]
             }
             Self::BadNumber {
                 instead: Some([whole, part]),
@@ -211,11 +219,14 @@ impl Fixable for Problem {
                 }
             }
             Self::MissingLet {
-                name, place, span, ..
+                name,
+                value,
+                place,
+                span,
             } => {
                 let before = Span::new(span.source, span.start, place.start);
                 vec![Fix::new(
-                    format!("write `let {name}`"),
+                    format!("write `let {name} = {value}`"),
                     [Edit::new(before, "let ")],
                 )]
             }
@@ -261,16 +272,23 @@ fn unclosed_comment(span: Span, sources: &Sources) -> Vec<Fix> {
         open -= 1;
     }
     let at = span.start + comment.len();
-    vec![
+    let mut fixes = vec![
         Fix::new(
             "close it in its line",
             [Edit::insert(span.source, at, " */")],
         ),
         Fix::new("begin it with `//`", [Edit::new(span, "//")]),
-    ]
+    ];
+    let written = taken.trim_end();
+    if written.contains('\n') {
+        let end = span.start + written.len();
+        let edit = Edit::insert(span.source, end, " */");
+        fixes.push(Fix::new("close it at the end", [edit]));
+    }
+    fixes
 }
 
-/// A value ends before the name of the next field, or before the brace.
+/// A value ends before the name of the next field, or before the brace, or with the text.
 fn unclosed_parenthesis(span: Span, sources: &Sources) -> Vec<Fix> {
     /// More words than these are no vector with a parenthesis missing.
     const MOST: usize = 4;
@@ -293,11 +311,19 @@ fn unclosed_parenthesis(span: Span, sources: &Sources) -> Vec<Fix> {
     });
     let mut ends: Vec<(usize, &str)> = words.take(MOST).collect();
     ends.extend(brace.map(|brace| (brace, "}")));
+    if brace.is_none() {
+        ends.push((value.len(), ""));
+    }
     let fixes = ends.into_iter().map(|(end, next)| {
         let before = value.get(..end).unwrap_or_default();
-        let at = span.end + before.trim_end().len();
-        let edit = Edit::insert(span.source, at, ")");
-        Fix::new(format!("write `)` before `{}`", shorten(next)), [edit])
+        let (at, title) = match next {
+            "" => (written_length(before), "write `)` at the end".to_owned()),
+            _ => {
+                let title = format!("write `)` before `{}`", shorten(next));
+                (before.trim_end().len(), title)
+            }
+        };
+        Fix::new(title, [Edit::insert(span.source, span.end + at, ")")])
     });
     fixes.collect()
 }

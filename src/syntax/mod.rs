@@ -18,6 +18,7 @@
 mod comments;
 mod error;
 mod fixes;
+mod foreign;
 mod grammar;
 mod junk;
 mod parser;

@@ -59,6 +59,13 @@ pub struct Definition<'s> {
     pub span: Span,
 }
 
+impl Definition<'_> {
+    /// Whether it stands for a part of something that cannot be a name: it keeps uses of that from being reported, and nothing else.
+    pub fn is_part_of_name(&self) -> bool {
+        self.name.is_some_and(|name| name.span == self.span)
+    }
+}
+
 /// `KIND NAME? { FIELD VALUE … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block<'s> {

@@ -216,3 +216,12 @@ fn a_mistyped_code_gets_the_nearest_one() {
         assert_eq!(errors, format!("error: {says}\n"));
     }
 }
+
+#[test]
+fn the_right_scenes_are_in_the_canonical_layout() {
+    for page in explain::pages() {
+        let source = sources(section(page, "Right")).file;
+        let formatted = pinhole::format::format(&source).expect("it has no mistake");
+        assert_eq!(source.text(), formatted, "{}", page.code);
+    }
+}

@@ -99,8 +99,6 @@ pub struct Situation {
     pub field: Option<&'static schema::Field>,
     /// The type that would fit, if it is known.
     pub wanted: Option<Type>,
-    /// The functions that are being called, the innermost last: the place of the name, and how many commas stand before.
-    pub calls: Vec<(Span, usize)>,
     /// The name that is being defined: it cannot use itself.
     pub defining: Option<Span>,
     /// Whether a value starts here: nothing of it stands before.
@@ -181,7 +179,6 @@ pub fn situation(text: &str, tokens: &[Token], comments: &[Span], at: usize) -> 
         given: reader.given.clone(),
         field: reader.field.filter(|_| expected == Expected::Value),
         wanted: reader.wanted(expected),
-        calls: reader.calls(),
         defining: reader.defining,
         is_start: reader
             .last
@@ -204,6 +201,24 @@ pub fn situation(text: &str, tokens: &[Token], comments: &[Span], at: usize) -> 
     }
     situation.given.extend(later);
     Some(situation)
+}
+
+/// The innermost call around a place, by the place of the function's name, and how many commas stand before; none within
+/// comments. What the place touches or lies within, be it a word or a number, is an argument of the call around it.
+pub fn call(text: &str, tokens: &[Token], comments: &[Span], at: usize) -> Option<(Span, usize)> {
+    if is_in_comment(text, comments, at) {
+        return None;
+    }
+    let lets = defined_names(text, tokens);
+    let mut reader = Reader::new(text, &lets);
+    for (index, &token) in tokens.iter().enumerate() {
+        let is_touched = token.span.end == at && (is_word(text, token) || is_literal(token));
+        if token.span.end > at || is_touched {
+            break;
+        }
+        reader.step(tokens, index);
+    }
+    reader.calls().pop()
 }
 
 /// A place in the file.

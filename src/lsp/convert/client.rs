@@ -13,12 +13,14 @@ pub struct Client {
     pub snippets: bool,
     /// Whether it shows Markdown.
     pub markdown: bool,
-    /// Whether it says which Markdown it shows: then pictures are among it.
+    /// Whether it shows the pictures in Markdown.
     pub pictures: bool,
     /// Whether it asks for diagnostics itself.
     pub pulls_diagnostics: bool,
     /// Whether it shows the other places of a diagnostic.
     pub related: bool,
+    /// Whether the code of a diagnostic may be a link.
+    pub linked_codes: bool,
     /// Whether changes may name the version that they are for.
     pub versioned_edits: bool,
     /// Whether an outline may have levels.
@@ -26,8 +28,8 @@ pub struct Client {
 }
 
 impl Client {
-    /// What a client says of itself.
-    pub fn new(capabilities: &lsp::ClientCapabilities) -> Self {
+    /// What a client says of itself, with its name if it has one.
+    pub fn new(capabilities: &lsp::ClientCapabilities, name: Option<&str>) -> Self {
         let text = capabilities.text_document.clone().unwrap_or_default();
         let general = capabilities.general.clone().unwrap_or_default();
         let hover = text.hover.and_then(|hover| hover.content_format);
@@ -37,18 +39,27 @@ impl Client {
         let workspace = capabilities.workspace.clone().unwrap_or_default();
         let edits = workspace.workspace_edit.unwrap_or_default();
         let published = text.publish_diagnostics.unwrap_or_default();
+        let published = published.diagnostics_capabilities;
         let symbols = text.document_symbol.unwrap_or_default();
+        let markdown = hover.is_some_and(|formats| formats.contains(&lsp::MarkupKind::Markdown));
         Self {
             encoding: encoding(&general.position_encodings.unwrap_or_default()),
             snippets: completion.and_then(|item| item.snippet_support) == Some(true),
-            markdown: hover.is_some_and(|formats| formats.contains(&lsp::MarkupKind::Markdown)),
-            pictures: general.markdown.is_some(),
+            markdown,
+            pictures: markdown && !name.is_some_and(is_in_terminal),
             pulls_diagnostics: text.diagnostic.is_some(),
-            related: published.diagnostics_capabilities.related_information == Some(true),
+            related: published.related_information == Some(true),
+            linked_codes: published.code_description_support == Some(true),
             versioned_edits: edits.document_changes == Some(true),
             nested_symbols: symbols.hierarchical_document_symbol_support == Some(true),
         }
     }
+}
+
+/// Whether an editor of this name runs in a terminal: it takes Markdown, but would show the picture's address in its place.
+fn is_in_terminal(name: &str) -> bool {
+    const TERMINAL: [&str; 5] = ["neovim", "vim", "helix", "kakoune", "kak-lsp"];
+    TERMINAL.contains(&name.to_ascii_lowercase().as_str())
 }
 
 /// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it says nothing.

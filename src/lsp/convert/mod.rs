@@ -8,7 +8,11 @@ pub use client::{Client, capabilities};
 
 use gen_lsp_types as lsp;
 
-use super::documents::{Change, Document, Encoding};
+use super::{
+    documents::{Change, Document, Encoding},
+    pages::Pages,
+    uri,
+};
 use crate::{
     color::Color,
     diagnostic::{Diagnostic, Fix, Severity},
@@ -25,6 +29,8 @@ pub struct Page<'d> {
     pub uri: &'d lsp::Uri,
     /// The text.
     pub document: &'d Document,
+    /// What explains the codes of diagnostics.
+    pub pages: &'d Pages,
 }
 
 fn count(number: usize) -> u32 {
@@ -73,12 +79,11 @@ impl Page<'_> {
     fn markup(&self, markdown: String) -> lsp::MarkupContent {
         let kind = match self.client.markdown {
             true => lsp::MarkupKind::Markdown,
-            // Without its signs the text is as plain as it is.
             false => lsp::MarkupKind::PlainText,
         };
         let value = match self.client.markdown {
             true => markdown,
-            false => markdown.replace('`', ""),
+            false => plain(&markdown),
         };
         lsp::MarkupContent { kind, value }
     }
@@ -96,6 +101,8 @@ impl Page<'_> {
             Some(help) => format!("{}\nhelp: {help}", diagnostic.message),
             None => diagnostic.message.clone(),
         };
+        let explained = Some(self.pages).filter(|_| self.client.linked_codes);
+        let explained = explained.and_then(|pages| pages.uri(&diagnostic.code));
         // The source says whose code it is.
         let code = diagnostic.code.trim_start_matches("pinhole::");
         lsp::Diagnostic {
@@ -105,7 +112,7 @@ impl Page<'_> {
                 Severity::Warning => lsp::DiagnosticSeverity::Warning,
             }),
             code: Some(lsp::Code::String(code.to_owned())),
-            code_description: None,
+            code_description: explained.map(|href| lsp::CodeDescription { href }),
             source: Some("pinhole".to_owned()),
             message: lsp::Message::String(message),
             // An editor shows it in grey.
@@ -119,7 +126,7 @@ impl Page<'_> {
 
     pub fn hover(&self, hover: Hover) -> lsp::Hover {
         let mut markdown = hover.markdown;
-        if self.client.pictures && self.client.markdown {
+        if self.client.pictures {
             for color in hover.colors {
                 markdown = format!("{}\n\n{markdown}", picture(color));
             }
@@ -344,20 +351,27 @@ fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
     }
 }
 
+/// Markdown without its signs.
+fn plain(markdown: &str) -> String {
+    let mut is_fenced = false;
+    let lines = markdown.lines().filter_map(|line| {
+        if line.starts_with("```") {
+            is_fenced = !is_fenced;
+            return None;
+        }
+        let heading = line.trim_start_matches('#').trim_start();
+        let is_heading = !is_fenced && line.starts_with('#');
+        Some(if is_heading { heading } else { line })
+    });
+    let lines: Vec<&str> = lines.collect();
+    lines.join("\n").replace('`', "")
+}
+
 /// A patch of a colour: an SVG picture within the text itself.
 fn picture(color: Color) -> String {
     let svg = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='16'><rect width='48' height='16' fill='{color}'/></svg>"
     );
-    let mut address = String::from("data:image/svg+xml,");
-    for character in svg.chars() {
-        match character {
-            'a'..='z' | 'A'..='Z' | '0'..='9' | '-' | '.' | '/' | ':' | '=' => {
-                address.push(character)
-            }
-            // All others are of one byte here.
-            other => address.push_str(&format!("%{:02X}", u32::from(other))),
-        }
-    }
-    format!("![{color}]({address})")
+    let svg = uri::escaped(svg.as_bytes());
+    format!("![{color}](data:image/svg+xml,{svg})")
 }

@@ -169,7 +169,7 @@ fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) 
     }
     let fixes = editor::fixes(analysis, page.span(params.range)).into_iter();
     let actions: Vec<_> = fixes
-        .map(|(diagnostic, fix)| page.action(diagnostic, fix))
+        .map(|(diagnostic, fix)| page.action(diagnostic, &fix))
         .collect();
     written(&actions)
 }

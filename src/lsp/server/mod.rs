@@ -12,6 +12,7 @@ use std::{
     collections::{BTreeSet, HashMap},
     io::{self, Read, Write},
     panic::{self, AssertUnwindSafe},
+    path::PathBuf,
 };
 
 use gen_lsp_types as lsp;
@@ -26,6 +27,7 @@ use self::{
 use super::{
     convert::{self, Client, Page},
     documents::Document,
+    pages::Pages,
 };
 use crate::editor::Analysis;
 
@@ -38,21 +40,20 @@ pub enum Ended {
     Abruptly,
 }
 
-/// Talks to a client until it ends. What cannot be understood is said to `log`.
+/// Talks to a client until it ends. What cannot be understood is said to `log`. The pages of [`crate::explain`] that diagnostics link to
+/// are written to the folder `pages`, an absolute path, as they are needed; without it, or where that fails, nothing is linked.
+///
+/// # Errors
+///
+/// The output cannot be written to.
 pub fn serve(
     input: impl Read + Send + 'static,
     output: &mut impl Write,
+    pages: Option<PathBuf>,
     log: fn(&str),
 ) -> io::Result<Ended> {
     let mut inbox = Inbox::read(input, log);
-    let mut server = Server {
-        output,
-        log,
-        phase: Phase::Silent,
-        documents: HashMap::new(),
-        changed: BTreeSet::new(),
-    };
-    server.run(&mut inbox)
+    Server::new(output, Pages::new(pages), log).run(&mut inbox)
 }
 
 /// What has been said so far.
@@ -72,9 +73,21 @@ struct Server<'o, W> {
     documents: HashMap<lsp::Uri, Document>,
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
+    pages: Pages,
 }
 
-impl<W: Write> Server<'_, W> {
+impl<'o, W: Write> Server<'o, W> {
+    fn new(output: &'o mut W, pages: Pages, log: fn(&str)) -> Self {
+        Self {
+            output,
+            log,
+            phase: Phase::Silent,
+            documents: HashMap::new(),
+            changed: BTreeSet::new(),
+            pages,
+        }
+    }
+
     /// Takes messages in their order until the end comes, or the client is gone.
     fn run(&mut self, inbox: &mut Inbox) -> io::Result<Ended> {
         loop {
@@ -147,6 +160,7 @@ impl<W: Write> Server<'_, W> {
             client,
             uri,
             document,
+            pages: &self.pages,
         });
         let analysis = page.map(|page| Analysis::new(&page.document.sources));
         let known = page.zip(analysis.as_ref());
@@ -205,7 +219,8 @@ impl<W: Write> Server<'_, W> {
 
     fn initialize(&mut self, params: Value) -> Answer {
         let params: lsp::InitializeParams = parsed(params)?;
-        let client = Client::new(&params.capabilities);
+        let name = params.client_info.as_ref().map(|info| info.name.as_str());
+        let client = Client::new(&params.capabilities, name);
         let result = lsp::InitializeResult {
             capabilities: convert::capabilities(&client),
             server_info: Some(lsp::ServerInfo {

@@ -48,13 +48,7 @@ fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
     }
     drop(sender);
     let mut output = Vec::new();
-    let mut server = Server {
-        output: &mut output,
-        log: |_| {},
-        phase: Phase::Silent,
-        documents: HashMap::new(),
-        changed: BTreeSet::new(),
-    };
+    let mut server = Server::new(&mut output, Pages::default(), |_| {});
     let ended = server.run(&mut Inbox::new(receiver));
     assert_eq!(ended.expect("a vector takes everything"), Ended::Abruptly);
     let mut output = output.as_slice();

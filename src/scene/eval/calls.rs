@@ -6,6 +6,7 @@ use crate::{
     diagnostic::{Edit, Fix},
     numbers,
     scene::{
+        css,
         error::Problem,
         schema::{self, Function, Type},
         value::{self, Value},
@@ -135,7 +136,11 @@ impl<'s> Evaluator<'_, 's> {
             takes,
             are,
             // What is written is not to be lost.
-            instead: match is_whole(&written) && (found == 0 || written != example(row)) {
+            instead: match is_whole(&written)
+                && (found == 0
+                    || written != example(row)
+                    || self.filled_up(row, arguments).is_some())
+            {
                 true => vec![written.clone()],
                 false => Vec::new(),
             },
@@ -161,9 +166,33 @@ impl<'s> Evaluator<'_, 's> {
             }
             (takes, _) => match texts.get(..takes.len()) {
                 Some(kept) => format!("{}({})", row.name, kept.join(", ")),
-                None => example(row),
+                None => self
+                    .filled_up(row, arguments)
+                    .unwrap_or_else(|| example(row)),
             },
         }
+    }
+
+    /// The call of numbers with those that are given, and examples of those that are not.
+    fn filled_up(&self, row: &Function, arguments: &[Element<'s>]) -> Option<String> {
+        let is_number = |argument: &Element<'_>| match argument.value.kind {
+            ValueKind::Number(_) | ValueKind::Negation { .. } | ValueKind::Chain { .. } => true,
+            ValueKind::Call(_) => true,
+            ValueKind::Name(name) => css::color(name).is_none(),
+            _ => false,
+        };
+        let takes_numbers = row.takes.iter().all(|takes| *takes == Type::Number);
+        if arguments.is_empty() || !takes_numbers || !arguments.iter().all(is_number) {
+            return None;
+        }
+        let example = example(row);
+        let examples = example.split_once('(')?.1.strip_suffix(')')?.split(", ");
+        let given = arguments.iter();
+        let given = given.map(|argument| shorten(self.sources.text(argument.value.span)));
+        let all: Vec<String> = given
+            .chain(examples.skip(arguments.len()).map(str::to_owned))
+            .collect();
+        Some(format!("{}({})", row.name, all.join(", ")))
     }
 
     fn argument_type(

@@ -42,7 +42,7 @@ impl<'s> Evaluator<'_, 's> {
             2 => colors || wanted == Some(Type::Colors),
             _ => wanted == Some(Type::Colors),
         };
-        self.wrong_part(elements, &values, pair);
+        self.wrong_part(elements, &values, span, pair);
         let fits = elements.len() == if pair { 2 } else { 3 };
         if !fits && values.iter().all(Option::is_some) {
             let kinds = if pair { Type::Color } else { Type::Number };
@@ -54,7 +54,13 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Reports the first part of a vector that is no number, or of a pair that is no colour.
-    fn wrong_part(&mut self, elements: &[Element<'s>], values: &[Option<Value>], pair: bool) {
+    fn wrong_part(
+        &mut self,
+        elements: &[Element<'s>],
+        values: &[Option<Value>],
+        all: Span,
+        pair: bool,
+    ) {
         let (whole, parts, takes) = match pair {
             true => ("a pair of colours", "colours", Type::Color),
             false => ("a vector", "numbers", Type::Number),
@@ -80,6 +86,8 @@ impl<'s> Evaluator<'_, 's> {
             help: help.to_owned(),
             span: element.value.span,
             label,
+            // Any part that is a colour makes it a pair of colours.
+            found_in: if pair { all } else { element.value.span },
         });
     }
 

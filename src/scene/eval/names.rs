@@ -53,6 +53,8 @@ struct Defined {
     place: Span,
     /// The argument that set it, if one did.
     set: Option<SourceId>,
+    /// Whether it is only a part of something that cannot be a name.
+    is_part: bool,
 }
 
 impl<'s> Names<'s> {
@@ -94,12 +96,31 @@ impl<'s> Names<'s> {
 
     /// Defines a name; a second time it keeps its value.
     pub fn define(&mut self, name: Name<'s>, value: Option<Value>, set: Option<SourceId>) {
+        let defined = Defined {
+            value,
+            place: name.span,
+            set,
+            is_part: false,
+        };
+        match self.defined.entry(name.text) {
+            Entry::Vacant(free) => {
+                self.order.push(name.text);
+                free.insert(defined);
+            }
+            Entry::Occupied(mut part) if part.get().is_part => *part.get_mut() = defined,
+            Entry::Occupied(_) => {}
+        }
+    }
+
+    /// Takes a part of something that cannot be a name for one that is known, until it is defined.
+    pub fn guess(&mut self, name: Name<'s>) {
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
             self.order.push(name.text);
             free.insert(Defined {
-                value,
+                value: None,
                 place: name.span,
-                set,
+                set: None,
+                is_part: true,
             });
         }
     }
@@ -107,6 +128,12 @@ impl<'s> Names<'s> {
     /// Where a name was defined, if it was.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.defined.get(name).map(|defined| defined.place)
+    }
+
+    /// Where a name was defined that is not only a part of something that cannot be one.
+    pub fn place_of_whole(&self, name: &str) -> Option<Span> {
+        let defined = self.defined.get(name).filter(|defined| !defined.is_part);
+        defined.map(|defined| defined.place)
     }
 
     /// The value of a name that was defined; none if it failed.

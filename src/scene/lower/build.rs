@@ -221,6 +221,7 @@ impl<'s> Lowering<'s> {
                     self.problems.push(Problem::ViewUndefined {
                         lookat: seen.span,
                         eye: block.given("eye").map_or(block.keyword, |given| given.span),
+                        fixes: direction_for(block, seen.field()),
                     });
                     // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
                     view_is_defined = false;
@@ -546,4 +547,15 @@ fn preset(literal: Literal) -> Option<Value> {
         }
         Literal::Method(name) => Value::Method(schema::method(name)?),
     })
+}
+
+/// Where the camera looks, as a direction in the place of the point.
+fn direction_for(block: &Block<'_>, lookat: Span) -> Vec<Fix> {
+    let fields = examples(block, &["direction"]);
+    let is_in_file = lookat.source == SourceId::File;
+    let fields = fields.into_iter().filter(|_| is_in_file);
+    let title = "give a `direction` instead of `lookat`";
+    fields
+        .map(|field| Fix::new(title, [Edit::new(lookat, field)]))
+        .collect()
 }

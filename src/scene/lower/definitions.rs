@@ -51,13 +51,6 @@ impl<'s> Lowering<'s> {
                 _ => {}
             }
         }
-        // What a definition that failed was to give its name explains what is wrong where that is used.
-        let mut explained: Vec<Span> = uses.into_values().flat_map(Uses::all).collect();
-        explained.sort_unstable();
-        problems.retain(|problem| {
-            let place = problem.place_of_value();
-            !place.is_some_and(|place| holds_one(place, &explained))
-        });
         self.problems = problems;
     }
 
@@ -116,7 +109,12 @@ impl<'s> Lowering<'s> {
     /// Gives a definition, and what uses it, the name that the help suggests.
     fn renamed(&self, name: &str, span: Span, found: Option<Type>, uses: &Uses) -> Option<Fix> {
         let new = format!("my_{name}");
-        let is_set = self.targets.contains_key(&(None, name));
+        // What is typed on the command line is not renamed with the file.
+        let is_set = self.targets.contains_key(&(None, name))
+            || self
+                .overrides
+                .iter()
+                .any(|set| holds_name(&set.value, name));
         if uses.definitions != 1 || self.names.knows(&new) || is_set {
             return None;
         }
@@ -157,11 +155,6 @@ struct Uses {
 }
 
 impl Uses {
-    fn all(self) -> impl Iterator<Item = Span> {
-        let uses = [self.of_colors, self.unclear, self.others];
-        uses.into_iter().flatten()
-    }
-
     fn is_empty(&self) -> bool {
         self.of_colors.is_empty() && self.unclear.is_empty() && self.others.is_empty()
     }
@@ -211,13 +204,6 @@ fn uses_of_predefined<'s>(items: &[Item<'s>]) -> HashMap<&'s str, Uses> {
     found
 }
 
-/// Whether one of some places, which are in their order, lies in another one.
-fn holds_one(whole: Span, places: &[Span]) -> bool {
-    let next = places.partition_point(|place| *place < Span { end: 0, ..whole });
-    let place = places.get(next);
-    place.is_some_and(|place| place.source == whole.source && place.end <= whole.end)
-}
-
 /// Whether a value is a name, or several in parentheses.
 fn is_color_or_pair(value: &Value<'_>) -> bool {
     match &value.kind {
@@ -234,8 +220,14 @@ fn is_unfinished(value: &Value<'_>) -> bool {
     matches!(value.kind, ValueKind::Missing | ValueKind::Bad)
 }
 
+fn holds_name(value: &Value<'_>, name: &str) -> bool {
+    let mut found = false;
+    for_each_name(value, &mut |used, _| found |= used == name);
+    found
+}
+
 /// Calls a function with every name that stands for a value, in order.
-fn for_each_name<'s>(value: &Value<'s>, call: &mut impl FnMut(&'s str, Span)) {
+pub(super) fn for_each_name<'s>(value: &Value<'s>, call: &mut impl FnMut(&'s str, Span)) {
     match &value.kind {
         ValueKind::Name(name) => call(name, value.span),
         ValueKind::Call(made) => {

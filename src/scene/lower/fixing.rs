@@ -56,18 +56,20 @@ impl Lowering<'_> {
         )
     }
 
-    /// Of two fields that exclude each other, keeps either one: what it excludes is removed. One that would not be enough
-    /// by itself is not kept.
+    /// Of two fields that exclude each other, keeps either one: what it excludes is removed. What it needs beside itself takes
+    /// the place of that.
     pub(super) fn one_of(&self, block: &Block<'_>, [earlier, later]: [&Field; 2]) -> Vec<Fix> {
-        let ways = [earlier, later].into_iter().filter_map(|kept| {
+        let ways = [earlier, later].into_iter().map(|kept| {
             let given = |name: &&str| block.given(name).is_some();
             let removed: Vec<&str> = kept.excludes.iter().copied().filter(given).collect();
             // A box by its centre needs that, and one by its corners both.
             let alike = |field: &&Field| field.excludes == kept.excludes;
-            let mut needed = block.row.fields.iter().filter(alike);
-            if !needed.all(|field| given(&field.name) || field.preset != Preset::Alternative) {
-                return None;
-            }
+            let needed = block.row.fields.iter().filter(alike);
+            let needed = needed.filter(|field| field.preset == Preset::Alternative);
+            let missing: Vec<&str> = needed
+                .map(|field| field.name)
+                .filter(|name| !given(name))
+                .collect();
             let spans = removed.iter().filter_map(|name| block.given(name));
             let spans = self.joined(spans.map(|given| given.field()).collect());
             let alike = block
@@ -78,9 +80,25 @@ impl Lowering<'_> {
                 .map(|field| field.name);
             let kept: Vec<&str> = alike.filter(|name| given(name)).collect();
             let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
-            Some(Fix::remove_whole(title, spans, self.sources))
+            match missing.is_empty() {
+                true => Fix::remove_whole(title, spans, self.sources),
+                false => self.in_place(
+                    format!("{title}, add {}", quoted(&missing)),
+                    &spans,
+                    &examples(block, &missing),
+                ),
+            }
         });
         ways.collect()
+    }
+
+    /// Writes fields in the place of the first one of those that are removed.
+    fn in_place(&self, title: String, removed: &[Span], fields: &[String]) -> Fix {
+        let edits = removed.iter().enumerate().map(|(index, span)| match index {
+            0 => Edit::new(*span, fields.join("  ")),
+            _ => Edit::remove(*span, self.sources),
+        });
+        Fix::new(title, edits)
     }
 
     /// Places in their order; those with nothing but white space between are one.

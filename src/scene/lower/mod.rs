@@ -5,6 +5,7 @@
 //! all names; then each block is built. A problem of one field never hides one of another.
 
 mod build;
+mod consequences;
 mod definitions;
 mod fixing;
 mod overriding;
@@ -56,6 +57,8 @@ struct Lowering<'s> {
     objects: Vec<Object>,
     /// Whether there is an object, built or not.
     has_objects: bool,
+    /// The names whose definitions give no value, since the language has these names already.
+    denied: Vec<Name<'s>>,
     /// Where each object's name stands first.
     first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be understood.
@@ -108,6 +111,7 @@ impl<'s> Lowering<'s> {
             first_blocks: HashMap::new(),
             objects: Vec::new(),
             has_objects: false,
+            denied: Vec::new(),
             first_names: HashMap::new(),
             bad: Vec::new(),
             found: Vec::new(),
@@ -136,7 +140,7 @@ impl<'s> Lowering<'s> {
         });
         let first = definition
             .name
-            .is_some_and(|name| self.names.place(name.text).is_none());
+            .is_some_and(|name| self.names.place_of_whole(name.text).is_none());
         let value = match &set {
             Some(set) if first => self.evaluate(&set.value, None),
             Some(_) => None,
@@ -147,6 +151,9 @@ impl<'s> Lowering<'s> {
         };
         // A name without its `let` was reported.
         let reported = definition.keyword.range().is_empty();
+        if predefined(name.text).is_some() {
+            self.denied.push(name);
+        }
         if reported && (predefined(name.text).is_some() || self.names.place(name.text).is_some()) {
             return;
         }
@@ -160,7 +167,9 @@ impl<'s> Lowering<'s> {
                 found: value.map(|value| value.kind()),
                 fixes: Vec::new(),
             });
-        } else if let Some(first) = self.names.place(name.text) {
+        } else if definition.is_part_of_name() {
+            self.names.guess(name);
+        } else if let Some(first) = self.names.place_of_whole(name.text) {
             self.problems.push(Problem::DuplicateLet {
                 name: name.text.to_owned(),
                 second: name.span,

@@ -86,7 +86,11 @@ fn prove_fixes(sources: &Sources, diagnostics: &mut [Diagnostic]) {
         diagnostic.fixes.retain(|fix| {
             is_looked_at && {
                 let after = counted(&diagnostics_with(sources, fix));
-                let is_new = |(said, count): (&Said, &usize)| before.get(said) < Some(count);
+                // An unclosed comment may have taken the camera: that there is none was only hidden.
+                let is_hidden = |said: &Said| said.0 == "pinhole::missing_camera";
+                let is_new = |(said, count): (&Said, &usize)| {
+                    !is_hidden(said) && before.get(said) < Some(count)
+                };
                 after.get(&said) < before.get(&said) && !after.iter().any(is_new)
             }
         });
@@ -144,6 +148,7 @@ fn whole<'s>(
     lowering.items(&tree.items);
     lowering.override_blocks();
     lowering.fix_definitions(parsed);
+    lowering.leave_out_consequences(&tree.items);
     lowering
 }
 

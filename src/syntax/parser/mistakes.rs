@@ -16,7 +16,8 @@ impl<'s> Parser<'s> {
         let whole = self.span(&pair);
         let span = self.trimmed(whole.start, whole.end);
         let keyword = self.word_at(span.start);
-        let (name, problem) = junk::definition(self.text, span);
+        let (name, problem) = junk::definition(self.clean(), span);
+        let name = name.map(|name| self.own(name));
         if let Problem::BadName { span, .. } = &problem {
             self.parts_of_bad_name(*span);
         }
@@ -40,13 +41,16 @@ impl<'s> Parser<'s> {
         }));
     }
 
-    /// `let my-x = 5`: where `my-x` is used, `my` and `x` are names that are known.
+    /// `let my-x = 5`, `let mut x = 5`: where `my-x` or `x` is used, `my`, `mut` and `x` are names that are known.
     fn parts_of_bad_name(&mut self, span: Span) {
         const ENOUGH: usize = 8;
+        let is_between = |c: char| !c.is_alphanumeric() && c != '_';
         let mut at = span.start;
-        for word in self.written(span).split('-').take(ENOUGH) {
-            let place = Span::new(self.id, at, at + word.len());
-            at = place.end + 1;
+        for word in self.written(span).split_inclusive(is_between).take(ENOUGH) {
+            let start = at;
+            at += word.len();
+            let word = word.trim_end_matches(is_between);
+            let place = Span::new(self.id, start, start + word.len());
             let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
             if word.starts_with(|c: char| c.is_ascii_alphabetic()) && word.chars().all(letters) {
                 self.items.push(Item::Definition(Definition {
@@ -66,7 +70,8 @@ impl<'s> Parser<'s> {
     pub(super) fn bad_field(&mut self, pair: Pairs<'_>, block: &mut Block<'s>) {
         let whole = self.span(&pair);
         let span = self.trimmed(whole.start, whole.end);
-        match junk::field(self.text, span) {
+        let (name, problem) = junk::field(self.clean(), span);
+        match (name.map(|name| self.own(name)), problem) {
             (
                 Some(name),
                 Some(Problem::MissingOperand {
@@ -87,16 +92,19 @@ impl<'s> Parser<'s> {
                 block.bad.push(span);
             }
             (Some(name), problem) => {
-                let after = self.text.get(name.span.end..span.end).unwrap_or_default();
+                let after = self
+                    .clean()
+                    .get(name.span.end..span.end)
+                    .unwrap_or_default();
                 let kind = match matches!(after.trim(), "" | "=" | ":") {
                     true => ValueKind::Missing,
                     false => ValueKind::Bad,
                 };
-                let rest = self.text.get(whole.end..).unwrap_or_default();
+                let rest = self.clean().get(whole.end..).unwrap_or_default();
                 // Braces that follow are reported themselves.
                 let braces = problem.is_none() && rest.trim_start().starts_with('{');
                 if kind == ValueKind::Bad && !braces {
-                    let unexpected = || junk::unexpected_value(self.text, span);
+                    let unexpected = || junk::unexpected_value(self.clean(), span);
                     let problem = problem.unwrap_or_else(unexpected);
                     self.problems.push(problem);
                     block.bad.push(span);
@@ -182,7 +190,8 @@ impl<'s> Parser<'s> {
         });
         if let Some(open) = block.open {
             self.close_block(&mut block);
-            let (kind, name, problem) = junk::head(self.text, odd, open);
+            let (kind, name, problem) = junk::head(self.clean(), odd, open);
+            let [kind, name] = [kind, name].map(|name| name.map(|name| self.own(name)));
             block.kind = kind;
             block.name = name;
             let again = match self.items.last() {
@@ -199,7 +208,7 @@ impl<'s> Parser<'s> {
                 self.items.push(Item::Bad(odd));
                 return;
             }
-            let problem = junk::lines(self.text, odd, block.close, previous);
+            let problem = junk::lines(self.clean(), odd, block.close, previous);
             // Lines without meaning, one after the other, are one mistake.
             let vague = matches!(
                 problem,

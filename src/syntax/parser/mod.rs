@@ -71,6 +71,8 @@ struct Parser<'s> {
     id: SourceId,
     /// The text as it was written.
     text: &'s str,
+    /// The text with blanks for comments of other languages, if it has any.
+    clean: Option<String>,
     /// The text as pest reads it: values that nest too deep are a 0 and blanks there.
     read: Cow<'s, str>,
     /// Where the piece that pest is reading starts: its offsets count from there.
@@ -98,8 +100,15 @@ impl<'s> Parser<'s> {
         };
         let mut walk = comments::walk(text.get(start..).unwrap_or_default(), first);
         walk.shift(start);
+        let foreign = walk.foreign.iter();
+        let foreign: Vec<_> = foreign.map(|(sign, end)| sign.start..*end).collect();
+        let read = with_blanks(without_deep(text, &walk.deep), &walk.odd_spaces);
         let parser = Self {
-            read: without_odd_spaces(without_deep(text, &walk.deep), &walk.odd_spaces),
+            read: with_blanks(read, &foreign),
+            clean: match with_blanks(Cow::Borrowed(text), &foreign) {
+                Cow::Borrowed(_) => None,
+                Cow::Owned(clean) => Some(clean),
+            },
             deep: std::mem::take(&mut walk.deep),
             ..Self::new(text, id, start)
         };
@@ -111,6 +120,7 @@ impl<'s> Parser<'s> {
         Self {
             id,
             text,
+            clean: None,
             read: Cow::Borrowed(text),
             base: start,
             end: text.len(),
@@ -128,6 +138,7 @@ impl<'s> Parser<'s> {
             self.problems.push(Problem::TooDeep { span });
         }
         self.odd_spaces(&walk.odd_spaces);
+        self.foreign_comments(&walk.foreign);
         self.lone_return(&walk.comments);
         let last = walk.comments.last();
         let unclosed = last.filter(|_| walk.unclosed).map(|last| last.start);
@@ -171,6 +182,32 @@ impl<'s> Parser<'s> {
     fn has_lone_return(&self, comment: &Range<usize>) -> bool {
         let written = self.text.get(comment.clone()).unwrap_or_default();
         written.starts_with("//") && written.trim_end_matches('\r').contains('\r')
+    }
+
+    /// One report for comments in lines that follow each other without anything between.
+    fn foreign_comments(&mut self, comments: &[(Range<usize>, usize)]) {
+        let mut before = None;
+        for (sign, end) in comments {
+            let place = Span::new(self.id, sign.start, sign.end);
+            let gap = before.and_then(|before| self.text.get(before..sign.start));
+            match self.problems.last_mut() {
+                Some(Problem::ForeignComment { places, .. })
+                    if gap.is_some_and(|gap| gap.trim().is_empty()) =>
+                {
+                    places.push(place);
+                }
+                _ => {
+                    let words = self.text.get(sign.end..*end).unwrap_or_default();
+                    self.problems.push(Problem::ForeignComment {
+                        sign: self.short(place),
+                        right: junk::shorten(&format!("//{words}")),
+                        span: place,
+                        places: vec![place],
+                    });
+                }
+            }
+            before = Some(*end);
+        }
     }
 
     /// One report for each sort of character, at the first one.
@@ -252,7 +289,7 @@ impl<'s> Parser<'s> {
             true => Problem::SetWithoutValue {
                 span: Span::new(self.id, self.base.saturating_sub(1), self.base),
             },
-            false => junk::value(self.text, span),
+            false => junk::value(self.clean(), span),
         };
         self.problems.push(problem);
         bad(span)
@@ -509,6 +546,19 @@ impl<'s> Parser<'s> {
         self.text.get(span.range()).unwrap_or_default()
     }
 
+    /// The text without comments of other languages.
+    fn clean(&self) -> &str {
+        self.clean.as_deref().unwrap_or(self.text)
+    }
+
+    /// A name of the clean text as one of the text itself.
+    fn own(&self, name: Name<'_>) -> Name<'s> {
+        Name {
+            text: self.written(name.span),
+            span: name.span,
+        }
+    }
+
     /// What stands under a span, for a message.
     fn short(&self, span: Span) -> String {
         junk::shorten(self.written(span))
@@ -531,7 +581,7 @@ impl<'s> Parser<'s> {
 
     /// The same span without white space and comments at its end.
     fn trimmed(&self, start: usize, end: usize) -> Span {
-        let text = self.text.get(start..end).unwrap_or_default();
+        let text = self.clean().get(start..end).unwrap_or_default();
         Span::new(self.id, start, start + junk::written_length(text))
     }
 
@@ -565,8 +615,8 @@ fn without_deep<'s>(text: &'s str, deep: &[Deep]) -> Cow<'s, str> {
     Cow::Owned(read)
 }
 
-/// The text with plain blanks for characters that cannot be seen.
-fn without_odd_spaces<'s>(text: Cow<'s, str>, places: &[Range<usize>]) -> Cow<'s, str> {
+/// The text with plain blanks in these places.
+fn with_blanks<'s>(text: Cow<'s, str>, places: &[Range<usize>]) -> Cow<'s, str> {
     if places.is_empty() {
         return text;
     }

@@ -91,7 +91,11 @@ fn parts(source: &Source, bytes: usize) -> Vec<Range<usize>> {
     let start = source.bom_len();
     let mut walk = comments::walk(text.get(start..).unwrap_or_default(), Start::Items);
     walk.shift(start);
-    if walk.unclosed || !walk.deep.is_empty() || !walk.odd_spaces.is_empty() {
+    if walk.unclosed
+        || !walk.foreign.is_empty()
+        || !walk.deep.is_empty()
+        || !walk.odd_spaces.is_empty()
+    {
         return Vec::new();
     }
     let mut parts = Vec::new();

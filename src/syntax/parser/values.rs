@@ -36,7 +36,7 @@ impl<'s> Parser<'s> {
                 let before = rest.last();
                 let base = before.map_or(&first, |step: &Step<'s>| &step.operand);
                 let is_divisor = before.is_some_and(|step| step.operator == Operator::Divide);
-                let power = junk::power(self.text, (base, sign, &operand), is_divisor);
+                let power = junk::power(self.clean(), (base, sign, &operand), is_divisor);
                 self.problems.push(power);
             }
             rest.push(Step {

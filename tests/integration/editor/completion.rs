@@ -3,6 +3,7 @@
 use pinhole::{
     color::Color,
     editor::{Analysis, Completion, CompletionKind, Piece, completions},
+    scene::schema::{BLOCKS, Preset},
 };
 
 use super::{at_cursor, cursor, of_whole};
@@ -70,7 +71,7 @@ fn blocks_stand_outside_of_blocks() {
 fn a_block_comes_with_the_fields_that_it_needs() {
     assert_eq!(
         done("cam$0", "camera"),
-        "camera {\n  eye (‹0›, ‹2›, ‹8›)\n  lookat (‹0›, ‹1›, ‹0›)\n}"
+        "camera {\n  eye    (‹0›, ‹2›, ‹8›)\n  lookat (‹0›, ‹1›, ‹0›)\n}"
     );
     assert_eq!(done("$0", "sphere"), "sphere { center (‹0›, ‹1›, ‹0›) }");
     assert_eq!(done("$0", "image"), "image { ‹› }");
@@ -300,4 +301,23 @@ fn no_function_is_offered_with_a_value_that_is_an_error() {
             assert_eq!(found, 0, "{text}");
         }
     }
+}
+
+#[test]
+fn only_a_default_is_called_one() {
+    let mut defaults = 0;
+    for (row, field) in BLOCKS
+        .iter()
+        .flat_map(|row| row.fields.iter().map(move |field| (row, field)))
+    {
+        let offered = complete(&format!("{} {{ {} $0 }}", row.name, field.name));
+        for value in offered.iter().filter(|c| c.kind == CompletionKind::Value) {
+            let is_preset =
+                matches!(field.preset, Preset::Value(preset) if preset.to_string() == value.label);
+            assert_eq!(value.detail == "the default", is_preset, "{}", field.name);
+            defaults += usize::from(is_preset);
+        }
+    }
+    assert!(defaults > 10, "{defaults}");
+    assert_eq!(offered("camera { roll $0 }", "30deg").detail, "angle");
 }

@@ -3,7 +3,7 @@
 use pinhole::{
     editor::{hover, signature},
     explain,
-    scene::schema::BLOCKS,
+    scene::schema::{BLOCKS, METHODS},
 };
 
 use super::{at_cursor, under};
@@ -241,6 +241,42 @@ fn calls_say_what_they_take() {
         "max(number, number, ‹…›) → number"
     );
     assert_eq!(label("let a = sin(1deg, $0"), "sin(angle) → number");
+    // What the cursor touches belongs to the call, be it a number, an angle or a colour.
+    let rgb = "rgb(‹red›, green, blue) → colour";
+    assert_eq!(label("let a = rgb(2$0"), rgb);
+    assert_eq!(label("let a = rgb(2$0)"), rgb);
+    assert_eq!(label("let a = rgb(2$03"), rgb);
+    assert_eq!(label("let a = rgb(#f$0"), rgb);
+    assert_eq!(
+        label("let a = rgb(255, 1$0"),
+        "rgb(red, ‹green›, blue) → colour"
+    );
+    assert_eq!(label("let a = atan2(1, 2$0)"), "atan2(y, ‹x›) → angle");
+    assert_eq!(label("let a = sin(30deg$0)"), "sin(‹angle›) → number");
+    assert_eq!(
+        label("let a = max(1,2,3$0)"),
+        "max(number, number, ‹…›) → number"
+    );
+    assert_eq!(
+        label("let a = max((1+2$0), 3)"),
+        "max(‹number›, number, …) → number"
+    );
+    assert_eq!(
+        label("let a = max(1, min(2, 3)$0, 4)"),
+        "max(number, ‹number›, …) → number"
+    );
+    assert_eq!(label("let a = sin(1deg)$0"), "");
+    assert_eq!(label("let a = sin(1deg /* $0 */)"), "");
+    assert_eq!(label("let a = 12$0"), "");
     assert_eq!(label("let a = (1, $0"), "");
     assert_eq!(label("let a = sin(1deg) $0"), "");
+}
+
+#[test]
+fn a_method_is_one_of_a_list() {
+    let found = at_cursor("sampler { met$0hod sobol }", hover).expect("a hover");
+    for (method, help) in METHODS {
+        let line = format!("\n- `{}`: {help}", method.name());
+        assert!(found.markdown.contains(&line), "{}", found.markdown);
+    }
 }

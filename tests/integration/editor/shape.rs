@@ -1,7 +1,10 @@
 //! Answers about a whole text: its outline, its folds, its colours, its remarks, and what a selection grows to.
 
+use std::time::{Duration, Instant};
+
 use pinhole::{
     color::Color,
+    diagnostic::apply,
     editor::{
         Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, selection,
         swatches, symbols,
@@ -281,4 +284,34 @@ fn fixes_are_offered_where_the_problem_is() {
         ]
     );
     assert!(offered("sphere { $0center (0, 1, 0) radus 2 }").is_empty());
+}
+
+#[test]
+fn a_fix_keeps_the_layout_of_a_text_that_has_it() {
+    let fixed = |text: &str| {
+        of_whole(text, |analysis| {
+            let found = fixes(analysis, Span::new(SourceId::File, 0, text.len()));
+            let (_, fix) = found.into_iter().next().expect("a fix");
+            apply(&fix, SourceId::File, text)
+        })
+    };
+    assert_eq!(
+        fixed("camera {\n  d 2  // far\n}\nsphere { center (0, 1, 0) }\n"),
+        "camera {\n  d      2  // far\n  eye    (0, 2, 8)\n  lookat (0, 1, 0)\n}\nsphere { center (0, 1, 0) }\n"
+    );
+    // A layout of one's own stays.
+    assert_eq!(
+        fixed("camera {\n    d 2\n}\nsphere { center (0, 1, 0) }\n"),
+        "camera {\n    d 2\n    eye (0, 2, 8)\n    lookat (0, 1, 0)\n}\nsphere { center (0, 1, 0) }\n"
+    );
+}
+
+/// One walk takes some hundredths of a second; one for each term took half a minute.
+#[test]
+fn a_long_line_is_laid_out_in_one_walk() {
+    let text = format!("let b = {}1\n", "1+".repeat(100_000));
+    let start = Instant::now();
+    let changes = of_whole(&text, |analysis| formatting(analysis).map(|all| all.len()));
+    assert_eq!(changes, Some(200_000));
+    assert!(start.elapsed() < Duration::from_secs(5));
 }

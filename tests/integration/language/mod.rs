@@ -1,6 +1,7 @@
 //! What scenes mean, and the language's reference, held against the program.
 
 mod conditions;
+mod consequences;
 mod reference;
 mod reports;
 mod text;

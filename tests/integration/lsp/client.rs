@@ -2,10 +2,12 @@
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
+    path::Path,
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
 };
 
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 pub const URI: &str = "file:///home/somebody/a%20scene.scn";
 
@@ -16,13 +18,24 @@ pub struct Client {
     requests: i32,
     /// The last diagnostics that came before a response.
     told: Value,
+    /// The user's caches, if they are its own.
+    caches: Option<TempDir>,
 }
 
 impl Client {
     /// The server, to which nothing was said yet.
     pub fn start() -> Self {
+        let caches = tempfile::tempdir().expect("a folder");
+        let mut client = Self::start_with(caches.path());
+        client.caches = Some(caches);
+        client
+    }
+
+    /// The same for a user with these caches.
+    pub fn start_with(caches: &Path) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
             .arg("lsp")
+            .env("XDG_CACHE_HOME", caches)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -36,22 +49,29 @@ impl Client {
             output: BufReader::new(output),
             requests: 0,
             told: Value::Null,
+            caches: None,
         }
     }
 
     /// The server with a text open, and what it says to that.
     pub fn open(capabilities: Value, text: &str) -> (Self, Value) {
         let mut client = Self::start();
-        client.ask(
+        let diagnostics = client.begin(capabilities, text);
+        (client, diagnostics)
+    }
+
+    /// Opens a text, after what comes before that: what the server says to it.
+    pub fn begin(&mut self, capabilities: Value, text: &str) -> Value {
+        self.ask(
             "initialize",
             json!({ "processId": null, "rootUri": null, "capabilities": capabilities }),
         );
-        client.tell("initialized", json!({}));
+        self.tell("initialized", json!({}));
         let document = json!({ "uri": URI, "languageId": "scn", "version": 1, "text": text });
-        client.tell("textDocument/didOpen", json!({ "textDocument": document }));
-        let diagnostics = client.read();
+        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        let diagnostics = self.read();
         assert_eq!(diagnostics["method"], "textDocument/publishDiagnostics");
-        (client, diagnostics["params"].clone())
+        diagnostics["params"].clone()
     }
 
     pub fn write(&mut self, text: &str) {

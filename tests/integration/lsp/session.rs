@@ -18,7 +18,7 @@ fn editor() -> Value {
             "completion": { "completionItem": { "snippetSupport": true } },
             "hover": { "contentFormat": ["markdown", "plaintext"] },
             "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
-            "publishDiagnostics": { "relatedInformation": true, "versionSupport": true },
+            "publishDiagnostics": { "relatedInformation": true, "versionSupport": true, "codeDescriptionSupport": true },
         },
     })
 }
@@ -421,4 +421,38 @@ fn memory_is_not_taken_for_what_is_only_announced() {
     let (status, log) = client.end();
     assert_eq!(status, Some(1));
     assert!(log.contains("after 2 of 1000000000 bytes"), "{log}");
+}
+
+#[test]
+fn colours_are_shown_where_pictures_are() {
+    let markdown = json!({ "textDocument": { "hover": { "contentFormat": ["markdown"] } } });
+    for (name, capabilities, is_shown) in [
+        ("Editor", &markdown, true),
+        ("Neovim", &markdown, false),
+        ("Editor", &json!({}), false),
+    ] {
+        let mut client = Client::start();
+        client.ask(
+            "initialize",
+            json!({ "processId": null, "rootUri": null, "clientInfo": { "name": name }, "capabilities": capabilities }),
+        );
+        client.tell("initialized", json!({}));
+        let document = json!({ "uri": URI, "languageId": "scn", "version": 1, "text": SCENE });
+        client.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        let hover = client.at("hover", 2, 34);
+        let text = hover["contents"]["value"].as_str().expect("a text");
+        assert_eq!(text.contains("data:image/svg"), is_shown, "{text}");
+        assert!(text.contains("rgb(128, 128, 0)"), "{text}");
+    }
+}
+
+#[test]
+fn a_plain_client_gets_no_signs_of_markdown() {
+    let (mut client, _) = Client::open(json!({}), "sphere { radus 2 }\n");
+    let hover = client.at("hover", 0, 10);
+    assert_eq!(hover["contents"]["kind"], "plaintext");
+    let text = hover["contents"]["value"].as_str().expect("a text");
+    assert!(text.contains("\nWrong\n"), "{text}");
+    assert!(!text.contains(['`', '#']), "{text}");
+    assert!(!text.lines().any(|line| line == "scn"), "{text}");
 }

@@ -29,6 +29,7 @@ vim.api.nvim_create_autocmd("FileType", {
       })
     if client then
       vim.lsp.buf_attach_client(event.buf, client)
+      vim.bo[event.buf].omnifunc = "v:lua.vim.lsp.omnifunc" -- 0.11 sets it itself.
     end
   end,
 })

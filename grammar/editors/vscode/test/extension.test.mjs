@@ -45,7 +45,11 @@ test("a scene that is open gets its diagnostics and every answer has a provider"
   const { seen, diagnosed } = await started(t, { documents: [document], setting: whole() });
   await diagnosed;
   const found = seen.diagnostics.get(document.uri.toString());
-  assert.ok(found.some(({ message }) => message.includes("eyes")), JSON.stringify(found));
+  const eyes = found.find(({ message }) => message.includes("eyes"));
+  assert.ok(eyes, JSON.stringify(found));
+  assert.equal(eyes.code.value, "unknown_field");
+  const page = readFileSync(eyes.code.target.fsPath, "utf8");
+  assert.equal(page, readFileSync(new URL("../../../codes/unknown_field.md", import.meta.url), "utf8"));
   for (const answer of [
     "CompletionItem", "Hover", "CodeActions", "Rename", "Reference", "Color", "DocumentFormattingEdit", "DocumentSymbol",
     "FoldingRange", "SelectionRange", "InlayHints", "DocumentSemanticTokens", "SignatureHelp", "Definition",

@@ -1,13 +1,21 @@
 // The language server, driven as an editor does.
 
 import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import path from "node:path";
 
 const require = createRequire(import.meta.url);
 const { createProtocolConnection, StreamMessageReader, StreamMessageWriter } = require("vscode-languageserver-protocol/node");
 
 /** The program: what PINHOLE names, or else the one on the path. */
 export const program = process.env.PINHOLE ?? "pinhole";
+
+// The servers that a test starts leave the user's caches alone.
+const caches = mkdtempSync(path.join(tmpdir(), "pinhole-caches-"));
+process.env.XDG_CACHE_HOME = caches;
+process.on("exit", () => rmSync(caches, { recursive: true, force: true }));
 
 /** Starts a server: what it can do, how to ask it, and the diagnostics that it sends for a file. */
 export async function start() {

@@ -1,0 +1,273 @@
+//! Fixes of the text: what is left open, line ends, what stands in the wrong place.
+
+use super::{diagnostics, of_scene, offered, offers, sources};
+
+#[test]
+fn an_unclosed_comment_ends_in_its_line() {
+    let camera = "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\r\n";
+    let fixes = |before: &str, after: &[(&str, &str)]| {
+        let after: Vec<(&str, String)> = after
+            .iter()
+            .map(|(title, after)| (*title, format!("{camera}{after}")))
+            .collect();
+        let after: Vec<_> = after.iter().map(|(t, text)| (*t, text.as_str())).collect();
+        offers(&format!("{camera}{before}"), &after);
+    };
+    let (close, line) = ("close it in its line", "begin it with `//`");
+    fixes(
+        "checkerboard {} /* a \r\nsphere { center (0, 1, 0) }\r\n",
+        &[
+            (
+                close,
+                "checkerboard {} /* a */ \r\nsphere { center (0, 1, 0) }\r\n",
+            ),
+            (
+                line,
+                "checkerboard {} // a \r\nsphere { center (0, 1, 0) }\r\n",
+            ),
+            (
+                "close it at the end",
+                "checkerboard {} /* a \r\nsphere { center (0, 1, 0) } */\r\n",
+            ),
+        ],
+    );
+    // The block was opened before it, and closed in it.
+    fixes(
+        "sphere { center (0, 1, 0) /* round }\n",
+        &[(close, "sphere { center (0, 1, 0) /* round */ }\n")],
+    );
+    // What follows may be a part of it, and is no scene.
+    let end = "close it at the end";
+    fixes(
+        "checkerboard {} /* a\r\nb\r\nc\r\n",
+        &[(end, "checkerboard {} /* a\r\nb\r\nc */\r\n")],
+    );
+    fixes(
+        "checkerboard {} /* a\nsphere { radus 2 }\n",
+        &[(end, "checkerboard {} /* a\nsphere { radus 2 } */\n")],
+    );
+}
+
+#[test]
+fn carriage_returns_alone_become_ends_of_lines() {
+    let camera = "camera { eye (0, 1, 5)  lookat (0, 1, 0) }";
+    let title = "end these lines as text files do";
+    offers(
+        &format!("// A floor.\r{camera}\rcheckerboard {{}} // flat\r"),
+        &[(
+            title,
+            &format!("// A floor.\n{camera}\ncheckerboard {{}} // flat\n"),
+        )],
+    );
+    offers(
+        &format!("{camera}\r\n// A\r// floor.\r\ncheckerboard {{}}\r\n"),
+        &[(
+            title,
+            &format!("{camera}\r\n// A\r\n// floor.\r\ncheckerboard {{}}\r\n"),
+        )],
+    );
+    // One mistake is one report: what the comment took is not missed.
+    let found = diagnostics(&sources(
+        &format!("// A floor.\r{camera}\rcheckerboard {{}}\r"),
+        &[],
+    ));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].code, "pinhole::odd_space");
+    // Outside of comments they are white space as any.
+    let text = format!("{camera}\rcheckerboard {{}}\r");
+    assert_eq!(diagnostics(&sources(&text, &[])), []);
+}
+
+#[test]
+fn what_is_left_open_is_closed() {
+    for (before, title, after) in [
+        ("let b = 2pi", "write `2 * pi`", "let b = 2 * pi"),
+        (
+            "let h = 2 let b = 3h",
+            "write `3 * h`",
+            "let h = 2 let b = 3 * h",
+        ),
+        (
+            "sphere (0, 1, 0) { center (0, 1, 0) }",
+            "write `sphere {`",
+            "sphere { center (0, 1, 0) }",
+        ),
+        (
+            "sphere Round ( center (0, 1, 0) )",
+            "write `sphere Round {`",
+            "sphere Round { center (0, 1, 0) }",
+        ),
+        (
+            "sphere { center (0, 1, 0 radius 2 }",
+            "write `)` before `radius`",
+            "sphere { center (0, 1, 0) radius 2 }",
+        ),
+        (
+            "sphere { center (0, 1, 0)  radius (2 }",
+            "write `)` before `}`",
+            "sphere { center (0, 1, 0)  radius (2) }",
+        ),
+    ] {
+        offers(&of_scene(before), &[(title, &of_scene(after))]);
+    }
+    // The product would be no angle, or of nothing.
+    let camera = "checkerboard {} camera { eye (0, 1, 5)  lookat (0, 1, 0)  fov 2pi }";
+    assert_eq!(offered(camera), []);
+    assert_eq!(offered(&of_scene("let b = 2what")), []);
+}
+
+#[test]
+fn vectors_side_by_side_are_two_fields() {
+    let said = |text: &str| {
+        let found = diagnostics(&sources(&of_scene(text), &[]));
+        let found = found
+            .into_iter()
+            .find(|d| d.code == "pinhole::missing_operator");
+        let found = found.unwrap();
+        assert!(found.fixes.is_empty());
+        found.help.unwrap()
+    };
+    let name = "write the name of the field that `(0, 6, 0)` is for before it";
+    assert_eq!(
+        said("sphere { center (0, 6, 1)  (0, 6, 0)  radius 2 }"),
+        name
+    );
+    assert_eq!(
+        said("sphere { center (0, 6, 1)  color #f00  (0, 6, 0) }"),
+        name
+    );
+    assert_eq!(
+        said("sphere { center (0, 6, 1)  red  radius 2 }"),
+        "write the name of the field that `red` is for before it"
+    );
+    assert_eq!(
+        said("let a = (0, 6, 1)  (0, 6, 0)"),
+        "write `+` or `-` between them, or take one of them away"
+    );
+}
+
+#[test]
+fn what_a_help_says_is_done() {
+    let end = "\ncamera { eye (0, 1, 5)  lookat (0, 1, 0) }\ncheckerboard {}";
+    for (text, title, fixed) in [
+        (
+            "sphere Big Ball { center (0, 1, 0) }",
+            "write `sphere Big {`",
+            "sphere Big { center (0, 1, 0) }",
+        ),
+        (
+            "sphere my-ball { center (0, 1, 0) }",
+            "write `sphere my_ball {`",
+            "sphere my_ball { center (0, 1, 0) }",
+        ),
+        (
+            "Tail = sphere { center (0, 1, 0) }",
+            "write `sphere Tail {`",
+            "sphere Tail { center (0, 1, 0) }",
+        ),
+        (
+            "let Head = sphere { center (0, 1, 0) }",
+            "write `sphere Head {`",
+            "sphere Head { center (0, 1, 0) }",
+        ),
+        ("let a = 1_000_", "write `1000`", "let a = 1000"),
+        ("let a = 1__000", "write `1000`", "let a = 1000"),
+        ("let a = 2 m", "write `2`", "let a = 2"),
+        ("let a = 30degrees", "write `30deg`", "let a = 30deg"),
+        (
+            "let a = sqrt(1 - 2)",
+            "write `sqrt(abs(1 - 2))`",
+            "let a = sqrt(abs(1 - 2))",
+        ),
+        (
+            "let a = asin(2)",
+            "write `asin(max(-1, min(1, 2)))`",
+            "let a = asin(max(-1, min(1, 2)))",
+        ),
+        (
+            "let c = 2 let a = c (1)",
+            "write `c * (…)`",
+            "let c = 2 let a = c * (1)",
+        ),
+        (
+            "let ball = (0, 1, 0) sphere { centerball }",
+            "write `center ball`",
+            "let ball = (0, 1, 0) sphere { center ball }",
+        ),
+    ] {
+        offers(
+            &format!("{text}{end}"),
+            &[(title, &format!("{fixed}{end}"))],
+        );
+    }
+    // The numbers are what a field was to have.
+    assert!(offered(&format!("sphere (0, 1, 0) {{ radius 2 }}{end}")).is_empty());
+}
+
+#[test]
+fn comments_of_other_languages_get_their_sign() {
+    offers(
+        &of_scene("# a\n  ## b\nlet c = 1"),
+        &[("write `// a`", &of_scene("// a\n  // b\nlet c = 1"))],
+    );
+    offers(
+        &of_scene("let a = 1 -- big"),
+        &[("write `// big`", &of_scene("let a = 1 // big"))],
+    );
+    // A difference, whatever it looks like.
+    for text in [
+        "let a = 1 let b = 2 -- a",
+        "let a = 1 --2",
+        "let a = 2 -- pi",
+        "let a = 2\n-- sqrt(4)",
+        "let a = (#fff, # f00\n)",
+        "let a = \"# no comment\"",
+        "sphere { radus #ff }",
+        "sphere { fill #orange }",
+    ] {
+        let found = diagnostics(&sources(&of_scene(text), &[]));
+        let found = found.iter().map(|d| d.code.as_str());
+        assert!(
+            !found.into_iter().any(|code| code.ends_with("comment_sign")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn an_argument_may_start_with_two_minuses() {
+    let sources = sources(&of_scene("let a = 1"), &["a=--2".to_owned()]);
+    assert_eq!(diagnostics(&sources), []);
+}
+
+#[test]
+fn what_is_open_at_the_end_is_closed_there() {
+    let scene = of_scene("");
+    offers(
+        &format!("{scene}let v = (1, 2, 3 // far\n"),
+        &[(
+            "write `)` at the end",
+            &format!("{scene}let v = (1, 2, 3) // far\n"),
+        )],
+    );
+    let (close, line) = ("close it in its line", "begin it with `//`");
+    offers(
+        &format!("{scene}/* far"),
+        &[
+            (close, &format!("{scene}/* far */")),
+            (line, &format!("{scene}// far")),
+        ],
+    );
+    // The camera that the comment took is another mistake.
+    offers(
+        "checkerboard {} /* far",
+        &[
+            (close, "checkerboard {} /* far */"),
+            (line, "checkerboard {} // far"),
+        ],
+    );
+    offers(
+        &format!("{scene}/* far\naway\n"),
+        &[("close it at the end", &format!("{scene}/* far\naway */\n"))],
+    );
+}

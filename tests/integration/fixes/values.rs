@@ -1,0 +1,168 @@
+//! Fixes of values: calls, operands, powers, corners.
+
+use super::{of_scene, offered, offers};
+
+/// A message shortens what is long; an edit does not.
+#[test]
+fn edits_keep_all_that_is_written() {
+    let sum = "1 + 2 + 3 + 4 + 5 + 6 + 7 + 8 + 9 + 10 + 11 + 12 + 13 + 14 + 15";
+    let text = |roll: &str| {
+        format!("checkerboard {{}} camera {{ eye (0, 1, 5)  lookat (0, 1, 0)  roll {roll} }}")
+    };
+    let fixes = offered(&text(sum));
+    assert_eq!(fixes[0].1, text(&format!("({sum}) * 1deg")));
+    assert_eq!(fixes[1].1, text(&format!("({sum}) * 1rad")));
+    // Nothing that would be cut is offered.
+    assert!(offered(&text(&format!("sqrt({sum}, 2)"))).is_empty());
+    assert_eq!(offered(&text("atan2(0.25)"))[0].1, text("atan2(0.25, 2)"));
+}
+
+#[test]
+fn a_function_is_called_and_all_else_multiplied() {
+    for (written, meant) in [
+        ("sin 30deg", "sin(30deg)"),
+        ("sqrt 2", "sqrt(2)"),
+        ("b 2", "b * 2"),
+        ("pi 2", "pi * 2"),
+        ("2 b", "2 * b"),
+    ] {
+        let title = format!("write `{meant}`");
+        let text = |value: &str| {
+            format!(
+                "let b = 2\nlet a = {value}\ncheckerboard {{}} camera {{ eye (0, 1, 5)  lookat (0, 1, 0) }}"
+            )
+        };
+        offers(&text(written), &[(&title, &text(meant))]);
+        if written == "sin 30deg" {
+            continue;
+        }
+        let text = |value: &str| {
+            format!(
+                "let b = 2\ncamera {{ eye (0, 1, 5)  lookat (0, 1, 0)  d {value} }} checkerboard {{}}"
+            )
+        };
+        offers(&text(written), &[(&title, &text(meant))]);
+    }
+}
+
+#[test]
+fn operands_that_do_not_go_together_are_made_to() {
+    let of = |value: &str, rest: &str| {
+        of_scene(&format!(
+            "let v = (0, 1, 2)\nlet w = (1, 2, 3)\n{rest}{value}"
+        ))
+    };
+    let fixed = |rest: &str, before: &str, after: &[&str]| {
+        let offered = offered(&of(before, rest));
+        let texts: Vec<&str> = offered.iter().map(|(_, text)| text.as_str()).collect();
+        let after: Vec<String> = after.iter().map(|after| of(after, rest)).collect();
+        assert_eq!(texts, after);
+    };
+    let value = "let a = ";
+    fixed(value, "v + 2", &["v + (2, 2, 2)", "v * 2"]);
+    fixed(value, "2 - v", &["(2, 2, 2) - v", "2 * v"]);
+    fixed(value, "1 + 2 + v", &["(1 + 2, 1 + 2, 1 + 2) + v"]);
+    fixed(value, "v + w - 2 * 3", &["v + w - (2 * 3, 2 * 3, 2 * 3)"]);
+    fixed(value, "v * w", &["dot(v, w)", "cross(v, w)"]);
+    fixed(value, "2 * v * w", &["dot(2 * v, w)", "cross(2 * v, w)"]);
+    fixed(value, "1 / w", &["1 / length(w)"]);
+    fixed(value, "1 / (0 * w)", &[]);
+    fixed(value, "30deg * 2deg", &["30deg * (2deg / 1deg)"]);
+    fixed(value, "3 / 2deg", &["3 / (2deg / 1deg)"]);
+    fixed(
+        value,
+        "v + // two\n2",
+        &["v + // two\n(2, 2, 2)", "v * // two\n2"],
+    );
+    // What is wanted decides.
+    let center = "sphere { center (0, 1, 0)  radius length(w) }\nsphere { center ";
+    fixed(center, "v * w }", &["cross(v, w) }"]);
+    fixed("sphere { center v  radius ", "v * w }", &["dot(v, w) }"]);
+    fixed("sphere { center v  radius ", "v + 2 }", &[]);
+    fixed("let a = ", "red + blue", &[]);
+    // No comment is lost.
+    fixed("let a = ", "v * /* dot */ w", &[]);
+    assert!(offered(&of_scene("let a = 3 /* squared */ ^ 2")).is_empty());
+}
+
+#[test]
+fn powers_parts_and_degrees_are_written_out() {
+    for (before, after) in [
+        ("let r = 2 let a = r^2", "let r = 2 let a = r * r"),
+        (
+            "let r = 2 let a = 3 - -r ** 3",
+            "let r = 2 let a = 3 - -r * r * r",
+        ),
+        ("let a = 6 / (1 + 2) ^ 2", "let a = 6 / ((1 + 2) * (1 + 2))"),
+        (
+            "let a = 2 * sqrt(3)^2 / 4",
+            "let a = 2 * sqrt(3) * sqrt(3) / 4",
+        ),
+        ("let a = (1, 2)", "let a = (1, 2, 1)"),
+        (
+            "let a = 10deg sphere { center (0, 1, 0)  radius a + 2deg }",
+            "let a = 10deg sphere { center (0, 1, 0)  radius (a + 2deg) / 1deg }",
+        ),
+        (
+            "let a = 10deg sphere { center (0, 1, 0)  radius a }",
+            "let a = 10deg sphere { center (0, 1, 0)  radius a / 1deg }",
+        ),
+    ] {
+        let offered = offered(&of_scene(before));
+        let texts: Vec<&str> = offered.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, [of_scene(after)]);
+    }
+    for before in [
+        "let a = 2^0.5",
+        "let a = 30deg^2",
+        "let a = 2^3^2",
+        "let a = 2^-1",
+    ] {
+        let offered = offered(&of_scene(before));
+        assert!(
+            offered.iter().all(|(title, _)| title.contains("2 * 2 * 2")),
+            "{before}"
+        );
+    }
+}
+
+#[test]
+fn a_corner_lies_on_the_right_side_of_the_other() {
+    let camera = "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n";
+    for (given, title, added) in [
+        ("max (-5, -5, -5)", "add `min`", "min (-6, -6, -6)"),
+        ("min 2 * (1, 0.3, -4)", "add `max`", "max (3, 1.6, -7)"),
+        // 1 is lost beside it.
+        ("max (1e20, 0, 0)", "add `min`", "min (-1, 0, -1)"),
+    ] {
+        offers(
+            &format!("{camera}box {{ {given} }}"),
+            &[(title, &format!("{camera}box {{ {given}  {added} }}"))],
+        );
+    }
+    offers(
+        &format!("{camera}box {{ min (1, 2, 3)  max (-1, 0, -1) }}"),
+        &[(
+            "swap `min` and `max`",
+            &format!("{camera}box {{ min (-1, 0, -1)  max (1, 2, 3) }}"),
+        )],
+    );
+    // They would be as wrong the other way round.
+    assert!(offered(&format!("{camera}box {{ min (0, 0, 0)  max (1, 0, 1) }}")).is_empty());
+}
+
+#[test]
+fn a_call_keeps_the_numbers_that_it_has() {
+    for (before, after) in [
+        ("atan2(1)", "atan2(1, 2)"),
+        ("atan2(3 + 4)", "atan2(3 + 4, 2)"),
+        ("max(y)", "max(y, 2)"),
+        ("rgb(1, 2)", "rgb(1, 2, 0)"),
+    ] {
+        let scene = |call| of_scene(&format!("let y = 1\nlet a = {call}"));
+        let title = format!("write `{after}`");
+        offers(&scene(before), &[(title.as_str(), &scene(after))]);
+    }
+    // A colour is no number.
+    offers(&of_scene("let a = rgb(olive)"), &[]);
+}
