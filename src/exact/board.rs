@@ -85,6 +85,9 @@ pub(crate) struct Board {
     uncertain: f64,
     is_fine: bool,
     is_doubtful: bool,
+    /// The board of rounded forms, where even double-double numbers hardly tell the forms from dependent ones: from those rounded ones are
+    /// as far as roundings are.
+    rounded: Option<Box<Board>>,
     /// Whether the floor is seen mirrored: the sign of det M.
     pub(super) handed: f64,
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
@@ -138,9 +141,19 @@ impl Board {
     ) -> Self {
         let board = Self::seen(seen);
         match board.is_doubtful.then(closely) {
-            Some(Some(seen)) => Self::seen(&seen),
+            Some(Some(seen)) => {
+                let board = Self::seen(&seen);
+                let rounded = board.is_doubtful.then(|| Box::new(Self::rounded(&seen)));
+                Self { rounded, ..board }
+            }
             _ => board,
         }
+    }
+
+    fn rounded(seen: &tracer::Board) -> Self {
+        let [a, b] = seen.across;
+        let forms = [a, b, seen.below].map(|form| form.map(Double::from_f64));
+        Self::fine(forms, 0.0)
     }
 
     fn seen(seen: &tracer::Board) -> Self {
@@ -199,6 +212,7 @@ impl Board {
             uncertain: inverse.det_off,
             is_fine: inverse.is_fine,
             is_doubtful: inverse.is_doubtful,
+            rounded: None,
             handed: det.signum(),
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
@@ -216,8 +230,19 @@ impl Board {
         known: Option<&mut Known>,
         cancel: &AtomicBool,
     ) -> Sum {
-        self.unchecked(polygon, known, cancel)
-            .within(polygon.iter().copied())
+        let sum = self
+            .unchecked(polygon, known, cancel)
+            .within(polygon.iter().copied());
+        match &self.rounded {
+            Some(rounded) if sum.bound > GOOD_FAR => {
+                let mut other = rounded.unchecked(polygon, None, cancel);
+                // What lies between the lines of both is in doubt.
+                other.bound += rounded.blurred(polygon.iter().copied());
+                let other = other.within(polygon.iter().copied());
+                if other.bound < sum.bound { other } else { sum }
+            }
+            _ => sum,
+        }
     }
 
     fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {

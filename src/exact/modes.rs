@@ -381,6 +381,7 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64) -> Sum 
             }
             add(n, &|i| sides[i].1.places(n));
         }
+        reached = reached.min(waves.reached());
         while reached > 2.0 * from {
             from *= 2.0;
             neglected += others(from);

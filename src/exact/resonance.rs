@@ -9,6 +9,8 @@ use crate::math::Double;
 
 /// No wave is of a higher number.
 const LAST: u64 = 1 << 52;
+/// Where the angles all but repeat, only even waves may be in step for very long.
+const PATIENCE: u32 = 1 << 16;
 
 /// The odd waves that are in step, in order.
 pub(super) struct Resonances {
@@ -19,6 +21,8 @@ pub(super) struct Resonances {
     window: Window,
     /// What the window is to be from the first wave on that is in there.
     narrower: Option<Window>,
+    /// How many even waves may still be passed.
+    patience: u32,
 }
 
 /// What is in step: an angle of less than `half` either way; and what leads from one wave there to the next.
@@ -48,6 +52,15 @@ impl Resonances {
             place: 0,
             window: Window::new(angle, within),
             narrower: None,
+            patience: PATIENCE,
+        }
+    }
+
+    /// Up to which wave none was left out.
+    pub(super) fn reached(&self) -> f64 {
+        match self.patience {
+            0 => self.wave as f64,
+            _ => f64::INFINITY,
         }
     }
 
@@ -78,6 +91,7 @@ impl Iterator for Resonances {
             if self.wave % 2 == 1 {
                 return Some(self.wave);
             }
+            self.patience = self.patience.checked_sub(1)?;
         }
     }
 }
@@ -95,7 +109,8 @@ impl Window {
                 false => (&mut down, &up),
             };
             if short.angle == 0 {
-                // All in step come back at once.
+                // All that are in step come back to the same angle, and the other way never does.
+                long.waves = LAST;
                 break;
             }
             // As often as it goes, but not further than into the window.
@@ -218,9 +233,13 @@ mod tests {
         // Next to half a turn: even ones for very long.
         let turning = Resonances::new(&Double::from_f64(1.0 - 1e-9), 1e-3).next();
         assert!(
-            turning.is_some_and(|wave| (wave as f64 - 0.999e9).abs() < 2.0),
+            turning.is_some_and(|wave| (wave as f64 - 0.999e9).abs() < 200.0),
             "{turning:?}"
         );
+        // Every fourth is in step, always an even one, as far as one can tell.
+        let mut quarters = Resonances::new(&Double::from_f64(0.5), 0.2);
+        assert_eq!(quarters.next(), None);
+        assert!(quarters.reached() > 2e5);
         let slowly = Resonances::new(&Double::from_f64(1e-30), 0.4);
         assert!(slowly.take(3).eq([1, 3, 5]));
     }
