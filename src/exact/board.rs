@@ -1,14 +1,11 @@
 //! The integral of the board's sign over a convex polygon of the picture.
 
-use std::{array, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 use glam::DVec2;
 
-use super::{cells, edge, inverse::Inverse, sides::Known};
-use crate::{
-    math::{Double, Real},
-    tracer,
-};
+use super::{cells, edge, sides::Known};
+use crate::math::{Double, Real, two_product};
 
 /// The unit roundoff of `f64`.
 pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
@@ -22,13 +19,11 @@ pub(super) const FAR: f64 = 18.0;
 /// about 1.)
 const DEEP: f64 = 1e13;
 
-/// A sum along the boundary with no greater bound than this is good enough.
-const GOOD_FAR: f64 = 1e-8;
-/// What is farther than this m is next to nothing of a pixel.
-const NEXT_TO_NOTHING: f64 = 1e9;
-
 /// Nor one of no more than this line by line.
 const ENOUGH: f64 = 1e-13;
+
+/// Forms of about the same size have no smaller determinant.
+const LEAST: f64 = 1e-100;
 
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
@@ -71,9 +66,6 @@ impl Sum {
 pub(crate) struct Board {
     pub(super) across: [[f64; 3]; 2],
     pub(super) below: [f64; 3],
-    /// The same forms, N_a, N_b and L, in double-double, and how far their values may be from the true ones.
-    pub(super) fine: [[Double; 3]; 3],
-    pub(super) rad: f64,
     /// ∂m/∂a and ∂m/∂b.
     pub(super) slope: [f64; 2],
     /// m where a and b are 0.
@@ -83,11 +75,6 @@ pub(crate) struct Board {
     pub(super) per_slope: [Sum; 2],
     /// How far det M may be from the true one, relative to it.
     uncertain: f64,
-    is_fine: bool,
-    is_doubtful: bool,
-    /// The board of rounded forms, where even double-double numbers hardly tell the forms from dependent ones: from those rounded ones are
-    /// as far as roundings are.
-    rounded: Option<Box<Board>>,
     /// Whether the floor is seen mirrored: the sign of det M.
     pub(super) handed: f64,
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
@@ -119,6 +106,16 @@ pub(super) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
+/// A cross product, each part to within two roundings of itself.
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    minors(a, b).map(|[plus, minus]| (plus.hi - minus.hi) + (plus.lo - minus.lo))
+}
+
+/// The products, without an error, of which a cross product's parts are the differences.
+fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
+}
+
 /// A form by a power of two that brings its largest factor between 1 and 2, and that power.
 fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
     let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
@@ -129,66 +126,38 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 impl Board {
     /// The board of three linear forms, N_a and N_b, and L; they may have any common positive factor, and M must be
     /// invertible. The nearer the origin of a and b is to the pixel, the smaller the bounds.
-    #[cfg(test)]
-    pub(crate) fn new([a, b]: [[f64; 3]; 2], below: [f64; 3]) -> Self {
-        Self::fine([a, b, below].map(|form| form.map(Double::from_f64)), 0.0)
-    }
-
-    /// The board as a spot sees it; as `closely` sees it where that is not enough.
-    pub(crate) fn of(
-        seen: &tracer::Board,
-        closely: impl FnOnce() -> Option<tracer::Board>,
-    ) -> Self {
-        let board = Self::seen(seen);
-        match board.is_doubtful.then(closely) {
-            Some(Some(seen)) => {
-                let board = Self::seen(&seen);
-                let rounded = board.is_doubtful.then(|| Box::new(Self::rounded(&seen)));
-                Self { rounded, ..board }
-            }
-            _ => board,
-        }
-    }
-
-    fn rounded(seen: &tracer::Board) -> Self {
-        let [a, b] = seen.across;
-        let forms = [a, b, seen.below].map(|form| form.map(Double::from_f64));
-        Self::fine(forms, 0.0)
-    }
-
-    fn seen(seen: &tracer::Board) -> Self {
-        let [a, b] = seen.across;
-        let forms = [a, b, seen.below];
-        let fine = array::from_fn(|i| {
-            array::from_fn(|k| Double {
-                hi: forms[i][k],
-                lo: seen.low[i][k],
-            })
-        });
-        Self::fine(fine, seen.rad)
-    }
-
-    fn fine(forms: [[Double; 3]; 3], rad: f64) -> Self {
-        let [a, b, below] = forms.map(|form| form.map(|c| c.hi));
+    pub(crate) fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (l, scale) = normalized(below);
-        let [a, b] = [a, b].map(|form| form.map(|c| libm::ldexp(c, -scale)));
-        let fine = forms.map(|form| form.map(|c| c.scaled(-scale)));
-        let rad = libm::ldexp(rad, -scale);
+        let [a, b] = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
         // Squares may be of any size; the inverse is that of forms of about the same size.
         let [(wide, of_a), (high, of_b)] = [a, b].map(normalized);
-        let forms = [
-            fine[0].map(|c| c.scaled(-of_a)),
-            fine[1].map(|c| c.scaled(-of_b)),
-            fine[2],
-        ];
-        let inverse = Inverse::new(&forms, libm::ldexp(rad, -of_a.min(of_b).min(0)));
-        let Inverse { columns, det, .. } = inverse;
+        let columns = [cross(&high, &l), cross(&l, &wide), cross(&wide, &high)];
+        let det = minors(&wide, &high)
+            .iter()
+            .zip(l)
+            .fold(Double::from_f64(0.0), |sum, ([plus, minus], l)| {
+                sum.plus(&plus.minus(minus).times(&Double::from_f64(l)))
+            })
+            .to_f64();
+        // Where nothing is left of it, next to nothing will do: it is off by more.
+        let det = if det.abs() > LEAST { det } else { LEAST };
         let third = |column: usize, exponent: i32| libm::ldexp(columns[column][2] / det, -exponent);
-        let per_slope = |column: usize, exponent: i32| Sum {
-            value: libm::ldexp(1.0 / columns[column][2].abs(), -exponent),
-            bound: inverse.minors_off[column],
+        let per_slope = |column: usize, form: &[f64; 3], exponent: i32| {
+            let minor = columns[column][2].abs();
+            let terms = (form[0] * l[1]).abs() + (form[1] * l[0]).abs();
+            Sum {
+                value: libm::ldexp(1.0 / minor, -exponent),
+                bound: 2.0 * UNIT * (terms / minor + 2.0),
+            }
         };
         let volume = det.abs();
+        // Of each of the six products three factors are off by a rounding each, and what that leaves is rounded.
+        let products: f64 = (0..3)
+            .map(|i| {
+                let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+                l[i].abs() * ((wide[j] * high[k]).abs() + (wide[k] * high[j]).abs())
+            })
+            .sum();
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
         let forms = [wide, high, l];
@@ -203,16 +172,11 @@ impl Board {
         Self {
             across: [a, b],
             below: l,
-            fine,
-            rad,
             slope: [third(0, of_a), third(1, of_b)],
             origin: third(2, 0),
             density: libm::ldexp(1.0 / volume, -of_a - of_b),
-            per_slope: [per_slope(0, of_b), per_slope(1, of_a)],
-            uncertain: inverse.det_off,
-            is_fine: inverse.is_fine,
-            is_doubtful: inverse.is_doubtful,
-            rounded: None,
+            per_slope: [per_slope(0, &high, of_b), per_slope(1, &wide, of_a)],
+            uncertain: 4.0 * UNIT * products / volume,
             handed: det.signum(),
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
@@ -230,19 +194,8 @@ impl Board {
         known: Option<&mut Known>,
         cancel: &AtomicBool,
     ) -> Sum {
-        let sum = self
-            .unchecked(polygon, known, cancel)
-            .within(polygon.iter().copied());
-        match &self.rounded {
-            Some(rounded) if sum.bound > GOOD_FAR => {
-                let mut other = rounded.unchecked(polygon, None, cancel);
-                // What lies between the lines of both is in doubt.
-                other.bound += rounded.blurred(polygon.iter().copied());
-                let other = other.within(polygon.iter().copied());
-                if other.bound < sum.bound { other } else { sum }
-            }
-            _ => sum,
-        }
+        self.unchecked(polygon, known, cancel)
+            .within(polygon.iter().copied())
     }
 
     fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
@@ -308,7 +261,7 @@ impl Board {
     /// often as sides of triangles between corners are crossed, so that the motion changes the integral by up to
     /// 2·corners·E_L/|∇L| for every 1 of width. N that is off by up to E changes the signs of points where |N − iL| ≤ E, a strip
     /// along the line i, as wide as 2E/|∇N − i∇L|; that gradient is at least |i − i_0|·|∇L|, and at least |∇N × ∇L|/|∇L|,
-    /// where i_0 = ∇N·∇L/|∇L|², which may be far from all lines that there are. Lines beyond 2^60 are all within E of the horizon.
+    /// where i_0 = ∇N·∇L/|∇L|². Lines beyond 2^60 are all within E of the horizon.
     pub(super) fn blurred(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
         const LINES: f64 = 100.0;
         let displaced = self.displaced(points.clone());
@@ -319,24 +272,13 @@ impl Board {
         let gradient = |[x, y, _]: [f64; 3]| DVec2::new(x, y);
         let up = gradient(self.below);
         let (steepness, of_l) = (up.length(), off(&self.below));
-        let strips = self.across.each_ref().map(|across| {
-            let n = gradient(*across);
+        let strips = self.across.map(|across| {
+            let n = gradient(across);
             let middle = n.dot(up) / (steepness * steepness);
-            let off = off(across) + of_l * middle.abs();
-            let places = points.clone().map(|p| {
-                let (n, level) = (form(across, p), form(&self.below, p));
-                match level > 0.0 {
-                    true => n / level,
-                    false => n / 0.0,
-                }
-            });
-            let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
-                (low.min(t), high.max(t))
-            });
-            let away = (low - middle).max(middle - high) - 1.0;
+            let off = off(&across) + of_l * middle.abs();
             // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm.
             let k = n.perp_dot(up).abs() / (steepness * steepness);
-            4.0 * off * (3.0 / k.max(away).min(1.0) + LINES)
+            4.0 * off * (3.0 * (1.0 / k).max(1.0) + LINES)
         });
         let (_, perimeter) = measure(points.clone());
         let widest = 0.5 * perimeter / steepness;
@@ -366,7 +308,7 @@ impl Board {
         let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
         let furthest = corners.iter().fold(0.0, |m: f64, c| m.max(c.depth));
         if nearest >= depth {
-            return self.far(corners, known, cancel);
+            return edge::sum(self, corners, known);
         }
         if depth.min(furthest) > DEEP {
             let [near, behind] = self.split(corners, DEEP);
@@ -379,23 +321,8 @@ impl Board {
         }
         let [near, far] = self.split(corners, depth);
         let mut sum = cells::sum(self, &near, cancel);
-        sum.add(self.far(&far, known, cancel));
+        sum.add(edge::sum(self, &far, known).within(far.iter().map(|c| c.at)));
         sum
-    }
-
-    /// Along the boundary; or, where corners as they are rounded do not tell m from a and b, as if it were near, but for next to nothing.
-    fn far(&self, corners: &[Corner], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
-        let along = |corners: &[Corner], known| {
-            edge::sum(self, corners, known).within(corners.iter().map(|c| c.at))
-        };
-        let sum = along(corners, known);
-        if !self.is_fine || sum.bound <= GOOD_FAR {
-            return sum;
-        }
-        let [near, behind] = self.split(corners, NEXT_TO_NOTHING);
-        let mut other = cells::sum(self, &near, cancel);
-        other.add(along(&behind, None));
-        if other.bound < sum.bound { other } else { sum }
     }
 
     /// The parts in front of a depth and behind it.

@@ -18,7 +18,7 @@ pub(super) const MANY: f64 = 32.0;
 /// More than this are left where points are too coarse to tell one line from the next: then nothing is said of them.
 const TOO_MANY: f64 = 1000.0;
 /// More rows than this, of a square each, take too long, which only the widest of views have in a pixel.
-const TOO_MANY_ROWS: f64 = 2e6;
+const TOO_MANY_ROWS: f64 = 1e6;
 
 /// More rows than this, between two vertices, are summed at once.
 const BLOCK: f64 = 3.0 * GRADUAL;

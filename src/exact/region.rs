@@ -107,8 +107,7 @@ impl<'a> Regions<'a> {
             odd: checkered.odd,
             elsewhere: &|x, y| {
                 let board = world.board(object, Spot::pixel(x, y))?;
-                let closely = || world.board_closely(object, Spot::pixel(x, y));
-                Some((Board::of(&board, closely), board.odd))
+                Some((Board::new(board.across, board.below), board.odd))
             },
         };
         let is_pixel = self.spot.side == 1.0;
@@ -159,7 +158,7 @@ impl<'a> Regions<'a> {
             None => {
                 let board = self.world.board(object, self.spot)?;
                 let checkered = Checkered {
-                    board: Board::of(&board, || self.world.board_closely(object, self.spot)),
+                    board: Board::new(board.across, board.below),
                     odd: board.odd,
                     rad: board.rad,
                 };
