@@ -7,7 +7,8 @@
 use std::io::{self, Cursor, Write};
 
 use png::{
-    BitDepth, ColorType, Compression, DecodeOptions, Decoder, Encoder, Limits, SrgbRenderingIntent,
+    BitDepth, ColorType, DecodeOptions, Decoder, DeflateCompression, Encoder, Filter, Limits,
+    SrgbRenderingIntent,
 };
 use thiserror::Error;
 
@@ -93,7 +94,10 @@ fn write(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    encoder.set_compression(Compression::Balanced);
+    // Rows of flat colours repeat as they are: differences of neighbours, which the format's filters store, are packed less well. Of such
+    // pictures a higher level makes files smaller by a few hundredths, and takes three times as long.
+    encoder.set_filter(Filter::NoFilter);
+    encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;
 
     let software = concat!("pinhole ", env!("CARGO_PKG_VERSION"));
