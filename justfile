@@ -8,7 +8,7 @@ check:
 test:
     cargo test
 
-# The properties on cases that no run has tried yet; what fails is kept in tests/proptest-regressions.
+# The properties on cases that no run has tried yet; what fails is printed, and kept in a folder proptest-regressions.
 explore times="20":
     for i in $(seq {{times}}); do PROPTEST_RNG_SEED=$(date +%s%N) cargo test --quiet || exit 1; done
 
