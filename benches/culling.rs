@@ -11,6 +11,7 @@ use std::{
 use criterion::{Criterion, Throughput};
 use pinhole::{
     area::Area,
+    film::Film,
     refine::coarse,
     render::{Control, Way, render_in_a_way},
     sampling::Sampling,
@@ -157,7 +158,8 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() {
     );
     move || {
         let whole = Area::whole(width, height);
-        let film = render_in_a_way(&world, &sampling, whole, &control(NonZero::new(1)), way);
+        let film: Result<Film, _> =
+            render_in_a_way(&world, &sampling, whole, &control(NonZero::new(1)), way);
         black_box(film.expect("there is memory for it"));
     }
 }

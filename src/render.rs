@@ -23,7 +23,7 @@ use thiserror::Error;
 use crate::{
     area::Area,
     exact::Integrator,
-    film::{Film, TooLarge, mean},
+    film::{self, Encoder, Film, TooLarge, mean},
     math::Vectors,
     sampling::Sampling,
     tracer::{Live, Part, Pixel, Quartering, Room, World},
@@ -118,20 +118,23 @@ pub fn render(
     render_in_a_way(world, sampling, part, control, Way::Culled)
 }
 
-/// The same, for tests and measurements of how it is done.
-pub fn render_in_a_way(
+/// The same, for tests and measurements of how it is done, and for films of either kind: bytes are made tile by tile, before the light
+/// that they stand for has left the processor's cache.
+pub fn render_in_a_way<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
     control: &Control,
     way: Way,
-) -> Result<Film, RenderError> {
+) -> Result<Film<P>, RenderError> {
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors: Vec<_> = world
         .palette()
         .iter()
         .map(|color| color.to_linear())
         .collect();
+    let encoder = Encoder::new();
+    let shown: Vec<_> = colors.iter().map(|&light| P::of(light, &encoder)).collect();
     let grain = match sampling.samples_per_pixel() {
         0..=FEW => GRAIN,
         _ => 1,
@@ -140,6 +143,8 @@ pub fn render_in_a_way(
         world,
         sampling,
         colors: &colors,
+        shown: &shown,
+        encoder: &encoder,
         control,
         way,
         quartering: Quartering::new(world).down_to(grain),
@@ -164,6 +169,16 @@ pub fn render_in_a_way(
             );
     });
     finished(film, control)
+}
+
+/// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
+pub fn render_bytes(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+) -> Result<Film<[u8; 3]>, RenderError> {
+    render_in_a_way(world, sampling, part, control, Way::Culled)
 }
 
 /// Computes a part of the picture, which lies in it, without samples; progress counts pixels.
@@ -230,11 +245,14 @@ fn tile_side(sampling: &Sampling, part: Area) -> u32 {
 }
 
 /// What all tiles have in common.
-struct Frame<'a> {
+struct Frame<'a, P> {
     world: &'a World,
     sampling: &'a Sampling,
     /// Of the palette, in linear light.
     colors: &'a [[f64; 3]],
+    /// The same as the film has them.
+    shown: &'a [P],
+    encoder: &'a Encoder,
     control: &'a Control<'a>,
     way: Way,
     quartering: Quartering<'a>,
@@ -242,13 +260,16 @@ struct Frame<'a> {
     everything: Vec<Live>,
 }
 
-impl Frame<'_> {
+impl<P: film::Pixel> Frame<'_, P> {
     /// The pixels of a tile, row by row; none once the render is cancelled.
-    fn tile(&self, tile: Area, tally: &mut Tally, room: &mut Room) -> Option<Vec<[f64; 3]>> {
-        let background = self.colors[self.world.background()];
+    fn tile(&self, tile: Area, tally: &mut Tally, room: &mut Room) -> Option<Vec<P>> {
+        let background = self.shown[self.world.background()];
         let mut film = Tile {
             area: tile,
-            samples: self.sampling.counts(tile),
+            samples: match self.sampling.same_count() {
+                Some(count) => Samples::Same(count),
+                None => Samples::Each(self.sampling.counts(tile)),
+            },
             // A pixel without a sample shows the background.
             pixels: vec![background; tile.pixels() as usize],
             unreported: 0,
@@ -258,7 +279,7 @@ impl Frame<'_> {
                 return ControlFlow::Break(());
             }
             match part {
-                Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
+                Part::Flat { area, slot } => film.fill(area, self.shown[slot]),
                 Part::Open { x, y, live } => self.pixel(x, y, live, &mut film, tally),
             }
             ControlFlow::Continue(())
@@ -278,9 +299,9 @@ impl Frame<'_> {
     }
 
     /// Takes the samples of a pixel.
-    fn pixel(&self, x: u32, y: u32, live: &[Live], film: &mut Tile, tally: &mut Tally) {
+    fn pixel(&self, x: u32, y: u32, live: &[Live], film: &mut Tile<P>, tally: &mut Tally) {
         let index = film.area.index(x, y);
-        let samples = film.samples[index];
+        let samples = film.samples.of(index);
         if samples == 0 {
             return;
         }
@@ -361,44 +382,69 @@ impl Frame<'_> {
     }
 
     /// The mean of what was counted, which is forgotten.
-    fn finish(&self, counts: &mut Counts) -> [f64; 3] {
-        let color = match counts.seen.as_mut_slice() {
-            [slot] => self.colors[*slot],
+    fn finish(&self, counts: &mut Counts) -> P {
+        let pixel = match counts.seen.as_mut_slice() {
+            [slot] => self.shown[*slot],
             slots => {
                 slots.sort_unstable();
-                mean(
-                    slots
-                        .iter()
-                        .map(|&slot| (counts.of[slot], self.colors[slot])),
-                )
+                let seen = slots
+                    .iter()
+                    .map(|&slot| (counts.of[slot], self.colors[slot]));
+                P::of(mean(seen), self.encoder)
             }
         };
         counts.clear();
-        color
+        pixel
     }
 }
 
 /// The pixels of a tile, row by row.
-struct Tile {
+struct Tile<P> {
     area: Area,
-    /// How many samples each has.
-    samples: Vec<u64>,
-    pixels: Vec<[f64; 3]>,
+    samples: Samples,
+    pixels: Vec<P>,
     /// How many samples are done that progress has not been told of.
     unreported: u64,
 }
 
-impl Tile {
+/// How many samples the pixels of a tile have.
+enum Samples {
+    /// All of them.
+    Same(u64),
+    /// Each of them, row by row.
+    Each(Vec<u64>),
+}
+
+impl Samples {
+    fn of(&self, pixel: usize) -> u64 {
+        match self {
+            Self::Same(count) => *count,
+            Self::Each(counts) => counts[pixel],
+        }
+    }
+}
+
+impl<P: film::Pixel> Tile<P> {
     /// Fills a part with the mean of samples that all see one colour.
-    fn fill(&mut self, part: Area, color: [f64; 3]) {
+    fn fill(&mut self, part: Area, color: P) {
         for y in part.y..part.y + part.height {
             let start = self.area.index(part.x, y);
             let row = start..start + part.width as usize;
-            for (pixel, &samples) in self.pixels[row.clone()].iter_mut().zip(&self.samples[row]) {
-                if samples > 0 {
-                    *pixel = color;
+            let pixels = &mut self.pixels[row.clone()];
+            match &self.samples {
+                Samples::Same(0) => {}
+                Samples::Same(count) => {
+                    pixels.fill(color);
+                    self.unreported += count * u64::from(part.width);
                 }
-                self.unreported += samples;
+                Samples::Each(counts) => {
+                    for (pixel, &count) in pixels.iter_mut().zip(&counts[row]) {
+                        if count > 0 {
+                            *pixel = color;
+                        }
+                        self.unreported += count;
+                    }
+                }
             }
         }
     }

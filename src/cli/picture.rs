@@ -27,32 +27,36 @@ use super::{
 pub enum Picture {
     /// With samples.
     Sampled(Film),
+    /// The same, as bytes.
+    Bytes(Film<[u8; 3]>),
     /// Computed.
     Exact(Exact),
 }
 
 impl Picture {
-    /// Its means.
-    pub fn film(&self) -> &Film {
+    /// How many columns and rows it has.
+    pub fn size(&self) -> (u32, u32) {
         match self {
-            Self::Sampled(film) => film,
-            Self::Exact(exact) => &exact.film,
+            Self::Sampled(film) => (film.width(), film.height()),
+            Self::Bytes(bytes) => (bytes.width(), bytes.height()),
+            Self::Exact(exact) => (exact.film.width(), exact.film.height()),
         }
     }
 
-    /// Its means alone.
+    /// Its means alone, if they were kept.
     #[cfg(feature = "preview")]
-    pub fn into_film(self) -> Film {
+    pub fn into_film(self) -> Option<Film> {
         match self {
-            Self::Sampled(film) => film,
-            Self::Exact(exact) => exact.film,
+            Self::Sampled(film) => Some(film),
+            Self::Bytes(_) => None,
+            Self::Exact(exact) => Some(exact.film),
         }
     }
 
     /// What is to be said of it: how exact a computed one is.
     pub fn notes(&self, output: &Output) -> String {
         match self {
-            Self::Sampled(_) => String::new(),
+            Self::Sampled(_) | Self::Bytes(_) => String::new(),
             Self::Exact(exact) => certificate(exact, output),
         }
     }
@@ -63,11 +67,21 @@ pub fn threads(wanted: Option<u64>) -> Option<NonZero<usize>> {
     NonZero::new(usize::try_from(wanted?).unwrap_or(usize::MAX))
 }
 
+/// What is kept of a picture's pixels.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// Their means.
+    Light,
+    /// The bytes of these, if nothing else asks for the means.
+    Bytes,
+}
+
 /// Renders a part of the scene's picture, and shows on a terminal how far it is.
 pub fn picture(
     scene: &Scene,
     world: &World,
     part: Area,
+    keep: Keep,
     threads: Option<NonZero<usize>>,
     cancel: &AtomicBool,
 ) -> Result<Picture, RenderError> {
@@ -90,9 +104,12 @@ pub fn picture(
             },
             cancel,
         };
-        match is_exact {
-            true => render::render_exact(world, part, &control).map(Picture::Exact),
-            false => render::render(world, &sampling, part, &control).map(Picture::Sampled),
+        match keep {
+            _ if is_exact => render::render_exact(world, part, &control).map(Picture::Exact),
+            Keep::Light => render::render(world, &sampling, part, &control).map(Picture::Sampled),
+            Keep::Bytes => {
+                render::render_bytes(world, &sampling, part, &control).map(Picture::Bytes)
+            }
         }
     })
 }
@@ -198,16 +215,30 @@ impl Output {
         }
     }
 
-    /// Writes the picture, unless `cancel` is set.
-    pub fn write(&self, film: &Film, recipe: &Recipe, cancel: &AtomicBool) -> io::Result<()> {
+    /// What it takes of the pixels.
+    pub fn keep(&self) -> Keep {
+        match self {
+            Self::File(_, Format::Exr) => Keep::Light,
+            _ => Keep::Bytes,
+        }
+    }
+
+    /// Writes the picture, of which as much was kept as it takes, unless `cancel` is set.
+    pub fn write(&self, picture: &Picture, recipe: &Recipe, cancel: &AtomicBool) -> io::Result<()> {
         match self {
             Self::Standard => film::write_stream(io::stdout().lock(), cancel, |out| {
-                film::write_png(film, recipe, out)
+                write_png(picture, recipe, out)
             }),
-            Self::File(path, format) => film::write_whole(path, cancel, |out| match format {
-                Format::Png => film::write_png(film, recipe, out),
-                Format::Exr => film::write_exr(film, out),
-            }),
+            Self::File(path, format) => {
+                film::write_whole(path, cancel, |out| match (format, picture) {
+                    (Format::Png, _) => write_png(picture, recipe, out),
+                    (Format::Exr, Picture::Sampled(film) | Picture::Exact(Exact { film, .. })) => {
+                        film::write_exr(film, out)
+                    }
+                    // `keep` asks for light where it goes into an EXR.
+                    (Format::Exr, Picture::Bytes(_)) => Err(io::ErrorKind::InvalidInput.into()),
+                })
+            }
         }
     }
 
@@ -220,6 +251,14 @@ impl Output {
             )),
             false => String::new(),
         }
+    }
+}
+
+fn write_png(picture: &Picture, recipe: &Recipe, out: impl io::Write) -> io::Result<()> {
+    match picture {
+        Picture::Sampled(film) => film::write_png(film, recipe, out),
+        Picture::Bytes(bytes) => film::write_png(bytes, recipe, out),
+        Picture::Exact(exact) => film::write_png(&exact.film, recipe, out),
     }
 }
 

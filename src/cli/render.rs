@@ -40,14 +40,14 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let cancel = interrupt.watch();
     let started = Instant::now();
     let world = World::new(&scene);
-    let picture = match picture(&scene, &world, part, threads(args.threads), cancel) {
+    let threads = threads(args.threads);
+    let picture = match picture(&scene, &world, part, output.keep(), threads, cancel) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
         Err(error) => return Err(Trouble(error.to_string())),
     };
     let recipe = input.recipe(crop);
-    let film = picture.film();
-    if let Err(error) = output.write(film, &recipe, cancel) {
+    if let Err(error) = output.write(&picture, &recipe, cancel) {
         if interrupt.pressed() {
             return Ok(Status::Interrupted);
         }
@@ -56,7 +56,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     output::to_people(&output.note_of_length(&recipe));
     output::to_people(&picture.notes(&output));
     if output::is_watched() {
-        let (width, height) = (film.width(), film.height());
+        let (width, height) = picture.size();
         let seconds = started.elapsed().as_secs_f64();
         output::to_people(&format!(
             "wrote {output}: {width} × {height} pixels in {seconds:.2} s\n"

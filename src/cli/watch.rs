@@ -28,7 +28,7 @@ use super::{
     input::{self, Input, shown},
     interrupt::Interrupt,
     output,
-    picture::{Output, Picture, picture, threads},
+    picture::{Keep, Output, Picture, picture, threads},
     show::Screen,
 };
 
@@ -129,7 +129,13 @@ fn make(
     let Some(scene) = reading.scene else {
         return Ok(None);
     };
-    let picture = match with_sketch(&scene, threads(args.threads), is_stale, screen) {
+    let picture = match with_sketch(
+        &scene,
+        output.keep(),
+        threads(args.threads),
+        is_stale,
+        screen,
+    ) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(None),
         Err(error) => return Err(Trouble(error.to_string())),
@@ -137,7 +143,7 @@ fn make(
     let recipe = input.recipe(None);
     // The picture must not take the place of the scene, should a link lead there by now.
     let written = output.check(Some(&args.scene)).and_then(|()| {
-        let written = output.write(picture.film(), &recipe, is_stale);
+        let written = output.write(&picture, &recipe, is_stale);
         written.map_err(|error| Trouble(format!("cannot write to {output}: {error}")))
     });
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
@@ -146,7 +152,9 @@ fn make(
     let done = Instant::now();
     let notes = picture.notes(output);
     // Also one that cannot be written can be seen.
-    screen.draw(picture.into_film());
+    if let Some(film) = picture.into_film() {
+        screen.draw(film);
+    }
     written?;
     screen.say(&output.note_of_length(&recipe));
     screen.say(&notes);
@@ -159,6 +167,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// Renders the scene, and shows a coarse picture where people would wait.
 fn with_sketch(
     scene: &Scene,
+    keep: Keep,
     threads: Option<NonZero<usize>>,
     is_stale: &AtomicBool,
     screen: &mut Screen,
@@ -166,7 +175,7 @@ fn with_sketch(
     let whole = Area::whole(scene.image.width, scene.image.height);
     let world = World::new(scene);
     let Some(side) = screen.side(whole) else {
-        return picture(scene, &world, whole, threads, is_stale);
+        return picture(scene, &world, whole, keep, threads, is_stale);
     };
     thread::scope(|scope| {
         let (done, wait) = mpsc::channel::<()>();
@@ -186,7 +195,7 @@ fn with_sketch(
                 }
             }
         });
-        let picture = picture(scene, &world, whole, threads, is_stale);
+        let picture = picture(scene, &world, whole, Keep::Light, threads, is_stale);
         drop(done);
         picture
     })

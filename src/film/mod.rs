@@ -12,7 +12,6 @@ mod read;
 mod srgb;
 mod write;
 
-pub(crate) use self::srgb::Encoder;
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, HeatError, Largest, SizesDiffer, Tolerance, compare,
@@ -22,6 +21,7 @@ pub use self::{
     memory::TooLarge,
     png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png, write_png},
     read::{Picture, Rounding, Unreadable, is_picture, read_picture},
+    srgb::Encoder,
     write::{Sink, check_writable, write_stream, write_whole},
 };
 use crate::{
@@ -29,24 +29,62 @@ use crate::{
     math::{Double, Real, two_product},
 };
 
-/// A picture: the mean of each pixel in linear light.
+/// What a film keeps of a pixel: its mean in linear light, or that as bytes of sRGB, which take an eighth of the memory.
+pub trait Pixel: Copy + Default + Send + Sync {
+    /// From the mean.
+    fn of(light: [f64; 3], encoder: &Encoder) -> Self;
+
+    /// The bytes of a row; `room` is for those that are not there yet.
+    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
+}
+
+impl Pixel for [f64; 3] {
+    fn of(light: [f64; 3], _: &Encoder) -> Self {
+        light
+    }
+
+    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
+        room.clear();
+        let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
+        for &light in row {
+            // Most pixels are as the one before.
+            if light != before {
+                (before, last) = (light, encoder.pixel(light));
+            }
+            room.extend(last);
+        }
+        room
+    }
+}
+
+impl Pixel for [u8; 3] {
+    fn of(light: [f64; 3], encoder: &Encoder) -> Self {
+        encoder.pixel(light)
+    }
+
+    fn bytes<'a>(row: &'a [Self], _: &Encoder, _: &'a mut Vec<u8>) -> &'a [u8] {
+        row.as_flattened()
+    }
+}
+
+/// A picture: of each pixel the mean in linear light, or what else is kept of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Film {
+pub struct Film<P = [f64; 3]> {
     width: u32,
     height: u32,
     /// Row by row from the top.
-    pixels: Vec<[f64; 3]>,
+    pixels: Vec<P>,
 }
 
-impl Film {
+impl<P: Pixel> Film<P> {
     /// A black picture, if the memory for it is there.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
-        let count = memory::reserve(&mut Vec::<[f64; 3]>::new(), width, height)?;
+        let count = memory::reserve(&mut Vec::<P>::new(), width, height)?;
         // The system has zeros at hand, so that a page is touched only when something is put there.
         Ok(Self {
             width,
             height,
-            pixels: vec![[0.0; 3]; count],
+            pixels: vec![P::default(); count],
         })
     }
 
@@ -54,7 +92,7 @@ impl Film {
     pub fn from_fn(
         width: u32,
         height: u32,
-        pixel: impl Fn(u32, u32) -> [f64; 3],
+        pixel: impl Fn(u32, u32) -> P,
     ) -> Result<Self, TooLarge> {
         let mut pixels = Vec::new();
         memory::reserve(&mut pixels, width, height)?;
@@ -79,24 +117,24 @@ impl Film {
         self.height
     }
 
-    /// A pixel's red, green and blue, 0 to 1.
-    pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+    /// A pixel's red, green and blue.
+    pub fn pixel(&self, x: u32, y: u32) -> P {
         self.row(y)[x as usize]
     }
 
     /// The pixels of a row, from the left.
-    pub fn row(&self, y: u32) -> &[[f64; 3]] {
+    pub fn row(&self, y: u32) -> &[P] {
         let width = self.width as usize;
         &self.pixels[y as usize * width..][..width]
     }
 
     /// All pixels, row by row.
-    pub fn pixels(&self) -> &[[f64; 3]] {
+    pub fn pixels(&self) -> &[P] {
         &self.pixels
     }
 
     /// Sets the pixels of a part of the picture, row by row.
-    pub fn put(&mut self, part: Area, pixels: &[[f64; 3]]) {
+    pub fn put(&mut self, part: Area, pixels: &[P]) {
         let (left, width) = (part.x as usize, part.width as usize);
         for (y, row) in (part.y as usize..).zip(pixels.chunks_exact(width)) {
             let start = y * self.width as usize + left;

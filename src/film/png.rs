@@ -12,7 +12,7 @@ use png::{
 };
 use thiserror::Error;
 
-use super::{Film, srgb};
+use super::{Film, Pixel, srgb};
 use crate::area::Area;
 
 /// The first bytes of every PNG.
@@ -75,7 +75,7 @@ impl Recipe {
 }
 
 /// Writes a picture, with what it was made from if that [`fits`](Recipe::fits).
-pub fn write_png(film: &Film, recipe: &Recipe, out: impl Write) -> io::Result<()> {
+pub fn write_png<P: Pixel>(film: &Film<P>, recipe: &Recipe, out: impl Write) -> io::Result<()> {
     let recipe = recipe.fits().then_some(recipe);
     write(film, recipe.into_iter().flat_map(Recipe::chunks), out)
 }
@@ -86,7 +86,7 @@ pub fn write_plain_png(film: &Film, out: impl Write) -> io::Result<()> {
 }
 
 fn write(
-    film: &Film,
+    film: &Film<impl Pixel>,
     chunks: impl Iterator<Item = (&'static str, String)>,
     out: impl Write,
 ) -> io::Result<()> {
@@ -109,19 +109,10 @@ fn write(
 
     // Row by row: the bytes of the whole are never in memory at once.
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
-    let bytes = srgb::Encoder::new();
-    let mut row = Vec::new();
+    let encoder = srgb::Encoder::new();
+    let mut room = Vec::new();
     for y in 0..film.height() {
-        row.clear();
-        let (mut before, mut last) = ([0.0; 3], bytes.pixel([0.0; 3]));
-        for &light in film.row(y) {
-            // Most pixels are as the one before.
-            if light != before {
-                (before, last) = (light, bytes.pixel(light));
-            }
-            row.extend(last);
-        }
-        rows.write_all(&row)?;
+        rows.write_all(Pixel::bytes(film.row(y), &encoder, &mut room))?;
     }
     rows.finish()?;
     writer.finish()?;

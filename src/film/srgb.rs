@@ -19,6 +19,12 @@ pub struct Encoder {
     start: [u8; PARTS + 1],
 }
 
+impl Default for Encoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Encoder {
     /// Prepares the thresholds.
     pub fn new() -> Self {

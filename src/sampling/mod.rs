@@ -129,6 +129,14 @@ impl Sampling {
         self.total.div_ceil(self.pixels)
     }
 
+    /// How many samples each pixel has, if all have the same number.
+    pub fn same_count(&self) -> Option<u64> {
+        match &self.share {
+            Share::Even(even) if even.extra == 0 => Some(even.count),
+            _ => None,
+        }
+    }
+
     /// How many samples a pixel has.
     pub fn count(&self, x: u32, y: u32) -> u64 {
         self.counts(Area::pixel(x, y))[0]

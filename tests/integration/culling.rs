@@ -8,8 +8,8 @@ use std::{
 use glam::{DVec3, dvec3};
 use pinhole::{
     area::Area,
-    film::Film,
-    render::{Control, Way, render_in_a_way},
+    film::{Encoder, Film},
+    render::{Control, Way, render_bytes, render_in_a_way},
     sampling::Sampling,
     scene::{Count, Lens, Method, Sampler, Scene, View},
     tracer::World,
@@ -99,6 +99,32 @@ fn many_samples_at_a_time_fill_their_chunks_and_end_them_early() {
     for n in [3, 4, 5, 7, 8, 63, 64, 65, 130, 4095, 4096, 4097, 9000] {
         let scene = figure(11, 7, Method::Sobol, Count::PerPixel(n));
         assert!(compare(&scene, "figure") > 10);
+    }
+}
+
+#[test]
+fn bytes_are_those_of_the_light() {
+    let encoder = Encoder::new();
+    for count in [
+        Count::PerPixel(1),
+        Count::PerPixel(13),
+        Count::Total(2_000),
+        Count::Total(40_000),
+    ] {
+        let scene = figure(90, 70, Method::MultiJittered, count);
+        let sampling = Sampling::new(&scene.sampler, 90, 70);
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let crop: Area = "7,9,80,50".parse().unwrap();
+        let bytes = render_bytes(&World::new(&scene), &sampling, crop, &control).unwrap();
+        let (light, _) = part(&scene, crop, 1, Way::OneByOne);
+        assert_eq!((bytes.width(), bytes.height()), (80, 50));
+        for (bytes, &light) in bytes.pixels().iter().zip(light.pixels()) {
+            assert_eq!(*bytes, encoder.pixel(light));
+        }
     }
 }
 
