@@ -26,7 +26,7 @@ use crate::{
     film::{self, Encoder, Film, TooLarge, mean},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Live, Part, Pixel, Quartering, Room, World},
+    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
 };
 
 /// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
@@ -274,24 +274,21 @@ impl<P: film::Pixel> Frame<'_, P> {
             pixels: vec![background; tile.pixels() as usize],
             unreported: 0,
         };
-        let mut visit = |part: Part| {
+        let mut visit = |part: Part, checks: Option<&Checks>| {
             if self.control.cancel.load(Ordering::Relaxed) {
                 return ControlFlow::Break(());
             }
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.shown[slot]),
-                Part::Open { x, y, live } => self.pixel(x, y, live, &mut film, tally),
+                Part::Open { x, y, live } => self.pixel([x, y], live, checks, &mut film, tally),
             }
             ControlFlow::Continue(())
         };
         let flow = match self.way {
-            Way::Culled => self.quartering.parts(tile, room, &mut visit),
+            Way::Culled => self.quartering.parts_and_checks(tile, room, &mut visit),
             Way::Together | Way::Narrow | Way::OneByOne => tile.iter().try_for_each(|(x, y)| {
-                visit(Part::Open {
-                    x,
-                    y,
-                    live: &self.everything,
-                })
+                let live = &self.everything;
+                visit(Part::Open { x, y, live }, None)
             }),
         };
         (self.control.progress)(film.unreported);
@@ -299,14 +296,21 @@ impl<P: film::Pixel> Frame<'_, P> {
     }
 
     /// Takes the samples of a pixel.
-    fn pixel(&self, x: u32, y: u32, live: &[Live], film: &mut Tile<P>, tally: &mut Tally) {
+    fn pixel(
+        &self,
+        [x, y]: [u32; 2],
+        live: &[Live],
+        checks: Option<&Checks>,
+        film: &mut Tile<P>,
+        tally: &mut Tally,
+    ) {
         let index = film.area.index(x, y);
         let samples = film.samples.of(index);
         if samples == 0 {
             return;
         }
         if samples <= CHUNK {
-            self.look(x, y, live, &mut tally.pixel);
+            self.look([x, y], live, checks, &mut tally.pixel);
             self.chunk(x, y, samples, 0, tally);
             film.unreported += samples;
         } else {
@@ -315,9 +319,9 @@ impl<P: film::Pixel> Frame<'_, P> {
         film.pixels[index] = self.finish(&mut tally.counts);
     }
 
-    fn look(&self, x: u32, y: u32, live: &[Live], pixel: &mut Pixel) {
+    fn look(&self, at: [u32; 2], live: &[Live], checks: Option<&Checks>, pixel: &mut Pixel) {
         if self.way != Way::OneByOne {
-            self.world.look(x, y, live, pixel);
+            self.world.look(at, live, checks, pixel);
         }
     }
 
@@ -335,7 +339,7 @@ impl<P: film::Pixel> Frame<'_, P> {
                 .fold(
                     || {
                         let mut tally = Tally::new(slots);
-                        self.look(x, y, live, &mut tally.pixel);
+                        self.look([x, y], live, None, &mut tally.pixel);
                         tally
                     },
                     |mut tally, chunk| {

@@ -31,7 +31,7 @@ mod world;
 pub use camera::{Basis, Point};
 pub use curve::{Conic, Curve, Line};
 pub use outlook::{Board, Live, Spot};
-pub use pixel::Pixel;
+pub use pixel::{Checks, Pixel};
 pub use quartering::{Part, Quartering, Room};
 pub use triangle::vertices;
 pub use world::{Hit, Precision, World};

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{outlook::Live, world::World};
+use super::{outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
 /// Cuts the parts of one picture.
@@ -62,6 +62,16 @@ impl<'a> Quartering<'a> {
         room: &mut Room,
         visit: &mut impl FnMut(Part) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        self.parts_and_checks(area, room, &mut |part, _| visit(part))
+    }
+
+    /// The same, with what an open pixel shows of a board, where that is known.
+    pub fn parts_and_checks(
+        &self,
+        area: Area,
+        room: &mut Room,
+        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let mut live = Vec::new();
         self.world.live_in(area, &mut live);
         self.cut(area, &live, 0, room, visit)
@@ -73,19 +83,22 @@ impl<'a> Quartering<'a> {
         live: &[Live],
         depth: usize,
         room: &mut Room,
-        visit: &mut impl FnMut(Part) -> ControlFlow<()>,
+        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if let Some(slot) = self.only_slot(area, live) {
-            return visit(Part::Flat { area, slot });
+            return visit(Part::Flat { area, slot }, None);
         }
         if area.pixels() <= self.grain {
             return area
                 .iter()
-                .try_for_each(|(x, y)| visit(Part::Open { x, y, live }));
+                .try_for_each(|(x, y)| visit(Part::Open { x, y, live }, None));
         }
         if let [only] = live
             && only.is_whole
         {
+            if let Some(flow) = self.world.checks(area, live, visit) {
+                return flow;
+            }
             // What hides all else in the whole does so in its quarters.
             return area
                 .quarters()

@@ -8,6 +8,7 @@
 
 mod lanes;
 mod local;
+mod mesh;
 mod prepare;
 mod squares;
 
@@ -21,7 +22,10 @@ use self::{
 use super::{outlook::Live, world::World};
 use crate::math::Vectors;
 
-pub use self::local::{Conic, Here, Local};
+pub use self::{
+    local::{Conic, Here, Local},
+    mesh::Checks,
+};
 
 /// Fewer samples than this are not worth the preparation.
 const FEW: usize = 4;
@@ -83,12 +87,23 @@ enum Depth {
 }
 
 impl World {
-    /// Prepares a pixel, given the objects that may be seen there, in file order.
-    pub fn look(&self, x: u32, y: u32, live: &[Live], pixel: &mut Pixel) {
+    /// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but a board and that is known, what
+    /// is seen of it.
+    pub fn look(
+        &self,
+        [x, y]: [u32; 2],
+        live: &[Live],
+        checks: Option<&Checks>,
+        pixel: &mut Pixel,
+    ) {
         (pixel.x, pixel.y) = (x, y);
         pixel.live.clear();
         pixel.live.extend_from_slice(live);
-        pixel.is_hard = pixel.prepare(self).is_err();
+        let prepared = match checks {
+            Some(checks) => pixel.prepare_checks(checks),
+            None => pixel.prepare(self),
+        };
+        pixel.is_hard = prepared.is_err();
     }
 
     /// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of the palette, each any number

@@ -13,6 +13,7 @@ use super::{
     },
     Depth, Pattern, Pixel, Surface,
     local::{Here, Local, ROUNDINGS, Side},
+    mesh::Checks,
     squares::{Squares, is_odd},
 };
 use crate::{area::Area, math::UP};
@@ -39,6 +40,24 @@ impl Pixel {
             self.surface(world, &here, place)?;
         }
         self.order(world, &here)
+    }
+
+    /// The same where a board is the only candidate and fills the pixel.
+    pub(super) fn prepare_checks(&mut self, checks: &Checks) -> Result<(), Hard> {
+        self.surfaces.clear();
+        self.lines.clear();
+        self.planes.clear();
+        self.depths = None;
+        let mut surface = Surface {
+            place: 0,
+            edges: [0; 2],
+            conic: None,
+            pattern: Pattern::Plain(0.0),
+            depth: Depth::Unknown,
+        };
+        surface.pattern = self.lines(&checks.squares, checks.ranges, &surface)?;
+        self.surfaces.push(surface);
+        Ok(())
     }
 
     /// Writes down a candidate's boundaries and colours.
@@ -173,22 +192,33 @@ impl Pixel {
         surface: &Surface,
     ) -> Result<Pattern, Hard> {
         let squares = Squares::new(board, here);
-        let Squares { across, below, .. } = squares;
-        let sizes = [&below, &across[0], &across[1]].map(|local| local.rad);
+        let Squares { across, below, .. } = &squares;
+        let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
         if !sizes.iter().all(|&rad| rad < 1e250) {
             return Err(Hard);
         }
-        let Some([(x0, x1), (z0, z1)]) = squares.ranges() else {
-            return Ok(Pattern::Squares(squares));
-        };
-        if (x1 - x0) + (z1 - z0) > LINES as f64 {
-            return Ok(Pattern::Squares(squares));
+        match squares.ranges() {
+            Some(ranges) => self.lines(&squares, ranges, surface),
+            None => Ok(Pattern::Squares(squares)),
         }
-        let mut odd = board.odd ^ is_odd(x0) ^ is_odd(z0);
+    }
+
+    /// The lines between a board's squares.
+    fn lines(
+        &mut self,
+        squares: &Squares,
+        [(x0, x1), (z0, z1)]: [(f64, f64); 2],
+        surface: &Surface,
+    ) -> Result<Pattern, Hard> {
+        if (x1 - x0) + (z1 - z0) > LINES as f64 {
+            return Ok(Pattern::Squares(*squares));
+        }
+        let Squares { across, below, odd } = squares;
+        let mut odd = odd ^ is_odd(x0) ^ is_odd(z0);
         for (across, first, last) in [(&across[0], x0, x1), (&across[1], z0, z1)] {
             let mut k = first + 1.0;
             while k <= last {
-                let line = across.less(k, &below);
+                let line = across.less(k, below);
                 // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more odd step.
                 match line.side() {
                     Side::Above => odd = !odd,

@@ -1,0 +1,298 @@
+//! The squares of a checkerboard at the corners of many pixels at once.
+//!
+//! Where a board alone is seen, most parts of the picture end as pixels, which have their corners in common. So the squares that the
+//! corners of a block lie in are computed row by row, in plain arrays, which the compiler makes vectors of: a ratio of linear forms is
+//! the greatest and the least at corners, and a pixel whose corners lie in one square, each farther from its edge than errors reach, shows nothing
+//! else.
+
+use std::ops::ControlFlow;
+
+use multiversion::multiversion;
+
+use super::{
+    super::{object::Object, outlook::Live, quartering::Part, world::World},
+    local::{Here, Local, ROUNDINGS},
+    squares::Squares,
+};
+use crate::{
+    area::Area,
+    math::UP,
+    tracer::{checkerboard::Checkerboard, world::Level},
+};
+
+/// The greatest side of a block, in pixels.
+const SIDE: usize = 32;
+
+/// Its corners in a row, and so many more that vectors of eight make them up.
+const LANES: usize = 40;
+
+/// The squares of a board that a pixel shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Checks {
+    pub(super) squares: Squares,
+    /// From which to which, in x and in z.
+    pub(super) ranges: [(f64, f64); 2],
+}
+
+/// A block of pixels in which nothing but one board is seen.
+struct Mesh {
+    block: Area,
+    squares: Squares,
+    /// How far from the edges of squares corners must lie, in x and in z.
+    slack: [f64; 2],
+    /// The corners' columns, in units of the block's width from its centre.
+    columns: [f64; LANES],
+}
+
+/// A row of corners.
+struct Corners {
+    /// Their squares in x and in z; NaN where that is not certain.
+    squares: [[f64; LANES]; 2],
+    /// 1, or −1 in the squares of the second colour, if the board begins with the first.
+    sign: [f64; LANES],
+}
+
+impl World {
+    /// Shows `visit` the pixels of a part of the picture in which a checkerboard is all that is seen, in runs of one colour and singly, with
+    /// what they show of the board if that is known. `None` if the part is too large for that or the board too far.
+    pub(in super::super) fn checks(
+        &self,
+        part: Area,
+        live: &[Live],
+        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
+    ) -> Option<ControlFlow<()>> {
+        let [Live { object, .. }] = *live else {
+            return None;
+        };
+        if part.width as usize > SIDE || part.height as usize > SIDE {
+            return None;
+        }
+        let Object::Checkerboard(board) = &*f64::object(self, object) else {
+            return None;
+        };
+        let mesh = Mesh::new(board, &Here::new(&f64::frame(self).camera, part), part)?;
+        let slots = self.slots(object);
+        let [mut above, mut below] = [Corners::new(), Corners::new()];
+        mesh.corners(0, &mut above);
+        for row in 0..part.height {
+            mesh.corners(row + 1, &mut below);
+            let flow = mesh.row(row, &above, &below, |area, seen| match seen {
+                Seen::One(odd) => {
+                    let slot = slots[usize::from(odd)];
+                    visit(Part::Flat { area, slot }, None)
+                }
+                Seen::Some(checks) => {
+                    let (x, y) = (area.x, area.y);
+                    visit(Part::Open { x, y, live }, Some(checks))
+                }
+                Seen::Unknown => match self.only_square(area, object) {
+                    Some(odd) => {
+                        let slot = slots[usize::from(odd)];
+                        visit(Part::Flat { area, slot }, None)
+                    }
+                    None => {
+                        let (x, y) = (area.x, area.y);
+                        visit(Part::Open { x, y, live }, None)
+                    }
+                },
+            });
+            if flow.is_break() {
+                return Some(flow);
+            }
+            std::mem::swap(&mut above, &mut below);
+        }
+        Some(ControlFlow::Continue(()))
+    }
+}
+
+/// What pixels show of a board.
+enum Seen<'a> {
+    /// One square, or squares of one colour side by side; whether that is the second.
+    One(bool),
+    /// A few.
+    Some(&'a Checks),
+    Unknown,
+}
+
+impl Corners {
+    fn new() -> Self {
+        Self {
+            squares: [[0.0; LANES]; 2],
+            sign: [0.0; LANES],
+        }
+    }
+
+    /// The squares of a corner.
+    fn at(&self, column: usize) -> [f64; 2] {
+        [self.squares[0][column], self.squares[1][column]]
+    }
+}
+
+impl Mesh {
+    /// `None` if the board is too far for its squares to be told apart so.
+    fn new(board: &Checkerboard<f64>, here: &Here, block: Area) -> Option<Self> {
+        let squares = Squares::new(board, here);
+        let Squares { across, below, .. } = squares;
+        let least = below.factors[2] - below.spread() * UP;
+        if least <= 4.0 * below.rad {
+            return None;
+        }
+        let slack = across.map(|across| {
+            let greatest = (across.factors[2].abs() + across.spread() + across.rad) / least;
+            // As in `Squares::ranges`.
+            let inherited = (across.rad + greatest * below.rad) * 4.0 / least;
+            (inherited + (greatest + 1.0) * ROUNDINGS) * UP
+        });
+        if !slack.iter().all(|&slack| slack < 0.25) {
+            return None;
+        }
+        let mut columns = [0.0; LANES];
+        for (column, place) in columns.iter_mut().enumerate() {
+            *place = middle(2 * column as u32, block.width);
+        }
+        Some(Self {
+            block,
+            squares,
+            slack,
+            columns,
+        })
+    }
+
+    fn corners(&self, row: u32, out: &mut Corners) {
+        let y = middle(2 * row, self.block.height);
+        let length = (self.block.width as usize + 1).next_multiple_of(8);
+        corners_widely(self, y, length, out);
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, y: f64, length: usize, out: &mut Corners) {
+        /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
+        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+        const ONE: u64 = 1.0f64.to_bits();
+        let Squares { across, below, .. } = &self.squares;
+        let [n0, n1, l] = [&across[0], &across[1], below].map(|local| {
+            let [a, b, c] = local.factors;
+            (a, b * y + c)
+        });
+        let Corners {
+            squares: [first, second],
+            sign,
+        } = out;
+        let columns = &self.columns[..length];
+        let out = first[..length]
+            .iter_mut()
+            .zip(&mut second[..length])
+            .zip(&mut sign[..length]);
+        for (&x, ((first, second), sign)) in columns.iter().zip(out) {
+            let inverse = 1.0 / (l.0 * x + l.1);
+            let square = |n: (f64, f64), slack: f64| {
+                let middle = (n.0 * x + n.1) * inverse - 0.5;
+                let rounded = middle + ROUND;
+                let whole = rounded - ROUND;
+                let room = 0.5 - (middle - whole).abs();
+                let square = if room > slack { whole } else { f64::NAN };
+                (square, rounded.to_bits())
+            };
+            let ((square0, bits0), (square1, bits1)) =
+                (square(n0, self.slack[0]), square(n1, self.slack[1]));
+            (*first, *second) = (square0, square1);
+            *sign = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
+        }
+    }
+
+    /// Tells `each` the pixels of a row between two rows of corners.
+    fn row(
+        &self,
+        row: u32,
+        above: &Corners,
+        below: &Corners,
+        mut each: impl FnMut(Area, Seen) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut shown = [0.0; SIDE];
+        compare_widely(above, below, &mut shown);
+        let shown = &shown[..self.block.width as usize];
+        let mut first = 0;
+        while first < shown.len() {
+            let sign = shown[first];
+            let mut area = Area {
+                x: self.block.x + first as u32,
+                y: self.block.y + row,
+                width: 1,
+                height: 1,
+            };
+            if sign == 0.0 {
+                match self.checks(row, first, above, below) {
+                    Some(checks) => each(area, Seen::Some(&checks))?,
+                    None => each(area, Seen::Unknown)?,
+                }
+                first += 1;
+                continue;
+            }
+            let rest = shown[first..].iter();
+            let length = rest.take_while(|&&other| other == sign).count();
+            area.width = length as u32;
+            each(area, Seen::One((sign < 0.0) ^ self.squares.odd))?;
+            first += length;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// What a pixel shows, if it is certain in which squares its corners lie.
+    fn checks(&self, row: u32, column: usize, above: &Corners, below: &Corners) -> Option<Checks> {
+        let corners = [
+            above.at(column),
+            above.at(column + 1),
+            below.at(column),
+            below.at(column + 1),
+        ];
+        let mut ranges = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+        for corner in corners {
+            for ((low, high), square) in ranges.iter_mut().zip(corner) {
+                if square.is_nan() {
+                    return None;
+                }
+                (*low, *high) = (low.min(square), high.max(square));
+            }
+        }
+        let Area { width, height, .. } = self.block;
+        let x = middle(2 * column as u32 + 1, width);
+        let y = middle(2 * row + 1, height);
+        let [width, height] = [width, height].map(f64::from);
+        let local = |block: &Local| {
+            let [a, b, c] = block.factors;
+            // The form of the block is off by its error, and the value at the pixel's centre by as much again.
+            Local::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
+        };
+        let Squares { across, below, odd } = &self.squares;
+        Some(Checks {
+            squares: Squares {
+                across: across.each_ref().map(local),
+                below: local(below),
+                odd: *odd,
+            },
+            ranges,
+        })
+    }
+}
+
+/// Where so many half pixels lie from the left or from the top, in units of the block's side from its centre.
+fn middle(halves: u32, pixels: u32) -> f64 {
+    (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
+}
+
+#[multiversion(targets = "simd")]
+fn corners_widely(mesh: &Mesh, y: f64, length: usize, out: &mut Corners) {
+    mesh.evaluate(y, length, out);
+}
+
+/// The sign of each pixel whose corners lie in one square, and 0 for all others.
+#[multiversion(targets = "simd")]
+fn compare_widely(above: &Corners, below: &Corners, out: &mut [f64; SIDE]) {
+    let [a, b] = [&above.squares[0], &below.squares[0]];
+    let [c, d] = [&above.squares[1], &below.squares[1]];
+    for i in 0..SIDE {
+        let first = (a[i] == a[i + 1]) & (a[i] == b[i]) & (a[i] == b[i + 1]);
+        let second = (c[i] == c[i + 1]) & (c[i] == d[i]) & (c[i] == d[i + 1]);
+        out[i] = if first & second { above.sign[i] } else { 0.0 };
+    }
+}
