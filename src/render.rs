@@ -16,7 +16,6 @@ use std::{
     },
 };
 
-use glam::DVec2;
 use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 use thiserror::Error;
 
@@ -25,7 +24,7 @@ use crate::{
     exact::Integrator,
     film::{self, Encoder, Film, TooLarge, mean},
     math::Vectors,
-    sampling::Sampling,
+    sampling::{Points, Sampling},
     tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
 };
 
@@ -370,18 +369,21 @@ impl<P: film::Pixel> Frame<'_, P> {
             pixel,
             points,
         } = tally;
-        points.clear();
         let vectors = self.way.vectors();
         self.sampling
-            .points_by(vectors, [x, y], samples, first..end, points);
+            .place(vectors, [x, y], samples, first..end, points);
         if self.way == Way::OneByOne {
-            for &offset in &*points {
-                counts.add(self.world.slot_at(x, y, offset), 1);
+            for index in 0..points.len() {
+                counts.add(self.world.slot_at(x, y, points.get(index)), 1);
             }
         } else {
-            self.world.count(pixel, points, vectors, |slot, samples| {
-                counts.add(slot, samples)
-            });
+            self.world.count(
+                pixel,
+                points.lanes(),
+                points.len(),
+                vectors,
+                |slot, samples| counts.add(slot, samples),
+            );
         }
     }
 
@@ -460,7 +462,7 @@ struct Tally {
     /// The pixel, prepared.
     pixel: Pixel,
     /// Room for the points.
-    points: Vec<DVec2>,
+    points: Points,
 }
 
 impl Tally {
@@ -468,7 +470,7 @@ impl Tally {
         Self {
             counts: Counts::new(slots),
             pixel: Pixel::default(),
-            points: Vec::new(),
+            points: Points::default(),
         }
     }
 }

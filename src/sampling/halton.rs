@@ -6,40 +6,46 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::{hash::Key, lattice};
 
-/// So many radical inverses in base 3 are stored.
+/// So many radical inverses are stored.
 const STORED: u64 = 1 << 16;
 
-/// The first radical inverses in base 3.
+/// The first radical inverses in base 2, and in base 3.
 #[derive(Debug)]
 pub struct Halton {
-    inverses: Vec<u64>,
+    inverses: [Vec<u64>; 2],
 }
 
 impl Halton {
     /// The points of a sequence of which `n` are wanted.
     pub fn new(n: u64) -> Self {
         Self {
-            inverses: (0..n.min(STORED)).map(radical_inverse_3).collect(),
+            inverses: [u64::reverse_bits, radical_inverse_3]
+                .map(|inverse: fn(u64) -> u64| (0..n.min(STORED)).map(inverse).collect()),
         }
     }
 
-    /// Appends the points with these indices.
-    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
-        let shift = [0, 1].map(|axis| key.bits(axis));
-        out.extend(range.map(|i| {
-            let inverse_3 = match self.inverses.get(i as usize) {
-                Some(&inverse) => inverse,
-                None => radical_inverse_3(i),
-            };
-            DVec2::new(
-                lattice::offset_of_bits(i.reverse_bits().wrapping_add(shift[0])),
-                lattice::offset_of_bits(inverse_3.wrapping_add(shift[1])),
-            )
-        }));
+    /// Places the points with these indices.
+    #[inline(always)]
+    pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
+        let inverses: [fn(u64) -> u64; 2] = [u64::reverse_bits, radical_inverse_3];
+        for (axis, (out, inverse)) in out.into_iter().zip(inverses).enumerate() {
+            let shift = key.bits(axis as u64);
+            let place = |inverse: u64| lattice::offset_of_bits(inverse.wrapping_add(shift));
+            match self.inverses[axis].get(range.start as usize..range.end as usize) {
+                Some(inverses) => {
+                    for (out, &inverse) in out.iter_mut().zip(inverses) {
+                        *out = place(inverse);
+                    }
+                }
+                None => {
+                    for (out, i) in out.iter_mut().zip(range.clone()) {
+                        *out = place(inverse(i));
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -5,11 +5,9 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::{
     hash::{self, Key},
-    lattice::{self, Strata},
+    lattice::{self, STORED, Strata},
 };
 
 /// The columns.
@@ -17,32 +15,65 @@ use super::{
 pub struct Hammersley {
     n: u64,
     columns: Strata,
+    /// The columns twice over, so that all n are in a row from any on, and the heights; nothing where n is large.
+    turned: Vec<Column>,
+    heights: Vec<u64>,
+}
+
+/// The places in a column: the first of them, and whether there is one more than ⌊2^53/n⌋.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    start: u64,
+    longer: u64,
 }
 
 impl Hammersley {
     /// The points of a set of `n`.
     pub fn new(n: u64) -> Self {
+        let columns = Strata::new(n);
+        let column = |i: u64| {
+            let [start, end] = columns.bounds(i % n);
+            let longer = end - start - columns.least();
+            Column { start, longer }
+        };
+        let stored = if n <= STORED { n } else { 0 };
         Self {
+            turned: (0..2 * stored).map(column).collect(),
+            heights: (0..stored).map(u64::reverse_bits).collect(),
             n,
-            columns: Strata::new(n),
+            columns,
         }
     }
 
-    /// Appends the points with these indices.
-    pub fn points(&self, key: Key, range: Range<u64>, out: &mut Vec<DVec2>) {
+    /// Places the points with these indices.
+    #[inline(always)]
+    pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [columns, within, shift] = [0, 1, 2].map(|index| key.bits(index));
         let columns = hash::scale(columns, self.n);
-        out.extend(range.map(|i| {
-            let to_the_edge = self.n - columns;
-            let column = if i < to_the_edge {
-                i + columns
-            } else {
-                i - to_the_edge
-            };
-            DVec2::new(
-                self.columns.choose(column, within),
-                lattice::offset_of_bits(i.reverse_bits().wrapping_add(shift)),
-            )
-        }));
+        if self.turned.is_empty() {
+            for (i, (x, y)) in range.zip(x.iter_mut().zip(y)) {
+                let to_the_edge = self.n - columns;
+                let column = if i < to_the_edge {
+                    i + columns
+                } else {
+                    i - to_the_edge
+                };
+                *x = self.columns.choose(column, within);
+                *y = lattice::offset_of_bits(i.reverse_bits().wrapping_add(shift));
+            }
+            return;
+        }
+        let least = self.columns.least();
+        let place = hash::scale(within, least);
+        // In a longer column the place is the same or the next one.
+        let more = hash::scale(within, least + 1) - place;
+        let turned = &self.turned[(columns + range.start) as usize..];
+        for (x, column) in x.iter_mut().zip(turned) {
+            *x = lattice::offset(column.start + place + (column.longer & more));
+        }
+        let heights = &self.heights[range.start as usize..];
+        for (y, height) in y.iter_mut().zip(heights) {
+            *y = lattice::offset_of_bits(height.wrapping_add(shift));
+        }
     }
 }

@@ -6,10 +6,6 @@
 
 use std::ops::Range;
 
-use multiversion::multiversion;
-
-use crate::math::Vectors;
-
 /// The odd number nearest to 2^64 divided by the golden ratio: the step of SplitMix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
@@ -40,29 +36,18 @@ impl Key {
     }
 
     /// Tells `each` two numbers for each of some points, with the indices 2i and 2i + 1: some at a time, and the index of the first of them.
-    #[inline]
-    pub fn pairs(
-        self,
-        points: Range<u64>,
-        vectors: Vectors,
-        mut each: impl FnMut(u64, &[[u64; 2]]),
-    ) {
+    #[inline(always)]
+    pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
         let mut room = [[0; 2]; BATCH];
         let mut first = points.start;
         while first < points.end {
             let count = (points.end - first).min(BATCH as u64);
             let pairs = &mut room[..count as usize];
-            self.fill(2 * first, vectors, pairs.as_flattened_mut());
+            for (index, out) in (2 * first..).zip(pairs.as_flattened_mut()) {
+                *out = self.bits(index);
+            }
             each(first, pairs);
             first += count;
-        }
-    }
-
-    /// Fills `out` with the numbers whose indices are `first` and those behind it.
-    pub fn fill(self, first: u64, vectors: Vectors, out: &mut [u64]) {
-        match vectors {
-            Vectors::Widest => fill_widely(self, first, out),
-            Vectors::Baseline => fill(self, first, out),
         }
     }
 
@@ -72,22 +57,30 @@ impl Key {
     }
 }
 
-#[multiversion(targets = "simd")]
-fn fill_widely(key: Key, first: u64, out: &mut [u64]) {
-    fill(key, first, out);
-}
-
-#[inline(always)]
-fn fill(key: Key, first: u64, out: &mut [u64]) {
-    for (index, out) in (first..).zip(out) {
-        *out = key.bits(index);
-    }
-}
-
 /// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1.
 #[inline]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
+}
+
+/// The same in steps that loops make vectors of.
+#[inline(always)]
+pub fn scale_by_halves(bits: u64, n: u64) -> u64 {
+    const LOW: u64 = u32::MAX as u64;
+    let (high, low) = (bits >> 32, bits & LOW);
+    let (n_high, n_low) = (n >> 32, n & LOW);
+    // Each product is at most (2^32 − 1)², and so is what it and a half make at most 2^64 − 1.
+    let middle = high * n_low + (low * n_low >> 32);
+    let other = low * n_high + (middle & LOW);
+    high * n_high + (middle >> 32) + (other >> 32)
+}
+
+/// The same for a small `n`.
+#[inline(always)]
+pub fn scale_short(bits: u64, n: u32) -> u64 {
+    let n = u64::from(n);
+    let (high, low) = (bits >> 32, bits & u64::from(u32::MAX));
+    (high * n + (low * n >> 32)) >> 32
 }
 
 /// The finaliser of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
@@ -122,21 +115,11 @@ mod tests {
     }
 
     #[test]
-    fn vectors_of_any_width_make_the_same_numbers() {
+    fn pairs_are_the_numbers_in_turn() {
         let key = Key::new(7, 1);
-        for count in [0, 1, 2, 7, 8, 63, 64, 65, 200] {
-            for first in [0, 5, u64::MAX / 2, u64::MAX - 300] {
-                let expected: Vec<_> = (first..first + count).map(|i| key.bits(i)).collect();
-                for vectors in [Vectors::Widest, Vectors::Baseline] {
-                    let mut numbers = vec![0; count as usize];
-                    key.fill(first, vectors, &mut numbers);
-                    assert_eq!(numbers, expected, "{count} from {first} on, {vectors:?}");
-                }
-            }
-        }
         for range in [0..0, 3..4, 1..64, 5..300] {
             let mut next = range.start;
-            key.pairs(range.clone(), Vectors::Widest, |first, pairs| {
+            key.pairs(range.clone(), |first, pairs| {
                 assert_eq!(first, next);
                 for pair in pairs {
                     assert_eq!(*pair, [key.bits(2 * next), key.bits(2 * next + 1)]);
@@ -144,6 +127,25 @@ mod tests {
                 }
             });
             assert_eq!(next, range.end);
+        }
+    }
+
+    #[test]
+    fn halves_make_the_same_product() {
+        let key = Key::new(3, 4);
+        let edges = [0, 1, u64::from(u32::MAX), 1 << 32, u64::MAX - 1, u64::MAX];
+        let numbers: Vec<_> = edges
+            .into_iter()
+            .chain((0..300).map(|i| key.bits(i)))
+            .collect();
+        for (i, &bits) in numbers.iter().enumerate() {
+            for &n in &numbers[i..] {
+                for n in [n, n >> 11, n >> 40] {
+                    assert_eq!(scale_by_halves(bits, n), scale(bits, n));
+                }
+                let n = (n >> 32) as u32;
+                assert_eq!(scale_short(bits, n), scale(bits, u64::from(n)));
+            }
         }
     }
 

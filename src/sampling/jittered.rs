@@ -3,14 +3,11 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::{
     bricks::Bricks,
     hash::Key,
     lattice::{self, Strata},
 };
-use crate::math::Vectors;
 
 /// The cells, and the strata that bound them.
 #[derive(Debug)]
@@ -33,19 +30,22 @@ impl Jittered {
         }
     }
 
-    /// Appends the points with these indices, row by row.
-    pub fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
+    /// Places the points with these indices, row by row.
+    #[inline(always)]
+    pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [short, _] = self.bricks.lengths();
-        key.pairs(range, vectors, |first, mut pairs| {
+        let mut points = x.iter_mut().zip(y);
+        key.pairs(range, |first, mut pairs| {
             let end = first + pairs.len() as u64;
             for (row, columns) in self.bricks.parts(first..end) {
                 let strata = &self.columns[(row.cells - short) as usize];
                 let places = self.rows.places(row.first, row.first + row.cells);
                 let (here, rest) = pairs.split_at((columns.end - columns.start) as usize);
                 pairs = rest;
-                out.extend(columns.zip(here).map(|(column, &[x, y])| {
-                    DVec2::new(strata.choose(column, x), lattice::choose(places.clone(), y))
-                }));
+                for ((column, bits), (x, y)) in columns.zip(here).zip(&mut points) {
+                    *x = strata.choose(column, bits[0]);
+                    *y = lattice::choose(places.clone(), bits[1]);
+                }
             }
         });
     }

@@ -27,6 +27,7 @@ mod jittered;
 mod lattice;
 mod multi_jittered;
 mod order;
+mod points;
 mod random;
 mod regular;
 mod scatter;
@@ -36,7 +37,9 @@ mod sobol;
 use std::ops::Range;
 
 use glam::DVec2;
+use multiversion::multiversion;
 
+pub use self::points::Points;
 use self::{
     bricks::Bricks, halton::Halton, hammersley::Hammersley, hash::Key, jittered::Jittered,
     multi_jittered::MultiJittered, order::Order, scatter::Scatter, sobol::Sobol,
@@ -156,29 +159,38 @@ impl Sampling {
     ///
     /// What a pixel's points have in common is prepared anew in each call, so ask for a few thousand at once.
     pub fn points(&self, x: u32, y: u32, count: u64, range: Range<u64>, out: &mut Vec<DVec2>) {
-        self.points_by(Vectors::Widest, [x, y], count, range, out);
+        let mut points = Points::default();
+        self.place(Vectors::Widest, [x, y], count, range, &mut points);
+        out.extend((0..points.len()).map(|index| points.get(index)));
     }
 
-    /// The same points, by vectors of either kind.
-    pub fn points_by(
+    /// The same points in the place of those before, by vectors of either kind.
+    pub fn place(
         &self,
         vectors: Vectors,
         [x, y]: [u32; 2],
         count: u64,
         range: Range<u64>,
-        out: &mut Vec<DVec2>,
+        out: &mut Points,
     ) {
         debug_assert!(range.end <= count);
         let key = self.key.part(u64::from(y) << 32 | u64::from(x));
-        match &self.share {
-            Share::Even(even) => {
-                let [few, more] = &even.patterns;
-                let pattern = if count == even.count { few } else { more };
-                pattern.points(key, range, vectors, out);
-            }
-            Share::Scattered(_) => random::points(key, range, vectors, out),
+        let pattern = match &self.share {
+            Share::Even(even) if count == even.count => &even.patterns[0],
+            Share::Even(even) => &even.patterns[1],
+            Share::Scattered(_) => &Pattern::Random,
+        };
+        let out = out.room(range.clone().count());
+        match vectors {
+            Vectors::Widest => place_widely(pattern, key, range, out),
+            Vectors::Baseline => pattern.place(key, range, out),
         }
     }
+}
+
+#[multiversion(targets = "simd")]
+fn place_widely(pattern: &Pattern, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
+    pattern.place(key, range, out);
 }
 
 impl Even {
@@ -223,16 +235,18 @@ impl Pattern {
         }
     }
 
-    fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
+    /// Fills two lists with the coordinates of the points with these indices.
+    #[inline(always)]
+    fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         match self {
             Self::Empty => {}
-            Self::Regular(bricks) => regular::points(bricks, range, out),
-            Self::Random => random::points(key, range, vectors, out),
-            Self::Jittered(jittered) => jittered.points(key, range, vectors, out),
-            Self::MultiJittered(grid) => grid.points(key, range, vectors, out),
-            Self::Hammersley(hammersley) => hammersley.points(key, range, out),
-            Self::Halton(halton) => halton.points(key, range, out),
-            Self::Sobol(sobol) => sobol.points(key, range, vectors, out),
+            Self::Regular(bricks) => regular::place(bricks, range, out),
+            Self::Random => random::place(key, range, out),
+            Self::Jittered(jittered) => jittered.place(key, range, out),
+            Self::MultiJittered(grid) => grid.place(key, range, out),
+            Self::Hammersley(hammersley) => hammersley.place(key, range, out),
+            Self::Halton(halton) => halton.place(key, range, out),
+            Self::Sobol(sobol) => sobol.place(key, range, out),
         }
     }
 }

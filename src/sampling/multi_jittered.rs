@@ -9,10 +9,14 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
+use super::{
+    hash::{Key, scale_by_halves},
+    lattice::{self, Strata},
+    shuffle::Shuffle,
+};
 
-use super::{hash::Key, lattice::Strata, shuffle::Shuffle};
-use crate::math::Vectors;
+/// So many points are placed at a time.
+const BATCH: usize = 64;
 
 /// A grid of cells, with the fine strata that they are made of.
 #[derive(Debug)]
@@ -43,24 +47,61 @@ impl MultiJittered {
         }
     }
 
-    /// Appends the points with these indices, row by row.
-    pub fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
+    /// Places the points with these indices, row by row.
+    #[inline(always)]
+    pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         if range.is_empty() {
             return;
         }
         let sigma = Shuffle::new(self.rows, key.part(0));
         let tau = Shuffle::new(self.columns, key.part(1));
         let (mut i, mut j) = (range.start % self.columns, range.start / self.columns);
-        key.pairs(range, vectors, |_, pairs| {
-            out.extend(pairs.iter().map(|&[x, y]| {
-                let column = i * self.rows + sigma.get(j);
-                let row = j * self.columns + tau.get(i);
+        let mut first = 2 * range.start;
+        let (mut columns, mut rows) = (Bounds::default(), Bounds::default());
+        for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
+            for point in 0..x.len() {
+                columns.set(point, self.strata.bounds(i * self.rows + sigma.get(j)));
+                rows.set(point, self.strata.bounds(j * self.columns + tau.get(i)));
                 i += 1;
                 if i == self.columns {
                     (i, j) = (0, j + 1);
                 }
-                DVec2::new(self.strata.choose(column, x), self.strata.choose(row, y))
-            }));
-        });
+            }
+            columns.choose(key, first, x);
+            rows.choose(key, first + 1, y);
+            first += 2 * BATCH as u64;
+        }
+    }
+}
+
+/// The strata of some points on one axis: the first of their places, and the first behind them.
+struct Bounds {
+    starts: [u64; BATCH],
+    ends: [u64; BATCH],
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self {
+            starts: [0; BATCH],
+            ends: [0; BATCH],
+        }
+    }
+}
+
+impl Bounds {
+    #[inline(always)]
+    fn set(&mut self, point: usize, [start, end]: [u64; 2]) {
+        (self.starts[point], self.ends[point]) = (start, end);
+    }
+
+    /// Chooses a place in each stratum by the numbers of a key, every other one from `first` on.
+    #[inline(always)]
+    fn choose(&self, key: Key, first: u64, out: &mut [f64]) {
+        let bounds = self.starts.iter().zip(&self.ends);
+        for (point, (out, (&start, &end))) in (0..).zip(out.iter_mut().zip(bounds)) {
+            let place = start + scale_by_halves(key.bits(first + 2 * point), end - start);
+            *out = lattice::offset(place);
+        }
     }
 }

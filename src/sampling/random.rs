@@ -2,18 +2,13 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::{hash::Key, lattice};
-use crate::math::Vectors;
 
-/// Appends the points with these indices.
-pub fn points(key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
-    key.pairs(range, vectors, |_, pairs| {
-        out.extend(
-            pairs
-                .iter()
-                .map(|bits| DVec2::from(bits.map(lattice::offset_of_bits))),
-        );
-    });
+/// Places the points with these indices.
+#[inline(always)]
+pub fn place(key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
+    for (i, (x, y)) in (range.start..).zip(x.iter_mut().zip(y)) {
+        *x = lattice::offset_of_bits(key.bits(2 * i));
+        *y = lattice::offset_of_bits(key.bits(2 * i + 1));
+    }
 }

@@ -2,17 +2,19 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::bricks::Bricks;
 
-/// Appends the points with these indices: the middles of the cells of [`Bricks`], row by row. The same in every pixel.
+/// Places the points with these indices: the middles of the cells of [`Bricks`], row by row. The same in every pixel.
 ///
 /// Point i of a row of n lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at exactly the negative of that.
-pub fn points(bricks: &Bricks, range: Range<u64>, out: &mut Vec<DVec2>) {
+#[inline(always)]
+pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
+    let mut points = x.iter_mut().zip(y);
     for (row, columns) in bricks.parts(range) {
-        let y = middle(row.first, row.cells, bricks.cells());
-        out.extend(columns.map(|i| DVec2::new(middle(i, 1, row.cells), y)));
+        let height = middle(row.first, row.cells, bricks.cells());
+        for (i, (x, y)) in columns.zip(&mut points) {
+            (*x, *y) = (middle(i, 1, row.cells), height);
+        }
     }
 }
 

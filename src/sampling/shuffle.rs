@@ -1,6 +1,6 @@
 //! Random permutations of 0 … n − 1.
 
-use super::hash::Key;
+use super::hash::{Key, scale_short};
 
 /// Up to this length a permutation is stored, and uniform among all; a longer one is computed entry by entry.
 const STORED: u64 = 1 << 12;
@@ -26,6 +26,7 @@ pub enum Shuffle {
 
 impl Shuffle {
     /// The permutation of 0 … n − 1 that `key` decides.
+    #[inline(always)]
     pub fn new(n: u64, key: Key) -> Self {
         if n <= SHORT as u64 {
             let mut entries = [0; SHORT];
@@ -52,11 +53,19 @@ impl Shuffle {
 }
 
 /// Fills `entries` with a permutation (Durstenfeld 1964, "inside out").
+#[inline(always)]
 fn fisher_yates(entries: &mut [u16], key: Key) {
-    for i in 0..entries.len() {
-        let j = key.below(i as u64, i as u64 + 1) as usize;
-        entries[i] = entries[j];
-        entries[j] = i as u16;
+    let mut chosen = [0; SHORT];
+    for first in (0..entries.len()).step_by(SHORT) {
+        let count = SHORT.min(entries.len() - first);
+        // All random numbers before any exchange: these need one another, and those do not.
+        for (i, j) in (first as u64..).zip(&mut chosen[..count]) {
+            *j = scale_short(key.bits(i), i as u32 + 1) as u16;
+        }
+        for (i, &j) in (first..).zip(&chosen[..count]) {
+            entries[i] = entries[usize::from(j)];
+            entries[usize::from(j)] = i as u16;
+        }
     }
 }
 

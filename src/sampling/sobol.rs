@@ -12,10 +12,7 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::{hash::Key, lattice};
-use crate::math::Vectors;
 
 /// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
 const LEVELS: u32 = 6;
@@ -46,25 +43,26 @@ impl Sobol {
         }
     }
 
-    /// Appends the points with these indices.
-    pub fn points(&self, key: Key, range: Range<u64>, vectors: Vectors, out: &mut Vec<DVec2>) {
-        let axes = [0, 1].map(|axis| Tree::new(key.part(axis), self.depth));
+    /// Places the points with these indices.
+    #[inline(always)]
+    pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
+        let axes = [
+            Tree::new(key.part(0), self.depth),
+            Tree::new(key.part(1), self.depth),
+        ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            let leaves = axes.each_ref().map(|axis| axis.leaves(vectors));
-            out.extend(tops.iter().map(|top| {
-                let offset =
-                    |axis: usize| lattice::offset_of_bits(leaves[axis][usize::from(top[axis])]);
-                DVec2::new(offset(0), offset(1))
-            }));
+            let leaves = [axes[0].leaves(), axes[1].leaves()];
+            for (top, (x, y)) in tops.iter().zip(x.iter_mut().zip(y)) {
+                *x = leaves[0][usize::from(top[0])];
+                *y = leaves[1][usize::from(top[1])];
+            }
             return;
         }
-        out.extend(range.map(|i| {
-            DVec2::new(
-                lattice::offset_of_bits(axes[0].scramble(i.reverse_bits())),
-                lattice::offset_of_bits(axes[1].scramble(pascal(i).reverse_bits())),
-            )
-        }));
+        for (i, (x, y)) in range.zip(x.iter_mut().zip(y)) {
+            *x = lattice::offset_of_bits(axes[0].scramble(i.reverse_bits()));
+            *y = lattice::offset_of_bits(axes[1].scramble(pascal(i).reverse_bits()));
+        }
     }
 }
 
@@ -110,14 +108,16 @@ impl Tree {
         }
     }
 
-    /// All fractions of which the topmost bits alone matter, scrambled, where one hash decides all of these.
-    fn leaves(&self, vectors: Vectors) -> [u64; 1 << LEVELS] {
-        let mut leaves = [0; 1 << LEVELS];
+    /// The offsets of all fractions of which the topmost bits alone matter, scrambled, where one hash decides all of these.
+    #[inline(always)]
+    fn leaves(&self) -> [f64; 1 << LEVELS] {
+        let mut leaves = [0.0; 1 << LEVELS];
         let count = 1 << self.depth;
-        self.key.fill(count, vectors, &mut leaves[..count as usize]);
-        for (leaf, &top) in leaves.iter_mut().zip(&self.top) {
+        let hashes = (count..2 * count).map(|index| self.key.bits(index));
+        for ((leaf, &top), hash) in leaves.iter_mut().zip(&self.top).zip(hashes) {
             // Two steps, as the depth may be 0.
-            *leaf = u64::from(top) << 1 << (u64::BITS - 1 - self.depth) | *leaf >> self.depth;
+            let bits = u64::from(top) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
+            *leaf = lattice::offset_of_bits(bits);
         }
         leaves
     }

@@ -1,10 +1,9 @@
 //! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
 
-use glam::DVec2;
 use multiversion::multiversion;
 
 use super::{
-    Depth, Pattern, Pixel,
+    Depth, Pattern, Pixel, Surface,
     local::{Conic, Line, Local, ROUNDINGS},
     squares::Squares,
 };
@@ -13,9 +12,6 @@ use crate::math::{UP, Vectors};
 /// So many samples are evaluated at a time.
 pub(super) const CHUNK: usize = 64;
 
-/// The widest vectors that loops are padded for.
-const LANES: usize = 8;
-
 /// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1, its second colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
 pub(super) const DOUBT: f64 = -1.0;
@@ -23,8 +19,6 @@ pub(super) const DOUBT: f64 = -1.0;
 /// The samples of a chunk.
 #[derive(Debug)]
 pub(super) struct Lanes {
-    x: [f64; CHUNK],
-    y: [f64; CHUNK],
     /// What is seen so far.
     pub(super) seen: [f64; CHUNK],
     /// How deep that lies.
@@ -43,8 +37,6 @@ impl Default for Lanes {
     fn default() -> Self {
         let zeros = [0.0; CHUNK];
         Self {
-            x: zeros,
-            y: zeros,
             seen: zeros,
             nearest: zeros,
             margin: zeros,
@@ -56,66 +48,164 @@ impl Default for Lanes {
 }
 
 #[multiversion(targets = "simd")]
-fn see_widely(pixel: &mut Pixel, points: &[DVec2]) {
-    pixel.see(points);
+fn see_widely(pixel: &mut Pixel, points: At, count: usize) {
+    pixel.see(points, count);
 }
 
+/// Where samples lie: as many numbers of each coordinate, a multiple of eight for the widest vectors.
+pub(super) type At<'a> = [&'a [f64]; 2];
+
 impl Pixel {
-    /// What the samples of a chunk see.
-    pub(super) fn chunk(&mut self, points: &[DVec2], vectors: Vectors) {
+    /// What the first `count` samples of a chunk see, and how often each colour is seen.
+    pub(super) fn chunk(&mut self, points: At, count: usize, vectors: Vectors) {
         match vectors {
-            Vectors::Widest => see_widely(self, points),
-            Vectors::Baseline => self.see(points),
+            Vectors::Widest => see_widely(self, points, count),
+            Vectors::Baseline => self.see(points, count),
         }
     }
 
     #[inline(always)]
-    fn see(&mut self, points: &[DVec2]) {
-        let length = points.len().next_multiple_of(LANES).min(CHUNK);
+    fn see(&mut self, points: At, count: usize) {
+        let length = points[0].len();
         let lanes = &mut self.lanes;
-        for ((x, y), point) in lanes.x.iter_mut().zip(&mut lanes.y).zip(points) {
-            (*x, *y) = (point.x, point.y);
-        }
-        lanes.seen[..length].fill(BACKGROUND);
-        if self.depths.is_some() {
-            lanes.nearest[..length].fill(f64::NEG_INFINITY);
-        }
-        for surface in &self.surfaces {
-            let [start, end] = surface.edges;
-            lanes.margin(&self.lines[start..end], surface.conic.as_ref(), length);
-            let shown = match &surface.pattern {
-                Pattern::Plain(code) => Some(*code),
-                Pattern::Lines { end: last, odd } => {
-                    let codes = [*odd, !*odd].map(|odd| surface.code(odd));
-                    lanes.between(&self.lines[end..*last], codes, length);
-                    None
-                }
-                Pattern::Squares(squares) => {
-                    let codes = [squares.odd, !squares.odd].map(|odd| surface.code(odd));
-                    lanes.squares(squares, codes, length);
-                    None
-                }
-            };
-            if let Some(code) = shown {
-                lanes.shown[..length].fill(code);
+        match self.surfaces.as_slice() {
+            // It fills the pixel.
+            [surface] if surface.edges[0] == surface.edges[1] && surface.conic.is_none() => {
+                surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.seen);
             }
-            match self.depths {
-                None => lanes.cover(length),
-                Some(apart) => {
-                    lanes.depths(&surface.depth, &self.planes, length);
-                    lanes.merge(apart, length);
+            surfaces => {
+                lanes.seen[..length].fill(BACKGROUND);
+                if self.depths.is_some() {
+                    lanes.nearest[..length].fill(f64::NEG_INFINITY);
+                }
+                for surface in surfaces {
+                    let [start, end] = surface.edges;
+                    lanes.margin(&self.lines[start..end], surface.conic.as_ref(), points);
+                    surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.shown);
+                    match self.depths {
+                        None => lanes.cover(length),
+                        Some(apart) => {
+                            lanes.depths(&surface.depth, &self.planes, points);
+                            lanes.merge(apart, length);
+                        }
+                    }
                 }
             }
         }
+        let mut left = count as u64;
+        for color in &mut self.colors {
+            if left == 0 {
+                break;
+            }
+            let mut found = 0;
+            for (index, &lane) in (0..).zip(&lanes.seen[..length]) {
+                found += u64::from((lane == color.code) & (index < count as u64));
+            }
+            color.count += found;
+            left -= found;
+        }
+        self.doubts = left;
+    }
+}
+
+impl Surface {
+    /// Which colour each sample shows that hits it.
+    #[inline(always)]
+    fn show(&self, lines: &[Line], points: At, sign: &mut [f64; CHUNK], shown: &mut [f64; CHUNK]) {
+        let shown = &mut shown[..points[0].len()];
+        match &self.pattern {
+            Pattern::Plain(code) => shown.fill(*code),
+            Pattern::Lines { end, odd } => {
+                let codes = [*odd, !*odd].map(|odd| self.code(odd));
+                between(&lines[self.edges[1]..*end], codes, points, sign, shown);
+            }
+            Pattern::Squares(squares) => {
+                let codes = [squares.odd, !squares.odd].map(|odd| self.code(odd));
+                in_squares(squares, codes, points, shown);
+            }
+        }
+    }
+}
+
+/// Which side of an odd number of lines a sample is on.
+#[inline(always)]
+fn between(
+    lines: &[Line],
+    [even, odd]: [f64; 2],
+    [x, y]: At,
+    sign: &mut [f64; CHUNK],
+    shown: &mut [f64],
+) {
+    let side = |value: f64| {
+        let beyond = if value < -1.0 { odd } else { DOUBT };
+        if value > 1.0 { even } else { beyond }
+    };
+    if let [Line([a, b, c])] = lines {
+        for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
+            *shown = side(a * x + b * y + c);
+        }
+        return;
+    }
+    let least = shown;
+    let sign = &mut sign[..least.len()];
+    sign.fill(1.0);
+    least.fill(f64::INFINITY);
+    for Line([a, b, c]) in lines {
+        let samples = x.iter().zip(y);
+        for ((sign, least), (&x, &y)) in sign.iter_mut().zip(&mut *least).zip(samples) {
+            let value = a * x + b * y + c;
+            *sign *= value;
+            let size = value.abs();
+            *least = if size < *least { size } else { *least };
+        }
+    }
+    for (&sign, shown) in sign.iter().zip(least) {
+        let code = if sign > 0.0 { even } else { odd };
+        *shown = if *shown > 1.0 { code } else { DOUBT };
+    }
+}
+
+/// In which squares of a board the samples lie.
+#[inline(always)]
+fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
+    /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
+    const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+    const ONE: u64 = 1.0f64.to_bits();
+    let Local { factors: l, rad } = squares.below;
+    let [n0, n1] = squares.across.map(|across| across.factors);
+    let rads = squares.across.map(|across| across.rad);
+    for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
+        let below = l[0] * x + l[1] * y + l[2];
+        let inverse = 1.0 / below;
+        let double = 2.0 * UP * inverse;
+        let place = |n: [f64; 3], own: f64| {
+            let value = (n[0] * x + n[1] * y + n[2]) * inverse;
+            // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ| |ℓ' − ℓ|)/ℓ', and ℓ' is at least ℓ/2.
+            let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * ROUNDINGS;
+            let middle = value - 0.5;
+            let rounded = middle + ROUND;
+            let room = 0.5 - (middle - (rounded - ROUND)).abs();
+            (rounded.to_bits(), room - error * UP)
+        };
+        let ((bits0, room0), (bits1, room1)) = (place(n0, rads[0]), place(n1, rads[1]));
+        let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
+        let code = if parity > 0.0 { even } else { odd };
+        // Not so for NaN either, and the error of what is too great for the rounding is too great, too.
+        let first = if room0 > 0.0 { code } else { DOUBT };
+        let second = if room1 > 0.0 { first } else { DOUBT };
+        *shown = if below > 2.0 * UP * rad {
+            second
+        } else {
+            DOUBT
+        };
     }
 }
 
 impl Lanes {
     /// The least of the boundaries' values, in units of their errors.
     #[inline(always)]
-    fn margin(&mut self, edges: &[Line], conic: Option<&Conic>, length: usize) {
-        let (x, y) = (&self.x[..length], &self.y[..length]);
-        let margin = &mut self.margin[..length];
+    fn margin(&mut self, edges: &[Line], conic: Option<&Conic>, [x, y]: At) {
+        let margin = &mut self.margin[..x.len()];
         match conic {
             None => margin.fill(f64::INFINITY),
             Some(conic) => {
@@ -132,65 +222,6 @@ impl Lanes {
         }
     }
 
-    /// Which side of an odd number of lines a sample is on.
-    #[inline(always)]
-    fn between(&mut self, lines: &[Line], [even, odd]: [f64; 2], length: usize) {
-        let (x, y) = (&self.x[..length], &self.y[..length]);
-        let (sign, least) = (&mut self.sign[..length], &mut self.shown[..length]);
-        sign.fill(1.0);
-        least.fill(f64::INFINITY);
-        for Line([a, b, c]) in lines {
-            let samples = x.iter().zip(y);
-            for ((sign, least), (&x, &y)) in sign.iter_mut().zip(&mut *least).zip(samples) {
-                let value = a * x + b * y + c;
-                *sign *= value;
-                let size = value.abs();
-                *least = if size < *least { size } else { *least };
-            }
-        }
-        for (&sign, shown) in sign.iter().zip(least) {
-            let code = if sign > 0.0 { even } else { odd };
-            *shown = if *shown > 1.0 { code } else { DOUBT };
-        }
-    }
-
-    /// In which squares of a board the samples lie.
-    #[inline(always)]
-    fn squares(&mut self, squares: &Squares, [even, odd]: [f64; 2], length: usize) {
-        /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
-        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
-        const ONE: u64 = 1.0f64.to_bits();
-        let (x, y) = (&self.x[..length], &self.y[..length]);
-        let Local { factors: l, rad } = squares.below;
-        let [n0, n1] = squares.across.map(|across| across.factors);
-        let rads = squares.across.map(|across| across.rad);
-        for ((shown, &x), &y) in self.shown[..length].iter_mut().zip(x).zip(y) {
-            let below = l[0] * x + l[1] * y + l[2];
-            let inverse = 1.0 / below;
-            let double = 2.0 * UP * inverse;
-            let place = |n: [f64; 3], own: f64| {
-                let value = (n[0] * x + n[1] * y + n[2]) * inverse;
-                // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ| |ℓ' − ℓ|)/ℓ', and ℓ' is at least ℓ/2.
-                let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * ROUNDINGS;
-                let middle = value - 0.5;
-                let rounded = middle + ROUND;
-                let room = 0.5 - (middle - (rounded - ROUND)).abs();
-                (rounded.to_bits(), room - error * UP)
-            };
-            let ((bits0, room0), (bits1, room1)) = (place(n0, rads[0]), place(n1, rads[1]));
-            let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
-            let code = if parity > 0.0 { even } else { odd };
-            // Not so for NaN either, and the error of what is too great for the rounding is too great, too.
-            let first = if room0 > 0.0 { code } else { DOUBT };
-            let second = if room1 > 0.0 { first } else { DOUBT };
-            *shown = if below > 2.0 * UP * rad {
-                second
-            } else {
-                DOUBT
-            };
-        }
-    }
-
     /// Puts a surface in front of all so far.
     #[inline(always)]
     fn cover(&mut self, length: usize) {
@@ -203,9 +234,8 @@ impl Lanes {
 
     /// The inverse depths of a surface.
     #[inline(always)]
-    fn depths(&mut self, depth: &Depth, planes: &[Local], length: usize) {
-        let (x, y) = (&self.x[..length], &self.y[..length]);
-        let out = &mut self.depth[..length];
+    fn depths(&mut self, depth: &Depth, planes: &[Local], [x, y]: At) {
+        let out = &mut self.depth[..x.len()];
         match *depth {
             Depth::Unknown => out.fill(f64::NAN),
             Depth::Least([start, end]) => {

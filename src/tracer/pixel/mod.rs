@@ -46,7 +46,22 @@ pub struct Pixel {
     planes: Vec<Local>,
     /// Whether samples are to be traced one by one.
     is_hard: bool,
+    /// What may be seen, where surfaces are told by forms.
+    colors: Vec<Color>,
+    /// How many samples of the last chunk are not certain.
+    doubts: u64,
     lanes: Lanes,
+}
+
+/// A colour that may be seen in a pixel.
+#[derive(Debug)]
+struct Color {
+    /// What stands for it.
+    code: f64,
+    /// Its slot in the palette.
+    slot: usize,
+    /// How many samples have seen it.
+    count: u64,
 }
 
 /// What a pixel shows of an object.
@@ -98,7 +113,11 @@ impl World {
     ) {
         (pixel.x, pixel.y) = (x, y);
         pixel.live.clear();
-        pixel.live.extend_from_slice(live);
+        match live {
+            // Most often, and then without a call to copy it.
+            [only] => pixel.live.push(*only),
+            _ => pixel.live.extend_from_slice(live),
+        }
         let prepared = match checks {
             Some(checks) => pixel.prepare_checks(checks),
             None => pixel.prepare(self),
@@ -107,55 +126,63 @@ impl World {
     }
 
     /// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of the palette, each any number
-    /// of times.
+    /// of times. The coordinates of the offsets are two lists, filled up with any others to a multiple of eight.
     pub fn count(
         &self,
         pixel: &mut Pixel,
-        points: &[DVec2],
+        [x, y]: [&[f64]; 2],
+        samples: usize,
         vectors: Vectors,
         mut count: impl FnMut(usize, u64),
     ) {
-        if pixel.is_hard || points.len() < FEW {
-            for &point in points {
-                count(
-                    self.slot_among(pixel.x, pixel.y, point, pixel.live.iter()),
-                    1,
-                );
-            }
+        let alone = |pixel: &Pixel, index: usize| {
+            let offset = DVec2::new(x[index], y[index]);
+            self.slot_among(pixel.x, pixel.y, offset, pixel.live.iter())
+        };
+        if pixel.is_hard || samples < FEW {
+            (0..samples).for_each(|index| count(alone(pixel, index), 1));
             return;
         }
-        for points in points.chunks(CHUNK) {
-            pixel.chunk(points, vectors);
-            let seen = &pixel.lanes.seen[..points.len()];
-            let mut left = points.len() as u64;
-            let mut tell = |code: f64, slot: usize| {
-                let lanes = seen.iter().filter(|&&lane| lane == code).count() as u64;
-                if lanes > 0 {
-                    count(slot, lanes);
-                    left -= lanes;
-                }
-            };
-            for surface in &pixel.surfaces {
-                let [first, second] = self.slots(pixel.live[surface.place].object);
-                match surface.pattern {
-                    Pattern::Plain(code) if code == surface.code(true) => tell(code, second),
-                    Pattern::Plain(code) => tell(code, first),
-                    _ => {
-                        tell(surface.code(false), first);
-                        tell(surface.code(true), second);
-                    }
-                }
-            }
-            tell(BACKGROUND, self.background());
-            if left > 0 {
-                for (&point, &lane) in points.iter().zip(seen) {
-                    if lane == DOUBT {
-                        let slot = self.slot_among(pixel.x, pixel.y, point, pixel.live.iter());
-                        count(slot, 1);
+        self.may_see(pixel);
+        let chunks = x.chunks(CHUNK).zip(y.chunks(CHUNK));
+        for (first, (x, y)) in (0..samples).step_by(CHUNK).zip(chunks) {
+            let length = CHUNK.min(samples - first);
+            pixel.chunk([x, y], length, vectors);
+            if pixel.doubts > 0 {
+                for index in 0..length {
+                    if pixel.lanes.seen[index] == DOUBT {
+                        count(alone(pixel, first + index), 1);
                     }
                 }
             }
         }
+        for color in &pixel.colors {
+            if color.count > 0 {
+                count(color.slot, color.count);
+            }
+        }
+    }
+
+    /// Lists the colours that may be seen in a pixel.
+    fn may_see(&self, pixel: &mut Pixel) {
+        let color = |code: f64, slot: usize| Color {
+            code,
+            slot,
+            count: 0,
+        };
+        pixel.colors.clear();
+        for surface in &pixel.surfaces {
+            let [first, second] = self.slots(pixel.live[surface.place].object);
+            let codes = [false, true].map(|odd| surface.code(odd));
+            match surface.pattern {
+                Pattern::Plain(code) if code == codes[1] => pixel.colors.push(color(code, second)),
+                Pattern::Plain(code) => pixel.colors.push(color(code, first)),
+                _ => pixel
+                    .colors
+                    .extend([color(codes[0], first), color(codes[1], second)]),
+            }
+        }
+        pixel.colors.push(color(BACKGROUND, self.background()));
     }
 }
 
