@@ -7,6 +7,9 @@
 //! Where it is certain that one colour is seen, samples are neither placed nor traced: the mean of equal colours is that colour. In the
 //! other pixels they are traced many at a time, and against those objects alone that may be seen there.
 
+mod tally;
+mod tile;
+
 use std::{
     num::NonZero,
     ops::ControlFlow,
@@ -19,12 +22,16 @@ use std::{
 use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 use thiserror::Error;
 
+use self::{
+    tally::{Counts, Tally},
+    tile::{Samples, Tile},
+};
 use crate::{
     area::Area,
     exact::Integrator,
-    film::{self, Encoder, Film, TooLarge, mean},
+    film::{self, Encoder, Film, TooLarge},
     math::Vectors,
-    sampling::{Points, Sampling},
+    sampling::Sampling,
     tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
 };
 
@@ -261,7 +268,7 @@ struct Frame<'a, P> {
 
 impl<P: film::Pixel> Frame<'_, P> {
     /// The pixels of a tile, row by row; none once the render is cancelled.
-    fn tile(&self, tile: Area, tally: &mut Tally, room: &mut Room) -> Option<Vec<P>> {
+    fn tile(&self, tile: Area, tally: &mut Tally<P>, room: &mut Room) -> Option<Vec<P>> {
         let background = self.shown[self.world.background()];
         let mut film = Tile {
             area: tile,
@@ -301,7 +308,7 @@ impl<P: film::Pixel> Frame<'_, P> {
         live: &[Live],
         checks: Option<&Checks>,
         film: &mut Tile<P>,
-        tally: &mut Tally,
+        tally: &mut Tally<P>,
     ) {
         let index = film.area.index(x, y);
         let samples = film.samples.of(index);
@@ -315,7 +322,8 @@ impl<P: film::Pixel> Frame<'_, P> {
         } else {
             self.many(x, y, samples, live, tally);
         }
-        film.pixels[index] = self.finish(&mut tally.counts);
+        let Tally { counts, means, .. } = tally;
+        film.pixels[index] = means.take(counts, self.colors, self.encoder);
     }
 
     fn look(&self, at: [u32; 2], live: &[Live], checks: Option<&Checks>, pixel: &mut Pixel) {
@@ -325,7 +333,7 @@ impl<P: film::Pixel> Frame<'_, P> {
     }
 
     /// All samples of a pixel that has many, on all threads.
-    fn many(&self, x: u32, y: u32, samples: u64, live: &[Live], tally: &mut Tally) {
+    fn many(&self, x: u32, y: u32, samples: u64, live: &[Live], tally: &mut Tally<P>) {
         // A few thousand chunks at a time, so that what is gathered from the threads stays small.
         const BATCH: u64 = CHUNK << 10;
         let mut first = 0;
@@ -337,7 +345,7 @@ impl<P: film::Pixel> Frame<'_, P> {
                 .into_par_iter()
                 .fold(
                     || {
-                        let mut tally = Tally::new(slots);
+                        let mut tally = Tally::<P>::new(slots);
                         self.look([x, y], live, None, &mut tally.pixel);
                         tally
                     },
@@ -351,23 +359,28 @@ impl<P: film::Pixel> Frame<'_, P> {
                 .map(|tally| tally.counts)
                 .reduce(
                     || Counts::new(0),
-                    |a, b| if a.seen.is_empty() { b } else { a.plus(&b) },
+                    |mut a, b| {
+                        if a.is_empty() {
+                            return b;
+                        }
+                        a.merge(&b);
+                        a
+                    },
                 );
-            for &slot in &sums.seen {
-                tally.counts.add(slot, sums.of[slot]);
-            }
+            tally.counts.merge(&sums);
             (self.control.progress)(end - first);
             first = end;
         }
     }
 
     /// Counts up to [`CHUNK`] samples of a pixel that has `samples`, from the one with index `first` on.
-    fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, tally: &mut Tally) {
+    fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, tally: &mut Tally<P>) {
         let end = samples.min(first + CHUNK);
         let Tally {
             counts,
             pixel,
             points,
+            ..
         } = tally;
         let vectors = self.way.vectors();
         self.sampling
@@ -384,130 +397,6 @@ impl<P: film::Pixel> Frame<'_, P> {
                 vectors,
                 |slot, samples| counts.add(slot, samples),
             );
-        }
-    }
-
-    /// The mean of what was counted, which is forgotten.
-    fn finish(&self, counts: &mut Counts) -> P {
-        let pixel = match counts.seen.as_mut_slice() {
-            [slot] => self.shown[*slot],
-            slots => {
-                slots.sort_unstable();
-                let seen = slots
-                    .iter()
-                    .map(|&slot| (counts.of[slot], self.colors[slot]));
-                P::of(mean(seen), self.encoder)
-            }
-        };
-        counts.clear();
-        pixel
-    }
-}
-
-/// The pixels of a tile, row by row.
-struct Tile<P> {
-    area: Area,
-    samples: Samples,
-    pixels: Vec<P>,
-    /// How many samples are done that progress has not been told of.
-    unreported: u64,
-}
-
-/// How many samples the pixels of a tile have.
-enum Samples {
-    /// All of them.
-    Same(u64),
-    /// Each of them, row by row.
-    Each(Vec<u64>),
-}
-
-impl Samples {
-    fn of(&self, pixel: usize) -> u64 {
-        match self {
-            Self::Same(count) => *count,
-            Self::Each(counts) => counts[pixel],
-        }
-    }
-}
-
-impl<P: film::Pixel> Tile<P> {
-    /// Fills a part with the mean of samples that all see one colour.
-    fn fill(&mut self, part: Area, color: P) {
-        for y in part.y..part.y + part.height {
-            let start = self.area.index(part.x, y);
-            let row = start..start + part.width as usize;
-            let pixels = &mut self.pixels[row.clone()];
-            match &self.samples {
-                Samples::Same(0) => {}
-                Samples::Same(count) => {
-                    pixels.fill(color);
-                    self.unreported += count * u64::from(part.width);
-                }
-                Samples::Each(counts) => {
-                    for (pixel, &count) in pixels.iter_mut().zip(&counts[row]) {
-                        if count > 0 {
-                            *pixel = color;
-                        }
-                        self.unreported += count;
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// What a thread counts with.
-struct Tally {
-    counts: Counts,
-    /// The pixel, prepared.
-    pixel: Pixel,
-    /// Room for the points.
-    points: Points,
-}
-
-impl Tally {
-    fn new(slots: usize) -> Self {
-        Self {
-            counts: Counts::new(slots),
-            pixel: Pixel::default(),
-            points: Points::default(),
-        }
-    }
-}
-
-/// How often each colour was seen in a pixel.
-struct Counts {
-    /// By slot of the palette.
-    of: Vec<u64>,
-    /// The slots whose count is not 0, in any order. A palette may be long, and a pixel sees little of it.
-    seen: Vec<usize>,
-}
-
-impl Counts {
-    fn new(slots: usize) -> Self {
-        Self {
-            of: vec![0; slots],
-            seen: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, slot: usize, count: u64) {
-        if self.of[slot] == 0 {
-            self.seen.push(slot);
-        }
-        self.of[slot] += count;
-    }
-
-    fn plus(mut self, other: &Self) -> Self {
-        for &slot in &other.seen {
-            self.add(slot, other.of[slot]);
-        }
-        self
-    }
-
-    fn clear(&mut self) {
-        for slot in self.seen.drain(..) {
-            self.of[slot] = 0;
         }
     }
 }
