@@ -1,5 +1,7 @@
 //! What culling and tracing many samples at a time gain: `cargo bench --bench culling`. See README.md beside this file.
 
+mod clock;
+
 use std::{
     env, fs,
     hint::black_box,
@@ -12,9 +14,11 @@ use criterion::{Criterion, Throughput};
 use pinhole::{
     area::Area,
     film::Film,
+    math::Vectors,
     refine::coarse,
     render::{Control, Way, render_in_a_way},
-    sampling::Sampling,
+    report::numerics::textbook::Textbook,
+    sampling::{Points, Sampling},
     scene::{self, Count, Method, Scene},
     source::{Source, Sources},
     tracer::World,
@@ -42,6 +46,10 @@ fn main() {
     let arguments: Vec<_> = env::args().collect();
     if let Some(at) = arguments.iter().position(|argument| argument == "--once") {
         once(&arguments[at + 1..]);
+        return;
+    }
+    if arguments.iter().any(|argument| argument == "--price") {
+        price();
         return;
     }
     println!(
@@ -80,6 +88,8 @@ fn main() {
         "3000 tiny spheres",
         &sized(&read(&tiny(3000)), 96, Method::Hammersley, 4),
     );
+
+    price();
 
     let mut criterion = Criterion::default().configure_from_args();
     let scene = sized(&figure, 320, Method::MultiJittered, 64);
@@ -164,8 +174,63 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() {
     }
 }
 
+/// What certain decisions cost: rays a CPU second by the formulas of a textbook, which are right but for the hard cases, and as the plain way
+/// and `render` take them, in turns. Samples are placed in all of them.
+fn price() {
+    const SECONDS: f64 = 2.0;
+    let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
+    let rays = f64::from(640 * 360 * 64);
+    let names = ["a textbook's formulas", "one by one", "culled"];
+    let ways: [Box<dyn Fn()>; 3] = [
+        Box::new(textbook(&scene)),
+        Box::new(picture(&scene, Way::OneByOne)),
+        Box::new(picture(&scene, Way::Culled)),
+    ];
+    let mut best = [0.0_f64; 3];
+    for _ in 0..ROUNDS {
+        for (way, best) in ways.iter().zip(&mut best) {
+            let (start, mut pictures, mut seconds) = (clock::cpu_seconds(), 0.0, 0.0);
+            // The clock ticks in hundredths.
+            while seconds < SECONDS {
+                way();
+                pictures += 1.0;
+                seconds = clock::cpu_seconds() - start;
+            }
+            *best = best.max(pictures * rays / seconds);
+        }
+    }
+    for (name, rate) in names.iter().zip(best) {
+        println!(
+            "{name:40} {:10.1} million rays a CPU second, {:.2} of a textbook's time",
+            rate / 1e6,
+            best[0] / rate
+        );
+    }
+}
+
+/// Asks a textbook what each sample sees.
+fn textbook(scene: &Scene) -> impl Fn() {
+    let [width, height] = [scene.image.width, scene.image.height];
+    let (textbook, objects) = (Textbook::new(scene), scene.objects.len());
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    move || {
+        let mut points = Points::default();
+        let mut seen = vec![0_u64; 2 * objects];
+        for (x, y) in Area::whole(width, height).iter() {
+            let count = sampling.count(x, y);
+            sampling.place(Vectors::Widest, [x, y], count, 0..count, &mut points);
+            for index in 0..points.len() {
+                if let Some(hit) = textbook.seen(x, y, points.get(index)) {
+                    seen[2 * hit.object + usize::from(hit.odd)] += 1;
+                }
+            }
+        }
+        black_box(seen);
+    }
+}
+
 /// Renders figure 9.9 on one thread and ends, for those who measure processes: a way, a method, the picture's width, samples per pixel, and how
-/// many times. The way `None` prepares everything and renders nothing.
+/// many times. The way `None` prepares everything and renders nothing. What it prints is the CPU time of the pictures alone.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");
@@ -181,9 +246,22 @@ fn once(arguments: &[String]) {
     );
     let known = WAYS.into_iter().find(|known| format!("{known:?}") == *way);
     let picture = picture(&scene, known.unwrap_or(Way::Culled));
-    if known.is_some() {
-        (0..number(2)).for_each(|_| picture());
+    if known.is_none() {
+        return;
     }
+    let start = clock::cpu_seconds();
+    (0..number(2)).for_each(|_| picture());
+    let seconds = clock::cpu_seconds() - start;
+    if seconds == 0.0 {
+        println!("{way}: too short for the clock, or there is none");
+        return;
+    }
+    let samples = f64::from(number(0)) * f64::from(number(0) * 9 / 16) * f64::from(number(1));
+    println!(
+        "{way}: {:.2} CPU s a picture, {:.1} million samples a CPU second",
+        seconds / f64::from(number(2)),
+        samples * f64::from(number(2)) / seconds / 1e6
+    );
 }
 
 /// The ways compared in turns, so that a busy moment meets all of them.

@@ -22,8 +22,9 @@ use pinhole::{
     tracer::{Precision, World},
 };
 
-use self::spheres::crowd;
+use self::{clock::cpu_seconds, spheres::crowd};
 
+mod clock;
 mod spheres;
 
 /// How many objects the plain loop over all of them is bearable for.
@@ -159,18 +160,6 @@ fn phases(count: usize) {
     println!(
         "{count:9} spheres: world {prepared:.2} CPU s and {bytes:.0} bytes each, render {rendered:.3} CPU s{exact}"
     );
-}
-
-/// User and system time of the process so far, in hundredths; 0 where there is no /proc.
-fn cpu_seconds() -> f64 {
-    let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // The process's name may hold spaces, and ends at the last parenthesis.
-    let fields = stat.rsplit(')').next().unwrap_or_default();
-    let ticks = fields.split_whitespace().skip(11).take(2);
-    ticks
-        .filter_map(|ticks| ticks.parse::<f64>().ok())
-        .sum::<f64>()
-        / 100.0
 }
 
 /// The memory that the process holds; 0 where there is no /proc.
