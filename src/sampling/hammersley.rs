@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::{
     hash::{self, Key},
-    lattice::{self, STORED, Strata},
+    lattice::{self, Strata, Stratum},
 };
 
 /// The columns.
@@ -16,30 +16,19 @@ pub struct Hammersley {
     n: u64,
     columns: Strata,
     /// The columns twice over, so that all n are in a row from any on, and the heights; nothing where n is large.
-    turned: Vec<Column>,
+    turned: Vec<Stratum>,
     heights: Vec<u64>,
-}
-
-/// The places in a column: the first of them, and whether there is one more than ⌊2^53/n⌋.
-#[derive(Clone, Copy, Debug)]
-struct Column {
-    start: u64,
-    longer: u64,
 }
 
 impl Hammersley {
     /// The points of a set of `n`.
     pub fn new(n: u64) -> Self {
         let columns = Strata::new(n);
-        let column = |i: u64| {
-            let [start, end] = columns.bounds(i % n);
-            let longer = end - start - columns.least();
-            Column { start, longer }
-        };
-        let stored = if n <= STORED { n } else { 0 };
         Self {
-            turned: (0..2 * stored).map(column).collect(),
-            heights: (0..stored).map(u64::reverse_bits).collect(),
+            turned: columns.stored().repeat(2),
+            heights: (0..columns.stored().len() as u64)
+                .map(u64::reverse_bits)
+                .collect(),
             n,
             columns,
         }
@@ -69,7 +58,7 @@ impl Hammersley {
         let more = hash::scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {
-            *x = lattice::offset(column.start + place + (column.longer & more));
+            *x = lattice::offset(column.start() + place + (column.more() & more));
         }
         let heights = &self.heights[range.start as usize..];
         for (y, height) in y.iter_mut().zip(heights) {

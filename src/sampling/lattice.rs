@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::hash::scale;
+use super::hash::{scale, scale_by_parts};
 
 /// How many offsets there are.
 const PLACES: u64 = 1 << 53;
@@ -46,17 +46,49 @@ pub struct Strata {
     n: u64,
     /// The first place of each stratum, and then 2^53; empty where n is large.
     starts: Vec<u64>,
+    /// The same in words of their own.
+    stored: Vec<Stratum>,
+}
+
+/// One of n strata in a word: twice its first place, and one more where it has one place more than ⌊2^53/n⌋.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stratum(u64);
+
+impl Stratum {
+    /// Its first place.
+    #[inline(always)]
+    pub fn start(self) -> u64 {
+        self.0 >> 1
+    }
+
+    /// Its places beyond `least`, ⌊2^53/n⌋: one or none.
+    #[inline(always)]
+    pub fn more(self) -> u64 {
+        self.0 & 1
+    }
+
+    /// An offset chosen in it by random bits.
+    #[inline(always)]
+    pub fn choose(self, least: u64, bits: u64) -> f64 {
+        offset(self.start() + scale_by_parts(bits, least + self.more()))
+    }
 }
 
 impl Strata {
     /// The cut into `n` strata, 1 ≤ n ≤ 2^53.
     pub fn new(n: u64) -> Self {
-        let starts = if n <= STORED {
+        let starts: Vec<_> = if n <= STORED {
             (0..=n).map(|i| start(i, n)).collect()
         } else {
             Vec::new()
         };
-        Self { n, starts }
+        let least = PLACES / n;
+        let stratum = |bounds: &[u64]| Stratum(2 * bounds[0] + (bounds[1] - bounds[0] - least));
+        Self {
+            n,
+            stored: starts.windows(2).map(stratum).collect(),
+            starts,
+        }
     }
 
     /// The places in the strata from `first` to before `end`.
@@ -69,11 +101,10 @@ impl Strata {
         }
     }
 
-    /// The places in one stratum: the first of them, and the first behind it.
+    /// All strata, where they are stored.
     #[inline(always)]
-    pub fn bounds(&self, stratum: u64) -> [u64; 2] {
-        let places = self.places(stratum, stratum + 1);
-        [places.start, places.end]
+    pub fn stored(&self) -> &[Stratum] {
+        &self.stored
     }
 
     /// How many places each stratum has at least; some have one more.
@@ -119,7 +150,15 @@ mod tests {
             for i in (0..n.min(200)).chain([n / 3, n / 2, n - 1]) {
                 let places = strata.places(i, i + 1);
                 assert!(!places.is_empty());
-                assert!([0, 1].contains(&(places.end - places.start - strata.least())));
+                let more = places.end - places.start - strata.least();
+                assert!(more <= 1);
+                if let Some(stratum) = strata.stored().get(i as usize) {
+                    assert_eq!((stratum.start(), stratum.more()), (places.start, more));
+                    for bits in [0, u64::MAX / 3, u64::MAX] {
+                        let chosen = stratum.choose(strata.least(), bits);
+                        assert_eq!(chosen, strata.choose(i, bits));
+                    }
+                }
                 // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for their neighbours.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));

@@ -10,8 +10,8 @@
 use std::ops::Range;
 
 use super::{
-    hash::{Key, scale_by_halves},
-    lattice::{self, Strata},
+    hash::Key,
+    lattice::{Strata, Stratum},
     shuffle::Shuffle,
 };
 
@@ -49,59 +49,90 @@ impl MultiJittered {
 
     /// Places the points with these indices, row by row.
     #[inline(always)]
-    pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
+    pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         if range.is_empty() {
             return;
         }
         let sigma = Shuffle::new(self.rows, key.part(0));
         let tau = Shuffle::new(self.columns, key.part(1));
-        let (mut i, mut j) = (range.start % self.columns, range.start / self.columns);
-        let mut first = 2 * range.start;
-        let (mut columns, mut rows) = (Bounds::default(), Bounds::default());
+        let strata = self.strata.stored();
+        match (sigma.stored(), tau.stored()) {
+            (Some(sigma), Some(tau)) if !strata.is_empty() => {
+                self.place_in_rows(key, range.start, sigma, tau, strata, out);
+            }
+            _ => self.place_singly(key, range.start, &sigma, &tau, out),
+        }
+    }
+
+    /// The same where everything is stored.
+    #[inline(always)]
+    fn place_in_rows(
+        &self,
+        key: Key,
+        start: u64,
+        sigma: &[u16],
+        tau: &[u16],
+        strata: &[Stratum],
+        [x, y]: [&mut [f64]; 2],
+    ) {
+        let [columns, rows] = [self.columns, self.rows].map(|number| number as usize);
+        let (mut i, mut j) = (start as usize % columns, start as usize / columns);
+        let least = self.strata.least();
+        let mut index = 2 * start;
+        let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            for point in 0..x.len() {
-                columns.set(point, self.strata.bounds(i * self.rows + sigma.get(j)));
-                rows.set(point, self.strata.bounds(j * self.columns + tau.get(i)));
-                i += 1;
-                if i == self.columns {
+            // First the strata, which are looked up one by one.
+            let mut point = 0;
+            while point < x.len() {
+                let end = x.len().min(point + columns - i);
+                let fine_columns = strata[i * rows + usize::from(sigma[j])..]
+                    .iter()
+                    .step_by(rows);
+                let fine_rows = &strata[j * columns..][..columns];
+                let [a, b] = chosen.each_mut().map(|chosen| &mut chosen[point..end]);
+                for ((a, &column), (b, &row)) in a
+                    .iter_mut()
+                    .zip(fine_columns)
+                    .zip(b.iter_mut().zip(&tau[i..]))
+                {
+                    (*a, *b) = (column, fine_rows[usize::from(row)]);
+                }
+                i += end - point;
+                if i == columns {
                     (i, j) = (0, j + 1);
                 }
+                point = end;
             }
-            columns.choose(key, first, x);
-            rows.choose(key, first + 1, y);
-            first += 2 * BATCH as u64;
+            // Then a place in each.
+            for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
+                for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
+                    *out = stratum.choose(least, key.bits(index + axis + 2 * point));
+                }
+            }
+            index += 2 * BATCH as u64;
         }
     }
-}
 
-/// The strata of some points on one axis: the first of their places, and the first behind them.
-struct Bounds {
-    starts: [u64; BATCH],
-    ends: [u64; BATCH],
-}
-
-impl Default for Bounds {
-    fn default() -> Self {
-        Self {
-            starts: [0; BATCH],
-            ends: [0; BATCH],
-        }
-    }
-}
-
-impl Bounds {
+    /// The same where they are too many.
     #[inline(always)]
-    fn set(&mut self, point: usize, [start, end]: [u64; 2]) {
-        (self.starts[point], self.ends[point]) = (start, end);
-    }
-
-    /// Chooses a place in each stratum by the numbers of a key, every other one from `first` on.
-    #[inline(always)]
-    fn choose(&self, key: Key, first: u64, out: &mut [f64]) {
-        let bounds = self.starts.iter().zip(&self.ends);
-        for (point, (out, (&start, &end))) in (0..).zip(out.iter_mut().zip(bounds)) {
-            let place = start + scale_by_halves(key.bits(first + 2 * point), end - start);
-            *out = lattice::offset(place);
+    fn place_singly(
+        &self,
+        key: Key,
+        start: u64,
+        sigma: &Shuffle,
+        tau: &Shuffle,
+        [x, y]: [&mut [f64]; 2],
+    ) {
+        let (mut i, mut j) = (start % self.columns, start / self.columns);
+        for (index, (x, y)) in (start..).zip(x.iter_mut().zip(y)) {
+            let column = i * self.rows + sigma.get(j);
+            let row = j * self.columns + tau.get(i);
+            *x = self.strata.choose(column, key.bits(2 * index));
+            *y = self.strata.choose(row, key.bits(2 * index + 1));
+            i += 1;
+            if i == self.columns {
+                (i, j) = (0, j + 1);
+            }
         }
     }
 }

@@ -41,6 +41,16 @@ impl Shuffle {
         }
     }
 
+    /// Its entries, where they are stored, and perhaps more behind them.
+    #[inline(always)]
+    pub fn stored(&self) -> Option<&[u16]> {
+        match self {
+            Self::Short(entries) => Some(entries),
+            Self::Stored(entries) => Some(entries),
+            Self::Hashed { .. } => None,
+        }
+    }
+
     /// The entry at `index` < n.
     #[inline(always)]
     pub fn get(&self, index: u64) -> u64 {
