@@ -103,6 +103,36 @@ fn many_samples_at_a_time_fill_their_chunks_and_end_them_early() {
 }
 
 #[test]
+fn boards_in_blocks_that_are_full_and_cut_off() {
+    for name in ["figure_9_9", "rolled", "straight_down", "near_and_far"] {
+        let scene = example(&format!("{name}.scn"), 397, 231);
+        let scene = with_samples(&scene, Method::Jittered, Count::PerPixel(4));
+        assert!(compare(&scene, name) > 10);
+    }
+}
+
+#[test]
+fn squares_whose_edges_are_those_of_pixels() {
+    // A pixel's side on the floor is 1/32 when the eye looks down, so corners of pixels lie on every edge of a square: in each pixel beside
+    // one it is not certain by corners alone what is seen.
+    for (x, square) in [
+        (0.0, 0.25),
+        (0.0, 0.03125),
+        (0.015625, 0.25),
+        (1e6, 0.09375),
+    ] {
+        let scene = read(&format!(
+            "image {{ width 256 height 256 }}
+             camera {{ eye ({x}, 4, 0) lookat ({x}, 0, 0) up (0, 0, -1) d 1 }}
+             checkerboard {{ square {square} }}"
+        ));
+        for count in [Count::PerPixel(1), Count::PerPixel(5)] {
+            compare(&with_samples(&scene, Method::Random, count), "a board");
+        }
+    }
+}
+
+#[test]
 fn bytes_are_those_of_the_light() {
     let encoder = Encoder::new();
     for count in [
