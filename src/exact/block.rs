@@ -3,12 +3,12 @@
 use glam::DVec2;
 
 use super::board::{Board, Sum, UNIT, measure, size};
-use super::bulk::Bulk;
+use super::bulk::{Bulk, sides};
 use super::cells::MANY;
 use super::cutter::{Chord, Tally};
 use super::euler::square_wave;
-use super::modes::{GRADUAL, Lines, MOST};
-use crate::math::{Double, Real, two_product};
+use super::modes::{self, GRADUAL, Lines, MOST, NOT_IN_STEP};
+use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
 /// What may be neglected of a side, in square pixels, and what is if that takes too long.
@@ -46,59 +46,88 @@ impl<'a> Block<'a> {
         chords: &[Chord; 2],
     ) -> Option<Self> {
         let across = 1 - along;
-        let value = |[a, b, c]: [f64; 3], at: DVec2| {
-            let terms = [two_product(a, at.x), two_product(b, at.y)];
-            terms[0].plus(&terms[1]).plus(&Double::from_f64(c))
+        let value = |[a, b, c]: &[Double; 3], at: DVec2| {
+            let terms = [(a, at.x), (b, at.y)].map(|(c, x)| c.times(&Double::from_f64(x)));
+            terms[0].plus(&terms[1]).plus(c)
         };
         let point = |at: DVec2| {
-            let level = value(board.below, at);
-            let place = |axis: usize| value(board.across[axis], at).over(&level);
+            let level = value(&board.fine.forms[2], at);
+            let place = |axis: usize| value(&board.fine.forms[axis], at).over(&level);
             let depth = Double::from_f64(1.0).over(&level);
             [place(across), place(along), depth]
         };
-        // In the widest of views a row is so narrow that which of its sides is nearer is better known than which is before the
-        // other: along it m and t differ by p times as much, and are as uncertain as 1 and N are.
-        let [p, q] = [along, across].map(|axis| board.slope[axis]);
-        let is_narrow = p.abs() * size(&board.across[along]) > 1.0;
-        let order = if is_narrow { 2 } else { 1 };
-        let ends = |chord: Chord| {
-            let [s, t] = chord?.map(point);
-            let is_ordered = !t[order].minus(&s[order]).is_negative();
-            Some(if is_ordered { [s, t] } else { [t, s] })
-        };
-        let (from, to) = (ends(chords[0])?, ends(chords[1])?);
+        let (sides, ahead) = sides(board, across, chords)?;
         Some(Self {
             board,
             along,
             first,
             last,
-            sides: [0, 1].map(|i| [from[i], to[i]]),
-            sign: q.signum() * if is_narrow { p.signum() } else { 1.0 },
+            sides: sides.map(|ends| ends.map(point)),
+            sign: board.fine.floor.slope[across].signum() * ahead,
         })
     }
 
-    /// The lines that a side crosses between two of them, from the end that is nearer: which is the first of them, and 1, or −1 if
-    /// c falls from there.
-    fn lines(&self, [start, end]: &Side, [first, last]: [f64; 2], size: f64) -> (Lines, f64, f64) {
+    /// The lines that a side crosses between two of them.
+    fn run(&self, [start, end]: &Side, [first, last]: [f64; 2], size: f64) -> Run {
         let rows = end[0].minus(&start[0]);
-        let slopes = [1, 2].map(|i| end[i].minus(&start[i]).over(&rows));
-        let (near, from, sense) = if slopes[1].is_negative() {
-            (end, last, -1.0)
-        } else {
-            (start, first, 1.0)
+        let [climb, rise] = [1, 2].map(|i| end[i].minus(&start[i]).over(&rows));
+        let is_falling = rise.is_negative();
+        let (near, from) = match is_falling {
+            true => (end, last),
+            false => (start, first),
         };
-        let missing = Double::from_f64(from).minus(&near[0]);
-        let [t, depth] = [0, 1].map(|i| near[i + 1].plus(&missing.times(&slopes[i])).hi);
-        let lines = Lines {
-            t,
-            stride: sense * slopes[0].hi,
-            depth,
-            rise: sense * slopes[1].hi,
-            lines: last - first,
-            slope: self.board.slope[self.along],
-            size,
+        let place = |c: f64| {
+            let missing = Double::from_f64(c).minus(&near[0]);
+            [
+                near[1].plus(&missing.times(&climb)),
+                near[2].plus(&missing.times(&rise)),
+            ]
         };
-        (lines, from, sense)
+        let step = match is_falling {
+            true => [climb.negated(), rise.negated()],
+            false => [climb, rise],
+        };
+        let slope = self.board.fine.floor.slope[self.along];
+        let [t, depth] = place(from);
+        let mut lines = Lines::new(&[t, depth], &step, last - first, slope);
+        lines.size = size;
+        Run {
+            lines,
+            from,
+            first: t,
+            sense: if is_falling { -1.0 } else { 1.0 },
+            origin: place(0.0).map(|x| x.hi),
+            stride: step[0],
+        }
+    }
+
+    /// More of it than from one line to another, if the sides' modes together allow that.
+    fn sooner(&self, [first, last]: [f64; 2], tolerance: f64) -> [f64; 2] {
+        let across = 1 - self.along;
+        let allows = |ends: [f64; 2]| {
+            let [left, right] = self
+                .sides
+                .each_ref()
+                .map(|side| self.run(side, ends, f64::INFINITY));
+            let is_gradual = |run: &Run| run.lines.depth >= GRADUAL * run.lines.rise;
+            let step = in_step(&left, &right, self.board.fine.floor.slope[across]);
+            is_gradual(&left)
+                && is_gradual(&right)
+                && step * NOT_IN_STEP <= tolerance
+                && left.lines.is_even()
+        };
+        let (mut rows, most) = (0.0, (first - self.first).max(self.last - last));
+        while rows < most {
+            let ends = match first > self.first {
+                true => [self.first + rows, last],
+                false => [first, self.last - rows],
+            };
+            if ends[1] - ends[0] > GRADUAL && allows(ends) {
+                return ends;
+            }
+            rows = 4.0 * rows + 16.0;
+        }
+        [first, last]
     }
 
     /// How far the roundings of a side's points and of the board's slopes may put off its modes.
@@ -108,53 +137,86 @@ impl<'a> Block<'a> {
     /// 4/π²n² times e^(iπnt)·U, U = m⁻²·(F(y_c) − F(y_p)), and of that
     ///
     /// - t puts off πn·D·m·|U|, and 1/p, off by E, up to ½πn·E·m⁻¹, since |F′| is at most ½: the modes up to Q together
-    ///   (4/π)·(1 + ½ ln Q) of it for n = 1, up to where (D + E)·m is 1 and they are off anyhow;
+    ///   (4/π)·(1 + ½ ln Q) of it for n = 1, up to where (D + E)·m is 1 and they are off anyhow. 1/p puts off no more than 17/16·|pE|·m⁻²
+    ///   either, since |yF′| is at most 17/16;
     /// - m, with |F| ≤ ½ and |yF′| ≤ 17/16, up to 2.1·R·m⁻² of both, and c, if a part C of it is missing, 1.1·C·m⁻², but no
     ///   more than F(y_c) is twice; Σ 4/π²n² is ½.
     ///
     /// The modes that are left out, as they are from side to side, are those of sides which are not off.
-    fn uncertainty(&self, lines: &Lines, from: f64, sense: f64) -> f64 {
+    fn uncertainty(&self, run: &Run) -> f64 {
         let board = self.board;
         let across = 1 - self.along;
-        // The factors are rounded, and in the end t, and what τ adds to it.
-        let off = |form: &[f64; 3], roundings: f64| roundings * UNIT * size(form);
-        let of_t = off(&board.across[self.along], 4.0);
-        let of_c = off(&board.across[across], 1.0);
-        let of_l = off(&board.below, 1.0);
-        let Lines {
-            t,
+        // Five operations make a value of a form of its terms, and five more t and what τ adds to it.
+        let off = |axis: usize| {
+            let form = board.fine.forms[axis].map(|c| c.hi);
+            board.fine.rad + 16.0 * Double::UNIT * size(&form)
+        };
+        let (of_t, of_c, of_l) = (off(self.along), off(across), off(2));
+        let Run {
+            lines,
             stride,
-            depth,
-            rise,
+            origin: [t_0, m_0],
             ..
-        } = lines;
-        let (t_0, m_0) = (t - sense * stride * from, depth - sense * rise * from);
-        let moved = of_t + stride.abs() * of_c + t_0.abs() * of_l;
+        } = run;
+        let Lines { depth, rise, .. } = lines;
+        let moved = of_t + stride.hi.abs() * of_c + t_0.abs() * of_l;
         let deeper = rise.abs() * of_c + m_0.abs() * of_l + 4.0 * UNIT;
-        let flat = board.flat(self.along);
+        let flat = board.fine.floor.flat(self.along);
         let furthest = depth + rise * lines.lines;
         let count = lines.lines.min(depth / rise);
         // Σ m⁻², and Σ m⁻¹ as far as it matters.
         let squares = (1.0 + count) / (depth * depth);
         let deepest = furthest.min(1.0 / (moved + flat)).max(*depth);
         let inverses = (1.0 + count) / depth * (2.0 + libm::log(deepest / depth));
-        // Over all rows the slopes are as uncertain as the ends.
+        // Over all rows the slopes are as uncertain as the ends; then each is rounded.
         let slopes = 2.0 * furthest / lines.lines;
-        let climb = slopes * (moved / stride.abs() + deeper / rise);
+        let exactly = deeper - 4.0 * UNIT;
+        let climb = slopes * (moved / stride.hi.abs() + exactly / rise) + 4.0 * UNIT;
         let largest = lines.largest(*depth);
         let of_climb = (1.1 * climb).min(2.0 * (largest - 0.5));
         let modes = 4.0 / PI * (1.0 + 0.5 * libm::log(MOST));
-        let Sum { value, bound } = board.per_slope[across];
+        let of_flat = (modes * 0.5 * flat * inverses)
+            .min(0.55 * flat * board.fine.floor.slope[self.along].abs() * squares);
+        let Sum { value, bound } = board.fine.floor.per_slope[across];
         let relative = 0.5 * largest * (bound + 4.0 * UNIT) + 2.1 * deeper + 0.5 * of_climb;
-        2.0 * value * (relative * squares + modes * (largest * moved + 0.5 * flat) * inverses)
+        2.0 * value * (relative * squares + modes * largest * moved * inverses + of_flat)
     }
+}
+
+/// What the crossings of a mode add up to for both sides together, if that is less than for each.
+fn in_step(left: &Run, right: &Run, q: f64) -> f64 {
+    if left.sense != right.sense {
+        return f64::INFINITY;
+    }
+    let start = right.first.minus(&left.first).hi;
+    let growth = right.stride.minus(&left.stride).hi;
+    let step = modes::between(&left.lines, &right.lines, [start, growth], q);
+    if step < left.lines.in_step() + right.lines.in_step() {
+        step
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// The lines that a side crosses, in the sense in which m grows.
+struct Run {
+    lines: Lines,
+    /// Which of them is the first, and 1, or −1 if c falls from there.
+    from: f64,
+    sense: f64,
+    /// t at the first.
+    first: Double,
+    /// t and m where c is 0.
+    origin: [f64; 2],
+    /// What t grows by from line to line.
+    stride: Double,
 }
 
 impl Bulk for Block<'_> {
     /// The part of it in which m changes little from row to row.
     fn smooth(&self) -> [f64; 2] {
         let [mut first, mut last] = [self.first, self.last];
-        let factor = 2.0 * self.board.per_slope[1 - self.along].value;
+        let factor = 2.0 * self.board.fine.floor.per_slope[1 - self.along].value;
         let [left, right] = self.sides;
         // Where m is smaller rows are summed one by one.
         let near = usize::from(left[0][2].hi > left[1][2].hi);
@@ -164,7 +226,7 @@ impl Bulk for Block<'_> {
         let steepness = libm::hypot(self.board.below[0], self.board.below[1]);
         let narrow = 1.5 / steepness * Lines::share_neglected() / NARROW_AT_WORST;
         for side in &self.sides {
-            let (lines, _, sense) = self.lines(side, [self.first, self.last], f64::INFINITY);
+            let Run { lines, sense, .. } = self.run(side, [self.first, self.last], f64::INFINITY);
             let start = lines
                 .start(AT_WORST / factor)
                 .min(narrow.max(GRADUAL * lines.rise));
@@ -178,35 +240,46 @@ impl Bulk for Block<'_> {
                 }
             }
         }
-        [first, last]
+        self.sooner([first, last], NARROW_AT_WORST / factor)
     }
 
     fn add(&self, ends: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
         let board = self.board;
         let across = 1 - self.along;
-        let per_slope = board.per_slope[across];
+        let per_slope = board.fine.floor.per_slope[across];
         let factor = 2.0 * per_slope.value;
-        let [p, q] = [self.along, across].map(|axis| board.slope[axis]);
         let (area, perimeter) = measure(piece.iter().copied());
         // A mode n of a row is, from side to side, ∫ m⁻³·e^(iπnt) dm: no more than half of m⁻² differs by between them, which by
         // 2K/|q| is twice the row's area.
         let size = 1.1 * area.abs() / factor;
         // The sides are those between points that are a few roundings off.
         let mut bound = 8.0 * UNIT * perimeter;
-        // What is of the forms' inverse their rounding moves as a whole.
-        let mut at_most = board.displaced(piece.iter().copied());
-        let (mut sum, mut uncertain) = (0.0, 0.0);
-        for (side, sense) in self.sides.iter().zip([-1.0, 1.0]) {
-            let (lines, from, way) = self.lines(side, ends, size);
-            let part = lines.sum(NEGLECTED / factor);
-            sum += sense * square_wave(from) * part.value;
+        let runs = self.sides.each_ref().map(|side| self.run(side, ends, size));
+        bound += runs.iter().map(|run| self.uncertainty(run)).sum::<f64>();
+        let tolerance = NEGLECTED / factor;
+        let [left, right] = &runs;
+        let mut sum = 0.0;
+        let mut add = |part: Sum, run: &Run| {
+            sum += square_wave(run.from) * part.value;
             bound += factor * part.bound;
-            // Roundings may have it that the slopes are not quite those of the side.
-            let slopes = (way * (lines.rise - p * lines.stride) - q).abs() / q.abs();
-            at_most += factor * (slopes + per_slope.bound) * part.value.abs();
-            uncertain += self.uncertainty(&lines, from, way);
+        };
+        let step = in_step(left, right, board.fine.floor.slope[across]);
+        if step < f64::INFINITY {
+            add(
+                modes::sum(&[(-1.0, &left.lines), (1.0, &right.lines)], step, tolerance),
+                left,
+            );
+        } else {
+            let [first, second] = [left, right].map(|run| run.lines.sum(tolerance));
+            add(
+                Sum {
+                    value: -first.value,
+                    ..first
+                },
+                left,
+            );
+            add(second, right);
         }
-        let bound = bound + uncertain.min(at_most);
         if !(sum.is_finite() && bound < area.abs()) {
             // Out of the range of numbers, or not worth having.
             return tally.add(0.0, area.abs());

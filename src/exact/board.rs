@@ -1,11 +1,19 @@
 //! The integral of the board's sign over a convex polygon of the picture.
 
-use std::sync::atomic::AtomicBool;
+use std::{array, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
-use super::{cells, edge, sides::Known};
-use crate::math::{Double, Real, two_product};
+use super::{
+    cells, edge,
+    floor::{Fine, Floor},
+    inverse::Inverse,
+    sides::Known,
+};
+use crate::{
+    math::{Double, Real},
+    tracer,
+};
 
 /// The unit roundoff of `f64`.
 pub(super) const UNIT: f64 = <f64 as Real>::UNIT;
@@ -19,11 +27,17 @@ pub(super) const FAR: f64 = 18.0;
 /// about 1.)
 const DEEP: f64 = 1e13;
 
+/// A sum along the boundary with no greater bound than this is good enough.
+const GOOD_FAR: f64 = 1e-8;
+
+/// Where roundings displace points by more than this, in pixels, edges and floor no longer fit each other.
+const MISFIT: f64 = 0.1;
+
+/// What is farther than this m is next to nothing of a pixel.
+const NEXT_TO_NOTHING: f64 = 1e9;
+
 /// Nor one of no more than this line by line.
 const ENOUGH: f64 = 1e-13;
-
-/// Forms of about the same size have no smaller determinant.
-const LEAST: f64 = 1e-100;
 
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
@@ -66,17 +80,10 @@ impl Sum {
 pub(crate) struct Board {
     pub(super) across: [[f64; 3]; 2],
     pub(super) below: [f64; 3],
-    /// ∂m/∂a and ∂m/∂b.
-    pub(super) slope: [f64; 2],
-    /// m where a and b are 0.
-    pub(super) origin: f64,
-    pub(super) density: f64,
-    /// K over |∂m/∂a| and over |∂m/∂b|, with bounds relative to them: well known even where K itself is not.
-    pub(super) per_slope: [Sum; 2],
-    /// How far det M may be from the true one, relative to it.
-    uncertain: f64,
-    /// Whether the floor is seen mirrored: the sign of det M.
-    pub(super) handed: f64,
+    /// What the inverse of these forms, as they are rounded, says of the floor: it fits corners that they have been asked for.
+    pub(super) floor: Floor,
+    /// The same with less rounding.
+    pub(super) fine: Fine,
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
     pub(super) displacement: f64,
     /// The direction of the horizon, of length 1.
@@ -106,16 +113,6 @@ pub(super) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
-/// A cross product, each part to within two roundings of itself.
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    minors(a, b).map(|[plus, minus]| (plus.hi - minus.hi) + (plus.lo - minus.lo))
-}
-
-/// The products, without an error, of which a cross product's parts are the differences.
-fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
-}
-
 /// A form by a power of two that brings its largest factor between 1 and 2, and that power.
 fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
     let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
@@ -126,44 +123,52 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 impl Board {
     /// The board of three linear forms, N_a and N_b, and L; they may have any common positive factor, and M must be
     /// invertible. The nearer the origin of a and b is to the pixel, the smaller the bounds.
-    pub(crate) fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
+    #[cfg(test)]
+    pub(crate) fn new([a, b]: [[f64; 3]; 2], below: [f64; 3]) -> Self {
+        Self::fine([a, b, below].map(|form| form.map(Double::from_f64)), 0.0)
+    }
+
+    /// The board as a spot sees it.
+    pub(crate) fn of(seen: &tracer::Board) -> Self {
+        let [a, b] = seen.across;
+        let forms = [a, b, seen.below];
+        let fine = array::from_fn(|i| {
+            array::from_fn(|k| Double {
+                hi: forms[i][k],
+                lo: seen.low[i][k],
+            })
+        });
+        Self::fine(fine, seen.rad)
+    }
+
+    /// Whether its forms should be asked for more closely.
+    pub(super) fn is_doubtful(&self) -> bool {
+        self.fine.is_doubtful
+    }
+
+    fn fine(forms: [[Double; 3]; 3], rad: f64) -> Self {
+        let [a, b, below] = forms.map(|form| form.map(|c| c.hi));
         let (l, scale) = normalized(below);
-        let [a, b] = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
+        let [a, b] = [a, b].map(|form| form.map(|c| libm::ldexp(c, -scale)));
+        let forms = forms.map(|form| form.map(|c| c.scaled(-scale)));
+        let rad = libm::ldexp(rad, -scale);
         // Squares may be of any size; the inverse is that of forms of about the same size.
         let [(wide, of_a), (high, of_b)] = [a, b].map(normalized);
-        let columns = [cross(&high, &l), cross(&l, &wide), cross(&wide, &high)];
-        let det = minors(&wide, &high)
-            .iter()
-            .zip(l)
-            .fold(Double::from_f64(0.0), |sum, ([plus, minus], l)| {
-                sum.plus(&plus.minus(minus).times(&Double::from_f64(l)))
-            })
-            .to_f64();
-        // Where nothing is left of it, next to nothing will do: it is off by more.
-        let det = if det.abs() > LEAST { det } else { LEAST };
-        let third = |column: usize, exponent: i32| libm::ldexp(columns[column][2] / det, -exponent);
-        let per_slope = |column: usize, form: &[f64; 3], exponent: i32| {
-            let minor = columns[column][2].abs();
-            let terms = (form[0] * l[1]).abs() + (form[1] * l[0]).abs();
-            Sum {
-                value: libm::ldexp(1.0 / minor, -exponent),
-                bound: 2.0 * UNIT * (terms / minor + 2.0),
-            }
+        let powers = [of_a, of_b];
+        let rounded = [wide, high, l];
+        let inverse = Inverse::of_rounded(&rounded);
+        let floor = Floor::new(&inverse, powers);
+        let (fine, inverse) = match inverse.is_good() {
+            true => (Fine::rounded(forms, rad, floor.clone()), inverse),
+            false => Fine::new(forms, rad, powers),
         };
-        let volume = det.abs();
-        // Of each of the six products three factors are off by a rounding each, and what that leaves is rounded.
-        let products: f64 = (0..3)
-            .map(|i| {
-                let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-                l[i].abs() * ((wide[j] * high[k]).abs() + (wide[k] * high[j]).abs())
-            })
-            .sum();
+        // No less than it may be.
+        let volume = inverse.det.abs() * (1.0 - inverse.det_off).max(0.0);
         // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
         // fourth is for the quotient; coordinates themselves are rounded, too.
-        let forms = [wide, high, l];
-        let errors = forms.map(|form| 4.0 * UNIT * size(&form));
+        let errors = rounded.map(|form| 4.0 * UNIT * size(&form));
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
-        for (error, column) in errors.iter().zip(&columns) {
+        for (error, column) in errors.iter().zip(&inverse.columns) {
             let column = column.map(f64::abs);
             displacement += error * column.iter().sum::<f64>() / volume;
             tilt += error * column[2] / volume;
@@ -172,12 +177,8 @@ impl Board {
         Self {
             across: [a, b],
             below: l,
-            slope: [third(0, of_a), third(1, of_b)],
-            origin: third(2, 0),
-            density: libm::ldexp(1.0 / volume, -of_a - of_b),
-            per_slope: [per_slope(0, &high, of_b), per_slope(1, &wide, of_a)],
-            uncertain: 4.0 * UNIT * products / volume,
-            handed: det.signum(),
+            floor,
+            fine,
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
             upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
@@ -194,8 +195,12 @@ impl Board {
         known: Option<&mut Known>,
         cancel: &AtomicBool,
     ) -> Sum {
-        self.unchecked(polygon, known, cancel)
-            .within(polygon.iter().copied())
+        let mut sum = self.unchecked(polygon, known, cancel);
+        if self.fine.nudge > 0.0 {
+            // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
+            sum.bound += self.fine.nudge * self.blurred(polygon.iter().copied());
+        }
+        sum.within(polygon.iter().copied())
     }
 
     fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
@@ -261,7 +266,7 @@ impl Board {
     /// often as sides of triangles between corners are crossed, so that the motion changes the integral by up to
     /// 2·corners·E_L/|∇L| for every 1 of width. N that is off by up to E changes the signs of points where |N − iL| ≤ E, a strip
     /// along the line i, as wide as 2E/|∇N − i∇L|; that gradient is at least |i − i_0|·|∇L|, and at least |∇N × ∇L|/|∇L|,
-    /// where i_0 = ∇N·∇L/|∇L|². Lines beyond 2^60 are all within E of the horizon.
+    /// where i_0 = ∇N·∇L/|∇L|², which may be far from all lines that there are. Lines beyond 2^60 are all within E of the horizon.
     pub(super) fn blurred(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
         const LINES: f64 = 100.0;
         let displaced = self.displaced(points.clone());
@@ -272,24 +277,29 @@ impl Board {
         let gradient = |[x, y, _]: [f64; 3]| DVec2::new(x, y);
         let up = gradient(self.below);
         let (steepness, of_l) = (up.length(), off(&self.below));
-        let strips = self.across.map(|across| {
-            let n = gradient(across);
+        let strips = self.across.each_ref().map(|across| {
+            let n = gradient(*across);
             let middle = n.dot(up) / (steepness * steepness);
-            let off = off(&across) + of_l * middle.abs();
+            let off = off(across) + of_l * middle.abs();
+            let places = points.clone().map(|p| {
+                let (n, level) = (form(across, p), form(&self.below, p));
+                match level > 0.0 {
+                    true => n / level,
+                    false => n / 0.0,
+                }
+            });
+            let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
+                (low.min(t), high.max(t))
+            });
+            let away = (low - middle).max(middle - high) - 1.0;
             // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm.
             let k = n.perp_dot(up).abs() / (steepness * steepness);
-            4.0 * off * (3.0 * (1.0 / k).max(1.0) + LINES)
+            4.0 * off * (3.0 / k.max(away).min(1.0) + LINES)
         });
         let (_, perimeter) = measure(points.clone());
         let widest = 0.5 * perimeter / steepness;
         let lines = widest * (2.0 * points.count() as f64 * of_l + strips[0] + strips[1]);
         displaced.min(lines)
-    }
-
-    /// How far the inverse of ∂m/∂a or of ∂m/∂b may be from the true one: that is known even where those may have any size.
-    pub(super) fn flat(&self, axis: usize) -> f64 {
-        let minor = self.per_slope[axis].bound;
-        (self.uncertain + minor + 4.0 * UNIT) / self.slope[axis].abs()
     }
 
     /// Whether a polygon shows the horizon.
@@ -304,11 +314,12 @@ impl Board {
         known: Option<&mut Known>,
         cancel: &AtomicBool,
     ) -> Sum {
-        let depth = FAR * (self.slope[0].abs() + self.slope[1].abs());
+        let [p, q] = self.fine.floor.slope;
+        let depth = FAR * (p.abs() + q.abs());
         let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
         let furthest = corners.iter().fold(0.0, |m: f64, c| m.max(c.depth));
         if nearest >= depth {
-            return edge::sum(self, corners, known);
+            return self.far(corners, known, cancel);
         }
         if depth.min(furthest) > DEEP {
             let [near, behind] = self.split(corners, DEEP);
@@ -321,8 +332,30 @@ impl Board {
         }
         let [near, far] = self.split(corners, depth);
         let mut sum = cells::sum(self, &near, cancel);
-        sum.add(edge::sum(self, &far, known).within(far.iter().map(|c| c.at)));
+        sum.add(self.far(&far, known, cancel));
         sum
+    }
+
+    /// Along the boundary; or, where corners as they are rounded do not tell m from a and b, as if it were near, but for next to nothing.
+    fn far(&self, corners: &[Corner], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
+        let along = |corners: &[Corner], known| {
+            edge::sum(self, corners, known).within(corners.iter().map(|c| c.at))
+        };
+        let fits = self.displacement <= MISFIT;
+        let sum = fits.then(|| along(corners, known));
+        if let Some(sum) = sum.filter(|sum| !self.fine.is_needed || sum.bound <= GOOD_FAR) {
+            return sum;
+        }
+        let [near, behind] = self.split(corners, NEXT_TO_NOTHING);
+        let mut other = cells::sum(self, &near, cancel);
+        other.add(match fits {
+            true => along(&behind, None),
+            false => Sum {
+                value: 0.0,
+                bound: measure(behind.iter().map(|c| c.at)).0.abs(),
+            },
+        });
+        sum.filter(|sum| sum.bound <= other.bound).unwrap_or(other)
     }
 
     /// The parts in front of a depth and behind it.

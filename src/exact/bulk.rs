@@ -22,6 +22,30 @@ pub(super) fn vertices(board: &Board, axis: usize, points: &[DVec2]) -> Vec<(f64
     ends
 }
 
+/// The two sides between two lines of an axis of the board, of which the latter counts more squares, each from line to line; and whether
+/// places along the lines grow (1) or fall (−1) from the first side to the second.
+///
+/// That is told by points of the picture: in the widest of views rows are so narrow that in coordinates of the floor it is a matter of
+/// roundings, even which end of one line is on the same side as which end of the other.
+pub(super) fn sides(
+    board: &Board,
+    axis: usize,
+    [from, to]: &[Chord; 2],
+) -> Option<([[DVec2; 2]; 2], f64)> {
+    let (from, to) = ((*from)?, (*to)?);
+    let middle = |[s, t]: [DVec2; 2]| 0.5 * (s + t);
+    let onwards = middle(to) - middle(from);
+    // Both lines run so that the way from one to the other is on their left.
+    let ends = |[s, t]: [DVec2; 2]| match (t - s).perp_dot(onwards) >= 0.0 {
+        true => [s, t],
+        false => [t, s],
+    };
+    let ([a, b], [c, d]) = (ends(from), ends(to));
+    // Where nothing is mirrored, that is a quarter turn from the second axis back to the first.
+    let ahead = if axis == 1 { 1.0 } else { -1.0 };
+    Some(([[a, c], [b, d]], ahead * board.fine.floor.handed))
+}
+
 /// Adds the polygon with which a cutter has begun: in bulk what lies between two vertices with more than `least` lines
 /// between them, and the rest by another way.
 ///

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::DVec2;
 
 use super::block::Block;
-use super::board::{Board, Corner, Sum, UNIT, form, measure};
+use super::board::{Board, Corner, Sum, UNIT, form, measure, size};
 use super::bulk::{in_bulk, vertices};
-use super::cutter::{Cutter, Tally};
+use super::cutter::{Cutter, Tally, split};
 use super::euler::square_wave;
 use super::modes::GRADUAL;
 use super::strip::Strip;
@@ -18,7 +18,10 @@ pub(super) const MANY: f64 = 32.0;
 /// More than this are left where points are too coarse to tell one line from the next: then nothing is said of them.
 const TOO_MANY: f64 = 1000.0;
 /// More rows than this, of a square each, take too long, which only the widest of views have in a pixel.
-const TOO_MANY_ROWS: f64 = 1e6;
+const TOO_MANY_ROWS: f64 = 2e6;
+
+/// Of a row that goes on to so many times the depth of its near end hardly anything lies behind: not so much of its area by the square.
+const DEEPER: f64 = 1e5;
 
 /// More rows than this, between two vertices, are summed at once.
 const BLOCK: f64 = 3.0 * GRADUAL;
@@ -28,7 +31,8 @@ const SOUND: f64 = 1e-10;
 
 /// The axis of the board along which rows run: the one on which m changes less.
 pub(super) fn along(board: &Board) -> usize {
-    usize::from(board.slope[0].abs() > board.slope[1].abs())
+    let [p, q] = board.fine.floor.slope;
+    usize::from(p.abs() > q.abs())
 }
 
 /// The integral over a convex polygon that does not reach the horizon.
@@ -179,8 +183,11 @@ impl Row<'_> {
     /// Adds the whole squares between two lines. Together they are `piece`.
     fn whole(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
         let board = self.board;
-        let [slope, climb] = [board.slope[self.along], board.slope[1 - self.along]];
-        let lower = climb * self.number + board.origin;
+        let [slope, climb] = [
+            board.floor.slope[self.along],
+            board.floor.slope[1 - self.along],
+        ];
+        let lower = climb * self.number + board.floor.origin;
         let depth = |i: f64| {
             let m = slope * i + lower;
             [m, m + climb]
@@ -192,7 +199,7 @@ impl Row<'_> {
             .fold(f64::INFINITY, |m, &depth| m.min(depth));
         let terms = slope.abs() * first.abs().max(last.abs())
             + climb.abs() * (self.number.abs() + 1.0)
-            + board.origin.abs();
+            + board.floor.origin.abs();
         // Seven roundings of its terms for each of the four m, and those of the formula and of the sum.
         let relative = UNIT * (28.0 * terms / nearest + 12.0 + last - first);
         if !(nearest > 0.0 && relative < 1.0) {
@@ -206,7 +213,7 @@ impl Row<'_> {
             let right = depth(i);
             // K/m³ integrates to K(m_00 + m_11)/(2·m_00·m_01·m_10·m_11) on a square.
             let product = (left[0] * left[1]) * (right[0] * right[1]);
-            sum += sign * 0.5 * board.density * (left[0] + right[1]) / product;
+            sum += sign * 0.5 * board.floor.density * (left[0] + right[1]) / product;
             left = right;
         }
         tally.add(self.sign * sum, relative * area.abs());
@@ -215,6 +222,8 @@ impl Row<'_> {
 
     /// Adds the part of a long row that a polygon shows: most of it at once.
     fn long(&self, piece: &[DVec2], inside: &mut Cutter, squares: &mut Cutter, tally: &mut Tally) {
+        let distinct = self.distinct(piece, tally);
+        let piece = distinct.as_deref().unwrap_or(piece);
         inside.start(piece.iter().copied());
         in_bulk(
             inside,
@@ -224,5 +233,26 @@ impl Row<'_> {
             |piece, tally| self.squares(piece, squares, tally),
             tally,
         );
+    }
+
+    /// The part of a row in which squares can be told from each other, if what lies behind is next to nothing of it.
+    ///
+    /// So it is where all lines of a board meet in a point of the picture, but for what roundings do: only there a row has very many squares.
+    fn distinct(&self, piece: &[DVec2], tally: &mut Tally) -> Option<Vec<DVec2>> {
+        let board = self.board;
+        let deepest = 1.0 / (16.0 * UNIT * size(&board.across[self.along]));
+        let levels = piece.iter().map(|&at| form(&board.below, at));
+        let (least, most) = levels.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), l| {
+            (least.min(l), most.max(l))
+        });
+        let is_needed = least * deepest < 1.0 && most * deepest > DEEPER;
+        is_needed.then(|| {
+            let mut line = board.below;
+            line[2] -= 1.0 / deepest;
+            let (mut behind, mut before) = (Vec::new(), Vec::new());
+            split(piece, &line, &mut behind, &mut before);
+            tally.add(0.0, measure(behind.into_iter()).0.abs());
+            before
+        })
     }
 }

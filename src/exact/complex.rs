@@ -1,11 +1,18 @@
 //! Complex numbers and angles, as far as sums of waves need them.
 
+use crate::math::{Double, Real};
+
 /// A real and an imaginary part.
 pub(super) type Complex = [f64; 2];
 
 /// Less whole turns, in half turns: between −1 and 1.
 pub(super) fn turn(x: f64) -> f64 {
     x - 2.0 * (0.5 * x).round_ties_even()
+}
+
+/// The same of a double-double number.
+pub(super) fn turn_exactly(x: &Double) -> Double {
+    Double::from_f64(turn(x.hi)).plus(&Double::from_f64(turn(x.lo)))
 }
 
 pub(super) fn times(a: Complex, b: Complex) -> Complex {

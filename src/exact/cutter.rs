@@ -138,7 +138,7 @@ impl Cutter {
 }
 
 /// A convex polygon's parts on the negative and on the positive side of a line, and the line's chord.
-fn split(
+pub(super) fn split(
     points: &[DVec2],
     line: &[f64; 3],
     negative: &mut Vec<DVec2>,

@@ -72,7 +72,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
             sum.bound += 16.0 * UNIT * size;
         }
     }
-    sum.value *= board.handed * area.signum();
+    sum.value *= board.floor.handed * area.signum();
     sum
 }
 
@@ -82,12 +82,12 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
 /// and what Ψ and X neglect on an edge to n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|, where g is the largest of m's slopes along
 /// the edge and along its parameter t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
 fn terms(board: &Board, nearest: f64, edges: &[Option<Edge>], area: f64) -> (usize, f64) {
-    let slope = board.slope[0].abs().max(board.slope[1].abs());
+    let slope = board.floor.slope[0].abs().max(board.floor.slope[1].abs());
     let (mut ratio, mut weight) = (slope / nearest, 0.0);
     for edge in edges.iter().flatten() {
         ratio = ratio.max(edge.climb.abs() / edge.depth);
         let reach = edge.length.abs().min(0.5 * edge.depth / edge.climb.abs());
-        weight += board.density / (edge.depth * edge.depth * edge.depth) * reach;
+        weight += board.floor.density / (edge.depth * edge.depth * edge.depth) * reach;
     }
     let neglected = |n: usize, power: f64| {
         HALF_FACTORIAL[n + 1] * power * PI * (0.5 * area + n as f64 * weight)
@@ -126,7 +126,7 @@ fn potential_of<const MOST: usize>(board: &Board, corner: &Corner, terms: usize)
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;
-            power *= board.slope[i] * u;
+            power *= board.floor.slope[i] * u;
         }
         waves
     });
@@ -138,7 +138,7 @@ fn potential_of<const MOST: usize>(board: &Board, corner: &Corner, terms: usize)
         }
         sum += HALF_FACTORIAL[degree + 1] * row;
     }
-    let density = board.density * u * u * u;
+    let density = board.floor.density * u * u * u;
     (density * sum, density)
 }
 
@@ -220,7 +220,7 @@ impl Edge {
             length: if endless { f64::INFINITY } else { step[t] },
             rho: step[c] / step[t],
             climb: rise / step[t],
-            slope: board.slope[t],
+            slope: board.floor.slope[t],
             stride: step[t] / step[c].abs(),
             rise: rise / step[c].abs(),
             sense: step[c].signum(),
@@ -290,13 +290,13 @@ impl Edge {
         let mut factors = [0.0; MAX_TERMS + 1];
         let (mut s, mut power) = (1.0, self.slope);
         for k in 1..=terms {
-            factors[k] = -board.density * HALF_FACTORIAL[k] * s;
+            factors[k] = -board.floor.density * HALF_FACTORIAL[k] * s;
             s = self.climb * s + power;
             power *= self.slope;
         }
         let across = usize::from(!self.is_by_b());
-        let Sum { value, bound } = board.per_slope[across];
-        let slope = board.slope[across];
+        let Sum { value, bound } = board.floor.per_slope[across];
+        let slope = board.floor.slope[across];
         let [off, size] = [self.climb - self.slope - self.rho * slope, self.rho * slope];
         let per_slope = Sum {
             value: value.copysign(slope),

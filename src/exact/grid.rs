@@ -289,6 +289,7 @@ mod tests {
         Board {
             across,
             below,
+            low: [[0.0; 3]; 3],
             rad: 0.0,
             odd: false,
         }

@@ -16,6 +16,7 @@ use super::edge::{Crossings, Edge, Series};
 use super::exponential::integrals;
 use super::level;
 use super::modes::{GRADUAL, Lines};
+use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
 /// Below so many crossings one by one is as good as by modes.
@@ -96,15 +97,15 @@ fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
     }
     let mut sum = all.one_by_one(series, direct);
     let factor = series.per_slope.value / rho;
-    let lines = Lines {
-        t: all.t + direct * all.edge.stride,
-        stride: all.edge.stride,
-        depth: all.depth + direct * rise,
-        rise: *rise,
-        lines: all.lines - direct,
-        slope: all.edge.slope,
-        size: f64::INFINITY,
-    };
+    let first = [all.t + direct * all.edge.stride, all.depth + direct * rise];
+    let step = [all.edge.stride, *rise];
+    let mut lines = Lines::new(
+        &first.map(Double::from_f64),
+        &step.map(Double::from_f64),
+        all.lines - direct,
+        all.edge.slope,
+    );
+    lines.stride_off = 2.0 * UNIT * all.edge.stride.abs();
     let modes = lines.sum(tolerance / factor.abs());
     let alternating = |lines: f64, x: f64| if lines % 2.0 == 0.0 { x } else { -x };
     // There the ends count half.

@@ -16,11 +16,15 @@
 //! in divided differences of F. The first and the last crossing count half.
 
 use super::board::{Sum, UNIT};
-use super::complex::{Complex, phase, size, square, times, turn};
+use super::complex::{Complex, phase, size, square, times, turn, turn_exactly};
 use super::exponential::{divided_difference, third};
 use super::horizon::rest_of_pole;
-use std::f64::consts::PI;
+use super::resonance::Resonances;
+use crate::math::{Double, Real, two_product};
+use std::{array, f64::consts::PI};
 
+/// What is neglected of modes that are not in step, by what a mode's crossings add up to.
+pub(super) const NOT_IN_STEP: f64 = DOUBLINGS / (PI * PI * PI * IN_STEP);
 /// Where m grows twofold within fewer crossings than this, the formula of Euler and Maclaurin needs more terms than it has
 /// here.
 pub(super) const GRADUAL: f64 = 4000.0;
@@ -28,6 +32,14 @@ pub(super) const GRADUAL: f64 = 4000.0;
 const STEADY: f64 = 3e7;
 /// More modes than this take too long.
 pub(super) const MOST: f64 = 40_000.0;
+/// Up to here every mode is asked for, and beyond only those in step, ...
+const DENSE: f64 = 2048.0;
+/// ... of which there are about as many for each doubling of their number, if their angles are even; ...
+const IN_STEP: f64 = 500.0;
+/// ... and so many doublings or more may be needed.
+const DOUBLINGS: f64 = 32.0;
+/// The last of all.
+const LAST: f64 = 1e15;
 /// Σ |U| times this, by (Q − 1)², bounds all modes beyond Q: |F′(y)| ≤ 2.125/y², from integrating by parts twice, and Σ n⁻³ over
 /// the odd n beyond Q is at most 1/4(Q − 1)².
 const BEYOND: f64 = 4.0 / (PI * PI) * 2.125 / PI * 0.25;
@@ -41,10 +53,16 @@ const ABEL: f64 = (1.0 + 2.0 * (0.5 + 17.0 / 32.0) + 1.0) * PI;
 const LITTLE: f64 = 1e-4;
 
 /// The lines that a side crosses.
+///
+/// Places are kept without whole turns, of which there may be more than numbers have digits.
 pub(super) struct Lines {
-    /// Where along the other axis the first is crossed, m there, and their steps from line to line.
-    pub t: f64,
-    pub stride: f64,
+    /// Where along the other axis the first and the last are crossed, in half turns.
+    t: f64,
+    t_last: f64,
+    /// τ + 1 in half turns, and τ.
+    turning: Double,
+    stride: f64,
+    /// m where the first is crossed, and its step from line to line.
     pub depth: f64,
     pub rise: f64,
     pub lines: f64,
@@ -52,6 +70,8 @@ pub(super) struct Lines {
     pub slope: f64,
     /// What late modes add up to, by the one-th of them, where more is known of that than of |U|.
     pub size: f64,
+    /// How far τ may be from the true one.
+    pub stride_off: f64,
 }
 
 /// One end of a sum: m there and w, which is infinite where m does not change.
@@ -61,89 +81,112 @@ struct End {
 }
 
 impl Lines {
+    /// So many lines, from where t and m are `first` on, which grow by `step` from line to line, and m by `slope` along t on the floor.
+    pub(super) fn new(first: &[Double; 2], step: &[Double; 2], lines: f64, slope: f64) -> Self {
+        let [[t, depth], [stride, rise]] = [first, step];
+        let last = t.plus(&stride.times(&Double::from_f64(lines)));
+        let turning = turn_exactly(stride).plus(&Double::from_f64(1.0));
+        Self {
+            t: turn_exactly(t).to_f64(),
+            t_last: turn_exactly(&last).to_f64(),
+            turning: turn_exactly(&turning),
+            stride: stride.to_f64(),
+            depth: depth.to_f64(),
+            rise: rise.to_f64(),
+            lines,
+            slope,
+            size: f64::INFINITY,
+            stride_off: 0.0,
+        }
+    }
+
     /// Σ (4/π²n²) Im e^(iπnt)/i · Σ (−1)^j … U, of which as much as `tolerance` may be neglected.
     pub(super) fn sum(&self, tolerance: f64) -> Sum {
-        let last_depth = self.depth + self.rise * self.lines;
-        let nearest = self.depth.min(last_depth);
-        let w = (nearest / self.rise).abs();
-        let crossings = self.lines.min(w);
-        // Σ m_j⁻² and Σ m_j⁻³, the latter with what |U| has before it.
-        let squares = (1.0 + crossings) / (nearest * nearest);
-        let climb = self.rise / self.stride;
-        let most = (self.slope - climb).abs() * squares / nearest;
-        let (all, flat) = (BEYOND * most, FLAT * squares.min(self.size));
-        let last = ((all / tolerance).sqrt().ceil() + 2.0)
-            .min((flat / tolerance).ceil() + 2.0)
-            .clamp(3.0, MOST);
-        let beyond = (all / ((last - 1.0) * (last - 1.0))).min(flat / (last - 1.0));
+        sum(&[(1.0, self)], self.in_step(), tolerance)
+    }
 
-        let is_steady = self.rise.abs() * self.lines * STEADY < nearest;
-        let first = End {
-            depth: self.depth,
-            w: self.depth / self.rise,
+    /// Whether of its late modes no more are in step than angles that are spread evenly have.
+    pub(super) fn is_even(&self) -> bool {
+        const SAMPLE: usize = 64;
+        let within = IN_STEP / DENSE;
+        let mut waves = Resonances::new(&self.turning, within);
+        waves
+            .nth(SAMPLE)
+            .is_none_or(|wave| wave as f64 * within > SAMPLE as f64)
+    }
+
+    /// What the crossings of a mode add up to at most, by |θ|.
+    pub(super) fn in_step(&self) -> f64 {
+        ABEL / (self.nearest() * self.nearest())
+    }
+
+    fn last_depth(&self) -> f64 {
+        self.depth + self.rise * self.lines
+    }
+
+    fn nearest(&self) -> f64 {
+        self.depth.min(self.last_depth())
+    }
+
+    fn is_steady(&self) -> bool {
+        self.rise.abs() * self.lines * STEADY < self.nearest()
+    }
+
+    fn ends(&self) -> [Option<End>; 2] {
+        let end = |depth: f64| End {
+            depth,
+            w: depth / self.rise,
         };
-        let end = self.lines.is_finite().then(|| End {
-            depth: last_depth,
-            w: last_depth / self.rise,
-        });
-        let stride = turn(self.stride);
-        let stride = stride - 1.0_f64.copysign(stride);
-        let mut place = phase(turn(self.t) * PI);
-        let step = square(place);
-        let (mut value, mut rounding, mut skipped) = (0.0, 0.0, 0.0);
-        let abel = ABEL / (nearest * nearest);
-        let little = LITTLE * tolerance.max(beyond);
-        let mut n = 1.0;
-        while n <= last {
-            let theta = turn(n * stride) * PI;
-            let weight = 4.0 / (PI * PI * n * n);
-            let at_most = weight * abel;
-            if at_most <= little * theta.abs() {
-                skipped += at_most / theta.abs();
-                place = times(place, step);
-                n += 2.0;
-                continue;
-            }
-            let (sum, terms) = if is_steady {
-                self.steady(n, theta)
-            } else {
-                let (mut sum, mut terms) = self.from(&first, n, theta);
-                if let Some(end) = &end {
-                    let (rest, more) = self.from(end, n, theta);
-                    let rest = times(phase(turn(theta / PI * self.lines) * PI), rest);
-                    sum = [sum[0] - rest[0], sum[1] - rest[1]];
-                    // Its place is off by three roundings of θN, |θ| ≤ π.
-                    terms += more + 0.1 * self.lines * size(rest);
-                }
-                (sum, terms)
-            };
-            value -= weight * (place[0] * sum[0] - place[1] * sum[1]);
-            // F is good to some 100 roundings, and the place of the mode n to 4n.
-            rounding += weight * terms * (128.0 + 4.0 * n) * UNIT;
-            place = times(place, step);
-            n += 2.0;
-        }
-        // |R″|/2 ≤ 0.04 on the whole line below −iθ, and each of pY_p and cY_c has a second derivative by j of at most 3·m⁻²w⁻².
-        let curvature = if is_steady {
+        let is_endless = self.lines.is_infinite();
+        [
+            Some(end(self.depth)),
+            (!is_endless).then(|| end(self.last_depth())),
+        ]
+    }
+
+    /// Of how many crossings m is about what it is at the first.
+    fn crossings(&self) -> f64 {
+        self.lines.min((self.nearest() / self.rise).abs())
+    }
+
+    /// Σ m_j⁻².
+    fn squares(&self) -> f64 {
+        (1.0 + self.crossings()) / (self.nearest() * self.nearest())
+    }
+
+    /// Σ m_j⁻³ with what |U| has before it.
+    fn cubes(&self) -> f64 {
+        let climb = self.rise / self.stride;
+        (self.slope - climb).abs() * self.squares() / self.nearest()
+    }
+
+    /// What the formula of Euler and Maclaurin leaves out.
+    fn curvature(&self) -> f64 {
+        if self.is_steady() {
             // m⁻³ is off by 3·gN/2m from its value in the middle, and m⁻²·F by as much at most, since |F| and |yF′| are at
             // most ½; Σ 4/π²n² is ½.
-            0.5 * most.min(squares) * 3.0 / STEADY
-        } else {
-            let ends = 1.0 + f64::from(u8::from(end.is_some()));
-            0.5 * 0.04 * 6.0 * ends / (nearest * nearest * w * w)
-        };
-        // τ is off by a rounding, and θ by one of nπ times what is left of τ, for which another was made, and by one of its own, so
-        // that the wave n is at crossing j off by πnj(2 + |τ|) units and a little. Of |U| there are two bounds: with
-        // 2.125·|p − c|/πnm³ the modes add up to 2.125/2 of Σ jm⁻³, and with that by m² to (4/π)·Σ 1/n of Σ jm⁻², which grows
-        // like a logarithm where m does.
-        let growth = last_depth.max(self.depth) / nearest;
+            return 0.5 * self.cubes().min(self.squares()) * 3.0 / STEADY;
+        }
+        // |R″|/2 ≤ 0.04 on the whole line below −iθ, and each of pY_p and cY_c has a second derivative by j of at most 3·m⁻²w⁻².
+        let ends = self.ends().iter().flatten().count() as f64;
+        let steps = self.rise / (self.nearest() * self.nearest());
+        0.5 * 0.04 * 6.0 * ends * steps * steps
+    }
+
+    /// What the uncertainty of τ does up to the mode `last`.
+    ///
+    /// If τ is off by ε, the wave n is at crossing j off by πnjε. Of |U| there are two bounds: with
+    /// 2.125·|p − c|/πnm³ the modes add up to 2.125/2 of Σ jm⁻³, and with that by m² to (4/π)·Σ 1/n of Σ jm⁻², which grows
+    /// like a logarithm where m does.
+    fn displaced(&self, last: f64) -> f64 {
+        let nearest = self.nearest();
+        let growth = self.last_depth().max(self.depth) / nearest;
         let waves = 4.0 / PI * (1.0 + 0.5 * libm::log(last)) * (1.0 + libm::log(growth));
-        let by_size = 1.1 * most * crossings;
-        let by_squares = waves * self.largest(nearest) * crossings * squares;
-        let displaced = UNIT * (2.5 + self.stride.abs()) * by_size.min(by_squares);
-        Sum {
-            value,
-            bound: beyond + skipped + curvature + rounding + displaced,
+        let by_size = 1.1 * self.cubes() * self.crossings();
+        let by_squares = waves * self.largest(nearest) * self.crossings() * self.squares();
+        match self.stride_off {
+            0.0 => 0.0,
+            off => off * by_size.min(by_squares),
         }
     }
 
@@ -198,25 +241,187 @@ impl Lines {
         (sum.map(|x| x * scale), terms * scale)
     }
 
+    /// e^(iπnt) of the first and of the last line, the latter with the sign of its summand.
+    fn places(&self, n: f64) -> [Complex; 2] {
+        let [first, last] = [self.t, self.t_last].map(|t| {
+            let Double { hi, lo } = two_product(n, t);
+            phase((turn(hi) + lo) * PI)
+        });
+        let is_odd = self.lines % 2.0 != 0.0;
+        [first, if is_odd { last.map(|x| -x) } else { last }]
+    }
+
+    /// θ of the wave n.
+    fn angle(&self, n: f64) -> f64 {
+        let Double { hi, lo } = two_product(n, self.turning.hi);
+        (turn(hi) + (lo + n * self.turning.lo)) * PI
+    }
+
+    /// The real part of a mode's sum, each end at its place, and the size of what it is made of.
+    fn mode(&self, n: f64, places: [Complex; 2]) -> (f64, f64) {
+        let theta = self.angle(n);
+        if self.is_steady() {
+            return self.steady(n, theta, places);
+        }
+        let (mut sum, mut terms) = (0.0, 0.0);
+        for (i, end) in self.ends().iter().flatten().enumerate() {
+            let (part, size) = self.from(end, n, theta);
+            let part = times(places[i], part)[0];
+            sum += if i == 0 { part } else { -part };
+            terms += size;
+        }
+        (sum, terms)
+    }
+
     /// The same for all crossings where m does not change.
-    fn steady(&self, n: f64, theta: f64) -> (Complex, f64) {
+    fn steady(&self, n: f64, theta: f64, [place, last_place]: [Complex; 2]) -> (f64, f64) {
         let depth = self.depth + 0.5 * self.rise * self.lines;
         let p = third(PI * n * depth / self.slope);
         let c = third(PI * n * depth * self.stride / self.rise);
         let u = [c[0] - p[0], c[1] - p[1]];
-        // Σ e^(iθj), the ends by half, is e^(iθN/2)·sin(θN/2)·cot(θ/2).
+        // Σ e^(iθj), the ends by half, is e^(iθN/2)·sin(θN/2)·cot(θ/2) = ½(e^(iθN) − 1)·cot(θ/2)/i.
         let half = 0.5 * theta;
-        let ratio = match libm::sin(half) {
-            0.0 => self.lines,
-            sine => libm::cos(half) * libm::sin(turn(half / PI * self.lines) * PI) / sine,
+        let cotangent = libm::cos(half) / libm::sin(half);
+        let (sum, all) = if (theta * self.lines).abs() < 1.0 {
+            let whole = match theta {
+                0.0 => self.lines,
+                _ => libm::sin(half * self.lines) * cotangent,
+            };
+            let middle = times(place, phase(half * self.lines));
+            (middle.map(|x| x * whole), whole)
+        } else {
+            let difference = [last_place[0] - place[0], last_place[1] - place[1]];
+            let half = 0.5 * cotangent;
+            (
+                [difference[1] * half, -difference[0] * half],
+                1.0 + cotangent.abs(),
+            )
         };
-        let middle = phase(turn(half / PI * self.lines) * PI);
-        let scale = ratio / (depth * depth);
+        let scale = 1.0 / (depth * depth);
         (
-            times(middle, u).map(|x| x * scale),
-            (size(p) + size(c)) * scale.abs(),
+            times(sum, u)[0] * scale,
+            (size(p) + size(c)) * (all * scale).abs(),
         )
     }
+}
+
+/// Σ over the sides, each with its sign, of what `Lines::sum` is of one. A mode's crossings may add up to `in_step`, by |θ| of the
+/// first side.
+pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64) -> Sum {
+    let Some(&(_, reference)) = sides.first() else {
+        return Sum::default();
+    };
+    let total = |of: fn(&Lines) -> f64| sides.iter().map(|(_, side)| of(side)).sum::<f64>();
+    let all = BEYOND * total(Lines::cubes);
+    let flat = FLAT * total(Lines::squares).min(reference.size);
+    let beyond = |last: f64| (all / ((last - 1.0) * (last - 1.0))).min(flat / (last - 1.0));
+    let last = ((all / tolerance).sqrt().ceil() + 2.0)
+        .min((flat / tolerance).ceil() + 2.0)
+        .clamp(3.0, LAST);
+    let budget = (tolerance / DOUBLINGS).max(in_step / (PI * PI * PI * IN_STEP));
+    // One mode after the other as far as it goes, if what is beyond is less than what of so many would be neglected.
+    let most = last.min(MOST);
+    let (last, dense) = match beyond(most) <= budget * DOUBLINGS {
+        true => (most, most),
+        false => (last, DENSE),
+    };
+    let little = LITTLE * tolerance.max(beyond(last));
+    let (mut value, mut rounding, mut skipped) = (0.0, 0.0, 0.0);
+    let mut add = |n: f64, places: &dyn Fn(usize) -> [Complex; 2]| {
+        let theta = reference.angle(n).abs();
+        let weight = 4.0 / (PI * PI * n * n);
+        let at_most = weight * in_step;
+        if at_most <= little * theta {
+            skipped += at_most / theta;
+            return;
+        }
+        for (i, (sign, side)) in sides.iter().enumerate() {
+            let (sum, terms) = side.mode(n, places(i));
+            value -= sign * weight * sum;
+            // F is good to some 100 roundings, to which θ, off by a few, adds as many, and each place of the mode n to 4n.
+            rounding += weight * terms * (256.0 + 8.0 * n) * UNIT;
+        }
+    };
+    let mut places: Vec<[Complex; 2]> = sides.iter().map(|(_, side)| side.places(1.0)).collect();
+    let steps: Vec<[Complex; 2]> = places.iter().map(|places| places.map(square)).collect();
+    let mut n = 1.0;
+    while n <= dense {
+        add(n, &|i| places[i]);
+        for (places, steps) in places.iter_mut().zip(&steps) {
+            *places = array::from_fn(|i| times(places[i], steps[i]));
+        }
+        n += 2.0;
+    }
+    // Of late modes only those in step; of the others, n² being at least that at a doubling's start, what is left is neglected.
+    let mut reached = last;
+    if last > dense {
+        let within = |from: f64| within(in_step, from, budget);
+        let others = |from: f64| 4.0 / (PI * PI * PI) * in_step / (3.0 * from * within(from));
+        let mut waves = Resonances::new(&reference.turning, within(DENSE));
+        let (mut from, mut neglected, mut count) = (DENSE, others(DENSE), 0.0);
+        while let Some(wave) = waves.next() {
+            let n = wave as f64;
+            if n > last {
+                break;
+            }
+            if n > 2.0 * from {
+                while n > 2.0 * from {
+                    from *= 2.0;
+                    neglected += others(from);
+                }
+                waves.narrow(within(from));
+            }
+            if n <= DENSE {
+                continue;
+            }
+            count += 1.0;
+            if count > MOST {
+                reached = n;
+                break;
+            }
+            add(n, &|i| sides[i].1.places(n));
+        }
+        reached = reached.min(waves.reached());
+        while reached > 2.0 * from {
+            from *= 2.0;
+            neglected += others(from);
+        }
+        skipped += neglected;
+    }
+    let beyond = beyond(reached);
+    let (curvature, displaced) = (
+        total(Lines::curvature),
+        sides
+            .iter()
+            .map(|(_, side)| side.displaced(reached))
+            .sum::<f64>(),
+    );
+    Sum {
+        value,
+        bound: beyond + skipped + curvature + rounding + displaced,
+    }
+}
+
+/// Within how many half turns modes are in step from one of them on, so that what others add up to before there are twice as many
+/// is neglected.
+fn within(in_step: f64, from: f64, budget: f64) -> f64 {
+    (2.0 / (PI * PI * PI) * in_step / (from * budget)).min(0.5)
+}
+
+/// Of two sides whose lines are the same ones, in the same sense, what the crossings of a mode add up to at most, by |θ| of the first side.
+///
+/// Line c has of a mode n between the sides e^(iπnt_1)·W, W = ∫ m⁻³·e^(iπny) dy over the row's length δ, and the row j
+/// (−1)^j·∫ of that, which by parts is e^(iθj)·S with |S| ≤ (2·sup|W| + V)/πn|τ|, where V is the variation of W; and that of S is at most
+/// 4V/πn|τ|. By Abel the rows add up to π/|θ| times sup|S| and S's variation. |W| is at most δm⁻³. It varies by
+/// ∫ |δ′|·m⁻³ dc, δ being linear, and by ∫∫ 3|g|·m⁻⁴ dy dc: with m ≥ m_0 + gc, δ ≤ δ_0 + δ′c and r the greater of the g by
+/// the smaller one, all of it is at most (7 + 5r)·(δ_0·m_0⁻³ + δ′·m_0⁻²/2g). In area that is 4K/πn times as much, and 2K/|q|
+/// times 4/π²n² is taken out here.
+pub(super) fn between(first: &Lines, second: &Lines, [start, growth]: [f64; 2], q: f64) -> f64 {
+    let [low, high] = [first.rise.min(second.rise), first.rise.max(second.rise)];
+    let depth = first.depth.min(second.depth);
+    let rows = start.abs() / (depth * depth * depth)
+        + (growth * start.signum()).max(0.0) / (2.0 * low * depth * depth);
+    0.5 * PI * (q / first.stride).abs() * (7.0 + 5.0 * high / low) * rows
 }
 
 /// y·F(y), which has the limit i.
@@ -275,15 +480,12 @@ mod tests {
             (-2.2, 0.4, 3e-5),
             (1.5, 0.01, 1e-4),
         ] {
-            let lines = Lines {
-                t: 0.37,
-                stride,
-                depth: 0.9,
-                rise,
-                lines: 40.0,
+            let lines = Lines::new(
+                &[0.37, 0.9].map(Double::from_f64),
+                &[stride, rise].map(Double::from_f64),
+                40.0,
                 slope,
-                size: f64::INFINITY,
-            };
+            );
             let (found, expected) = (lines.sum(1e-7), by_quadrature(&lines));
             let error = (found.value - expected).abs();
             // The quadrature's steps are aslant to kinks.

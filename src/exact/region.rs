@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{Live, Spot, World},
+    tracer::{self, Live, Spot, World},
 };
 
 use super::{
@@ -106,8 +106,9 @@ impl<'a> Regions<'a> {
             y: self.spot.y,
             odd: checkered.odd,
             elsewhere: &|x, y| {
-                let board = world.board(object, Spot::pixel(x, y))?;
-                Some((Board::new(board.across, board.below), board.odd))
+                let Checkered { board, odd, .. } =
+                    Checkered::new(world, object, Spot::pixel(x, y))?;
+                Some((board, odd))
             },
         };
         let is_pixel = self.spot.side == 1.0;
@@ -156,17 +157,28 @@ impl<'a> Regions<'a> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
-                let board = self.world.board(object, self.spot)?;
-                let checkered = Checkered {
-                    board: Board::new(board.across, board.below),
-                    odd: board.odd,
-                    rad: board.rad,
-                };
+                let checkered = Checkered::new(self.world, object, self.spot)?;
                 self.boards.push((object, checkered));
                 self.boards.len() - 1
             }
         };
         Some(at)
+    }
+}
+
+impl Checkered {
+    /// An object as a spot sees it, if it is a checkerboard; more closely where that is not enough.
+    fn new(world: &World, object: usize, spot: Spot) -> Option<Self> {
+        let of = |seen: tracer::Board| Self {
+            board: Board::of(&seen),
+            // From which square floors are counted is a matter of roundings, too.
+            odd: seen.odd,
+            rad: seen.rad,
+        };
+        let checkered = of(world.board(object, spot)?);
+        let closely = || world.board_closely(object, spot).map(of);
+        let better = checkered.board.is_doubtful().then(closely).flatten();
+        Some(better.unwrap_or(checkered))
     }
 }
 

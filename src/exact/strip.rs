@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::board::{FAR, Sum, UNIT, form, measure};
-use super::bulk::Bulk;
+use super::bulk::{Bulk, sides};
 use super::cells::Row;
 use super::cutter::{Chord, Tally};
 use super::edge::MAX_TERMS;
@@ -20,6 +20,8 @@ pub(super) struct Strip<'a> {
     first: f64,
     last: f64,
     sides: [Side; 2],
+    /// Whether the first side is nearer (1) or the second one (−1).
+    sign: f64,
 }
 
 /// A side of a strip: where it begins and ends along the row and m there, and the slope of m.
@@ -35,13 +37,9 @@ impl<'a> Strip<'a> {
     /// Between two lines, given where they cut the row's piece.
     pub(super) fn new(row: &'a Row, [first, last]: [f64; 2], chords: &[Chord; 2]) -> Option<Self> {
         let point = |at: DVec2| [row.place(at), 1.0 / form(&row.board.below, at)];
-        let ends = |chord: Chord| {
-            let [s, t] = chord?.map(point);
-            Some(if s[1] <= t[1] { [s, t] } else { [t, s] })
-        };
-        let (from, to) = (ends(chords[0])?, ends(chords[1])?);
-        let sides = [0, 1].map(|i| {
-            let (start, end) = (from[i], to[i]);
+        let (sides, ahead) = sides(row.board, row.along, chords)?;
+        let sides = sides.map(|ends| {
+            let [start, end] = ends.map(point);
             Side {
                 start,
                 end,
@@ -53,6 +51,7 @@ impl<'a> Strip<'a> {
             first,
             last,
             sides,
+            sign: row.board.fine.floor.slope[1 - row.along].signum() * ahead,
         })
     }
 
@@ -94,7 +93,7 @@ impl Bulk for Strip<'_> {
         let (_, perimeter) = measure(piece.iter().copied());
         // The sides are those between points that are a few roundings off.
         bound += 8.0 * UNIT * perimeter;
-        tally.add(self.row.sign * sum, bound);
+        tally.add(self.sign * self.row.sign * sum, bound);
     }
 }
 
@@ -103,7 +102,7 @@ impl Strip<'_> {
     fn potential(&self, waves: &[f64; ORDERS], depth: f64, slope: f64) -> Sum {
         let board = self.row.board;
         let u = 1.0 / depth;
-        let per_slope = board.per_slope[1 - self.row.along];
+        let per_slope = board.fine.floor.per_slope[1 - self.row.along];
         let first = 0.5 * per_slope.value * u * u;
         // L is off by some roundings of its terms.
         let [x, y, z] = board.below.map(f64::abs);

@@ -25,6 +25,15 @@ pub struct Line {
     pub rad: f64,
 }
 
+/// A linear form in double-double.
+#[derive(Clone, Copy, Debug)]
+pub struct Fine {
+    /// The factors of x, y and 1.
+    pub factors: [Double; 3],
+    /// How far a value of the form may be from the true one, in the pixel.
+    pub rad: f64,
+}
+
 /// The conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0, the greatest of its factors being about 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Conic {
@@ -98,7 +107,7 @@ impl<T: Real> Place<T> {
     /// The factors of some forms and a last one in the pixel, all by one power of two smaller or greater so that they are about
     /// 1; from each of the first the last is taken off as often as makes it small at the corner where the last is largest: elsewhere
     /// it may be next to nothing. And whether it is taken off an odd number of times in all.
-    pub fn together(&self, forms: [&Form<T>; 2], last: &Form<T>) -> ([Line; 3], bool) {
+    pub fn together(&self, forms: [&Form<T>; 2], last: &Form<T>) -> ([Fine; 3], bool) {
         let (below, rad) = self.local(last);
         let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
         let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
@@ -122,8 +131,8 @@ impl<T: Real> Place<T> {
         let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
         let exponent = -size.exponent();
         let lines = local.map(|(factors, rad)| {
-            let factors = factors.map(|factor| factor.scaled(exponent).to_f64());
-            Line {
+            let factors = factors.map(|factor| double(&factor.scaled(exponent)));
+            Fine {
                 rad: rad.scaled(exponent).to_f64(),
                 factors,
             }

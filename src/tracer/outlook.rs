@@ -78,6 +78,8 @@ pub struct Board {
     pub across: [[f64; 3]; 2],
     /// Those of ℓ.
     pub below: [f64; 3],
+    /// What their rounding has left of these factors: of N₀, N₁ and ℓ.
+    pub low: [[f64; 3]; 3],
     /// How far a value of these forms may be from the true one, but for the rounding of the factors.
     pub rad: f64,
     /// Whether the square [0, 1)² has the second colour.
@@ -334,6 +336,11 @@ impl World {
         self.board_in::<Big>(object, spot)
     }
 
+    /// The same where more than one rounding of the factors matters.
+    pub fn board_closely(&self, object: usize, spot: Spot) -> Option<Board> {
+        self.board_in::<Big>(object, spot)
+    }
+
     fn board_in<T: Level>(&self, object: usize, spot: Spot) -> Option<Board> {
         let object = T::object(self, object);
         let Object::Checkerboard(board) = &*object else {
@@ -342,8 +349,10 @@ impl World {
         let place = Place::new(&T::frame(self).camera, spot);
         let [a, b] = &board.across;
         let (lines, is_moved) = place.together([a, b], &board.below);
-        let [a, b, below] = lines.map(|line| line.factors);
+        let factors = lines.map(|line| line.factors);
+        let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
         Some(Board {
+            low: factors.map(|factors| factors.map(|c| c.lo)),
             across: [a, b],
             below,
             rad: lines.iter().fold(0.0, |rad, line| line.rad.max(rad)),

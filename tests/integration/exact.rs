@@ -8,6 +8,7 @@ use pinhole::{
     area::Area,
     color::Color,
     film,
+    inspect::{CameraFacts, inspect_camera},
     render::{Control, Exact, render, render_exact},
     sampling::Sampling,
     scene::{self, Count, Lens, Method, Sampler, Scene, Shape, View},
@@ -131,11 +132,23 @@ fn allowed(bounds: &[f32]) -> f64 {
 
 /// Of a scene with twice the resolution four pixels are one of the original.
 fn adds_up(scene: &Scene, name: &str) {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    part_adds_up(scene, whole, name);
+}
+
+/// The same for a part of the picture, which is returned.
+fn part_adds_up(scene: &Scene, area: Area, name: &str) -> Exact {
     let mut fine = scene.clone();
     fine.image.width *= 2;
     fine.image.height *= 2;
-    let (coarse, fine) = (exact(scene), exact(&fine));
-    for (x, y) in Area::whole(scene.image.width, scene.image.height).iter() {
+    let twice = Area {
+        x: 2 * area.x,
+        y: 2 * area.y,
+        width: 2 * area.width,
+        height: 2 * area.height,
+    };
+    let (coarse, fine) = (part(scene, area), part(&fine, twice));
+    for (x, y) in Area::whole(area.width, area.height).iter() {
         let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| (2 * x + i, 2 * y + j));
         let bound = |picture: &Exact, (x, y): (u32, u32)| {
             picture.bounds[(y * picture.film.width() + x) as usize]
@@ -156,6 +169,7 @@ fn adds_up(scene: &Scene, name: &str) {
             );
         }
     }
+    coarse
 }
 
 #[test]
@@ -653,6 +667,133 @@ fn the_widest_views_of_a_board() {
             assert!(bound <= 1e-8, "{lens} {direction} {roll}: {bound:e}");
         }
     }
+}
+
+/// At the horizon, thousands of columns off the middle of a wide view, what a pixel sees of the floor is a ray of it, but for one part in
+/// many millions.
+#[test]
+fn columns_far_off_in_wide_views() {
+    for (direction, roll, d, square, [width, height], [x, y]) in [
+        (
+            "(1, -0.4, 0.7)",
+            0.0,
+            "1e-5",
+            0.001,
+            [12000, 2000],
+            [11996, 999],
+        ),
+        (
+            "(1, -0.4, 0.7)",
+            0.0,
+            "1e-8",
+            0.001,
+            [12000, 2000],
+            [11996, 999],
+        ),
+        (
+            "(0.04, 0, -0.86)",
+            45.0,
+            "1.8e-10",
+            0.02,
+            [6000, 4000],
+            [4825, 172],
+        ),
+        ("(1, 0.3, 2)", 0.0, "2.6e-20", 0.017, [3000, 2000], [2, 999]),
+        (
+            "(0.64, -0.1, -0.8)",
+            20.762,
+            "9e-14",
+            0.13,
+            [6000, 2000],
+            [5628, 2],
+        ),
+        (
+            "(1, -8e-5, 2)",
+            -39.632,
+            "1e-10",
+            0.0013,
+            [3000, 4000],
+            [346, 1044],
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }}
+             camera {{ eye (0.3, 0.8, 0.2) direction {direction} roll {roll}deg d {d} }}
+             sampler {{ method exact }}
+             checkerboard {{ y 0 square {square} }}"
+        ));
+        let area = Area {
+            x,
+            y,
+            width: 3,
+            height: 3,
+        };
+        let bound = part_adds_up(&scene, area, direction).bound();
+        assert!(bound <= 1e-6, "{direction} {d}: {bound:e}");
+    }
+}
+
+/// The same anywhere on the horizon of views of any width beyond 179 degrees.
+#[test]
+fn wide_views_at_random() {
+    let mut random = Random(23);
+    for i in 0..24 {
+        let mut number = |low: f64, high: f64| random.within(low, high);
+        let (width, height) = [(3000, 2000), (2000, 3000), (12_000, 2000)][i % 3];
+        let d = match i {
+            0 => 5e-324,
+            1 => 1e-100,
+            _ => libm::exp10(number(-22.0, -3.0)),
+        };
+        let square = libm::exp10(number(-3.0, 1.0));
+        let pitch = [0.0, number(-1e-4, 1e-4), number(-1.0, 1.0)][i / 3 % 3];
+        let direction = dvec3(number(-1.0, 1.0), pitch, number(-1.0, 1.0));
+        let roll = [0.0, number(-90.0, 90.0)][i / 9 % 2];
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }}
+             camera {{ eye (0.3, 0.8, 0.2) direction {direction:?} roll {roll}deg d {d:e} }}
+             sampler {{ method exact }}
+             checkerboard {{ y 0 square {square} }}"
+        ));
+        // The horizon is where the ray x·u + y·v, to which hardly anything of w is added, is level.
+        let (CameraFacts { u, v, .. }, _) = inspect_camera(&scene.camera, &scene.image);
+        let (right, top) = (0.5 * f64::from(width), 0.5 * f64::from(height));
+        let far_off = number(-1.0, 1.0);
+        let place = match (u.y * right).abs() < (v.y * top).abs() {
+            true => DVec2::new(far_off * right, -far_off * right * u.y / v.y),
+            false => DVec2::new(-far_off * top * v.y / u.y, far_off * top),
+        };
+        let column = (right + place.x).clamp(2.0, 2.0 * right - 2.0) as u32;
+        let row = (top - place.y).clamp(2.0, 2.0 * top - 2.0) as u32;
+        let area = Area {
+            x: column - 1,
+            y: row - 1,
+            width: 3,
+            height: 3,
+        };
+        let name = format!("{direction} {roll} {d:e} {square}");
+        let bound = part_adds_up(&scene, area, &name).bound();
+        assert!(bound <= 1e-6, "{name}: {bound:e}");
+    }
+}
+
+/// A row of many squares that runs into a point in which all lines of the board meet, but for what roundings do.
+#[test]
+fn a_corner_where_all_lines_meet() {
+    let scene = read(
+        "image { width 40 height 8 }
+         camera { eye (0.3, 0.8, 0.2) direction (0.87, 0.64, 0.34) d 1e-20 }
+         sampler { method exact }
+         checkerboard { y 0 square 5e-8 }",
+    );
+    let area = Area {
+        x: 20,
+        y: 4,
+        width: 1,
+        height: 1,
+    };
+    let bound = part_adds_up(&scene, area, "the middle").bound();
+    assert!(bound <= 1e-6, "{bound:e}");
 }
 
 /// Where a sphere's outline meets the horizon in the widest views.
