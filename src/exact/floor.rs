@@ -8,7 +8,7 @@ use crate::math::{Double, Real};
 
 /// Forms whose determinant is known to no more than this part of it are made more independent, by this part of one of them.
 const DEPENDENT: f64 = 1e-6;
-const NUDGE: f64 = UNIT / 128.0;
+const NUDGE: f64 = UNIT / (1 << 23) as f64;
 
 /// A board's forms N_a, N_b and L in double-double, or next to them.
 #[derive(Clone, Debug)]

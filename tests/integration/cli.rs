@@ -594,15 +594,15 @@ fn ctrl_c_leaves_the_old_file() {
 
 #[test]
 fn a_bound_that_is_worth_a_word_gets_one() {
-    let scene = "image { width 6000 height 3 }
-                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-14 }
+    let scene = "image { width 6 height 3 }
+                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-300 }
                  sampler { method exact }
-                 checkerboard { y 0 square 1e-3 }";
+                 checkerboard { y 0 square 1e-15 }";
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("wide.scn");
     fs::write(&path, scene).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .args(["render", "--crop", "5999,0,1,3", "-o"])
+        .args(["render", "-o"])
         .arg(folder.path().join("wide.png"))
         .arg(&path)
         .output()

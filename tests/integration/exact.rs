@@ -751,9 +751,10 @@ fn wide_views_at_random() {
         let roll = [0.0, number(-90.0, 90.0)][i / 9 % 2];
         let scene = read(&format!(
             "image {{ width {width} height {height} }}
-             camera {{ eye (0.3, 0.8, 0.2) direction {direction:?} roll {roll}deg d {d:e} }}
+             camera {{ eye (0.3, 0.8, 0.2) direction ({}, {}, {}) roll {roll}deg d {d:e} }}
              sampler {{ method exact }}
-             checkerboard {{ y 0 square {square} }}"
+             checkerboard {{ y 0 square {square} }}",
+            direction.x, direction.y, direction.z
         ));
         // The horizon is where the ray x·u + y·v, to which hardly anything of w is added, is level.
         let (CameraFacts { u, v, .. }, _) = inspect_camera(&scene.camera, &scene.image);
