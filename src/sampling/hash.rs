@@ -50,14 +50,10 @@ impl Key {
             first += count;
         }
     }
-
-    /// A number from 0 to `n` − 1. Its bias is below n/2^64 (Lemire 2019, without the rejection).
-    pub fn below(self, index: u64, n: u64) -> u64 {
-        scale(self.bits(index), n)
-    }
 }
 
-/// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1.
+/// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1. Its bias is below n/2^64 (Lemire 2019, without
+/// the rejection).
 #[inline]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
@@ -157,7 +153,7 @@ mod tests {
         let key = Key::new(1, 2);
         let mut hits = [0_u32; 7];
         for index in 0..70_000 {
-            hits[key.below(index, 7) as usize] += 1;
+            hits[scale(key.bits(index), 7) as usize] += 1;
         }
         // Standard deviation: √(70 000 · 1/7 · 6/7) = 93.
         assert!(hits.iter().all(|&n| n.abs_diff(10_000) < 400), "{hits:?}");

@@ -17,7 +17,10 @@ use crate::{
     area::Area,
     film::{Film, Recipe},
     render::{Control, Exact, RenderError, render, render_exact},
-    sampling::{Sampling, hash::Key},
+    sampling::{
+        Sampling,
+        hash::{Key, scale},
+    },
     scene::{Count, Method, Sampler, Scene},
     tracer::World,
 };
@@ -347,7 +350,7 @@ fn perform(
 fn shuffle(tasks: &mut [Task], round: u64) {
     let key = Key::new(round, 0);
     for last in (1..tasks.len()).rev() {
-        tasks.swap(last, key.below(last as u64, last as u64 + 1) as usize);
+        tasks.swap(last, scale(key.bits(last as u64), last as u64 + 1) as usize);
     }
 }
 
