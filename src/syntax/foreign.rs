@@ -77,7 +77,7 @@ impl<'t> Before<'t> {
             Some(')' | ']' | '"' | '\'') => Self::Value,
             Some(c) if is_of_word(c) => {
                 let before = written.trim_end_matches(|c| is_of_word(c) || c == '.');
-                let word = written.strip_prefix(before).unwrap_or_default();
+                let word = written.get(before.len()..).unwrap_or_default();
                 let is_name = word.starts_with(|c: char| !c.is_ascii_digit() && c != '.');
                 match is_name && !before.ends_with('#') {
                     true => Self::Word(word),

@@ -333,3 +333,35 @@ fn random_changes_of_an_example() {
         read(bytes);
     }
 }
+
+/// Whatever a line is, eight times as many of them take about eight times as long, not 64 times.
+#[test]
+fn time_grows_with_the_text() {
+    const LINES: usize = 10_000;
+    let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
+    let lines = [
+        sphere("#808000 }"),
+        sphere("olive } // olive"),
+        sphere("olive } # olive"),
+        sphere("olive } -- olive"),
+        sphere("/* olive */ teal }"),
+        sphere("olve }"),
+        sphere("olive"),
+        "let name = 1 + 2\n".to_owned(),
+        "spere {}\n".to_owned(),
+    ];
+    for line in lines {
+        let time = |lines: usize| {
+            let text = CAMERA.to_owned() + &line.repeat(lines);
+            let once = || {
+                let start = Instant::now();
+                let sources = Sources::new(Source::from_text("test.scn", text.as_str()));
+                let reading = scene::read(&sources);
+                (start.elapsed(), reading).0
+            };
+            (0..3).map(|_| once()).min().unwrap_or_default()
+        };
+        let (few, many) = (time(LINES), time(8 * LINES));
+        assert!(many < 24 * few, "{few:?} and {many:?}: {line}");
+    }
+}
