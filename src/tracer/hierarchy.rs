@@ -291,13 +291,16 @@ impl Tree {
             return Self::new(place, items);
         }
         let mut tree = Self::empty();
-        let (own, items): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
+        let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
         tree.list(0, place, &own);
-        let quarters = (0..4).into_par_iter().map(|quarter| {
+        let quarters = [0, 1, 2, 3].map(|quarter| {
             let place = place.quarter(quarter);
-            let items = items.iter().filter(|item| place.meets(item));
-            Self::of_many(place, items.copied().collect())
+            let items = below.iter().filter(|item| place.meets(item));
+            (place, items.copied().collect::<Vec<_>>())
         });
+        drop((own, below));
+        let quarters = quarters.into_par_iter();
+        let quarters = quarters.map(|(place, items)| Self::of_many(place, items));
         tree.join(quarters.collect());
         tree
     }

@@ -111,12 +111,14 @@ impl World {
             None => (objects, items) = scene.objects.iter().enumerate().map(prepare).unzip(),
         }
         let items: Vec<Item> = items.into_iter().flatten().collect();
+        // Before the rest, which finds room where this had lists that are gone.
+        let hierarchy = Hierarchy::new(grid, items, threads.as_ref());
         Self {
             big: Frame::new(&basis, scene, reach, few),
             basis,
             numbers: scene.objects.iter().map(Numbers::new).collect(),
             objects,
-            hierarchy: Hierarchy::new(grid, items, threads.as_ref()),
+            hierarchy,
             fast,
             double,
             colors: Colors::new(scene),
