@@ -12,7 +12,7 @@ use pinhole::{
     film::Recipe,
     render::Control,
     report::speed::{
-        self, Checks, Plan, Request, Subject,
+        self, Check, Checks, Plan, Point, Request, Series, Subject,
         fit::{Fit, log_error, median, quantile, root_mean_square},
         measure,
     },
@@ -112,9 +112,6 @@ fn points_on_a_line_by_luck_have_the_uncertainty_of_their_runs() {
     let expected = 0.1 / (5.0f64.sqrt() * std::f64::consts::LN_2);
     assert!((fit.slope_error.unwrap() - expected).abs() < 1e-14);
     assert!(fit.residual_error.unwrap() < 1e-14);
-    // What it reaches is as doubtful: s/|b| · √(1/4 + 0) in the middle.
-    let doubt = fit.doubt(libm::exp2(1.5)).unwrap();
-    assert!((libm::log(doubt) - 0.1 * 0.5).abs() < 1e-14, "{doubt}");
     // One point of which nothing is known; and residuals that say more.
     let errors = [Some(0.1), None, Some(0.1), Some(0.1)];
     assert_eq!(Fit::of_measured(&points, &errors), Fit::of(&points));
@@ -123,17 +120,70 @@ fn points_on_a_line_by_luck_have_the_uncertainty_of_their_runs() {
     assert_eq!(fit.slope_error, fit.residual_error);
 }
 
-#[test]
-fn what_the_line_reaches_is_doubted_as_in_the_textbook() {
-    // The same line: s = √0.1, x̄ = 1.5, S = 5, b = −0.6.
-    let fit = Fit::of(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
-    for (x, root) in [(1.5, 0.25f64.sqrt()), (3.5, (0.25f64 + 4.0 / 5.0).sqrt())] {
-        let expected = libm::exp2(0.1f64.sqrt() / 0.6 * root);
-        let doubt = fit.doubt(libm::exp2(x)).unwrap();
-        assert!((doubt - expected).abs() < 1e-13, "{doubt}, {expected}");
+/// Numbers of samples with their seconds and errors, each of two runs with a standard error of ε ln e = 0.01.
+fn series(points: &[(u64, f64, f64)]) -> Series {
+    let point = |&(per_pixel, seconds, error): &(u64, f64, f64)| Point {
+        per_pixel,
+        samples: 100 * per_pixel,
+        times: vec![seconds; 2],
+        // Squares of 1 ± q have a variance of 2q² and a mean of 1: an error of √(2q²/2)/2.
+        rmse: [1.02, 0.98]
+            .map(|square: f64| error * square.sqrt())
+            .to_vec(),
+        largest: 1.0,
+    };
+    Series {
+        method: Method::Sobol,
+        points: points.iter().map(point).collect(),
+        picture: None,
+        checks: Vec::new(),
     }
-    let two = Fit::of(&[(1.0, 1.0), (4.0, 0.5)]).unwrap();
-    assert_eq!(two.doubt(4.0), None);
+}
+
+#[test]
+fn what_an_error_takes_lies_between_the_points_on_either_side() {
+    let straight = series(&[(1, 0.5, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)]);
+    let needed = straight.needed(0.1414214).unwrap();
+    assert_eq!((needed.per_pixel, needed.is_extrapolated), (8.0, false));
+    assert!((needed.seconds - 5.0 / 3.0).abs() < 1e-12, "{needed:?}");
+    // Half-way between two: √(¼ + ¼) · 0.01 by a slope of ½.
+    let factor = libm::exp(0.02 * 0.5f64.sqrt());
+    assert!((needed.factor.unwrap() - factor).abs() < 1e-6, "{needed:?}");
+    // As far beyond the last one: √(1 + 4) · 0.01 by ½; the time on the line from the first to the last.
+    let needed = straight.needed(0.0500001).unwrap();
+    assert_eq!((needed.per_pixel, needed.is_extrapolated), (64.0, true));
+    assert!((needed.seconds - 11.0).abs() < 1e-12, "{needed:?}");
+    let factor = libm::exp(0.02 * 5.0f64.sqrt());
+    assert!((needed.factor.unwrap() - factor).abs() < 1e-5, "{needed:?}");
+
+    // A line that flattens is followed where it ends, and doubted as far as the straight one is away.
+    let mut bent = series(&[(1, 1.0, 0.4), (4, 1.0, 0.1), (16, 1.0, 0.05)]);
+    let needed = bent.needed(0.0250001).unwrap();
+    assert_eq!((needed.per_pixel, needed.seconds), (64.0, 1.0));
+    let straight = bent.fit().unwrap().reaches(0.0250001).unwrap();
+    assert!((needed.factor.unwrap() - 64.0 / straight).abs() < 1e-3);
+    assert!(straight < 50.0);
+    // What was tried is a point as well.
+    let tried = |per_pixel, error| Check {
+        wanted: 0.0250001,
+        point: Point {
+            rmse: vec![error],
+            times: vec![2.0],
+            ..series(&[(per_pixel, 2.0, error)]).points[0].clone()
+        },
+    };
+    bent.checks.push(tried(64, 0.03));
+    let needed = bent.needed(0.0250001).unwrap();
+    assert!(needed.is_extrapolated && needed.per_pixel > 64.0);
+    bent.checks.push(tried(100, 0.02));
+    let needed = bent.needed(0.0250001).unwrap();
+    assert!(!needed.is_extrapolated && (64.0..100.0).contains(&needed.per_pixel));
+    assert!(needed.factor.unwrap() > libm::exp(0.01) && needed.seconds == 2.0);
+    // Where more samples do not help nothing is promised.
+    assert_eq!(series(&[(1, 1.0, 0.4), (4, 1.0, 0.4)]).needed(0.1), None);
+    // No error at all is one that is small enough.
+    let clean = series(&[(1, 1.0, 0.4), (4, 2.0, 0.0)]);
+    assert_eq!(clean.needed(0.1).unwrap().per_pixel, 4.0);
 }
 
 #[test]
@@ -558,24 +608,30 @@ fn what_is_extrapolated_is_tried_where_time_is_left() {
         .series
         .iter()
         .find(|series| series.method == Method::Sobol);
-    let check = *sobol.unwrap().check(2e-4).unwrap();
-    assert_eq!(check.per_pixel as f64, needed.per_pixel);
-    assert!((5e-5..1e-3).contains(&check.rmse), "{check:?}");
-    // It changes no prediction, and is told with it.
-    assert_eq!(sobol.unwrap().needed(2e-4), Some(needed));
+    let check = sobol.unwrap().check(2e-4).unwrap();
+    assert_eq!(sobol.unwrap().curve().last(), Some(&&check.point));
+    // A tenth more than the line said; or another try after that.
+    assert!(check.point.per_pixel as f64 >= 1.1 * needed.per_pixel);
+    let needed = sobol.unwrap().needed(2e-4).unwrap();
+    assert!(
+        !needed.is_extrapolated && check.point.error() <= 2e-4,
+        "{needed:?}"
+    );
+    assert!(needed.per_pixel <= check.point.per_pixel as f64);
     let text = speed::table(&measured);
-    assert!(text.contains("  extrapolated; taken: error "), "{text}");
+    assert!(text.contains("  tried: "), "{text}");
+    let rmse = check.point.error();
     let json = &speed::to_json(&measured)["methods"];
     let sobol = json
         .as_array()
         .unwrap()
         .iter()
         .find(|method| method["method"] == "sobol");
-    assert_eq!(sobol.unwrap()["needed"][0]["taken"]["rmse"], check.rmse);
+    assert_eq!(sobol.unwrap()["needed"][0]["taken"]["rmse"], rmse);
     assert!(
         speed::page(&[measured])
             .unwrap()
-            .contains("error when taken")
+            .contains("tried: samples, error, time")
     );
 }
 

@@ -138,10 +138,7 @@ fn lines(
 ) -> Vec<Line> {
     let line = |at: usize| {
         let series = &measured.series[at];
-        let mut points = series.points.clone();
-        let pixels = measured.reference.bounds.len() as u64;
-        points.extend(series.checks.iter().map(|check| check.point(pixels)));
-        points.sort_by_key(|point| point.per_pixel);
+        let mut points = series.curve();
         // An error of 0 has no place on a logarithmic axis.
         points.retain(|point| point.error() > 0.0);
         Line {

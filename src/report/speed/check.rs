@@ -1,11 +1,11 @@
 //! Predictions are tried: the samples that an error should take are taken, where that was extrapolated.
 //!
 //! A line through the logarithms of a few errors is straight; the truth need not be. Where the samples were left to the plan and time is
-//! left of what it was given, the methods render once more, the fastest first, with as many samples as the line says. What they leave of
-//! the error stands beside the prediction, which it does not change, and at the ends of the charts' lines.
+//! left of what it was given, the methods render once more, the fastest first, with a few more samples than the line says, and again if
+//! that was too few. What comes out are further points: what an error takes then lies between two of them.
 
 use super::{
-    measure::{Measurement, run},
+    measure::{Measurement, Point, run},
     needed::Check,
     plan::Plan,
 };
@@ -14,11 +14,17 @@ use crate::render::{Control, RenderError};
 /// Of the time left so much may be filled with estimates.
 const FILLED: f64 = 0.9;
 
+/// So many times as many samples are taken as the line says: most lines flatten.
+const MARGIN: f64 = 1.1;
+
+/// So often samples are taken for an error.
+const TRIES: usize = 3;
+
 /// The renders that are to be made.
 #[derive(Debug)]
 pub struct Checks<'a> {
     plan: &'a Plan<'a>,
-    renders: Vec<Render>,
+    total: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -33,59 +39,45 @@ struct Render {
 impl<'a> Checks<'a> {
     /// Those that fit into the time that is left.
     pub fn new(plan: &'a Plan, measured: &Measurement) -> Self {
-        let mut renders = Vec::new();
-        for (series, of) in measured.series.iter().enumerate() {
-            for &wanted in &measured.errors {
-                let needed = of.needed(wanted).filter(|needed| needed.is_extrapolated);
-                renders.extend(needed.map(|needed| Render {
-                    series,
-                    wanted,
-                    per_pixel: needed.per_pixel as u64,
-                    seconds: needed.seconds,
-                }));
-            }
-        }
-        renders.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let mut left = match plan.request.samples.is_empty() && !measured.interrupted {
-            true => FILLED * plan.left().as_secs_f64(),
-            // Whoever says how many samples are taken wants no others.
-            false => 0.0,
-        };
-        let fit = renders.iter().take_while(|render| {
-            left -= render.seconds;
+        let mut left = left(plan, measured);
+        let renders = renders(measured).into_iter();
+        let fit = renders.map(|render| render.seconds).take_while(|seconds| {
+            left -= seconds;
             left >= 0.0
         });
-        let fit = fit.count();
-        renders.truncate(fit);
-        Self { plan, renders }
+        Self {
+            plan,
+            total: fit.sum(),
+        }
     }
 
-    /// How long they will take, in nanoseconds: the whole of the progress.
+    /// How long they will take at first, in nanoseconds: the whole of the progress.
     pub fn total(&self) -> u64 {
-        let seconds: f64 = self.renders.iter().map(|render| render.seconds).sum();
-        (seconds * 1e9) as u64
+        (self.total * 1e9) as u64
     }
 
     /// Renders, and notes what came of it. When it is cancelled, the measurement is marked as interrupted.
     pub fn run(&self, measured: &mut Measurement, control: &Control) -> Result<(), RenderError> {
         let plan = self.plan;
-        let reference = &plan.reference.film;
-        for render in &self.renders {
-            let samples = render.per_pixel as f64 * plan.reference.bounds.len() as f64;
-            let nanoseconds = render.seconds * 1e9 / samples;
+        let pixels = plan.reference.bounds.len() as u64;
+        while let Some(render) = renders(measured).first() {
+            if render.seconds > left(plan, measured) {
+                break;
+            }
+            let mut point = Point::new(render.per_pixel, pixels);
+            let nanoseconds = render.seconds * 1e9 / point.samples as f64;
             let control = Control {
                 threads: plan.request.threads,
                 progress: &|done| (control.progress)((done as f64 * nanoseconds) as u64),
                 cancel: control.cancel,
             };
             let series = &mut measured.series[render.series];
-            let per_pixel = render.per_pixel;
             match run(
                 plan.scene,
                 series.method,
-                per_pixel,
+                render.per_pixel,
                 measured.seed,
-                reference,
+                &plan.reference.film,
                 &control,
             ) {
                 Err(RenderError::Cancelled) => {
@@ -93,18 +85,46 @@ impl<'a> Checks<'a> {
                     break;
                 }
                 done => {
-                    let (run, _) = done?;
-                    series.checks.push(Check {
-                        wanted: render.wanted,
-                        per_pixel,
-                        seconds: run.seconds,
-                        rmse: run.rmse,
-                        largest: run.largest,
-                    });
+                    point.add(done?.0);
+                    let wanted = render.wanted;
+                    series.checks.push(Check { wanted, point });
                 }
             }
         }
         measured.seconds = plan.started.elapsed().as_secs_f64();
         Ok(())
     }
+}
+
+/// The seconds that may be filled.
+fn left(plan: &Plan, measured: &Measurement) -> f64 {
+    match plan.request.samples.is_empty() && !measured.interrupted {
+        true => FILLED * plan.left().as_secs_f64(),
+        // Whoever says how many samples are taken wants no others.
+        false => 0.0,
+    }
+}
+
+/// What is to be tried by what is known, the fastest first.
+fn renders(measured: &Measurement) -> Vec<Render> {
+    let mut renders = Vec::new();
+    for (at, series) in measured.series.iter().enumerate() {
+        for &wanted in &measured.errors {
+            let tries = series.checks.iter().filter(|check| check.wanted == wanted);
+            let needed = series.needed(wanted);
+            let needed = needed.filter(|needed| needed.is_extrapolated && tries.count() < TRIES);
+            let render = needed.and_then(|needed| {
+                let per_pixel = (MARGIN * needed.per_pixel).ceil();
+                Some(Render {
+                    series: at,
+                    wanted,
+                    per_pixel: per_pixel as u64,
+                    seconds: series.seconds_at(per_pixel)?.0,
+                })
+            });
+            renders.extend(render);
+        }
+    }
+    renders.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    renders
 }

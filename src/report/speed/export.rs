@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use super::{
     fit::median,
     measure::{Measurement, Point, Series},
+    needed::Check,
     notes::{notes, spread, verdicts},
 };
 
@@ -108,7 +109,12 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
             "time": needed.seconds,
             "extrapolated": needed.is_extrapolated,
             "taken": series.check(error).map(
-                |check| json!({"per_pixel": check.per_pixel, "time": check.seconds, "rmse": check.rmse, "largest_error": check.largest}),
+                |Check { point, .. }| json!({
+                    "per_pixel": point.per_pixel,
+                    "time": point.seconds(),
+                    "rmse": point.error(),
+                    "largest_error": point.largest,
+                }),
             ),
         }),
     });

@@ -136,17 +136,6 @@ impl Fit {
         let x = libm::exp(self.center.0 + (libm::log(y) - self.center.1) / self.slope);
         (self.slope < 0.0 && x.is_finite()).then_some(x)
     }
-
-    /// How far the x at which the line [`reaches`](Self::reaches) some y can be trusted: one standard error of ln x, as a factor. With
-    /// s = √(Σr² / (k − 2)), or what the slope's greater error amounts to, that error is s/|b| · √(1/k + (x − x̄)²/S) to first order, x standing for its logarithm: Draper and Smith,
-    /// section 3.2, for a y that is known. It takes the true line for straight.
-    pub fn doubt(&self, x: f64) -> Option<f64> {
-        let s = self.slope_error? * self.spread.sqrt();
-        let away = libm::log(x) - self.center.0;
-        let error =
-            s / self.slope.abs() * (1.0 / self.points as f64 + square(away) / self.spread).sqrt();
-        Some(libm::exp(error))
-    }
 }
 
 fn square(number: f64) -> f64 {

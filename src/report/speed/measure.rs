@@ -111,7 +111,7 @@ pub(super) struct Run {
 }
 
 impl Point {
-    fn new(per_pixel: u64, pixels: u64) -> Self {
+    pub(super) fn new(per_pixel: u64, pixels: u64) -> Self {
         Self {
             per_pixel,
             samples: per_pixel.saturating_mul(pixels),
@@ -121,7 +121,7 @@ impl Point {
         }
     }
 
-    fn add(&mut self, run: Run) {
+    pub(super) fn add(&mut self, run: Run) {
         self.times.push(run.seconds);
         self.rmse.push(run.rmse);
         self.largest = self.largest.max(run.largest);
@@ -186,8 +186,8 @@ impl Measurement {
 #[derive(Clone, Copy)]
 enum Task {
     Exact,
-    /// The place of the series and of the point, and the estimated seconds a sample.
-    Sampled(usize, usize, f64),
+    /// The place of the series and of the point.
+    Sampled(usize, usize),
 }
 
 /// Measures what was planned. When it is cancelled, what was measured until then comes out, marked as interrupted. Progress is told in
@@ -198,8 +198,8 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
     if measured.exact.is_some() {
         tasks.push(Task::Exact);
     }
-    for (series, warm) in plan.warm_up.iter().enumerate() {
-        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point, warm.rate)));
+    for series in 0..plan.warm_up.len() {
+        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point)));
     }
     'rounds: for round in 0..plan.runs {
         let round_started = Instant::now();
@@ -305,7 +305,10 @@ fn perform(
     let pixels = plan.reference.bounds.len() as f64;
     let nanoseconds = match task {
         Task::Exact => plan.exact_seconds * 1e9 / pixels,
-        Task::Sampled(_, _, rate) => rate * 1e9,
+        Task::Sampled(series, point) => {
+            let samples = plan.rungs[point] as f64 * pixels;
+            plan.warm_up[series].seconds(samples) * 1e9 / samples
+        }
     };
     let control = Control {
         threads: plan.request.threads,
@@ -319,7 +322,7 @@ fn perform(
                 exact.times.push(seconds);
             }
         }
-        Task::Sampled(series, point, _) => {
+        Task::Sampled(series, point) => {
             let series = &mut measured.series[series];
             let point = &mut series.points[point];
             // Seeds are below 2^53.

@@ -1,6 +1,7 @@
 //! What an error takes: samples and time, how far they can be trusted, and which method is the fastest.
 
 use super::{
+    fit::log_error,
     measure::{Measurement, Point, Series},
     notes::spread,
 };
@@ -11,8 +12,8 @@ use crate::scene::Method;
 pub struct Needed {
     /// Samples per pixel.
     pub per_pixel: f64,
-    /// The standard error of that as a factor, 1 or more: it may be so many times as many or as few. None where samples were measured
-    /// and nothing was fitted, or the fit does not know.
+    /// The standard error of that as a factor, 1 or more: it may be so many times as many or as few. None where it was not computed from
+    /// points, or nothing is known of their errors.
     pub factor: Option<f64>,
     /// Seconds.
     pub seconds: f64,
@@ -22,19 +23,13 @@ pub struct Needed {
     pub is_extrapolated: bool,
 }
 
-/// What came of taking the samples that an error should take.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Samples taken because an error should take them.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// The error that was asked for.
     pub wanted: f64,
-    /// So many samples should take it there.
-    pub per_pixel: u64,
-    /// So many seconds they took.
-    pub seconds: f64,
-    /// The error that they left.
-    pub rmse: f64,
-    /// The largest difference that they left.
-    pub largest: f64,
+    /// What came of it, in a single run.
+    pub point: Point,
 }
 
 /// Which method is the fastest.
@@ -46,19 +41,6 @@ pub enum Fastest {
     Of(Vec<(Method, Needed)>),
 }
 
-impl Check {
-    /// The same as a point of the method's line, in a picture of so many pixels.
-    pub(super) fn point(&self, pixels: u64) -> Point {
-        Point {
-            per_pixel: self.per_pixel,
-            samples: self.per_pixel.saturating_mul(pixels),
-            times: vec![self.seconds],
-            rmse: vec![self.rmse],
-            largest: self.largest,
-        }
-    }
-}
-
 impl Needed {
     /// The time may be so many times as long or as short: the samples' factor and half of the spread.
     fn doubt(&self) -> f64 {
@@ -67,10 +49,26 @@ impl Needed {
 }
 
 impl Series {
-    /// What an error takes by the [`fit`](Self::fit); none if more samples do not help. Fewer samples than were measured are not asked
-    /// for: they would not take less than the pixel's share of the rest.
+    /// All points that there are, whether planned or tried, by samples.
+    pub fn curve(&self) -> Vec<&Point> {
+        let tried = self.checks.iter().map(|check| &check.point);
+        let mut points: Vec<_> = self.points.iter().chain(tried).collect();
+        points.sort_by_key(|point| point.per_pixel);
+        points
+    }
+
+    /// What an error takes; none if more samples do not help.
+    ///
+    /// That is where the straight line through the logarithms of samples and error comes down to it: between the points on either side of
+    /// the error, and beyond the last one through that and another with at most half its samples. Fewer samples than were measured are not
+    /// asked for: they would not take less than the pixel's share of the rest.
+    ///
+    /// With standard errors ε of the logarithms of both errors, the place x = (1 − s)·a + s·b on the line has that of
+    /// √((1 − s)²ε_a² + s²ε_b²) by its slope. Beyond the last point the truth may bend away: there the distance from where the line through
+    /// all points comes down to it counts, if that is greater.
     pub fn needed(&self, error: f64) -> Option<Needed> {
-        let (first, last) = (self.points.first()?, self.points.last()?);
+        let curve = self.curve();
+        let first = *curve.first()?;
         if first.error() <= error {
             return Some(Needed {
                 per_pixel: first.per_pixel as f64,
@@ -80,43 +78,92 @@ impl Series {
                 is_extrapolated: false,
             });
         }
-        let fit = self.fit()?;
-        let exact = fit.reaches(error)?;
-        let per_pixel = exact.ceil().max(first.per_pixel as f64);
+        let enough = curve.iter().position(|point| point.error() <= error);
+        let (a, b) = match enough {
+            Some(next) => (curve[next - 1], curve[next]),
+            None => {
+                let last = *curve.last()?;
+                let is_apart = |point: &&&Point| point.per_pixel <= last.per_pixel / 2;
+                (*curve.iter().rev().find(is_apart)?, last)
+            }
+        };
+        let [x_a, x_b] = [a, b].map(|point| libm::log(point.per_pixel as f64));
+        let [y_a, y_b] = [a, b].map(|point| libm::log(point.error()));
+        let slope = (y_b - y_a) / (x_b - x_a);
+        let share = (libm::log(error) - y_a) / (y_b - y_a);
+        let x = x_a + share * (x_b - x_a);
+        // No error at all has no logarithm: its samples are enough.
+        let exact = if b.error() > 0.0 {
+            libm::exp(x)
+        } else {
+            b.per_pixel as f64
+        };
+        if slope >= 0.0 || !exact.is_finite() {
+            return None;
+        }
+        let mut per_pixel = exact.ceil();
+        let mut doubt = self.log_error(a).zip(self.log_error(b)).map(|(a, b)| {
+            let (a, b) = ((1.0 - share) * a, share * b);
+            (a * a + b * b).sqrt() / slope.abs()
+        });
+        if enough.is_some() {
+            per_pixel = per_pixel.min(b.per_pixel as f64);
+        } else if let Some(straight) = self.fit().and_then(|fit| fit.reaches(error)) {
+            let bend = (libm::log(straight) - x).abs();
+            doubt = Some(doubt.map_or(bend, |doubt| doubt.max(bend)));
+        }
         let (seconds, spread) = self.seconds_at(per_pixel)?;
         Some(Needed {
             per_pixel,
-            factor: fit.doubt(exact),
+            factor: doubt.filter(|doubt| doubt.is_finite()).map(libm::exp),
             seconds,
             spread,
-            is_extrapolated: per_pixel > last.per_pixel as f64,
+            is_extrapolated: enough.is_none(),
         })
     }
 
-    /// The time of a number of samples, and its spread: on the straight line between the measured neighbours, beyond the last one in
-    /// proportion.
-    fn seconds_at(&self, per_pixel: f64) -> Option<(f64, f64)> {
-        let last = self.points.last()?;
-        let is_enough = |point: &Point| point.per_pixel as f64 >= per_pixel;
-        Some(match self.points.iter().position(is_enough) {
+    /// The standard error of the logarithm of a point's error. Of a single run it is that of the last point with several, by the root of
+    /// their number.
+    fn log_error(&self, point: &Point) -> Option<f64> {
+        let several = |point: &&Point| point.rmse.len() > 1;
+        let like = Some(point).filter(several);
+        let like = like.or_else(|| self.points.iter().rev().find(several))?;
+        let runs = like.rmse.len() as f64 / point.rmse.len() as f64;
+        Some(log_error(&like.rmse)? * runs.sqrt())
+    }
+
+    /// The time of a number of samples, and its spread: on the straight line between the points on either side, beyond the last one on
+    /// that through the first and the last. It falls nowhere, and rises in proportion at most.
+    pub(super) fn seconds_at(&self, per_pixel: f64) -> Option<(f64, f64)> {
+        let curve = self.curve();
+        let (first, last) = (*curve.first()?, *curve.last()?);
+        let samples = |point: &Point| point.per_pixel as f64;
+        let is_enough = |point: &&Point| samples(point) >= per_pixel;
+        Some(match curve.iter().position(is_enough) {
             None => {
-                let seconds = last.seconds() * per_pixel / last.per_pixel as f64;
+                let rise = last.seconds() - first.seconds();
+                let most = last.seconds() / samples(last);
+                let rate = match last.per_pixel > first.per_pixel {
+                    true => (rise / (samples(last) - samples(first))).clamp(0.0, most),
+                    false => most,
+                };
+                let seconds = last.seconds() + rate * (per_pixel - samples(last));
                 (seconds, spread(&last.times))
             }
-            Some(0) => (self.points[0].seconds(), spread(&self.points[0].times)),
+            Some(0) => (first.seconds(), spread(&first.times)),
             Some(next) => {
-                let (low, high) = (&self.points[next - 1], &self.points[next]);
-                let width = (high.per_pixel - low.per_pixel) as f64;
-                let share = (per_pixel - low.per_pixel as f64) / width;
+                let (low, high) = (curve[next - 1], curve[next]);
+                let share = (per_pixel - samples(low)) / (samples(high) - samples(low));
                 let seconds = low.seconds() + share * (high.seconds() - low.seconds());
                 (seconds, spread(&low.times).max(spread(&high.times)))
             }
         })
     }
 
-    /// What came of taking the samples that an error should take, if somebody did.
+    /// What came of taking the samples that an error should take, if somebody did; the last time.
     pub fn check(&self, wanted: f64) -> Option<&Check> {
-        self.checks.iter().find(|check| check.wanted == wanted)
+        let mut checks = self.checks.iter().rev();
+        checks.find(|check| check.wanted == wanted)
     }
 }
 

@@ -42,7 +42,7 @@ pub fn verdicts(measured: &Measurement) -> Vec<String> {
     let verdict = |&wanted: &f64| {
         let sampled = measured.fastest(wanted).map(|fastest| match fastest {
             Fastest::All => all(measured, wanted),
-            Fastest::Of(methods) => of_methods(measured, &methods, wanted),
+            Fastest::Of(methods) => of_methods(&methods, wanted),
         });
         let parts: Vec<_> = [exact.clone(), sampled].into_iter().flatten().collect();
         (!parts.is_empty()).then(|| parts.join("; "))
@@ -68,26 +68,13 @@ fn all(measured: &Measurement, wanted: f64) -> String {
     )
 }
 
-fn of_methods(measured: &Measurement, methods: &[(Method, Needed)], wanted: f64) -> String {
+fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
     let names: Vec<_> = methods.iter().map(|(method, _)| *method).collect();
     let (method, needed) = methods[0];
     let samples = plural(needed.per_pixel as u64, "sample");
     let found = match needed.is_extrapolated {
-        false => String::new(),
-        true => {
-            let series = measured
-                .series
-                .iter()
-                .find(|series| series.method == method);
-            match series.and_then(|series| series.check(wanted)) {
-                None => ", extrapolated".to_owned(),
-                Some(check) => format!(
-                    ", extrapolated; taken, they left {} in {}",
-                    error(check.rmse),
-                    seconds(check.seconds)
-                ),
-            }
-        }
+        false => "",
+        true => ", extrapolated",
     };
     let (time, wanted) = (seconds(needed.seconds), error(wanted));
     match names.as_slice() {
@@ -175,8 +162,8 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
         needs.into_iter().any(|needed| needed.is_extrapolated)
     };
     measured.series.iter().any(needs).then(|| {
-        "What is extrapolated follows the line through the fewer samples that were measured. × and ÷ is one standard error of that line; \
-         where it bends, that is too little: what was taken shows it."
+        "What is extrapolated follows the line through the last of what was measured. × and ÷ is one standard error of it, or how far the line \
+         through all points is from there, if that is more; a line that bends sharply beyond may do so by more than that."
             .to_owned()
     })
 }

@@ -11,7 +11,7 @@ use super::{
     measure::{Measurement, Point, Series},
     notes::{NOISY, notes, spread, verdicts},
     picture,
-    table::{cells, count, error, factor, plural, seconds, slope},
+    table::{cells, count, error, factor, plural, seconds, slope, tried},
 };
 use crate::{numbers, scene::Method};
 
@@ -67,7 +67,7 @@ fn charts(measured: &Measurement) -> String {
         .any(|series| !series.checks.is_empty());
     let tried = match is_tried {
         true => {
-            " Points further out are single runs that try what was extrapolated; the slope leaves them out."
+            " Points at other numbers of samples than the axis names are single runs that try what an error takes; the slope leaves them out."
         }
         false => "",
     };
@@ -223,10 +223,8 @@ fn needs(measured: &Measurement) -> String {
         let time = needed.map(|needed| mark(seconds(needed.seconds)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];
         if is_tried {
-            let taken = series
-                .check(wanted)
-                .map(|check| format!("{} in {}", error(check.rmse), seconds(check.seconds)));
-            cells.push(taken.unwrap_or_else(none));
+            let tried = series.check(wanted).map(|check| tried(&check.point));
+            cells.push(tried.unwrap_or_else(none));
         }
         cells
     };
@@ -251,7 +249,7 @@ fn needs(measured: &Measurement) -> String {
                 format!("samples for {wanted}"),
                 format!("time for {wanted}"),
             ];
-            names.extend(is_tried.then(|| "error when taken".to_owned()));
+            names.extend(is_tried.then(|| "tried: samples, error, time".to_owned()));
             names
         })
         .collect();
@@ -259,8 +257,8 @@ fn needs(measured: &Measurement) -> String {
         return String::new();
     }
     table(
-        "What an error takes: samples per pixel by the fitted line, × and ÷ one standard error, and their time. A star marks what lies \
-         beyond the measured range; where it was tried, the last column is what one run left of the error.",
+        "What an error takes: samples per pixel by the lines between the points, × and ÷ one standard error, and their time. A star marks what lies \
+         beyond the measured range; where it was tried, the last column is what the last try left of the error.",
         &names,
         rows,
         exact,
@@ -394,7 +392,8 @@ fn method(measurements: &[Measurement]) -> String {
          each round by a fixed rule, so that what else the machine does falls on all alike. A run has a seed of its own: that of the scene \
          plus the number of the round.</li>\n\
          <li><b>What is timed</b> is the way from the scene in memory to the picture in memory: preparing objects and samples, starting the \
-         threads, rendering. Reading the scene, comparing pictures and writing PNG files are not. The time is the median of the runs; \
+         threads, rendering. Reading the scene, comparing pictures and writing PNG files are not. Rays per second are all samples divided by that time: most lie in pixels \
+         that are certain to show one colour, and need not be traced. The time is the median of the runs; \
          combinations whose times spread by more than {noisy} % of it are called noisy above.</li>\n\
          <li><b>The error</b> is the root of the mean squared difference to the exact picture, over all pixels and the three channels, in \
          linear light; that of several runs is the root of the mean of their squares. The reference is not rendered with many samples but \
@@ -406,11 +405,12 @@ fn method(measurements: &[Measurement]) -> String {
          lie on a line by luck, so that the error is no less than what the spread of the runs gives it, each of which has a seed of its own: \
          √(Σ(x − x̄)²e²) / Σ(x − x̄)², e being the standard error of the logarithm of a point’s error, √(v/n)/2m by the mean m and the variance v \
          of the n runs’ squared errors. The greater one is given (as the Particle Data Group scales errors), and JSON has both.</li>\n\
-         <li><b>What an error takes</b> is where that line comes down to it, rounded up to a whole number of samples; its time lies on the \
-         straight line between the measured neighbours. Beyond the most samples that were measured it is extrapolated, the time in \
-         proportion, and marked. Its standard error is that of ln x, s/|b| · √(1/k + (x − x̄)²/Σ(x − x̄)²) where s is √Σ(x − x̄)² \
-         times the slope’s error, to first order (the same, section 3.2); it takes the line for straight. Where the samples are left to the program and time is \
-         left, the samples so found are taken once, the fastest methods first, and what they leave of the error stands beside them.</li>\n\
+         <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
+         rounded up to a whole number of samples; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
+         through the last point and another with at most half its samples, and the answer is marked as extrapolated. Where the samples are left to the program \
+         and time is left, such an answer is tried, the fastest methods first: a tenth more samples are taken in a single run, which is a further point, up to three times. \
+         The standard error is that of the two points’ errors, √((1 − s)²e<sub>a</sub>² + s²e<sub>b</sub>²)/|b| at (1 − s)a + sb in logarithms; of what is extrapolated, at least \
+         the distance from where the least-squares line comes down to the same.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within the standard error of the samples \
          and half of the spread of the times.</li>\n\
          </ul>\n</section>\n"

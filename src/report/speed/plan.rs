@@ -1,7 +1,8 @@
 //! What is measured, so that it fits into the time there is.
 //!
-//! The exact picture is computed, and every method renders twice. That warms the machine up and counts for nothing, unless nothing else
-//! gets measured; what it took decides how far the ladder of samples goes and how many runs there are, where the user leaves that open.
+//! The exact picture is computed, and every method renders twice, and once with more samples where that takes no time to speak of. That warms
+//! the machine up and counts for nothing, unless nothing else gets measured; what it took decides how far the ladder of samples goes and how
+//! many runs there are, where the user leaves that open.
 
 use std::{
     num::NonZero,
@@ -22,6 +23,15 @@ const FEWEST_RUNGS: u32 = 3;
 
 /// The samples per pixel of the warm-up.
 const WARM: u64 = 4;
+
+/// So many times as many samples tell what a sample takes, and what the rest, ...
+const MORE: u64 = 16;
+
+/// ... where that takes no more than this share of the time.
+const MORE_SHARE: f64 = 0.1;
+
+/// So much of a time with many samples is theirs, whatever a noisy machine says.
+const LEAST_SHARE: f64 = 0.25;
 
 /// So many runs are wanted, and no more than so many are made.
 const RUNS: (u64, u64) = (3, 9);
@@ -76,8 +86,17 @@ pub(super) struct Warm {
     pub(super) method: Method,
     /// Each with the seed of the scene and few samples.
     pub(super) runs: Vec<Run>,
-    /// The estimate: seconds a sample.
-    pub(super) rate: f64,
+    /// The estimate: seconds a sample, ...
+    rate: f64,
+    /// ... and seconds that do not depend on their number.
+    fixed: f64,
+}
+
+impl Warm {
+    /// How long it should take to render with so many samples in all.
+    pub(super) fn seconds(&self, samples: f64) -> f64 {
+        self.fixed + self.rate * samples
+    }
 }
 
 impl<'a> Plan<'a> {
@@ -125,25 +144,28 @@ impl<'a> Plan<'a> {
     /// Renders twice by a method.
     fn warmed(&self, method: Method, control: &Control) -> Result<Warm, RenderError> {
         let film = &self.reference.film;
-        let run = || {
-            run(
-                self.scene,
-                method,
-                self.warm,
-                self.scene.sampler.seed,
-                film,
-                control,
-            )
-        };
+        let seed = self.scene.sampler.seed;
+        let run = |per_pixel| run(self.scene, method, per_pixel, seed, film, control);
         // The first run finds the machine cold: the second one is the estimate, unless something else delays it.
-        let runs = vec![run()?.0, run()?.0];
+        let runs = vec![run(self.warm)?.0, run(self.warm)?.0];
         let seconds = runs[0].seconds.min(runs[1].seconds);
         let samples = self.warm as f64 * self.reference.bounds.len() as f64;
-        Ok(Warm {
+        let mut warm = Warm {
             method,
             runs,
             rate: seconds / samples,
-        })
+            fixed: 0.0,
+        };
+        let methods = sampled(self.request).count() as f64;
+        let is_short =
+            seconds * MORE as f64 * methods <= MORE_SHARE * self.request.budget.as_secs_f64();
+        if self.request.samples.is_empty() && is_short {
+            let more = run(MORE * self.warm)?.0.seconds;
+            let theirs = (more - seconds).max(LEAST_SHARE * more);
+            warm.rate = theirs / (samples * (MORE - 1) as f64);
+            warm.fixed = (more - warm.rate * samples * MORE as f64).max(0.0);
+        }
+        Ok(warm)
     }
 
     /// How long the measuring will take, in nanoseconds: the whole of the progress.
@@ -186,14 +208,17 @@ impl<'a> Plan<'a> {
 
     /// How long one run of everything takes.
     fn round_seconds(&self, rungs: &[u64]) -> f64 {
-        let samples = rungs.iter().map(|&rung| rung as f64).sum::<f64>();
         let pixels = self.reference.bounds.len() as f64;
-        let rates: f64 = self.warm_up.iter().map(|warm| warm.rate).sum();
+        let of_method = |warm: &Warm| {
+            let seconds = rungs.iter().map(|&rung| warm.seconds(rung as f64 * pixels));
+            seconds.sum::<f64>()
+        };
+        let sampled: f64 = self.warm_up.iter().map(of_method).sum();
         let exact = match self.request.methods.contains(&Method::Exact) {
             true => self.exact_seconds,
             false => 0.0,
         };
-        samples * pixels * rates + exact
+        sampled + exact
     }
 }
 

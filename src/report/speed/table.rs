@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{
     fit::{Fit, median},
-    measure::{Measurement, Series},
+    measure::{Measurement, Point, Series},
     notes::{NOISY, notes, spread, verdicts},
 };
 use crate::{numbers, scene::Method, suggest};
@@ -119,19 +119,17 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
         let _ = match series.needed(wanted) {
             None => writeln!(text, "{name:16}{:>9}{:>8}{:>9}", "-", "", "-"),
             Some(needed) => {
-                let mark = match (needed.is_extrapolated, series.check(wanted)) {
-                    (false, _) => String::new(),
-                    (true, None) => "  extrapolated".to_owned(),
-                    (true, Some(check)) => format!(
-                        "  extrapolated; taken: error {} in {}",
-                        error(check.rmse),
-                        seconds(check.seconds)
-                    ),
+                let extrapolated = match needed.is_extrapolated {
+                    true => "  extrapolated",
+                    false => "",
                 };
+                let tried = series.check(wanted).map_or(String::new(), |check| {
+                    format!("  tried: {}", tried(&check.point))
+                });
                 let factor = needed.factor.map_or(String::new(), factor);
                 writeln!(
                     text,
-                    "{name:16}{:>9}{factor:>8}{:>9}{mark}",
+                    "{name:16}{:>9}{factor:>8}{:>9}{extrapolated}{tried}",
                     count(needed.per_pixel),
                     seconds(needed.seconds),
                 )
@@ -151,11 +149,21 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
     text
 }
 
+/// What came of a single run.
+pub(super) fn tried(point: &Point) -> String {
+    format!(
+        "{} left {} in {}",
+        count(point.per_pixel as f64),
+        error(point.error()),
+        seconds(point.seconds())
+    )
+}
+
 /// A cell for each number of samples; `-` where nothing was measured.
 pub(super) fn cells(
     measured: &Measurement,
     series: &Series,
-    cell: impl Fn(&super::Point) -> String,
+    cell: impl Fn(&Point) -> String,
 ) -> Vec<String> {
     let at = |rung: &u64| series.points.iter().find(|point| point.per_pixel == *rung);
     measured
