@@ -9,7 +9,7 @@ use pinhole::{
     color::Color,
     film,
     inspect::{CameraFacts, inspect_camera},
-    render::{Control, Exact, render, render_exact},
+    render::{Control, Exact, render, render_exact, render_exact_bytes},
     sampling::Sampling,
     scene::{self, Count, Lens, Method, Sampler, Scene, Shape, View},
     source::{Source, Sources},
@@ -309,6 +309,29 @@ fn any_number_of_threads_computes_the_same_picture() {
         let one = part_by(&scene, whole, Some(1));
         for threads in [2, 5] {
             assert_eq!(one, part_by(&scene, whole, Some(threads)), "{name}");
+        }
+    }
+}
+
+#[test]
+fn bytes_are_those_of_the_means() {
+    for name in examples() {
+        let scene = example(&name, 70, 52);
+        let area: Area = "3,1,66,50".parse().unwrap();
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let bytes = render_exact_bytes(&World::new(&scene), area, &control).unwrap();
+        let means = part(&scene, area);
+        assert_eq!(bytes.bounds, means.bounds, "{name}");
+        let certain = film::certified(&means.film, &means.bounds);
+        assert_eq!(bytes.certain, certain, "{name}");
+        assert!(certain <= area.pixels());
+        let encoder = film::Encoder::new();
+        for (bytes, light) in bytes.film.pixels().iter().zip(means.film.pixels()) {
+            assert_eq!(*bytes, encoder.pixel(*light), "{name}");
         }
     }
 }
