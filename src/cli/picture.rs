@@ -31,6 +31,8 @@ pub enum Picture {
     Bytes(Film<[u8; 3]>),
     /// Computed.
     Exact(Exact),
+    /// The same, as bytes.
+    ExactBytes(Exact<[u8; 3]>),
 }
 
 impl Picture {
@@ -40,6 +42,7 @@ impl Picture {
             Self::Sampled(film) => (film.width(), film.height()),
             Self::Bytes(bytes) => (bytes.width(), bytes.height()),
             Self::Exact(exact) => (exact.film.width(), exact.film.height()),
+            Self::ExactBytes(exact) => (exact.film.width(), exact.film.height()),
         }
     }
 
@@ -48,7 +51,7 @@ impl Picture {
     pub fn into_film(self) -> Option<Film> {
         match self {
             Self::Sampled(film) => Some(film),
-            Self::Bytes(_) => None,
+            Self::Bytes(_) | Self::ExactBytes(_) => None,
             Self::Exact(exact) => Some(exact.film),
         }
     }
@@ -57,7 +60,17 @@ impl Picture {
     pub fn notes(&self, output: &Output) -> String {
         match self {
             Self::Sampled(_) | Self::Bytes(_) => String::new(),
-            Self::Exact(exact) => certificate(exact, output),
+            Self::Exact(exact) => {
+                let Exact { film, bounds, .. } = exact;
+                match output {
+                    Output::File(_, Format::Exr) => {
+                        let certain = film::certified_floats(film, bounds);
+                        certificate(exact, certain, "the 32-bit rounding")
+                    }
+                    _ => certificate(exact, film::certified(film, bounds), BYTES),
+                }
+            }
+            Self::ExactBytes(exact) => certificate(exact, exact.certain, BYTES),
         }
     }
 }
@@ -105,7 +118,12 @@ pub fn picture(
             cancel,
         };
         match keep {
-            _ if is_exact => render::render_exact(world, part, &control).map(Picture::Exact),
+            Keep::Light if is_exact => {
+                render::render_exact(world, part, &control).map(Picture::Exact)
+            }
+            Keep::Bytes if is_exact => {
+                render::render_exact_bytes(world, part, &control).map(Picture::ExactBytes)
+            }
             Keep::Light => render::render(world, &sampling, part, &control).map(Picture::Sampled),
             Keep::Bytes => {
                 render::render_bytes(world, &sampling, part, &control).map(Picture::Bytes)
@@ -117,20 +135,13 @@ pub fn picture(
 /// A pixel with a greater bound on its error is worth a word.
 const VAGUE: f32 = 1e-6;
 
-/// What is certain of a computed picture, and of the numbers in its file.
-fn certificate(exact: &Exact, output: &Output) -> String {
-    let (certified, what) = match output {
-        Output::File(_, Format::Exr) => (
-            film::certified_floats(&exact.film, &exact.bounds),
-            "the 32-bit rounding",
-        ),
-        _ => (
-            film::certified(&exact.film, &exact.bounds),
-            "the 8-bit rounding",
-        ),
-    };
+/// What is certain of the pixels of a PNG.
+const BYTES: &str = "the 8-bit rounding";
+
+/// What is certain of a computed picture, and of the numbers in its file: of so many pixels what is done to them.
+fn certificate<P: film::Pixel>(exact: &Exact<P>, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
-    let rounding = match pixels - certified {
+    let rounding = match pixels - certain {
         0 => format!("{what} of every pixel is certain"),
         1 => format!("{what} of all pixels but one is certain"),
         others => format!(
@@ -236,7 +247,9 @@ impl Output {
                         film::write_exr(film, out)
                     }
                     // `keep` asks for light where it goes into an EXR.
-                    (Format::Exr, Picture::Bytes(_)) => Err(io::ErrorKind::InvalidInput.into()),
+                    (Format::Exr, Picture::Bytes(_) | Picture::ExactBytes(_)) => {
+                        Err(io::ErrorKind::InvalidInput.into())
+                    }
                 })
             }
         }
@@ -259,6 +272,7 @@ fn write_png(picture: &Picture, recipe: &Recipe, out: impl io::Write) -> io::Res
         Picture::Sampled(film) => film::write_png(film, recipe, out),
         Picture::Bytes(bytes) => film::write_png(bytes, recipe, out),
         Picture::Exact(exact) => film::write_png(&exact.film, recipe, out),
+        Picture::ExactBytes(exact) => film::write_png(&exact.film, recipe, out),
     }
 }
 

@@ -12,10 +12,10 @@
 //! and the family that it crosses less may be chosen.
 
 use super::board::{Board, Corner, Sum, UNIT, measure};
-use super::euler::{ORDERS, square_wave, waves, waves_at};
+use super::euler::{square_wave, waves, waves_at};
 use super::horizon;
 use super::sides::Known;
-use std::{array, f64::consts::PI};
+use std::f64::consts::PI;
 
 use multiversion::multiversion;
 
@@ -57,7 +57,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
             let (near, far) = if a.depth <= b.depth { (a, b) } else { (b, a) };
             let part = known
                 .as_mut()
-                .and_then(|known| known.sum(edge, near, far))
+                .and_then(|known| known.sum(board, edge, [near, far]))
                 .unwrap_or_else(|| edge.integral(board, terms));
             sum.value += edge.sign * part.value;
             sum.bound += part.bound;
@@ -111,18 +111,22 @@ fn terms(board: &Board, nearest: f64, edges: &[Option<Edge>], area: f64) -> (usi
 /// Ψ at a corner, and its size before anything cancels.
 fn potential(board: &Board, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
-        0..=2 => potential_of::<2>(board, corner, terms),
-        3..=4 => potential_of::<4>(board, corner, terms),
-        5..=7 => potential_of::<7>(board, corner, terms),
-        8..=12 => potential_of::<12>(board, corner, terms),
-        _ => potential_of::<MAX_TERMS>(board, corner, terms),
+        0..=2 => potential_of::<2, 4>(board, corner, terms),
+        3..=4 => potential_of::<4, 6>(board, corner, terms),
+        5..=7 => potential_of::<7, 9>(board, corner, terms),
+        8..=12 => potential_of::<12, 14>(board, corner, terms),
+        _ => potential_of::<MAX_TERMS, { MAX_TERMS + 2 }>(board, corner, terms),
     }
 }
 
-fn potential_of<const MOST: usize>(board: &Board, corner: &Corner, terms: usize) -> (f64, f64) {
+fn potential_of<const MOST: usize, const ROWS: usize>(
+    board: &Board,
+    corner: &Corner,
+    terms: usize,
+) -> (f64, f64) {
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
-        let mut waves = waves::<MOST>(corner.floor[i]);
+        let mut waves = waves::<MOST, ROWS>(corner.floor[i]);
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;
@@ -140,16 +144,6 @@ fn potential_of<const MOST: usize>(board: &Board, corner: &Corner, terms: usize)
     }
     let density = board.floor.density * u * u * u;
     (density * sum, density)
-}
-
-fn waves_of(t: f64, terms: usize) -> [f64; ORDERS] {
-    match terms {
-        0..=2 => waves::<2>(t),
-        3..=4 => waves::<4>(t),
-        5..=7 => waves::<7>(t),
-        8..=12 => waves::<12>(t),
-        _ => waves::<MAX_TERMS>(t),
-    }
 }
 
 /// An edge from its near end to its far one. `c` counts the lines of the family that it crosses less, t those of the other.
@@ -321,7 +315,17 @@ pub(super) struct Series {
 
 impl Series {
     fn at(&self, t: f64, depth: f64) -> f64 {
-        let waves = waves_of(t, self.terms);
+        match self.terms {
+            0..=2 => self.at_with::<2, 4>(t, depth),
+            3..=4 => self.at_with::<4, 6>(t, depth),
+            5..=7 => self.at_with::<7, 9>(t, depth),
+            8..=12 => self.at_with::<12, 14>(t, depth),
+            _ => self.at_with::<MAX_TERMS, { MAX_TERMS + 2 }>(t, depth),
+        }
+    }
+
+    fn at_with<const MOST: usize, const ROWS: usize>(&self, t: f64, depth: f64) -> f64 {
+        let waves = waves::<MOST, ROWS>(t);
         let u = 1.0 / depth;
         let sum = (1..=self.terms)
             .rev()
@@ -396,34 +400,49 @@ impl Crossings<'_> {
     }
 
     #[inline(always)]
-    fn block<const TERMS: usize>(&self, series: &Series, done: f64, count: f64) -> f64 {
-        // In lanes, which the compiler makes vectors of; what is left over is added one by one.
+    fn block<const TERMS: usize, const ROWS: usize>(
+        &self,
+        series: &Series,
+        done: f64,
+        count: f64,
+    ) -> f64 {
+        /// So many are added on their own, as the terms' signs alternate.
         const LANES: usize = 8;
+        const CHUNK: usize = 64;
         let mut sums = [0.0; LANES];
-        let count = count as usize;
+        let mut left = count as usize;
         let mut j = done;
-        for _ in 0..count / LANES {
-            let values = self.at::<TERMS, LANES>(series, array::from_fn(|lane| j + lane as f64));
-            sums = array::from_fn(|lane| sums[lane] + values[lane]);
-            j += LANES as f64;
-        }
-        for sum in &mut sums[..count % LANES] {
-            *sum += self.at::<TERMS, 1>(series, [j])[0];
-            j += 1.0;
+        while left > 0 {
+            let now = left.min(CHUNK);
+            // A loop that the compiler makes vectors of, to the end of the last of them; what is too much is not added.
+            let mut values = [0.0; CHUNK];
+            let filled = now.next_multiple_of(LANES);
+            for (i, value) in values[..filled].iter_mut().enumerate() {
+                *value = self.at::<TERMS, ROWS>(series, j + f64::from(i as u32));
+            }
+            values[now..filled].fill(0.0);
+            for values in values[..filled].chunks_exact(LANES) {
+                for (sum, value) in sums.iter_mut().zip(values) {
+                    *sum += value;
+                }
+            }
+            left -= now;
+            j += now as f64;
         }
         ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
-    /// X at some crossings.
+    /// X at a crossing.
     #[inline(always)]
-    fn at<const TERMS: usize, const N: usize>(&self, series: &Series, j: [f64; N]) -> [f64; N] {
-        let waves = waves_at::<TERMS, N>(j.map(|j| self.t + j * self.edge.stride));
-        let u = j.map(|j| 1.0 / (self.depth + j * self.edge.rise));
-        let mut x = [0.0; N];
-        for k in (1..=TERMS).rev() {
-            x = array::from_fn(|i| (x[i] + series.factors[k] * waves[k + 1][i]) * u[i]);
+    fn at<const TERMS: usize, const ROWS: usize>(&self, series: &Series, j: f64) -> f64 {
+        let waves = waves_at::<TERMS, ROWS, 1>([self.t + j * self.edge.stride]);
+        let u = 1.0 / (self.depth + j * self.edge.rise);
+        let (mut x, mut k) = (0.0, TERMS);
+        while k > 0 {
+            x = (x + series.factors[k] * waves[k + 1][0]) * u;
+            k -= 1;
         }
-        array::from_fn(|i| x[i] * u[i] * u[i])
+        x * u * u
     }
 }
 
@@ -431,14 +450,14 @@ impl Crossings<'_> {
 #[multiversion(targets = "simd")]
 fn block(crossings: &Crossings, series: &Series, terms: usize, [done, count]: [f64; 2]) -> f64 {
     match terms {
-        1 => crossings.block::<1>(series, done, count),
-        2 => crossings.block::<2>(series, done, count),
-        3 => crossings.block::<3>(series, done, count),
-        4 => crossings.block::<4>(series, done, count),
-        5 => crossings.block::<5>(series, done, count),
-        6 => crossings.block::<6>(series, done, count),
-        7..=9 => crossings.block::<9>(series, done, count),
-        10..=12 => crossings.block::<12>(series, done, count),
-        _ => crossings.block::<MAX_TERMS>(series, done, count),
+        1 => crossings.block::<1, 3>(series, done, count),
+        2 => crossings.block::<2, 4>(series, done, count),
+        3 => crossings.block::<3, 5>(series, done, count),
+        4 => crossings.block::<4, 6>(series, done, count),
+        5 => crossings.block::<5, 7>(series, done, count),
+        6 => crossings.block::<6, 8>(series, done, count),
+        7..=9 => crossings.block::<9, 11>(series, done, count),
+        10..=12 => crossings.block::<12, 14>(series, done, count),
+        _ => crossings.block::<MAX_TERMS, { MAX_TERMS + 2 }>(series, done, count),
     }
 }

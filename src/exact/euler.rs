@@ -76,13 +76,15 @@ pub(super) fn square_wave(t: f64) -> f64 {
 /// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
 /// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
 /// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
-pub(super) fn waves<const TERMS: usize>(t: f64) -> [f64; ORDERS] {
-    waves_at::<TERMS, 1>([t]).map(|[wave]| wave)
+pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
+    waves_at::<TERMS, ROWS, 1>([t]).map(|[wave]| wave)
 }
 
-/// The waves at several places: in each of the answer's rows one order.
+/// The waves at several places: in each of the answer's rows one order, so that there must be two rows more than terms.
 #[inline(always)]
-pub(super) fn waves_at<const TERMS: usize, const N: usize>(t: [f64; N]) -> [[f64; N]; ORDERS] {
+pub(super) fn waves_at<const TERMS: usize, const ROWS: usize, const N: usize>(
+    t: [f64; N],
+) -> [[f64; N]; ROWS] {
     // Adding 1.5·2^52 rounds to an integer and leaves its parity in the last bit; at a tie either neighbour will do, for
     // the waves are continuous. Half-way to t's last digits nothing is left to be said.
     const ROUND: f64 = 6755399441055744.0;
@@ -92,7 +94,7 @@ pub(super) fn waves_at<const TERMS: usize, const N: usize>(t: [f64; N]) -> [[f64
     let sign = shifted.map(|s| f64::from_bits(1.0_f64.to_bits() | (s.to_bits() << 63)));
     let square: [f64; N] = array::from_fn(|i| eta[i] * eta[i]);
     let odd: [f64; N] = array::from_fn(|i| sign[i] * eta[i]);
-    let mut all = [[0.0; N]; ORDERS];
+    let mut all = [[0.0; N]; ROWS];
     // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them would not become vectors.
     macro_rules! order {
         ($k:literal, $first:expr, $($factor:literal)*) => {
@@ -137,7 +139,7 @@ mod tests {
     #[test]
     fn waves_are_the_fourier_series() {
         for t in [-3.7, -1.0, -0.2, 0.0, 0.31, 0.5, 1.25, 2.0, 7.9] {
-            for (k, wave) in waves::<20>(t).into_iter().enumerate().skip(2) {
+            for (k, wave) in waves::<20, ORDERS>(t).into_iter().enumerate().skip(2) {
                 let mut sum = 0.0;
                 for n in (1..4001).step_by(2) {
                     let x = f64::from(n) * PI;

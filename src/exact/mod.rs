@@ -27,6 +27,7 @@ mod euler;
 mod exponential;
 mod floor;
 mod grid;
+mod groups;
 mod horizon;
 mod inverse;
 mod level;
@@ -40,7 +41,9 @@ mod strip;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod together;
 mod track;
+mod waiting;
 
 use std::{
     ops::ControlFlow,
@@ -53,9 +56,10 @@ use crate::{
 };
 
 use self::{
-    board::UNIT,
+    board::{Sum, UNIT},
     region::{Regions, Shares},
     sides::Sides,
+    waiting::{Floor, Waiting},
 };
 
 /// A spot whose bound is no greater than this is not cut into quarters; nor one with the horizon, where squares never end.
@@ -115,39 +119,63 @@ impl<'a> Integrator<'a> {
         };
         let mut scratch = Scratch::default();
         let mut room = Room::default();
+        let mut waiting = Waiting::new(self.world);
+        // Pixels of a checkerboard for which that is not enough.
+        let mut others = Vec::new();
         let flow = self.quartering.parts(part, &mut room, &mut |part| {
             if cancel.load(Ordering::Relaxed) {
                 return ControlFlow::Break(());
             }
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
-                Part::Open { x, y, live } => {
-                    let spot = Spot::pixel(x, y);
-                    let pixel = self.floor(spot, live).unwrap_or_else(|| {
-                        let shares = self.shares(spot, live, &mut scratch, cancel);
-                        self.mean(&shares.by_slot, shares.bound)
-                    });
-                    film.set(x, y, pixel);
-                }
+                Part::Open { x, y, live } => match live {
+                    [only] if self.is_floor(only) => {
+                        waiting.push(Floor { x, y, live: *only }, &mut |floor, sum| {
+                            self.set(floor, sum, &mut film, &mut others);
+                        });
+                    }
+                    _ => film.set(x, y, self.pixel(x, y, live, &mut scratch, cancel)),
+                },
             }
             ControlFlow::Continue(())
         });
+        waiting.finish(&mut |floor, sum| self.set(floor, sum, &mut film, &mut others));
+        for Floor { x, y, live } in others {
+            if cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            film.set(x, y, self.pixel(x, y, &[live], &mut scratch, cancel));
+        }
         (flow.is_continue() && !cancel.load(Ordering::Relaxed)).then_some(film.pixels)
     }
 
-    /// A spot that shows nothing but a checkerboard, if few of its lines cross it.
-    fn floor(&self, spot: Spot, live: &[Live]) -> Option<Pixel> {
-        let [only] = live else { return None };
+    fn pixel(
+        &self,
+        x: u32,
+        y: u32,
+        live: &[Live],
+        scratch: &mut Scratch,
+        cancel: &AtomicBool,
+    ) -> Pixel {
+        let shares = self.shares(Spot::pixel(x, y), live, scratch, cancel);
+        self.mean(&shares.by_slot, shares.bound)
+    }
+
+    /// Whether an object that is all that may be seen fills what it is seen in, in two colours.
+    fn is_floor(&self, only: &Live) -> bool {
         let [first, second] = self.world.slots(only.object);
-        if !only.is_whole || first == second {
-            return None;
-        }
-        let board = self.world.board(only.object, spot)?;
-        let sum = grid::sum(&board)?;
-        let bound = 0.5 * sum.bound + 8.0 * UNIT;
-        let half = if board.odd { -0.5 } else { 0.5 } * sum.value;
+        only.is_whole && first != second
+    }
+
+    /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one of the others.
+    fn set(&self, floor: Floor, sum: Option<Sum>, film: &mut Film, others: &mut Vec<Floor>) {
+        let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + 8.0 * UNIT));
+        let Some((half, bound)) = half.filter(|(_, bound)| *bound <= ENOUGH) else {
+            return others.push(floor);
+        };
+        let [first, second] = self.world.slots(floor.live.object);
         let shares = [(first, 0.5 + half), (second, 0.5 - half)];
-        (bound <= ENOUGH).then(|| self.mean(&shares, bound))
+        film.set(floor.x, floor.y, self.mean(&shares, bound));
     }
 
     /// The shares of a spot; of its quarters together where the whole is not computed well enough.

@@ -47,13 +47,14 @@ pub(super) struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// What an edge sums up to, from near to far, if it is a long side of the pixel.
-    pub fn sum(&mut self, edge: &Edge, near: &Corner, far: &Corner) -> Option<Sum> {
+    /// What an edge of the pixel's board sums up to, from near to far, if it is a long side of the pixel.
+    pub fn sum(&mut self, board: &Board, edge: &Edge, ends: [&Corner; 2]) -> Option<Sum> {
+        let [near, far] = ends;
         let side = (edge.lines() > LONG).then(|| self.side(edge, near, far))??;
         let sum = match self.sides.0.get(&side) {
             Some(sum) => *sum,
             None => {
-                let sum = self.computed(side)?;
+                let sum = self.computed(side, board)?;
                 self.sides.0.insert(side, sum);
                 sum
             }
@@ -82,9 +83,8 @@ impl Known<'_> {
     }
 
     /// The sum of a side as the pixel to its left or above it has it, if it can be seen from there; positive for the first colour.
-    fn computed(&self, side: Side) -> Option<Sum> {
+    fn computed(&self, side: Side, own: &Board) -> Option<Sum> {
         let [x, y] = side.near;
-        let way = DVec2::new(f64::from(side.way[0]), f64::from(side.way[1]));
         // The pixel whose lower right corner, lower left or upper right one the near end is.
         let column = if side.way[0] > 0 {
             x
@@ -96,24 +96,34 @@ impl Known<'_> {
         } else {
             y.saturating_sub(1)
         };
-        let (board, odd) = (self.elsewhere)(column, row)?;
-        let offset = |corner: u32, pixel: u32| f64::from(corner) - f64::from(pixel) - 0.5;
-        let near = DVec2::new(offset(x, column), offset(y, row));
-        let level = |at: DVec2| form(&board.below, at);
-        let (here, there) = (level(near), level(near + way));
-        let far = if side.is_endless {
-            let t = (here / (here - there)).clamp(0.0, 1.0);
-            board.corner(near + way * t, 0.0)
-        } else {
-            board.corner(near + way, there)
-        };
-        let near = board.corner(near, here);
-        if !(near.depth > 0.0 && far.depth > 0.0) || near.depth.is_infinite() {
-            return None;
+        if [column, row] == [self.x, self.y] {
+            return along(own, self.odd, side, [column, row]);
         }
-        let edge = Edge::along(&board, &near, &far, side.by_b)?;
-        Some(by_color(edge.alone(&board), odd))
+        let (board, odd) = (self.elsewhere)(column, row)?;
+        along(&board, odd, side, [column, row])
     }
+}
+
+/// The sum of a side of a pixel that has such a board.
+fn along(board: &Board, odd: bool, side: Side, [column, row]: [u32; 2]) -> Option<Sum> {
+    let [x, y] = side.near;
+    let way = DVec2::new(f64::from(side.way[0]), f64::from(side.way[1]));
+    let offset = |corner: u32, pixel: u32| f64::from(corner) - f64::from(pixel) - 0.5;
+    let near = DVec2::new(offset(x, column), offset(y, row));
+    let level = |at: DVec2| form(&board.below, at);
+    let (here, there) = (level(near), level(near + way));
+    let far = if side.is_endless {
+        let t = (here / (here - there)).clamp(0.0, 1.0);
+        board.corner(near + way * t, 0.0)
+    } else {
+        board.corner(near + way, there)
+    };
+    let near = board.corner(near, here);
+    if !(near.depth > 0.0 && far.depth > 0.0) || near.depth.is_infinite() {
+        return None;
+    }
+    let edge = Edge::along(board, &near, &far, side.by_b)?;
+    Some(by_color(edge.alone(board), odd))
 }
 
 /// From a sum that is positive for the square [0, 1)² to one for the first colour, and back.

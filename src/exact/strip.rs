@@ -80,7 +80,7 @@ impl Bulk for Strip<'_> {
     }
 
     fn add(&self, [first, last]: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
-        let waves = waves::<MAX_TERMS>(0.0);
+        let waves = waves::<MAX_TERMS, { MAX_TERMS + 2 }>(0.0);
         let mut sum = 0.0;
         let mut bound = 0.0;
         for (i, sense) in [(first, -1.0), (last, 1.0)] {

@@ -34,6 +34,9 @@ pub trait Pixel: Copy + Default + Send + Sync {
     /// From the mean.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
+    /// Whether a mean that may be off by a bound in each channel is certain to become the same.
+    fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
+
     /// The bytes of a row; `room` is for those that are not there yet.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
 }
@@ -41,6 +44,10 @@ pub trait Pixel: Copy + Default + Send + Sync {
 impl Pixel for [f64; 3] {
     fn of(light: [f64; 3], _: &Encoder) -> Self {
         light
+    }
+
+    fn is_certain(_: [f64; 3], bound: f64, _: &Encoder) -> bool {
+        bound == 0.0
     }
 
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
@@ -60,6 +67,14 @@ impl Pixel for [f64; 3] {
 impl Pixel for [u8; 3] {
     fn of(light: [f64; 3], encoder: &Encoder) -> Self {
         encoder.pixel(light)
+    }
+
+    fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
+        // What is the true mean itself is so, too.
+        bound == 0.0
+            || light
+                .iter()
+                .all(|light| encoder.is_one(light - bound, light + bound))
     }
 
     fn bytes<'a>(row: &'a [Self], _: &Encoder, _: &'a mut Vec<u8>) -> &'a [u8] {
@@ -146,20 +161,18 @@ impl<P: Pixel> Film<P> {
 /// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::new();
-    certain(film, bounds, |light| encoder.encode(light))
+    let is_certain = |(light, bound): &(&[f64; 3], &f32)| {
+        <[u8; 3]>::is_certain(**light, f64::from(**bound), &encoder)
+    };
+    film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
 }
 
 /// The same of the 32-bit floats of an EXR file.
 pub fn certified_floats(film: &Film, bounds: &[f32]) -> u64 {
-    certain(film, bounds, |light| light.clamp(0.0, 1.0) as f32)
-}
-
-/// How many pixels become the same whatever their means are within their bounds.
-fn certain<T: PartialEq>(film: &Film, bounds: &[f32], round: impl Fn(f64) -> T) -> u64 {
+    let round = |light: f64| light.clamp(0.0, 1.0) as f32;
     let is_certain = |(pixel, bound): &(&[f64; 3], &f32)| {
         let bound = f64::from(**bound);
         let same = |&light: &f64| round(light - bound) == round(light + bound);
-        // What is the true mean itself is so, too.
         bound == 0.0 || pixel.iter().all(same)
     };
     film.pixels.iter().zip(bounds).filter(is_certain).count() as u64

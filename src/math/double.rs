@@ -17,7 +17,7 @@ pub struct Double {
 }
 
 /// a + b as a rounded sum and its exact error (Knuth).
-#[inline]
+#[inline(always)]
 pub fn two_sum(a: f64, b: f64) -> Double {
     let hi = a + b;
     let of_b = hi - a;
@@ -26,7 +26,7 @@ pub fn two_sum(a: f64, b: f64) -> Double {
 }
 
 /// a + b as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
-#[inline]
+#[inline(always)]
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let hi = a + b;
     Double {
@@ -36,7 +36,7 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
 }
 
 /// a · b as a rounded product and its exact error (Dekker, with Veltkamp's splitting).
-#[inline]
+#[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
     fn split(x: f64) -> (f64, f64) {
         let scaled = x * 134_217_729.0; // 2^27 + 1
@@ -85,6 +85,7 @@ impl Real for Double {
     fn is_zero(&self) -> bool {
         self.hi == 0.0
     }
+    #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         let s = two_sum(self.hi, other.hi);
         let t = two_sum(self.lo, other.lo);
@@ -94,6 +95,7 @@ impl Real for Double {
     fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negated())
     }
+    #[inline(always)]
     fn times(&self, other: &Self) -> Self {
         let p = two_product(self.hi, other.hi);
         let cross = self.hi * other.lo + self.lo * other.hi;

@@ -140,7 +140,7 @@ pub struct Camera<T: Real> {
     /// Z.
     pub z: T,
     /// Half the picture's width and height, in pixels.
-    half: DVec2,
+    pub half: DVec2,
     /// Bounds on X and Y.
     pub window: Window<T::Radius>,
 }

@@ -9,6 +9,7 @@
 //! knows. Every decision is made in `f64` with a bound on its error;
 //! what that leaves in doubt is decided in double-double, and what that leaves in doubt, in big numbers.
 
+mod boards;
 mod camera;
 mod checkerboard;
 mod cover;
@@ -28,6 +29,7 @@ mod tests;
 mod triangle;
 mod world;
 
+pub use boards::{Boards, PIXELS, Views};
 pub use camera::{Basis, Point};
 pub use curve::{Conic, Curve, Line};
 pub use outlook::{Board, Live, Spot};

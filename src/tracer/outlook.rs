@@ -87,7 +87,7 @@ pub struct Board {
 }
 
 /// The error of a line's form, and the doubtful area of a conic, from which on double-double was not enough.
-const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
+pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 impl World {

@@ -1,6 +1,6 @@
 //! The computed picture against closed forms, against itself in other ways, against samples and against rational arithmetic.
 
-use std::{f64::consts::PI, sync::atomic::AtomicBool};
+use std::{f64::consts::PI, num::NonZero, sync::atomic::AtomicBool};
 
 use dashu_ratio::RBig;
 use glam::{DVec2, dvec3};
@@ -9,7 +9,7 @@ use pinhole::{
     color::Color,
     film,
     inspect::{CameraFacts, inspect_camera},
-    render::{Control, Exact, render, render_exact},
+    render::{Control, Exact, render, render_exact, render_exact_bytes},
     sampling::Sampling,
     scene::{self, Count, Lens, Method, Sampler, Scene, Shape, View},
     source::{Source, Sources},
@@ -48,8 +48,12 @@ fn exact(scene: &Scene) -> Exact {
 }
 
 fn part(scene: &Scene, area: Area) -> Exact {
+    part_by(scene, area, None)
+}
+
+fn part_by(scene: &Scene, area: Area, threads: Option<usize>) -> Exact {
     let control = Control {
-        threads: None,
+        threads: threads.and_then(NonZero::new),
         progress: &|_| {},
         cancel: &AtomicBool::new(false),
     };
@@ -289,7 +293,45 @@ fn no_pixel_depends_on_what_was_computed_before_it() {
             for (x, y) in area.iter() {
                 let pixel = cropped.film.pixel(x - area.x, y - area.y);
                 assert_eq!(pixel, whole.film.pixel(x, y), "{name} at {x}, {y}");
+                let bound = cropped.bounds[area.index(x, y)];
+                assert_eq!(bound, whole.bounds[(y * 96 + x) as usize]);
             }
+        }
+    }
+}
+
+#[test]
+fn any_number_of_threads_computes_the_same_picture() {
+    for name in ["figure_9_9.scn", "rolled.scn", "piercing.scn"] {
+        // Tiles of all sizes, and more than threads.
+        let scene = example(name, 201, 140);
+        let whole = Area::whole(201, 140);
+        let one = part_by(&scene, whole, Some(1));
+        for threads in [2, 5] {
+            assert_eq!(one, part_by(&scene, whole, Some(threads)), "{name}");
+        }
+    }
+}
+
+#[test]
+fn bytes_are_those_of_the_means() {
+    for name in examples() {
+        let scene = example(&name, 70, 52);
+        let area: Area = "3,1,66,50".parse().unwrap();
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let bytes = render_exact_bytes(&World::new(&scene), area, &control).unwrap();
+        let means = part(&scene, area);
+        assert_eq!(bytes.bounds, means.bounds, "{name}");
+        let certain = film::certified(&means.film, &means.bounds);
+        assert_eq!(bytes.certain, certain, "{name}");
+        assert!(certain <= area.pixels());
+        let encoder = film::Encoder::new();
+        for (bytes, light) in bytes.film.pixels().iter().zip(means.film.pixels()) {
+            assert_eq!(*bytes, encoder.pixel(*light), "{name}");
         }
     }
 }

@@ -1,0 +1,249 @@
+//! A checkerboard as pixels see it, several at a time: the same that [`World::board`] says of one spot, by the same operations on plain
+//! arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
+
+use glam::DVec2;
+use multiversion::multiversion;
+
+use super::{
+    object::Object,
+    outlook::LOOSE_LINE,
+    world::{Level, World},
+};
+use crate::math::{Double, Real};
+
+/// So many pixels at a time.
+pub const PIXELS: usize = 8;
+
+/// Forms are prepared here if their largest factors are between this and its inverse, so that products of a few neither overflow nor vanish.
+const SMALL: f64 = 1e-60;
+
+/// From how many squares on a pixel's nearest square is not told here.
+const FAR: f64 = 1e9;
+
+/// What all pixels have in common of a checkerboard.
+#[derive(Clone, Debug)]
+pub struct Boards {
+    /// N₀, N₁ and ℓ: the factors of X, Y and 1.
+    forms: [[Double; 3]; 3],
+    /// Their factors of x and y in a pixel.
+    slopes: [[Double; 2]; 3],
+    /// How far their values may be from the true ones.
+    rads: [f64; 3],
+    pitch: Double,
+    /// Half the picture's sides.
+    half: DVec2,
+    odd: bool,
+}
+
+/// A checkerboard in some pixels, as [`Board`](super::Board) has it, but for a common factor of its forms.
+#[derive(Clone, Debug, Default)]
+pub struct Views {
+    /// The factors of x, y and 1 in N₀ and N₁.
+    pub across: [[[f64; PIXELS]; 3]; 2],
+    /// Those of ℓ.
+    pub below: [[f64; PIXELS]; 3],
+    /// How far a value of these forms may be from the true one, but for the rounding of the factors; infinite where [`World::board`] should
+    /// be asked.
+    pub rad: [f64; PIXELS],
+    /// −1 where the square [0, 1)² has the second colour, else 1.
+    pub sign: [f64; PIXELS],
+}
+
+impl World {
+    /// An object in pixels, if it is a checkerboard.
+    pub fn boards(&self, object: usize) -> Option<Boards> {
+        let object = Double::object(self, object);
+        let Object::Checkerboard(board) = &*object else {
+            return None;
+        };
+        let camera = &Double::frame(self).camera;
+        let [a, b] = &board.across;
+        let forms = [a, b, &board.below];
+        Some(Boards {
+            forms: forms.map(|form| *form.factors()),
+            slopes: forms.map(|form| {
+                let [x, y, _] = form.factors();
+                [x, y].map(|factor| factor.times(&camera.pitch))
+            }),
+            rads: forms.map(|form| form.rad()),
+            pitch: camera.pitch,
+            half: camera.half,
+            odd: board.odd,
+        })
+    }
+}
+
+impl Boards {
+    /// What the pixels of these columns and rows see.
+    pub fn at(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
+        see_widely(self, columns, rows, out);
+    }
+
+    /// As `Place::together` has it, step by step.
+    #[inline(always)]
+    fn see(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
+        /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
+        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+        const ONE: u64 = 1.0f64.to_bits();
+        // Copies, of which the compiler knows that nothing that is written is one of them.
+        let Self {
+            forms,
+            slopes,
+            rads,
+            pitch,
+            half,
+            odd,
+        } = self.clone();
+        let below = slopes[2];
+        let corner = below.map(|slope| 0.5_f64.copysign(slope.hi));
+        let steepest = below[0].hi.abs().max(below[1].hi.abs());
+        let (mut x, mut y, mut level) = (Doubles::new(), Doubles::new(), Doubles::new());
+        let (mut sizes, mut rad) = ([0.0; PIXELS], [0.0; PIXELS]);
+        for i in 0..PIXELS {
+            // Half-integers below 2^21: exact.
+            let column = f64::from(columns[i]) + 0.5 - half.x;
+            let row = f64::from(rows[i]) + 0.5 - half.y;
+            x.set(i, Double::from_f64(column).times(&pitch));
+            y.set(i, Double::from_f64(row).times(&pitch));
+            let [a, b, c] = &forms[2];
+            let middle = a.times(&x.get(i)).plus(&b.times(&y.get(i))).plus(c);
+            level.set(i, middle);
+            let steep = corner[0] * below[0].hi + corner[1] * below[1].hi + middle.hi;
+            sizes[i] = steepest.max(middle.hi.abs());
+            rad[i] = if steep > 0.0 { rads[2] } else { f64::INFINITY };
+        }
+        let mut bits = [ONE | u64::from(odd) << 63; PIXELS];
+        for form in 0..2 {
+            let ([a, b, c], slopes, own_rad) = (&forms[form], &slopes[form], rads[form]);
+            let of_corner = corner[0] * slopes[0].hi + corner[1] * slopes[1].hi;
+            let of_below = corner[0] * below[0].hi + corner[1] * below[1].hi;
+            let mut factors = [[0.0; PIXELS]; 3];
+            for i in 0..PIXELS {
+                let middle = a.times(&x.get(i)).plus(&b.times(&y.get(i))).plus(c);
+                let times = (of_corner + middle.hi) / (of_below + level.hi[i]);
+                let rounded = times + ROUND;
+                bits[i] ^= rounded.to_bits() << 63;
+                let whole = rounded - ROUND;
+                let often = Double::from_f64(-whole);
+                let first = slopes[0].plus(&below[0].times(&often)).hi;
+                let second = slopes[1].plus(&below[1].times(&often)).hi;
+                let third = middle.plus(&level.get(i).times(&often)).hi;
+                (factors[0][i], factors[1][i], factors[2][i]) = (first, second, third);
+                sizes[i] = sizes[i].max(first.abs()).max(second.abs()).max(third.abs());
+                let moved = own_rad + rads[2] * (2.0 * whole.abs() + 1.0);
+                let moved = if times.abs() < FAR {
+                    moved
+                } else {
+                    f64::INFINITY
+                };
+                rad[i] = rad[i].max(moved);
+            }
+            out.across[form] = factors;
+        }
+        for i in 0..PIXELS {
+            let size = sizes[i];
+            let is_good = (rad[i] < LOOSE_LINE * size) & (size > SMALL) & (size < 1.0 / SMALL);
+            rad[i] = if is_good { rad[i] } else { f64::INFINITY };
+        }
+        out.below = [[below[0].hi; PIXELS], [below[1].hi; PIXELS], level.hi];
+        out.rad = rad;
+        out.sign = bits.map(f64::from_bits);
+    }
+}
+
+/// Several numbers in double-double.
+struct Doubles {
+    hi: [f64; PIXELS],
+    lo: [f64; PIXELS],
+}
+
+impl Doubles {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            hi: [0.0; PIXELS],
+            lo: [0.0; PIXELS],
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize) -> Double {
+        Double {
+            hi: self.hi[i],
+            lo: self.lo[i],
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, Double { hi, lo }: Double) {
+        (self.hi[i], self.lo[i]) = (hi, lo);
+    }
+}
+
+#[multiversion(targets = "simd")]
+fn see_widely(boards: &Boards, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
+    boards.see(columns, rows, out);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene,
+        source::{Source, Sources},
+        tracer::Spot,
+    };
+
+    fn world(camera: &str) -> World {
+        let text = format!(
+            "image {{ width 640 height 480 background black }}\ncamera {{ {camera} }}\n\
+             checkerboard {{ y 0.25 square 0.7 colors (gray, white) }}"
+        );
+        let sources = Sources::new(Source::from_text("a.scn", &text));
+        World::new(&scene::read(&sources).scene.expect("a scene"))
+    }
+
+    #[test]
+    fn pixels_together_see_what_each_sees_for_itself() {
+        for (camera, known) in [
+            ("eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75", 300),
+            (
+                "eye (-7, 0.5, 1e4) lookat (0, 0, 0) roll 30deg fov 140deg",
+                200,
+            ),
+            ("eye (1e7, 2, 3) lookat (1e7, 0, 0) fov 60deg", 300),
+            // So high that a pixel is far from all squares' corners.
+            (
+                "eye (0, 1e14, 0) lookat (1, 0, 0) up (0, 0, 1) fov 60deg",
+                0,
+            ),
+        ] {
+            let world = world(camera);
+            let boards = world.boards(0).expect("a checkerboard");
+            let mut views = Views::default();
+            let mut compared = 0;
+            for row in (0..480).step_by(8) {
+                let columns = [1, 0, 9, 100, 319, 320, 600, 639];
+                let rows = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| row + k);
+                boards.at(&columns, &rows, &mut views);
+                for i in 0..PIXELS {
+                    if views.rad[i].is_infinite() {
+                        continue;
+                    }
+                    let one = world
+                        .board(0, Spot::pixel(columns[i], rows[i]))
+                        .expect("it");
+                    let scale = one.below[2] / views.below[2][i];
+                    assert_eq!(libm::frexp(scale).0, 0.5, "a power of two");
+                    let scaled = |form: &[[f64; PIXELS]; 3]| form.map(|factor| factor[i] * scale);
+                    assert_eq!(views.across.each_ref().map(scaled), one.across);
+                    assert_eq!(scaled(&views.below), one.below);
+                    assert_eq!(views.rad[i] * scale, one.rad);
+                    assert_eq!(views.sign[i], if one.odd { -1.0 } else { 1.0 });
+                    compared += 1;
+                }
+            }
+            assert!(compared >= known, "{camera}: {compared}");
+        }
+    }
+}
