@@ -564,30 +564,36 @@ fn text() -> impl Strategy<Value = String> {
     let tokens = prop::collection::vec(item(), 0..8).prop_map(|items| items.concat());
     let gaps = prop::collection::vec(gap(), 200);
     let style = select(vec!["everywhere", "between lines", "crlf"]);
-    (tokens, gaps, style, any::<bool>()).prop_map(|(tokens, gaps, style, bom)| {
-        let mut text = if bom { "\u{feff}" } else { "" }.to_owned();
-        let mut gaps = gaps.into_iter().cycle();
-        let word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
-        for token in tokens {
-            let gap = gaps.next().unwrap_or_default();
-            let gap = match style {
-                "between lines" if !gap.starts_with('\n') => " ",
-                _ => gap,
-            };
-            let joins = text.ends_with(word) && (gap.is_empty() || gap.starts_with(word));
-            if (joins && token.starts_with(word)) || (text.ends_with('/') && !gap.starts_with(' '))
-            {
-                text.push(' ');
+    (tokens, gaps, style, any::<bool>())
+        .prop_map(|(tokens, gaps, style, bom)| {
+            let mut text = if bom { "\u{feff}" } else { "" }.to_owned();
+            let mut gaps = gaps.into_iter().cycle();
+            let word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
+            for token in tokens {
+                let gap = gaps.next().unwrap_or_default();
+                let gap = match style {
+                    "between lines" if !gap.starts_with('\n') => " ",
+                    _ => gap,
+                };
+                let joins = text.ends_with(word) && (gap.is_empty() || gap.starts_with(word));
+                if (joins && token.starts_with(word))
+                    || (text.ends_with('/') && !gap.starts_with(' '))
+                {
+                    text.push(' ');
+                }
+                text += gap;
+                text += &token;
             }
-            text += gap;
-            text += &token;
-        }
-        text += gaps.next().unwrap_or_default();
-        match style {
-            "crlf" => text.replace("\r\n", "\n").replace('\n', "\r\n"),
-            _ => text,
-        }
-    })
+            text += gaps.next().unwrap_or_default();
+            match style {
+                "crlf" => text.replace("\r\n", "\n").replace('\n', "\r\n"),
+                _ => text,
+            }
+        })
+        // What looks like another language's comment is told so, though it may be a difference.
+        .prop_filter("two minuses and a blank", |text| {
+            !text.contains("-- ") && !text.contains("--\t")
+        })
 }
 
 /// The generated texts have such lists, also within one another.
