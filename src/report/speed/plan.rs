@@ -25,10 +25,10 @@ const FEWEST_RUNGS: u32 = 3;
 const WARM: u64 = 4;
 
 /// So many times as many samples tell what a sample takes, and what the rest, ...
-const MORE: u64 = 16;
+const MORE: u64 = 8;
 
 /// ... where that takes no more than this share of the time.
-const MORE_SHARE: f64 = 0.1;
+const MORE_SHARE: f64 = 0.15;
 
 /// So much of a time with many samples is theirs, whatever a noisy machine says.
 const LEAST_SHARE: f64 = 0.25;
