@@ -266,7 +266,8 @@ impl Board {
     /// often as sides of triangles between corners are crossed, so that the motion changes the integral by up to
     /// 2·corners·E_L/|∇L| for every 1 of width. N that is off by up to E changes the signs of points where |N − iL| ≤ E, a strip
     /// along the line i, as wide as 2E/|∇N − i∇L|; that gradient is at least |i − i_0|·|∇L|, and at least |∇N × ∇L|/|∇L|,
-    /// where i_0 = ∇N·∇L/|∇L|², which may be far from all lines that there are. Lines beyond 2^60 are all within E of the horizon.
+    /// where i_0 = ∇N·∇L/|∇L|² is where the eye is, which may be far from all lines that there are, and is mostly between two of them. Lines
+    /// beyond 2^60 are all within E of the horizon.
     pub(super) fn blurred(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
         const LINES: f64 = 100.0;
         let displaced = self.displaced(points.clone());
@@ -292,9 +293,12 @@ impl Board {
                 (low.min(t), high.max(t))
             });
             let away = (low - middle).max(middle - high) - 1.0;
+            // i_0 is off by three roundings of each of its products, which are no greater than |∇N||∇L|.
+            let roundings = 8.0 * UNIT * n.length() / steepness;
+            let between = (middle - middle.round()).abs() - roundings;
             // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm.
             let k = n.perp_dot(up).abs() / (steepness * steepness);
-            4.0 * off * (3.0 / k.max(away).min(1.0) + LINES)
+            4.0 * off * (3.0 / k.max(away).max(between).min(1.0) + LINES)
         });
         let (_, perimeter) = measure(points.clone());
         let widest = 0.5 * perimeter / steepness;

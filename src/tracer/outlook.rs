@@ -330,7 +330,9 @@ impl World {
     /// An object's squares in a spot, if it is a checkerboard.
     pub fn board(&self, object: usize, spot: Spot) -> Option<Board> {
         let board = self.board_in::<Double>(object, spot)?;
-        if board.rad < LOOSE_LINE {
+        // Squares may be too small for the range of `f64`.
+        let factors = board.across.iter().chain([&board.below]).flatten();
+        if board.rad < LOOSE_LINE && factors.into_iter().all(|factor| factor.is_finite()) {
             return Some(board);
         }
         self.board_in::<Big>(object, spot)

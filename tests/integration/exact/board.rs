@@ -1,0 +1,285 @@
+//! The board near its horizon, in the widest views, and with squares of any size.
+
+use glam::{DVec2, dvec3};
+use pinhole::{
+    area::Area,
+    inspect::{CameraFacts, inspect_camera},
+    scene::Scene,
+};
+
+use super::{exact, part_adds_up, read};
+use crate::tracer::Random;
+
+/// Where the horizon passes next to the centres of pixels, level or along their diagonals.
+#[test]
+fn a_horizon_anywhere_in_a_pixel() {
+    for side in [8, 9, 65] {
+        for lift in [0.0, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16] {
+            for (lift, roll) in [(lift, 0), (-lift, 0), (lift, 45), (-lift, 45)] {
+                let scene = read(&format!(
+                    "image {{ width {side} height {side} }}
+                     camera {{ eye (0.3, 0.3, 8) direction (0.7, {lift}, -8) roll {roll}deg fov 50deg }}
+                     sampler {{ method exact }}
+                     checkerboard {{ y 0 square 1 }}"
+                ));
+                let bound = exact(&scene).bound();
+                assert!(bound <= 1e-9, "{side} {lift:e} {roll}: {bound:e}");
+            }
+        }
+    }
+}
+
+/// A board seen aslant in views of nearly 180 degrees: any pixel sees a strip of it that is narrower than a square.
+#[test]
+fn the_widest_views_of_a_board() {
+    for lens in [
+        "fov 179.99999deg",
+        "fov 179.9999999deg",
+        "fov 179.99999999999997deg",
+        "d 1e-100",
+        "d 5e-324",
+    ] {
+        for (direction, roll) in [
+            ("(1, 0, -1)", 0.0),
+            ("(1, 0, -2)", 0.0),
+            ("(3, -1, -1)", 20.0),
+            ("(1, 1e-9, -1)", 45.0),
+        ] {
+            let scene = read(&format!(
+                "image {{ width 3 height 3 }}
+                 camera {{ eye (0.3, 1.7, 8) direction {direction} roll {roll}deg {lens} }}
+                 sampler {{ method exact }}
+                 checkerboard {{ y 0 square 1 }}"
+            ));
+            let bound = exact(&scene).bound();
+            assert!(bound <= 1e-8, "{lens} {direction} {roll}: {bound:e}");
+        }
+    }
+}
+
+/// At the horizon, thousands of columns off the middle of a wide view, what a pixel sees of the floor is a ray of it, but for one part in
+/// many millions.
+#[test]
+fn columns_far_off_in_wide_views() {
+    for (direction, roll, d, square, [width, height], [x, y]) in [
+        (
+            "(1, -0.4, 0.7)",
+            0.0,
+            "1e-5",
+            0.001,
+            [12000, 2000],
+            [11996, 999],
+        ),
+        (
+            "(1, -0.4, 0.7)",
+            0.0,
+            "1e-8",
+            0.001,
+            [12000, 2000],
+            [11996, 999],
+        ),
+        (
+            "(0.04, 0, -0.86)",
+            45.0,
+            "1.8e-10",
+            0.02,
+            [6000, 4000],
+            [4825, 172],
+        ),
+        ("(1, 0.3, 2)", 0.0, "2.6e-20", 0.017, [3000, 2000], [2, 999]),
+        (
+            "(0.64, -0.1, -0.8)",
+            20.762,
+            "9e-14",
+            0.13,
+            [6000, 2000],
+            [5628, 2],
+        ),
+        (
+            "(1, -8e-5, 2)",
+            -39.632,
+            "1e-10",
+            0.0013,
+            [3000, 4000],
+            [346, 1044],
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }}
+             camera {{ eye (0.3, 0.8, 0.2) direction {direction} roll {roll}deg d {d} }}
+             sampler {{ method exact }}
+             checkerboard {{ y 0 square {square} }}"
+        ));
+        let area = Area {
+            x,
+            y,
+            width: 3,
+            height: 3,
+        };
+        let bound = part_adds_up(&scene, area, direction).bound();
+        assert!(bound <= 1e-6, "{direction} {d}: {bound:e}");
+    }
+}
+
+/// The same anywhere on the horizon of views of any width beyond 179 degrees.
+#[test]
+fn wide_views_at_random() {
+    let mut random = Random(23);
+    for i in 0..24 {
+        let mut number = |low: f64, high: f64| random.within(low, high);
+        let (width, height) = [(3000, 2000), (2000, 3000), (12_000, 2000)][i % 3];
+        let d = match i {
+            0 => 5e-324,
+            1 => 1e-100,
+            _ => libm::exp10(number(-22.0, -3.0)),
+        };
+        let square = libm::exp10(number(-3.0, 1.0));
+        let pitch = [0.0, number(-1e-4, 1e-4), number(-1.0, 1.0)][i / 3 % 3];
+        let direction = dvec3(number(-1.0, 1.0), pitch, number(-1.0, 1.0));
+        let roll = [0.0, number(-90.0, 90.0)][i / 9 % 2];
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }}
+             camera {{ eye (0.3, 0.8, 0.2) direction ({}, {}, {}) roll {roll}deg d {d:e} }}
+             sampler {{ method exact }}
+             checkerboard {{ y 0 square {square} }}",
+            direction.x, direction.y, direction.z
+        ));
+        // The horizon is where the ray x·u + y·v, to which hardly anything of w is added, is level.
+        let (CameraFacts { u, v, .. }, _) = inspect_camera(&scene.camera, &scene.image);
+        let (right, top) = (0.5 * f64::from(width), 0.5 * f64::from(height));
+        let far_off = number(-1.0, 1.0);
+        let place = match (u.y * right).abs() < (v.y * top).abs() {
+            true => DVec2::new(far_off * right, -far_off * right * u.y / v.y),
+            false => DVec2::new(-far_off * top * v.y / u.y, far_off * top),
+        };
+        let column = (right + place.x).clamp(2.0, 2.0 * right - 2.0) as u32;
+        let row = (top - place.y).clamp(2.0, 2.0 * top - 2.0) as u32;
+        let area = Area {
+            x: column - 1,
+            y: row - 1,
+            width: 3,
+            height: 3,
+        };
+        let name = format!("{direction} {roll} {d:e} {square}");
+        let bound = part_adds_up(&scene, area, &name).bound();
+        assert!(bound <= 1e-6, "{name}: {bound:e}");
+    }
+}
+
+/// A row of many squares that runs into a point in which all lines of the board meet, but for what roundings do.
+#[test]
+fn a_corner_where_all_lines_meet() {
+    let scene = read(
+        "image { width 40 height 8 }
+         camera { eye (0.3, 0.8, 0.2) direction (0.87, 0.64, 0.34) d 1e-20 }
+         sampler { method exact }
+         checkerboard { y 0 square 5e-8 }",
+    );
+    let area = Area {
+        x: 20,
+        y: 4,
+        width: 1,
+        height: 1,
+    };
+    let bound = part_adds_up(&scene, area, "the middle").bound();
+    assert!(bound <= 1e-6, "{bound:e}");
+}
+
+/// Where a sphere's outline meets the horizon in the widest views.
+#[test]
+fn outlines_at_a_wide_horizon() {
+    for (camera, square, sphere) in [
+        (
+            "eye (137257.85, 0.0847, 0.2587) direction (-1, 1e-6, -1) roll 1deg fov 179.98935deg",
+            687411.158,
+            "center (137257.906, 0.0115, 0.288) radius 0.0909",
+        ),
+        (
+            "eye (-2737810.5, 0.5214, 9.76) direction (1, 1.7e-5, -1) fov 179.99996deg",
+            359.93,
+            "center (-2737810.49, 0.6, 9.85) radius 0.0303",
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width 6 height 6 }}
+             camera {{ {camera} }}
+             sampler {{ method exact }}
+             checkerboard {{ y 0 square {square} }}
+             sphere {{ {sphere} color red }}"
+        ));
+        let bound = exact(&scene).bound();
+        assert!(bound <= 1e-9, "{camera}: {bound:e}");
+    }
+}
+
+/// A corner of squares close up, an odd number of squares from the eye: the share and its bound are as good as in any view.
+#[test]
+fn a_corner_through_the_longest_lens() {
+    for height in ["1", "1e-3", "1e-6", "1e-9", "1e-14"] {
+        let scene = read(&format!(
+            "image {{ width 1 height 1 }}
+             camera {{ eye (-1, 1, -4) direction (-1, -1, 1) d 1 view_height {height} }}
+             sampler {{ method exact }}
+             checkerboard {{ colors (white, black) }}"
+        ));
+        let bound = exact(&scene).bound();
+        assert!(bound <= 1e-12, "{height}: {bound:e}");
+    }
+}
+
+/// A view so wide that the lines of the board in a pixel are too close for their corners to be told apart.
+#[test]
+fn lines_too_close_to_cut() {
+    for camera in [
+        "eye (4.74, 15.74, -4.32) direction (1, -0.3, 1) roll 96.3deg d 1 view_height 1202818974.9410524",
+        "eye (0.3, 1.7, 8) direction (3, -1, -1) roll 20deg fov 179.9999999deg",
+    ] {
+        let scene = read(&format!(
+            "image {{ width 3 height 2 }}
+             camera {{ {camera} }}
+             sampler {{ method exact }}
+             checkerboard {{ square 6.3 }}"
+        ));
+        let bound = exact(&scene).bound();
+        assert!(bound <= 1e-6, "{camera}: {bound:e}");
+    }
+}
+
+/// A board of one colour in its even squares and another one in its odd ones.
+fn floor(eye: &str, square: &str, colors: [&str; 2]) -> Scene {
+    let [even, odd] = colors;
+    read(&format!(
+        "image {{ width 16 height 12 }}
+         camera {{ eye {eye} direction (3, -0.5, -1) fov 40deg }}
+         sampler {{ method exact }}
+         checkerboard {{ square {square} colors ({even}, {odd}) }}"
+    ))
+}
+
+/// An eye so close to the floor that it sees nothing else of it than the square that it is above.
+#[test]
+fn an_eye_close_above_a_square() {
+    for height in ["1e-16", "1e-20", "1e-28", "1e-100", "1e-300"] {
+        let eye = format!("(0.3, {height}, 0.1)");
+        let seen = exact(&floor(&eye, "1", ["white", "black"]));
+        let wanted = exact(&floor(&eye, "1", ["white", "white"]));
+        assert!(seen.bound() <= 1e-12, "{height}: {:e}", seen.bound());
+        for (seen, wanted) in seen.film.pixels().iter().zip(wanted.film.pixels()) {
+            assert!((seen[0] - wanted[0]).abs() <= 1e-12, "{height}");
+        }
+    }
+}
+
+/// Squares so small that only their mean is seen.
+#[test]
+fn squares_without_number() {
+    for square in ["1e-20", "1e-100", "1e-298", "1e-300", "1e-303"] {
+        let eye = "(0.3, 2, 0.1)";
+        let seen = exact(&floor(eye, square, ["white", "black"]));
+        let wanted = exact(&floor(eye, square, ["white", "white"]));
+        assert!(seen.bound() <= 1e-12, "{square}: {:e}", seen.bound());
+        for (seen, wanted) in seen.film.pixels().iter().zip(wanted.film.pixels()) {
+            assert!((seen[0] - 0.5 * wanted[0]).abs() <= 1e-12, "{square}");
+        }
+    }
+}
