@@ -8,6 +8,9 @@ use std::ops::ControlFlow;
 use super::{outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
+/// Of so many candidates those of a quarter are asked of the hierarchy, which looks at a few bytes of each, and not at those of other quarters.
+const MANY: usize = 64;
+
 /// Cuts the parts of one picture.
 #[derive(Debug)]
 pub struct Quartering<'a> {
@@ -109,7 +112,10 @@ impl<'a> Quartering<'a> {
         }
         let mut below = std::mem::take(&mut room.0[depth]);
         let flow = area.quarters().try_for_each(|quarter| {
-            self.world.live(quarter, live, &mut below);
+            match live.len() {
+                ..MANY => self.world.live(quarter, live, &mut below),
+                _ => self.world.live_in(quarter, &mut below),
+            }
             self.cut(quarter, &below, depth + 1, room, visit)
         });
         room.0[depth] = below;
