@@ -17,23 +17,23 @@ use super::{hash::Key, lattice};
 /// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
 const LEVELS: u32 = 6;
 
-/// So many points are stored, unscrambled.
-const STORED: u64 = 1 << LEVELS;
+/// So many points are stored, unscrambled: two hashes decide the bits in which they differ.
+const STORED: u64 = 1 << (2 * LEVELS);
 
 /// A scrambled prefix of the sequence.
 #[derive(Clone, Debug)]
 pub struct Sobol {
     /// The least m with n ≤ 2^m.
     depth: u32,
-    /// The m topmost bits of both coordinates of the points, where one hash decides all of them; else nothing.
-    tops: Vec<[u8; 2]>,
+    /// The m topmost bits of both coordinates of the points, where there are not too many; else nothing.
+    tops: Vec<[u16; 2]>,
 }
 
 impl Sobol {
     /// The first `n` points.
     pub fn new(n: u64) -> Self {
         let depth = u64::BITS - (n - 1).leading_zeros();
-        let top = |fraction: u64| high_bits(fraction, depth) as u8;
+        let top = |fraction: u64| high_bits(fraction, depth) as u16;
         let stored = if n <= STORED { n } else { 0 };
         Self {
             depth,
@@ -52,17 +52,27 @@ impl Sobol {
         ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            let leaves = [axes[0].leaves(), axes[1].leaves()];
-            for (top, (x, y)) in tops.iter().zip(x.iter_mut().zip(y)) {
-                *x = leaves[0][usize::from(top[0])];
-                *y = leaves[1][usize::from(top[1])];
-            }
-            return;
+            // Lists of several lengths, as all of one is cleared before it is filled.
+            return match self.depth {
+                0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
+                7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
+                _ => at_leaves::<{ 1 << 12 }>(&axes, tops, [x, y]),
+            };
         }
         for (i, (x, y)) in range.zip(x.iter_mut().zip(y)) {
             *x = lattice::offset_of_bits(axes[0].scramble(i.reverse_bits()));
             *y = lattice::offset_of_bits(axes[1].scramble(pascal(i).reverse_bits()));
         }
+    }
+}
+
+/// Places points by their topmost bits, of which there are `MOST` at most.
+#[inline(always)]
+fn at_leaves<const MOST: usize>(axes: &[Tree; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
+    let leaves = [axes[0].leaves::<MOST>(), axes[1].leaves::<MOST>()];
+    for (top, (x, y)) in tops.iter().zip(x.iter_mut().zip(y)) {
+        *x = leaves[0][usize::from(top[0])];
+        *y = leaves[1][usize::from(top[1])];
     }
 }
 
@@ -90,33 +100,40 @@ struct Tree {
 impl Tree {
     fn new(key: Key, depth: u32) -> Self {
         let levels = depth.min(LEVELS);
-        let flips = key.bits(1);
-        let mut top = [0; 1 << LEVELS];
-        for level in 0..levels {
-            // Each node makes way for its two children, from the last on.
-            for node in (0..1 << level).rev() {
-                let scrambled = top[node] << 1;
-                let flip = (flips >> (1 << level | node) & 1) as u8;
-                (top[2 * node], top[2 * node + 1]) = (scrambled | flip, scrambled | (flip ^ 1));
-            }
-        }
         Self {
             key,
             depth,
             levels,
-            top,
+            top: subtree(key.bits(1), levels),
         }
     }
 
-    /// The offsets of all fractions of which the topmost bits alone matter, scrambled, where one hash decides all of these.
+    /// The offsets of all fractions of which the topmost bits alone matter, scrambled, where two hashes decide all of these.
     #[inline(always)]
-    fn leaves(&self) -> [f64; 1 << LEVELS] {
-        let mut leaves = [0.0; 1 << LEVELS];
+    fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
+        let mut prefixes = [0; MOST];
+        match self.depth - self.levels {
+            0 => {
+                for (prefix, &top) in prefixes.iter_mut().zip(&self.top) {
+                    *prefix = u16::from(top);
+                }
+            }
+            below => {
+                let parts = prefixes.chunks_exact_mut(1 << below);
+                for ((part, prefixes), &top) in (1 << self.levels..).zip(parts).zip(&self.top) {
+                    let bottom = subtree(self.key.bits(part), below);
+                    for (prefix, bottom) in prefixes.iter_mut().zip(bottom) {
+                        *prefix = u16::from(top) << below | u16::from(bottom);
+                    }
+                }
+            }
+        }
+        let mut leaves = [0.0; MOST];
         let count = 1 << self.depth;
         let hashes = (count..2 * count).map(|index| self.key.bits(index));
-        for ((leaf, &top), hash) in leaves.iter_mut().zip(&self.top).zip(hashes) {
+        for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
             // Two steps, as the depth may be 0.
-            let bits = u64::from(top) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
+            let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
             *leaf = lattice::offset_of_bits(bits);
         }
         leaves
@@ -143,6 +160,21 @@ impl Tree {
     }
 }
 
+/// What becomes of the bits on some levels of a subtree whose nodes, in order of depth, have the bits 1, 2 … 63 of `flips`.
+#[inline(always)]
+fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
+    let mut bits = [0; 1 << LEVELS];
+    for level in 0..levels {
+        // Each node makes way for its two children, from the last on.
+        for node in (0..1 << level).rev() {
+            let scrambled = bits[node] << 1;
+            let flip = (flips >> (1 << level | node) & 1) as u8;
+            (bits[2 * node], bits[2 * node + 1]) = (scrambled | flip, scrambled | (flip ^ 1));
+        }
+    }
+    bits
+}
+
 /// The random bits on the way down a subtree whose nodes, in order of depth, have the bits 1, 2 … 63 of `flips`.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
@@ -154,4 +186,29 @@ fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
 /// The topmost bits of a number, `count` of them.
 fn high_bits(number: u64, count: u32) -> u64 {
     number.checked_shr(u64::BITS - count).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_placed_together_are_those_placed_one_by_one() {
+        let key = Key::new(7, 5).part(3);
+        for n in [
+            2, 3, 17, 64, 65, 100, 128, 300, 512, 513, 1000, 4095, 4096, 5000,
+        ] {
+            let sobol = Sobol::new(n);
+            assert_eq!(sobol.tops.is_empty(), n > STORED);
+            let axes = [0, 1].map(|axis| Tree::new(key.part(axis), sobol.depth));
+            let (mut x, mut y) = (vec![0.0; n as usize], vec![0.0; n as usize]);
+            sobol.place(key, 0..n, [&mut x, &mut y]);
+            for (i, place) in (0..n).zip(x.into_iter().zip(y)) {
+                let [a, b] = [i.reverse_bits(), pascal(i).reverse_bits()];
+                let [a, b] = [axes[0].scramble(a), axes[1].scramble(b)];
+                let alone = (lattice::offset_of_bits(a), lattice::offset_of_bits(b));
+                assert_eq!(place, alone, "{i} of {n}");
+            }
+        }
+    }
 }
