@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3};
 use super::level::axes;
 use crate::{
     area::Area,
-    film::Film,
     scene::{Scene, Shape},
     tracer::vertices,
 };
@@ -86,7 +85,7 @@ impl View {
 }
 
 /// A ball around a shape; none around a checkerboard.
-fn ball(shape: &Shape) -> Option<(DVec3, f64)> {
+pub fn ball(shape: &Shape) -> Option<(DVec3, f64)> {
     match shape {
         Shape::Sphere(sphere) => Some((sphere.center, sphere.radius)),
         Shape::Triangle(triangle) => {
@@ -117,44 +116,56 @@ fn union(a: Option<Area>, b: Option<Area>) -> Option<Area> {
     })
 }
 
-/// Sums of squared differences over parts of two pictures, each in a moment.
+/// Sums of some number of each pixel over parts of a picture, each in a moment.
 pub struct Differences {
     width: usize,
     /// Of what lies above a row's upper edge and to the left of a column's left edge.
     sums: Vec<f64>,
+    /// In how many pixels it is not 0.
+    pub pixels: u64,
 }
 
 impl Differences {
-    /// Of two pictures of one size.
-    pub fn new(a: &Film, b: &Film) -> Self {
-        let width = a.width() as usize + 1;
-        let mut sums = vec![0.0; width];
-        for y in 0..a.height() {
-            let above = sums.len() - width;
+    /// Of a picture's size.
+    pub fn new([width, height]: [u32; 2], number: impl Fn(u32, u32) -> f64) -> Self {
+        let row_length = width as usize + 1;
+        let mut sums = vec![0.0; row_length];
+        let mut pixels = 0;
+        for y in 0..height {
+            let above = sums.len() - row_length;
             let mut row = 0.0;
             sums.push(0.0);
-            for (x, (p, q)) in a.row(y).iter().zip(b.row(y)).enumerate() {
-                row += (DVec3::from(*p) - DVec3::from(*q)).length_squared();
-                sums.push(sums[above + x + 1] + row);
+            for x in 0..width {
+                let own = number(x, y);
+                pixels += u64::from(own != 0.0);
+                row += own;
+                sums.push(sums[above + x as usize + 1] + row);
             }
         }
-        Self { width, sums }
+        Self {
+            width: row_length,
+            sums,
+            pixels,
+        }
     }
 
-    /// The share of all squared differences that lies in a part.
+    /// The share of all of them that lies in a part; 0, if all are 0.
     pub fn share(&self, part: Area) -> f64 {
         let at = |x: u32, y: u32| self.sums[y as usize * self.width + x as usize];
         let (right, bottom) = (part.x + part.width, part.y + part.height);
         let sum = at(right, bottom) - at(part.x, bottom) - at(right, part.y) + at(part.x, part.y);
         let all = self.sums.last().copied().unwrap_or(0.0);
-        (sum / all).clamp(0.0, 1.0)
+        match all > 0.0 {
+            true => (sum / all).clamp(0.0, 1.0),
+            false => 0.0,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grade::scene_of;
+    use crate::{film::Film, grade::scene_of};
 
     #[test]
     fn nothing_of_an_object_is_seen_outside_its_extent() {
@@ -199,7 +210,7 @@ mod tests {
         };
         let sum: f64 = part.iter().map(|(x, y)| square(x, y)).sum();
         let all: f64 = Area::whole(7, 5).iter().map(|(x, y)| square(x, y)).sum();
-        let found = Differences::new(&a, &b).share(part);
+        let found = Differences::new([7, 5], square).share(part);
         assert!((found - sum / all).abs() < 1e-12);
     }
 }

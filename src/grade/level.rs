@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::{DVec2, DVec3};
 
-use super::{Make, exact, extent::View, sampled};
+use super::{Make, bias::Trend, exact, extent::View, sampled};
 use crate::{
     area::Area,
     film::{Film, TooLarge},
@@ -18,6 +18,12 @@ use crate::{
 /// A picture for searches has about so many columns and rows at most.
 const SMALL: [u32; 2] = [112, 72];
 
+/// More objects than this are many.
+const MANY: usize = 256;
+
+/// The samples in each pixel of a small picture that is not exact, as there are too many objects.
+const SAMPLES: u64 = 16;
+
 /// A picture, its scene and the scene's exact picture, of one size.
 pub struct Level<'a> {
     /// The picture.
@@ -28,6 +34,8 @@ pub struct Level<'a> {
     pub exact: Cow<'a, Film>,
     /// The side of one of its pixels, in pixels of the whole picture.
     pub factor: u32,
+    /// Whether it has so many objects that a small exact picture takes longer than the whole one: many are seen in each of its pixels.
+    pub is_heavy: bool,
 }
 
 impl<'a> Level<'a> {
@@ -38,12 +46,13 @@ impl<'a> Level<'a> {
             scene: Cow::Borrowed(scene),
             exact: Cow::Borrowed(exact),
             factor: 1,
+            is_heavy: scene.objects.len() > MANY,
         }
     }
 
-    /// A small one: each pixel is the mean of a square of pixels. What of the whole is left at its edges is as much on the left as on the
+    /// A small one, also of the exact picture: each pixel is the mean of a square of pixels. What of the whole is left at its edges is as much on the left as on the
     /// right, and as much at the top as at the bottom, so that the camera still looks at the middle.
-    pub fn small(a: &Film, scene: &'a Scene, control: &Control) -> Result<Self, RenderError> {
+    pub fn small(a: &Film, scene: &Scene, exact: &Film) -> Result<Self, TooLarge> {
         let whole = [a.width(), a.height()];
         let mut factor = (whole[0].div_ceil(SMALL[0]))
             .max(whole[1].div_ceil(SMALL[1]))
@@ -61,23 +70,24 @@ impl<'a> Level<'a> {
         let scene = resized(scene, size, factor);
         let margin = [0, 1].map(|i| (whole[i] - size[i] * factor) / 2);
         let weight = 1.0 / (f64::from(factor) * f64::from(factor));
-        let mean = |x: u32, y: u32| {
-            let mut sum = DVec3::ZERO;
-            for row in 0..factor {
-                let row = a.row(margin[1] + y * factor + row);
-                let start = (margin[0] + x * factor) as usize;
-                for pixel in &row[start..start + factor as usize] {
-                    sum += DVec3::from(*pixel);
+        let means = |film: &Film| {
+            Film::from_fn(size[0], size[1], |x, y| {
+                let mut sum = DVec3::ZERO;
+                for row in 0..factor {
+                    let row = film.row(margin[1] + y * factor + row);
+                    let start = (margin[0] + x * factor) as usize;
+                    for pixel in &row[start..start + factor as usize] {
+                        sum += DVec3::from(*pixel);
+                    }
                 }
-            }
-            (sum * weight).to_array()
+                (sum * weight).to_array()
+            })
         };
-        let a = Film::from_fn(size[0], size[1], mean)?;
-        let exact = exact(&scene, control)?;
         Ok(Self {
-            a: Cow::Owned(a),
+            a: Cow::Owned(means(a)?),
+            exact: Cow::Owned(means(exact)?),
+            is_heavy: scene.objects.len() > MANY,
             scene: Cow::Owned(scene),
-            exact: Cow::Owned(exact),
             factor,
         })
     }
@@ -86,14 +96,15 @@ impl<'a> Level<'a> {
     pub fn made(&self, make: &Make, control: &Control) -> Result<Film, RenderError> {
         match make {
             Make::Film(make) => Ok(make(&self.exact)?),
-            Make::Scene(scene) => exact(&self.sized(scene), control),
+            Make::Light(curve) => Ok(map(&self.exact, curve.to)?),
+            Make::Scene(scene) => self.picture(&self.sized(scene), control),
             Make::Object(scene, shapes) => self.with_object(scene, shapes, control),
             Make::Curved(scene, curve) => {
-                let film = exact(&self.sized(scene), control)?;
+                let film = self.picture(&self.sized(scene), control)?;
                 Ok(map(&film, curve.to)?)
             }
             Make::Floor(scene, holds) => {
-                let other = exact(&self.sized(scene), control)?;
+                let other = self.picture(&self.sized(scene), control)?;
                 let floor = Floor::new(&self.scene);
                 let pixel = |x, y| match floor.point(x, y) {
                     Some(point) if holds(point) => other.pixel(x, y),
@@ -103,7 +114,7 @@ impl<'a> Level<'a> {
             }
             Make::Is(film) => Ok(film.clone()),
             Make::Sample(offset) => sampled(&self.scene, *offset, control),
-            Make::Squeezed => squeezed(&self.scene, control),
+            Make::Squeezed => self.squeezed(control),
         }
     }
 
@@ -114,13 +125,88 @@ impl<'a> Level<'a> {
         shapes: &[Option<Shape>; 2],
         control: &Control,
     ) -> Result<Film, RenderError> {
-        let scene = self.sized(scene);
         let mut film = Film::clone(&self.exact);
-        if let Some(part) = View::of(&scene).extents(shapes) {
-            let changed = render::render_exact(&World::new(&scene), part, control)?.film;
+        if let Some((part, changed)) = self.object(scene, shapes, control)? {
             film.put(part, changed.pixels());
         }
         Ok(film)
+    }
+
+    /// The part of the picture that a changed shape changes, if any.
+    fn object(
+        &self,
+        scene: &Scene,
+        shapes: &[Option<Shape>; 2],
+        control: &Control,
+    ) -> Result<Option<(Area, Film)>, RenderError> {
+        let scene = self.sized(scene);
+        let Some(part) = View::of(&scene).extents(shapes) else {
+            return Ok(None);
+        };
+        let changed = render::render_exact(&World::new(&scene), part, control)?;
+        Ok(Some((part, changed.film)))
+    }
+
+    /// What a changed shape changes, if it is seen.
+    pub fn trend(
+        &self,
+        scene: &Scene,
+        shapes: &[Option<Shape>; 2],
+        control: &Control,
+    ) -> Result<Option<Trend>, RenderError> {
+        let Some((part, changed)) = self.object(scene, shapes, control)? else {
+            return Ok(None);
+        };
+        let pixels = part.iter().zip(changed.pixels()).map(|((x, y), p)| {
+            let q = self.exact.pixel(x, y);
+            ([x, y], [0, 1, 2].map(|i| p[i] - q[i]))
+        });
+        let changed = pixels.filter(|(_, change)| *change != [0.0; 3]);
+        Ok(Some(Trend(changed.collect())))
+    }
+
+    /// The picture of a scene of any size, exact unless that takes too long in small pictures.
+    fn picture(&self, scene: &Scene, control: &Control) -> Result<Film, RenderError> {
+        match self.is_heavy && self.factor > 1 {
+            true => {
+                let whole = Area::whole(scene.image.width, scene.image.height);
+                self.sampled(scene, SAMPLES, whole, control)
+            }
+            false => exact(scene, control),
+        }
+    }
+
+    /// The picture of a program that spreads a square window over the whole picture: it is squeezed, or stretched.
+    fn squeezed(&self, control: &Control) -> Result<Film, RenderError> {
+        let (width, height) = (self.scene.image.width, self.scene.image.height);
+        let side = width.max(height);
+        let mut square = Scene::clone(&self.scene);
+        square.image = Image {
+            width: side,
+            height: side,
+            ..square.image
+        };
+        let fine = self.picture(&square, control)?;
+        // The shares of the fine rows (or columns) in one of the picture.
+        let parts = |at: u32, of: u32| {
+            let scale = f64::from(side) / f64::from(of);
+            let (start, end) = (f64::from(at) * scale, f64::from(at + 1) * scale);
+            let last = (end.ceil() as u32).min(side);
+            (start.floor() as u32..last).map(move |fine| {
+                let overlap = end.min(f64::from(fine) + 1.0) - start.max(f64::from(fine));
+                (fine, overlap / scale)
+            })
+        };
+        let pixel = |x, y| {
+            let mut sum = DVec3::ZERO;
+            for (row, share) in parts(y, height) {
+                for (column, other) in parts(x, width) {
+                    sum += DVec3::from(fine.pixel(column, row)) * (share * other);
+                }
+            }
+            sum.to_array()
+        };
+        Ok(Film::from_fn(width, height, pixel)?)
     }
 
     /// A scene of the whole picture's size in this one's.
@@ -140,6 +226,18 @@ impl<'a> Level<'a> {
         control: &Control,
     ) -> Result<Film, RenderError> {
         let scene = self.sized(scene);
+        let whole = Area::whole(scene.image.width, scene.image.height);
+        self.sampled(&scene, samples, whole, control)
+    }
+
+    /// A part of a scene's picture by a grid of samples in each pixel.
+    pub fn sampled(
+        &self,
+        scene: &Scene,
+        samples: u64,
+        part: Area,
+        control: &Control,
+    ) -> Result<Film, RenderError> {
         let sampler = Sampler {
             method: Method::Regular,
             count: Count::PerPixel(samples),
@@ -147,8 +245,7 @@ impl<'a> Level<'a> {
         };
         let (width, height) = (scene.image.width, scene.image.height);
         let sampling = Sampling::new(&sampler, width, height);
-        let whole = Area::whole(width, height);
-        render::render(&World::new(&scene), &sampling, whole, control)
+        render::render(&World::new(scene), &sampling, part, control)
     }
 }
 
@@ -231,37 +328,4 @@ impl Floor {
         let point = self.eye + t * ray;
         (t > 0.0 && t.is_finite()).then_some(DVec2::new(point.x, point.z) / self.square)
     }
-}
-
-/// The picture of a program that spreads a square window over the whole picture: it is squeezed, or stretched.
-fn squeezed(scene: &Scene, control: &Control) -> Result<Film, RenderError> {
-    let (width, height) = (scene.image.width, scene.image.height);
-    let side = width.max(height);
-    let mut square = scene.clone();
-    square.image = Image {
-        width: side,
-        height: side,
-        ..scene.image
-    };
-    let fine = exact(&square, control)?;
-    // The shares of the fine rows (or columns) in one of the picture.
-    let parts = |at: u32, of: u32| {
-        let scale = f64::from(side) / f64::from(of);
-        let (start, end) = (f64::from(at) * scale, f64::from(at + 1) * scale);
-        let last = (end.ceil() as u32).min(side);
-        (start.floor() as u32..last).map(move |fine| {
-            let overlap = end.min(f64::from(fine) + 1.0) - start.max(f64::from(fine));
-            (fine, overlap / scale)
-        })
-    };
-    let pixel = |x, y| {
-        let mut sum = DVec3::ZERO;
-        for (row, share) in parts(y, height) {
-            for (column, other) in parts(x, width) {
-                sum += DVec3::from(fine.pixel(column, row)) * (share * other);
-            }
-        }
-        sum.to_array()
-    };
-    Ok(Film::from_fn(width, height, pixel)?)
 }

@@ -5,37 +5,38 @@
 //! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
 //!
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of samples in `noise` and
-//! `shift`. `evidence` says how many pixels it takes to name one. `level` makes pictures smaller, so that `fit` can afford to search, and
+//! `shift`. `fixed` knows samples whose errors are
+//! not independent, `bias` errors that add up to something. `case` tries mistakes, and `evidence` says how many pixels it takes to name one. `level` makes pictures smaller, so that `fit` can afford to search, and
 //! `extent` says in which part of one an object can make a difference.
 
+mod bias;
 mod board;
 mod camera;
+mod case;
 mod evidence;
 mod extent;
 mod fit;
+mod fixed;
 mod level;
 mod noise;
 mod objects;
 mod shift;
 mod whole;
 
-use std::{cell::Cell, sync::atomic::Ordering};
+use std::sync::atomic::Ordering;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
     area::Area,
-    film::{Film, Tolerance, TooLarge, compare, rmse},
+    film::{Film, TooLarge, rmse},
     render::{self, Control, RenderError},
     scene::{Scene, Shape},
     tracer::World,
 };
 
-use self::{
-    extent::{Differences, View},
-    level::Level,
-};
+use self::case::Case;
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square.
 const LEFT: f64 = 0.2;
@@ -96,6 +97,8 @@ enum Make {
     Scene(Box<Scene>),
     /// That of a scene with one shape changed, which was and is one of these.
     Object(Box<Scene>, Box<[Option<Shape>; 2]>),
+    /// The exact picture, its light taken through a curve.
+    Light(Curve),
     /// That of a scene, its light taken through a curve.
     Curved(Box<Scene>, Curve),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
@@ -139,15 +142,21 @@ pub fn scene(
 /// The mistakes that explain a difference, from the likeliest kind on.
 fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
-    let control = &case.control;
     // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer.
     let found = case.named(noise::ideas())?;
     if !found.is_empty() {
         return Ok(found);
     }
-    let variance = noise::variance(scene, exact, control)?;
-    if let Some(noise) = noise::judge(a, exact, &variance) {
+    if let Some(noise) = noise::judge(a, exact, &case.variance)
+        && !case.is_biased(a, exact, &case.variance, noise)?
+    {
         return Ok(vec![noise.verdict(case.difference)]);
+    }
+    if let Some(samples) = fixed::grid(case)? {
+        return Ok(vec![noise::verdict_of_grid(case.difference, samples)]);
+    }
+    if let Some((share, noise)) = fixed::empty(case)? {
+        return Ok(vec![noise.verdict_with_empty(case.difference, share)]);
     }
     let ideas = whole::ideas(scene)
         .into_iter()
@@ -174,7 +183,11 @@ fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     // A camera that moved a little displaces the picture, nearly.
     let mut ideas = shift::search(case)?;
     ideas.extend(camera::search(case)?);
-    case.named(ideas)
+    let found = case.named(ideas)?;
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    Ok(objects::confined(case)?.into_iter().collect())
 }
 
 /// Names the mistakes that explain why one picture is not another, of which no scene is known.
@@ -188,10 +201,12 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
     let difference = rmse(a, b);
     let mut is_thin = false;
     let found = whole::films().into_iter().filter_map(|idea| {
-        let Make::Film(make) = &idea.make else {
-            return None;
+        let made = match &idea.make {
+            Make::Film(make) => make(b),
+            Make::Light(curve) => level::map(b, curve.to),
+            _ => return None,
         };
-        let made = make(b).ok()?;
+        let made = made.ok()?;
         let left = rmse(a, &made);
         if left >= LEFT * difference {
             return None;
@@ -202,7 +217,7 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
         }
         Some(idea.verdict(left, difference))
     });
-    let likely = best(found.collect());
+    let likely = best(found.collect(), difference);
     Grade {
         is_thin: likely.is_empty() && is_thin,
         likely,
@@ -219,14 +234,20 @@ fn exact(scene: &Scene, control: &Control) -> Result<Film, RenderError> {
     Ok(render::render_exact(&World::new(scene), whole, control)?.film)
 }
 
-/// The best of some verdicts, best first. Of those that leave the same, the one thought of first is the simplest.
-fn best(mut found: Vec<Verdict>) -> Vec<Verdict> {
+/// The best of some verdicts on a difference, best first. Of those that leave the same, the one thought of first is the simplest.
+fn best(mut found: Vec<Verdict>, difference: f64) -> Vec<Verdict> {
     let left = |verdict: &Verdict| verdict.rmse.unwrap_or(0.0);
     let Some(least) = found.iter().map(left).reduce(f64::min) else {
         return found;
     };
     // What rounding to bytes leaves is no difference between explanations.
     found.retain(|verdict| left(verdict) <= RIVAL * least.max(1e-3));
+    // What the best one leaves may be noise, beside which the difference that a mistake makes is small.
+    let rest = |left: f64| left * left - least * least;
+    found.retain(|verdict| {
+        let own = left(verdict);
+        own <= 1e-3 || rest(own) <= LEFT * LEFT * rest(difference)
+    });
     let is_level = |verdict: &Verdict| left(verdict) <= (1.05 * least).max(1e-3);
     found.sort_by(|p, q| match (is_level(p), is_level(q)) {
         (true, true) => std::cmp::Ordering::Equal,
@@ -234,129 +255,6 @@ fn best(mut found: Vec<Verdict>) -> Vec<Verdict> {
     });
     found.truncate(NAMED);
     found
-}
-
-/// A picture and what it should be.
-struct Case<'a> {
-    full: Level<'a>,
-    small: Level<'a>,
-    /// Of the whole picture, root mean square.
-    difference: f64,
-    /// Of the small one.
-    small_difference: f64,
-    /// Where in the whole picture the difference is.
-    differences: Differences,
-    view: View,
-    /// A mistake was passed over of which too few pixels tell.
-    is_thin: Cell<bool>,
-    control: Control<'a>,
-}
-
-impl<'a> Case<'a> {
-    fn new(
-        a: &'a Film,
-        scene: &'a Scene,
-        exact: &'a Film,
-        control: &'a Control,
-    ) -> Result<Self, RenderError> {
-        let control = Control {
-            threads: control.threads,
-            progress: &|_| {},
-            cancel: control.cancel,
-        };
-        let small = Level::small(a, scene, &control)?;
-        Ok(Self {
-            full: Level::full(a, scene, exact),
-            small_difference: rmse(&small.a, &small.exact),
-            small,
-            difference: rmse(a, exact),
-            differences: Differences::new(a, exact),
-            view: View::of(scene),
-            is_thin: Cell::new(false),
-            control,
-        })
-    }
-
-    /// Those that explain the difference, best first.
-    fn named(&self, ideas: Vec<Idea>) -> Result<Vec<Verdict>, RenderError> {
-        let mut found = Vec::new();
-        for idea in ideas {
-            if let Some(left) = self.tried(&idea.make)? {
-                found.push(idea.verdict(left, self.difference));
-            }
-        }
-        Ok(best(found))
-    }
-
-    /// What a mistake leaves of the difference, if it explains it, and enough pixels tell of it.
-    fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
-        if let Make::Object(_, shapes) = make
-            && self.is_elsewhere(shapes)
-        {
-            return Ok(None);
-        }
-        // Neither single samples nor decoding mean the same in a small picture; and what is known need not be guessed.
-        if !matches!(make, Make::Sample(_) | Make::Curved(..) | Make::Is(_)) {
-            let small = self.small.made(make, &self.control)?;
-            let hope = match self.small.factor {
-                FEW.. => SMALL_HOPE,
-                _ => HOPE,
-            };
-            if rmse(&self.small.a, &small) > hope * self.small_difference {
-                return Ok(None);
-            }
-        }
-        let made = self.full.made(make, &self.control)?;
-        let left = rmse(&self.full.a, &made);
-        if left > HOPE * self.difference || !self.explains(make, &made, left)? {
-            return Ok(None);
-        }
-        let is_enough = evidence::is_enough(&self.full.a, &self.full.exact, &made);
-        if !is_enough {
-            self.is_thin.set(true);
-        }
-        Ok(is_enough.then_some(left))
-    }
-
-    /// Whether most of the difference is where no change of an object from one shape to another makes any.
-    fn is_elsewhere(&self, shapes: &[Option<Shape>; 2]) -> bool {
-        let part = self.view.extents(shapes);
-        let inside = part.map_or(0.0, |part| self.differences.share(part));
-        (1.0 - inside).sqrt() > HOPE
-    }
-
-    /// Whether what a mistake makes leaves little of the difference, or nothing but roundings or noise.
-    fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
-        if left < LEFT * self.difference {
-            return Ok(true);
-        }
-        // The mistake may be small, and the rest rounding.
-        let rounding = Tolerance {
-            steps: 0.501,
-            bounds: None,
-        };
-        if compare(&self.full.a, made, rounding).is_ok_and(|found| found.is_equal()) {
-            return Ok(true);
-        }
-        // The picture may have the mistake and noise.
-        let (full, control) = (&self.full, &self.control);
-        let variance = match make {
-            Make::Film(make) => {
-                let right = noise::variance(&full.scene, &full.exact, control)?;
-                make(&right)?
-            }
-            Make::Scene(scene) | Make::Object(scene, _) => noise::variance(scene, made, control)?,
-            Make::Curved(scene, curve) => {
-                // Noise was averaged before the curve, so it is looked at there.
-                let means = exact(scene, control)?;
-                let variance = noise::variance(scene, &means, control)?;
-                let before = level::map(&full.a, curve.back)?;
-                return Ok(noise::judge(&before, &means, &variance).is_some());
-            }
-            _ => return Ok(false),
-        };
-        Ok(noise::judge(&full.a, made, &variance).is_some())
-    }
 }
 
 impl Idea {

@@ -41,7 +41,7 @@ const CHANCE: f64 = 1e-3;
 /// Noise that looks as if there were so many independent samples in a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
-    samples: f64,
+    pub samples: f64,
 }
 
 /// The variance of one sample in each pixel and channel.
@@ -84,24 +84,28 @@ pub fn with_colors(scene: &Scene, change: impl Fn(Color) -> Color) -> Scene {
 
 /// Whether a picture differs from its exact one as noise does.
 pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
+    judge_through([a, exact], [a, exact], variance)
+}
+
+/// The same of two pictures that a curve made of means, for which noise is judged. What is right within a step is right in the pictures.
+pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> Option<Noise> {
+    let [a, exact] = means;
     let (mut mixed, mut strays) = (0u64, 0u64);
     let (mut variances, mut squares) = (0.0, 0.0);
     let mut sums = [[0.0f64; 3]; 3];
     let mut spread = Spread::default();
     let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
-    for ((p, q), variance) in pixels {
-        if variance.iter().all(|&variance| variance < NO_VARIANCE) {
-            let is_off = |i: usize| {
-                p[i] != q[i] && 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() > FLAT
-            };
-            strays += u64::from((0..3).any(is_off));
+    let pairs = shown[0].pixels().iter().zip(shown[1].pixels());
+    for (((p, q), variance), pair) in pixels.zip(pairs) {
+        if is_flat(variance) {
+            strays += u64::from(is_off(pair));
             if strays as f64 > STRAYS * a.pixels().len() as f64 {
                 return None;
             }
             continue;
         }
         mixed += 1;
-        spread.add(p, q, variance);
+        spread.add(p, q, variance, pair);
         for i in 0..3 {
             let error = p[i] - q[i];
             variances += variance[i].max(0.0);
@@ -126,6 +130,24 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
     is_noise.then_some(Noise { samples })
 }
 
+/// Whether pixels of one colour have it, but for a few.
+pub fn are_flat_pixels_right(a: &Film, exact: &Film, variance: &Film) -> bool {
+    let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
+    let strays = pixels.filter(|(pair, variance)| is_flat(variance) && is_off(*pair));
+    strays.count() as f64 <= STRAYS * a.pixels().len() as f64
+}
+
+/// Whether one colour is seen.
+pub fn is_flat(variance: &[f64; 3]) -> bool {
+    variance.iter().all(|&variance| variance < NO_VARIANCE)
+}
+
+/// Whether two pixels differ by more than what rounding does.
+pub fn is_off((p, q): (&[f64; 3], &[f64; 3])) -> bool {
+    (0..3)
+        .any(|i| p[i] != q[i] && 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() > FLAT)
+}
+
 /// Whether errors are all over, as those of samples are, or large and in a few places.
 #[derive(Default)]
 struct Spread {
@@ -136,14 +158,18 @@ struct Spread {
 }
 
 impl Spread {
-    fn add(&mut self, p: &[f64; 3], q: &[f64; 3], variance: &[f64; 3]) {
+    fn add(
+        &mut self,
+        p: &[f64; 3],
+        q: &[f64; 3],
+        variance: &[f64; 3],
+        pair: (&[f64; 3], &[f64; 3]),
+    ) {
         let errors = [0, 1, 2].map(|i| (p[i] - q[i]).abs());
         self.largest = errors.into_iter().fold(self.largest, f64::max);
         if variance.iter().any(|&variance| variance > WIDE) {
             self.wide += 1;
-            let is_near =
-                |i: usize| 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() <= FLAT;
-            self.right += u64::from((0..3).all(is_near));
+            self.right += u64::from(!is_off(pair));
         }
     }
 
@@ -161,7 +187,17 @@ impl Spread {
 impl Noise {
     /// What is said of it.
     pub fn verdict(&self, difference: f64) -> Verdict {
-        let samples = match self.samples {
+        self.verdict_with_empty(difference, 0.0)
+    }
+
+    /// The same, if so large a share of pixels has no samples.
+    pub fn verdict_with_empty(&self, difference: f64, share: f64) -> Verdict {
+        // So many fall into a pixel on an average if each does where it will (Poisson): e^−n have none.
+        let samples = match share > 0.0 {
+            true => -libm::log(share),
+            false => self.samples,
+        };
+        let samples = match samples {
             few if few < 10.0 => (2.0 * few).round() / 2.0,
             many => format!("{many:.1e}").parse().unwrap_or(many),
         };
@@ -169,9 +205,14 @@ impl Noise {
             mistake: "noise",
             message: format!(
                 "sampling noise: the picture is wrong only where colours meet, as often too bright as too dark, as with about {} random \
-                 sample{} per pixel",
+                 sample{} per pixel{}",
                 short(samples),
-                if samples == 1.0 { "" } else { "s" }
+                if samples == 1.0 { "" } else { "s" },
+                if share > 0.0 {
+                    ", and of one colour where no sample fell into a pixel"
+                } else {
+                    ""
+                }
             ),
             help: "nothing is wrong with the scene or the camera; more samples, or better placed ones (jittered, sobol), come closer; a \
                    `--tolerance` in steps lets noise pass"
@@ -179,6 +220,20 @@ impl Noise {
             rmse: Some(difference),
             explains: None,
         }
+    }
+}
+
+/// What is said of the same samples in each pixel.
+pub fn verdict_of_grid(difference: f64, samples: u64) -> Verdict {
+    Verdict {
+        mistake: "noise",
+        message: format!(
+            "sampling noise: the picture is that of {samples} samples in each pixel, a grid at the same places in all of them, so that \
+             edges along rows and columns are displaced by a part of a pixel"
+        ),
+        help: "nothing is wrong with the scene or the camera; samples that lie elsewhere in each pixel (jittered, sobol) come closer".to_owned(),
+        rmse: Some(difference),
+        explains: None,
     }
 }
 

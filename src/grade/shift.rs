@@ -18,8 +18,8 @@ const REACH: i32 = 8;
 pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     let level = &case.full;
     let [width, height] = super::size(&level.a);
-    // A picture larger than this takes too long for a guess.
-    if u64::from(width) * u64::from(height) > 1 << 22 {
+    // A picture larger than this, or of so many objects, takes too long for a guess.
+    if u64::from(width) * u64::from(height) > 1 << 22 || level.is_heavy {
         return Ok(Vec::new());
     }
     let fine = fine(case)?;

@@ -1,6 +1,6 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
-use super::{Curve, Idea, Make, Verdict, level::map, noise::with_colors, size};
+use super::{Curve, Idea, Make, Verdict, noise::with_colors, size};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::{Film, TooLarge, rmse},
@@ -20,6 +20,21 @@ fn film(
         make: Make::Film(Box::new(make)),
     }
 }
+
+fn light(mistake: &'static str, message: &str, help: &str, curve: Curve) -> Idea {
+    Idea {
+        mistake,
+        message: message.to_owned(),
+        help: help.to_owned(),
+        make: Make::Light(curve),
+    }
+}
+
+/// Light encoded with a power, which is decoded as sRGB, and back.
+const POWER: Curve = Curve {
+    to: |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2)),
+    back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
+};
 
 /// What can be seen of two pictures alone.
 pub fn films() -> Vec<Idea> {
@@ -63,27 +78,29 @@ pub fn films() -> Vec<Idea> {
                 false => Ok(film.clone()),
             },
         ),
-        film(
+        light(
             "not_encoded",
             "the colours are too dark: linear light was written where sRGB is expected",
             "encode each channel before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
-            |film| map(film, srgb_to_linear),
+            Curve {
+                to: srgb_to_linear,
+                back: linear_to_srgb,
+            },
         ),
-        film(
+        light(
             "encoded_twice",
             "the colours are too bright: they were encoded as sRGB twice, or a scene's sRGB colours were not decoded",
             "decode a scene's colours to linear light, average there, and encode once",
-            |film| map(film, linear_to_srgb),
+            Curve {
+                to: linear_to_srgb,
+                back: srgb_to_linear,
+            },
         ),
-        film(
+        light(
             "gamma_22",
             "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
             "use the curve of sRGB: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
-            |film| {
-                map(film, |light| {
-                    srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2))
-                })
-            },
+            POWER,
         ),
     ];
     let orders = [
@@ -146,10 +163,7 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
             .to_owned(),
         make: Make::Curved(
             Box::new(power),
-            Curve {
-                to: |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2)),
-                back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
-            },
+            POWER,
         ),
     });
     if scene.image.width != scene.image.height {

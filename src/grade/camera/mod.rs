@@ -144,6 +144,28 @@ fn views(scene: &Scene) -> Vec<Idea> {
             looking(View::Direction(-forward)),
         ),
     ];
+    let eye = scene.camera.eye;
+    for (other, letters) in [
+        (DVec3::new(eye.z, eye.y, eye.x), "x and z"),
+        (DVec3::new(eye.x, eye.z, eye.y), "y and z"),
+        (DVec3::new(eye.y, eye.x, eye.z), "x and y"),
+    ] {
+        let moved = changed(scene, |scene| scene.camera.eye = other);
+        if other != eye
+            && direction(&moved)
+                .normalize_or_zero()
+                .cross(scene.camera.up)
+                .length()
+                > 1e-6
+        {
+            ideas.push(idea(
+                "eye_swapped",
+                format!("the eye's coordinates {letters} are exchanged"),
+                "y points up; x to the right and z towards the viewer, as seen along −z",
+                moved,
+            ));
+        }
+    }
     match scene.camera.view {
         View::Lookat(lookat) if lookat != DVec3::ZERO => ideas.push(idea(
             "lookat_as_direction",

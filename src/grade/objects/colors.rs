@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::{ENOUGH, called};
+use super::{ENOUGH, TRIED, called};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::Film,
@@ -23,19 +23,24 @@ pub fn colors(case: &Case) -> Vec<Idea> {
     let mut ideas = Vec::new();
     let mut all = scene.clone();
     let mut messages = Vec::new();
+    let mut room = TRIED;
+    let mut shown = HashMap::new();
     let mut change = |wanted: Color,
                       what: String,
                       set: &dyn Fn(&mut Scene, Color) -> Option<Shape>| {
-        let Some(shown) = seen.shown(wanted) else {
+        let shown = shown.entry(bits(wanted.to_linear()));
+        let Some(shown) = *shown.or_insert_with(|| seen.shown(wanted)) else {
             return;
         };
         let shape = set(&mut all, shown);
         let message = format!("{what} has the colour {shown} instead of {wanted}");
         messages.push(message.clone());
         // Where a colour alone cannot explain it, all of them together may.
-        if shape.is_some() && case.is_elsewhere(&[shape, None]) {
+        if shape.is_some_and(|_| room == 0) || shape.is_some_and(|shape| case.is_elsewhere(&shape))
+        {
             return;
         }
+        room -= usize::from(shape.is_some());
         let mut other = scene.clone();
         set(&mut other, shown);
         let make = match shape {
@@ -156,10 +161,10 @@ fn bits(light: [f64; 3]) -> [u64; 3] {
 }
 
 /// The light of each channel that is near some colour.
-pub(super) struct Near([[f64; 2]; 3]);
+pub struct Near([[f64; 2]; 3]);
 
 impl Near {
-    pub(super) fn to(light: &[f64; 3]) -> Self {
+    pub fn to(light: &[f64; 3]) -> Self {
         let steps = NEAR / 255.0;
         Self(light.map(|light| {
             let encoded = linear_to_srgb(light);
@@ -167,7 +172,7 @@ impl Near {
         }))
     }
 
-    pub(super) fn holds(&self, pixel: &[f64; 3]) -> bool {
+    pub fn holds(&self, pixel: &[f64; 3]) -> bool {
         let pairs = self.0.iter().zip(pixel);
         pairs
             .into_iter()

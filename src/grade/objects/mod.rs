@@ -1,11 +1,18 @@
 //! Mistakes of one object: missing, of a wrong colour, size or place.
 
 mod colors;
+mod confined;
 mod search;
+mod slopes;
 
 use glam::DVec3;
 
-pub use self::{colors::colors, search::search};
+pub use self::{
+    colors::{Near, colors},
+    confined::confined,
+    search::search,
+    slopes::{Slope, slopes},
+};
 use super::{Case, Idea, Make};
 use crate::{
     math::Angle,
@@ -16,6 +23,9 @@ use crate::{
 /// So many objects are tried as they may be wrong, and so many are searched for, those in whose part of the picture most of the difference is.
 const TRIED: usize = 24;
 const SEARCHED: usize = 6;
+
+/// So many objects are moved a little, to see what that changes.
+const SLOPES: usize = 24;
 
 /// So many pixels of an object show where it is.
 const ENOUGH: u64 = 6;
@@ -50,25 +60,31 @@ pub fn ideas(case: &Case) -> Vec<Idea> {
     let scene = &case.full.scene;
     let mut ideas = Vec::new();
     // Where an object would be twice as large, it is wherever one of these is; nearly, if it is spun.
-    for (_, index) in likeliest(case, 2.0).into_iter().take(TRIED) {
+    for (_, index) in likeliest(case, 2.0).into_iter().take(case.most(TRIED)) {
         ideas.push(missing(scene, index));
         ideas.extend(wrong(scene, index));
     }
     ideas
 }
 
-/// The objects by the share of the difference in their part of the picture, if they were so much larger; the greatest first.
+/// The objects in whose part of the picture, if they were so much larger, the difference is, and its share there; first those where there is
+/// more of it than noise has there.
 fn likeliest(case: &Case, factor: f64) -> Vec<(f64, usize)> {
     let objects = case.full.scene.objects.iter().enumerate();
-    let mut shares: Vec<_> = objects
-        .map(|(index, object)| {
-            let part = case.view.extent(&moved(&object.shape, DVec3::ZERO, factor));
-            (part.map_or(0.0, |part| case.differences.share(part)), index)
+    let mut found: Vec<_> = objects
+        .filter_map(|(index, object)| {
+            let part = case
+                .view
+                .extent(&moved(&object.shape, DVec3::ZERO, factor))?;
+            let share = case.differences.share(part);
+            (share > 0.0).then(|| (case.excess(part), share, index))
         })
-        .filter(|(share, _)| *share > 0.0)
         .collect();
-    shares.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
-    shares
+    found.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.2.cmp(&q.2)));
+    found
+        .into_iter()
+        .map(|(_, share, index)| (share, index))
+        .collect()
 }
 
 fn missing(scene: &Scene, index: usize) -> Idea {

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     film::Film,
-    grade::{Case, Idea, Make, fit::fit, level::axes},
+    grade::{Case, Idea, Make, bias::SIGMAS, fit::fit, level::axes},
     numbers::{short, short_vector},
     render::RenderError,
     scene::{Scene, Shape},
@@ -22,10 +22,64 @@ const OWN: f64 = 0.4;
 /// about its colour.
 const OWN_PART: f64 = 0.1;
 
-/// Objects in a wrong place or of a wrong size, found by their colours.
+/// What moves an object by less than this, in pixels, is seen best by what a smaller step changes.
+const LITTLE: f64 = 3.0;
+
+/// Objects in a wrong place or of a wrong size, found by what a small step of them changes, or by their colours.
 pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
-    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+    let mut all = steps(case)?;
+    for step in blobs(case) {
+        let is_known = all.iter().any(|known| known.index == step.index);
+        if !is_known || step.by.length() > LITTLE {
+            all.push(step);
+        }
+    }
+    if case.full.is_heavy {
+        // Each is fitted many times.
+        all.truncate(case.most(SEARCHED));
+    }
     let mut ideas = Vec::new();
+    for Step { index, by, factor } in all {
+        ideas.extend(placed(case, index, by, factor)?);
+    }
+    Ok(ideas)
+}
+
+/// How far an object seems to be moved, in pixels to the right and down, and how much larger it seems to be.
+struct Step {
+    index: usize,
+    by: DVec2,
+    factor: f64,
+}
+
+/// Of the objects along whose slopes the errors add up, those for which they do so most.
+fn steps(case: &Case) -> Result<Vec<Step>, RenderError> {
+    let mut steps: Vec<(f64, Step)> = Vec::new();
+    for slope in case.slopes()? {
+        let sum = case.errors.along(&slope.trend, None);
+        let (by, factor) = (slope.by * sum.times, libm::pow(slope.factor, sum.times));
+        match steps.last_mut() {
+            Some((most, step)) if step.index == slope.index => {
+                *most = most.max(sum.sigmas.abs());
+                step.by += by;
+                step.factor *= factor;
+            }
+            _ => {
+                let index = slope.index;
+                steps.push((sum.sigmas.abs(), Step { index, by, factor }));
+            }
+        }
+    }
+    steps.retain(|(sigmas, step)| *sigmas > SIGMAS && step.by.length() < LITTLE);
+    steps.sort_by(|p, q| q.0.total_cmp(&p.0));
+    let steps = steps.into_iter().take(SEARCHED);
+    Ok(steps.map(|(_, step)| step).collect())
+}
+
+/// Objects whose colour is elsewhere, or in more or fewer pixels.
+fn blobs(case: &Case) -> Vec<Step> {
+    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+    let mut steps = Vec::new();
     let likely = likeliest(case, 1.0).into_iter();
     for (_, index) in likely
         .take_while(|(share, _)| *share > OWN_PART)
@@ -48,9 +102,9 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
         if by.length() < 0.05 && (factor - 1.0).abs() < 0.002 {
             continue;
         }
-        ideas.extend(placed(case, index, by, factor)?);
+        steps.push(Step { index, by, factor });
     }
-    Ok(ideas)
+    steps
 }
 
 /// Where and how large a colour is in a picture, in pixels.
@@ -94,7 +148,6 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
     }
     // What a pixel is at the object's depth, in metres.
     let pixel = depth * pitch;
-    let width = 0.5 * f64::from(case.small.factor) * pixel;
     let name = called(scene, index);
     let mut ideas = Vec::new();
     let with = |by: DVec3, factor: f64| {
@@ -104,7 +157,12 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
         (factor > 0.0)
             .then(|| Make::Object(Box::new(scene), Box::new([Some(shape), Some(changed)])))
     };
-    let (small, control) = (&case.small, &case.control);
+    let little = by.length() < LITTLE && (factor - 1.0).abs() < 0.1;
+    let fit = |start: &[f64], widths: &[f64], make: &dyn Fn(&[f64]) -> Option<Make>| {
+        fitted(case, little, start, widths, make)
+    };
+    // Half a pixel.
+    let width = 0.5 * pixel;
 
     // One coordinate wrong is the simplest.
     for (axis, letter) in [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")] {
@@ -120,7 +178,7 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
             square => slope.dot(by) / square,
         };
         let make = |p: &[f64]| with(axis * p[0], 1.0);
-        let Some(found) = fit(small, control, &[start], &[width], &make)? else {
+        let Some(found) = fit(&[start], &[width], &make)? else {
             continue;
         };
         let Some(other) = make(&found) else { continue };
@@ -140,7 +198,7 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
 
     let make = |p: &[f64]| with(u * p[0] + v * p[1], libm::exp2(p[2]));
     let start = [by.x * pixel, -by.y * pixel, libm::log2(factor)];
-    let Some(found) = fit(small, control, &start, &[width, width, 0.01], &make)? else {
+    let Some(found) = fit(&start, &[width, width, 0.01], &make)? else {
         return Ok(ideas);
     };
     let Some(other) = make(&found) else {
@@ -170,6 +228,26 @@ fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>
         make: other,
     });
     Ok(ideas)
+}
+
+/// Fits in the small picture what is not little, and then in the whole one. Widths are of the latter.
+fn fitted(
+    case: &Case,
+    little: bool,
+    start: &[f64],
+    widths: &[f64],
+    make: &dyn Fn(&[f64]) -> Option<Make>,
+) -> Result<Option<Vec<f64>>, RenderError> {
+    let (small, full, control) = (&case.small, &case.full, &case.control);
+    let mut at = start.to_vec();
+    if !little && !full.is_heavy {
+        let wide = widths.iter().map(|width| width * f64::from(small.factor));
+        match fit(small, control, start, &wide.collect::<Vec<_>>(), make)? {
+            Some(found) => at = found,
+            None => return Ok(None),
+        }
+    }
+    fit(full, control, &at, widths, make)
 }
 
 /// A displacement in words; none, if it is none.

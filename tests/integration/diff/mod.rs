@@ -1,5 +1,6 @@
 //! `diff`: pictures compared, and the mistakes in them named.
 
+mod faint;
 mod mistakes;
 mod pictures;
 mod samples;

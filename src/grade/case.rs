@@ -1,0 +1,288 @@
+//! One picture to judge, and how ideas of mistakes are tried on it.
+//!
+//! In: the picture, the scene and its exact picture; ideas. Out: those that explain the difference. A mistake is tried in the small picture
+//! first, if it means the same there, and in the whole one then.
+
+use std::cell::{Cell, OnceCell};
+
+use glam::DVec3;
+
+use super::{
+    Curve, FEW, HOPE, Idea, LEFT, Make, SMALL_HOPE, Verdict, best,
+    bias::{Errors, SIGMAS},
+    evidence, exact,
+    extent::{Differences, View},
+    level::{self, Level},
+    noise::{self, Noise},
+    objects::{self, Slope},
+    size,
+};
+use crate::{
+    area::Area,
+    film::{Film, Tolerance, TooLarge, compare, rmse},
+    render::{Control, RenderError},
+    scene::{Scene, Shape},
+};
+
+/// A picture and what it should be.
+pub struct Case<'a> {
+    pub full: Level<'a>,
+    pub small: Level<'a>,
+    /// Of the whole picture, root mean square.
+    pub difference: f64,
+    /// Of the small one.
+    pub small_difference: f64,
+    /// Where in the whole picture the difference is, and where noise would be.
+    pub differences: Differences,
+    pub expected: Differences,
+    /// The difference, less roundings, and that of the small picture.
+    pub errors: Errors,
+    pub small_errors: Errors,
+    /// Of one sample in each pixel of the right picture.
+    pub variance: Film,
+    /// What the objects change when they are moved a little.
+    pub slopes: OnceCell<Vec<Slope>>,
+    pub view: View,
+    /// A mistake was passed over of which too few pixels tell.
+    pub is_thin: Cell<bool>,
+    pub control: Control<'a>,
+}
+
+impl<'a> Case<'a> {
+    pub fn new(
+        a: &'a Film,
+        scene: &'a Scene,
+        exact: &'a Film,
+        control: &'a Control,
+    ) -> Result<Self, RenderError> {
+        let control = Control {
+            threads: control.threads,
+            progress: control.progress,
+            cancel: control.cancel,
+        };
+        let small = Level::small(a, scene, exact)?;
+        let variance = noise::variance(scene, exact, &control)?;
+        let whole = size(a);
+        let square = |x: u32, y: u32| {
+            let (p, q) = (DVec3::from(a.pixel(x, y)), DVec3::from(exact.pixel(x, y)));
+            (p - q).length_squared()
+        };
+        Ok(Self {
+            full: Level::full(a, scene, exact),
+            small_difference: rmse(&small.a, &small.exact),
+            difference: rmse(a, exact),
+            differences: Differences::new(whole, square),
+            expected: Differences::new(whole, |x, y| {
+                variance.pixel(x, y).iter().map(|one| one.max(0.0)).sum()
+            }),
+            errors: Errors::new(a, exact)?,
+            small_errors: Errors::new(&small.a, &small.exact)?,
+            small,
+            variance,
+            slopes: OnceCell::new(),
+            view: View::of(scene),
+            is_thin: Cell::new(false),
+            control,
+        })
+    }
+
+    /// Those that explain the difference, best first.
+    pub fn named(&self, ideas: Vec<Idea>) -> Result<Vec<Verdict>, RenderError> {
+        let mut hopeful = Vec::new();
+        for idea in ideas {
+            if let Some(left) = self.hope(&idea.make)? {
+                hopeful.push((left, idea));
+            }
+        }
+        if self.full.is_heavy {
+            hopeful = with_few_pictures(hopeful);
+        }
+        let mut found = Vec::new();
+        let mut is_curved = false;
+        for (_, idea) in hopeful {
+            if let Some(left) = self.tried(&idea.make)? {
+                is_curved |= matches!(idea.make, Make::Light(_));
+                found.push(idea.verdict(left, self.difference));
+            }
+        }
+        if is_curved {
+            // Of single samples a curve makes other colours, which is the same, said less simply.
+            found.retain(|verdict| verdict.mistake != "colors");
+        }
+        Ok(best(found, self.difference))
+    }
+
+    /// What a mistake leaves of the difference in the small picture, if it may explain it; 0, if that cannot be said of it there.
+    fn hope(&self, make: &Make) -> Result<Option<f64>, RenderError> {
+        match make {
+            // A part of the picture costs less than its small picture where that has many objects in each pixel.
+            Make::Object(..) if self.full.is_heavy => return Ok(Some(0.0)),
+            // Neither single samples nor curves mean the same in a small picture; and what is known need not be guessed.
+            Make::Sample(_) | Make::Light(_) | Make::Curved(..) | Make::Is(_) => {
+                return Ok(Some(0.0));
+            }
+            _ => {}
+        }
+        let small = self.small.made(make, &self.control)?;
+        let left = rmse(&self.small.a, &small);
+        let hope = match self.small.factor {
+            FEW.. => SMALL_HOPE,
+            _ => HOPE,
+        };
+        let difference = self.small_difference;
+        // A part of the picture costs little, so that what is left is seen there.
+        let is_part = matches!(make, Make::Object(..));
+        let right = &self.small.exact;
+        let is_near = left <= hope * difference
+            || left < difference
+                && (is_part || self.small_errors.towards(right, &small, None).sigmas > SIGMAS);
+        Ok(is_near.then_some(left))
+    }
+
+    /// What a mistake leaves of the difference, if it explains it, and enough pixels tell of it.
+    fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
+        let made = self.full.made(make, &self.control)?;
+        let left = rmse(&self.full.a, &made);
+        let sigmas = self.errors.towards(&self.full.exact, &made, None).sigmas;
+        let is_nearer = left <= HOPE * self.difference || left < self.difference && sigmas > SIGMAS;
+        if !is_nearer || !self.explains(make, &made, left)? {
+            return Ok(None);
+        }
+        let is_enough =
+            sigmas > SIGMAS || evidence::is_enough(&self.full.a, &self.full.exact, &made);
+        if !is_enough {
+            self.is_thin.set(true);
+        }
+        Ok(is_enough.then_some(left))
+    }
+
+    /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes.
+    pub fn is_elsewhere(&self, shape: &Shape) -> bool {
+        let part = self.view.extent(shape);
+        let inside = part.map_or(0.0, |part| self.differences.share(part));
+        (1.0 - inside).sqrt() > HOPE && part.is_none_or(|part| self.excess(part) <= SIGMAS)
+    }
+
+    /// At most so many of something that takes a part of the picture each, or a small one: fewer of a scene with a great many objects.
+    pub fn most(&self, many: usize) -> usize {
+        match self.full.is_heavy {
+            true => many.div_ceil(4),
+            false => many,
+        }
+    }
+
+    /// How much more of the difference than of noise lies in a part of the picture: about in standard deviations, if each of the pixels that
+    /// differ has as much of it as noise gives it.
+    pub fn excess(&self, part: Area) -> f64 {
+        let pixels = self.differences.pixels.max(1) as f64;
+        let expected = self.expected.share(part);
+        (self.differences.share(part) - expected) * (pixels / (expected + 1.0 / pixels)).sqrt()
+    }
+
+    /// What the objects that are likeliest to be off change when they are moved a little.
+    pub fn slopes(&self) -> Result<&[Slope], RenderError> {
+        if self.slopes.get().is_none() {
+            let slopes = objects::slopes(self)?;
+            return Ok(self.slopes.get_or_init(|| slopes));
+        }
+        Ok(self.slopes.get().map_or(&[], Vec::as_slice))
+    }
+
+    /// Whether what looks like noise adds up to something.
+    pub fn is_biased(
+        &self,
+        a: &Film,
+        made: &Film,
+        variance: &Film,
+        noise: Noise,
+    ) -> Result<bool, RenderError> {
+        let errors = Errors::new(a, made)?;
+        let noise = Some((variance, noise));
+        if errors.is_picture_moved(made, noise) {
+            return Ok(true);
+        }
+        let slopes = self.slopes()?.iter();
+        let mut sums = slopes.map(|slope| errors.along(&slope.trend, noise));
+        Ok(sums.any(|sum| sum.sigmas.abs() > SIGMAS))
+    }
+
+    /// Whether what a mistake makes leaves little of the difference, or nothing but roundings or noise.
+    fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
+        if left < LEFT * self.difference {
+            return Ok(true);
+        }
+        // The mistake may be small, and the rest rounding.
+        let rounding = Tolerance {
+            steps: 0.501,
+            bounds: None,
+        };
+        if compare(&self.full.a, made, rounding).is_ok_and(|found| found.is_equal()) {
+            return Ok(true);
+        }
+        // The picture may have the mistake and noise.
+        let (full, control) = (&self.full, &self.control);
+        let variance = match make {
+            Make::Film(make) => make(&self.variance)?,
+            Make::Scene(scene) | Make::Object(scene, _) => noise::variance(scene, made, control)?,
+            Make::Light(curve) => {
+                return Ok(self.is_noise_before(*curve, made, &full.exact, &self.variance)?);
+            }
+            Make::Curved(scene, curve) => {
+                let means = exact(scene, control)?;
+                let variance = noise::variance(scene, &means, control)?;
+                return Ok(self.is_noise_before(*curve, made, &means, &variance)?);
+            }
+            _ => return Ok(false),
+        };
+        let Some(noise) = noise::judge(&full.a, made, &variance) else {
+            return Ok(false);
+        };
+        // What is little beside noise may hide another mistake.
+        Ok(left <= HOPE * self.difference || !self.is_biased(&full.a, made, &variance, noise)?)
+    }
+
+    /// Whether a curve made the picture from means with noise, which is looked at before the curve.
+    fn is_noise_before(
+        &self,
+        curve: Curve,
+        made: &Film,
+        means: &Film,
+        variance: &Film,
+    ) -> Result<bool, TooLarge> {
+        let a = &self.full.a;
+        let before = level::map(a, curve.back)?;
+        Ok(noise::judge_through([a, made], [&before, means], variance).is_some())
+    }
+}
+
+/// So many whole pictures are made at a time of a scene with many objects: those of the mistakes that leave least of the small picture.
+const PICTURES: usize = 2;
+
+/// The same mistakes without those whose pictures are too many.
+fn with_few_pictures(hopeful: Vec<(f64, Idea)>) -> Vec<(f64, Idea)> {
+    let is_whole = |idea: &Idea| {
+        matches!(
+            idea.make,
+            Make::Scene(_) | Make::Curved(..) | Make::Floor(..) | Make::Squeezed
+        )
+    };
+    let mut lefts: Vec<_> = hopeful
+        .iter()
+        .filter(|(_, idea)| is_whole(idea))
+        .map(|(left, _)| *left)
+        .collect();
+    lefts.sort_by(f64::total_cmp);
+    let most = lefts.get(PICTURES - 1).copied().unwrap_or(f64::INFINITY);
+    let mut room = PICTURES;
+    hopeful
+        .into_iter()
+        .filter(|(left, idea)| {
+            if !is_whole(idea) {
+                return true;
+            }
+            let is_first = *left <= most && room > 0;
+            room -= usize::from(is_first);
+            is_first
+        })
+        .collect()
+}

@@ -1,0 +1,118 @@
+//! Samples of right pictures whose errors are not those of independent ones: always at the same places in a pixel, or none in some.
+
+use super::{
+    Case, LEFT,
+    bias::SIGMAS,
+    evidence,
+    noise::{self, Noise},
+    objects::Near,
+    size,
+};
+use crate::{
+    area::Area,
+    film::{Film, rmse},
+    render::RenderError,
+};
+
+/// How many samples a pixel has, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up.
+pub fn grid(case: &Case) -> Result<Option<u64>, RenderError> {
+    let [width, height] = size(&case.full.a);
+    // The rows with most of the difference tell which grid it may be.
+    let rows = ROWS.min(height);
+    let bands = (0..height.div_ceil(rows)).map(|band| Area {
+        x: 0,
+        y: (band * rows).min(height - rows),
+        width,
+        height: rows,
+    });
+    let share = |band: &Area| case.differences.share(*band);
+    let Some(band) = bands.max_by(|p, q| share(p).total_cmp(&share(q))) else {
+        return Ok(None);
+    };
+    for samples in GRIDS {
+        for part in [band, Area::whole(width, height)] {
+            let made = case
+                .full
+                .sampled(&case.full.scene, samples, part, &case.control)?;
+            let cut =
+                |film: &Film| Film::from_fn(width, part.height, |x, y| film.pixel(x, part.y + y));
+            let (a, exact) = (cut(&case.full.a)?, cut(&case.full.exact)?);
+            if rmse(&a, &made) >= LEFT * rmse(&a, &exact) {
+                break;
+            }
+            if part.height == height {
+                return Ok(evidence::is_enough(&a, &exact, &made).then_some(samples));
+            }
+        }
+    }
+    Ok(None)
+}
+
+const ROWS: u32 = 8;
+
+/// Usual numbers of samples.
+const GRIDS: [u64; 12] = [2, 3, 4, 5, 6, 8, 9, 16, 25, 32, 36, 64];
+
+/// The share of pixels that are black or of the background's colour as no sample fell into them, and the noise of the rest.
+pub fn empty(case: &Case) -> Result<Option<(f64, Noise)>, RenderError> {
+    for fill in [[0.0; 3], case.full.scene.image.background.to_linear()] {
+        let found = filled_with(case, fill)?;
+        if found.is_some() {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+/// The same of one colour. Such pixels are where it happens: two neighbours as often as chance has it.
+fn filled_with(case: &Case, fill: [f64; 3]) -> Result<Option<(f64, Noise)>, RenderError> {
+    let (a, exact, variance) = (&case.full.a, &case.full.exact, &case.variance);
+    let [width, height] = size(a);
+    let near = Near::to(&fill);
+    let is_flat =
+        |x: u32, y: u32| !near.holds(&exact.pixel(x, y)) && noise::is_flat(&variance.pixel(x, y));
+    let is_empty = |x: u32, y: u32| near.holds(&a.pixel(x, y));
+    let (mut flat, mut empty, mut pairs, mut both) = (0u64, 0u64, 0u64, 0u64);
+    for (x, y) in Area::whole(width, height).iter() {
+        if !is_flat(x, y) {
+            continue;
+        }
+        flat += 1;
+        empty += u64::from(is_empty(x, y));
+        if x + 1 < width && is_flat(x + 1, y) {
+            pairs += 1;
+            both += u64::from(is_empty(x, y) && is_empty(x + 1, y));
+        }
+    }
+    let share = empty as f64 / flat.max(1) as f64;
+    let expected = share * share * pairs as f64;
+    // The number of pairs has a variance below three times its mean: a pair has but two others that it shares a pixel with.
+    let is_chance = (both as f64 - expected).abs() <= SIGMAS * (3.0 * expected).sqrt() + 3.0;
+    if empty == 0 || !is_chance || share > 0.9 {
+        return Ok(None);
+    }
+    let filled = Film::from_fn(width, height, |x, y| match is_empty(x, y) {
+        true => exact.pixel(x, y),
+        false => a.pixel(x, y),
+    })?;
+    // Where a pixel of several colours has the fill's, that may be one of them: noise is judged as if the fill came in everywhere.
+    let full = 1.0 - share;
+    let made = Film::from_fn(width, height, |x, y| {
+        let light = exact.pixel(x, y);
+        [0, 1, 2].map(|i| full * light[i] + share * fill[i])
+    })?;
+    let spread = Film::from_fn(width, height, |x, y| {
+        let (light, one) = (exact.pixel(x, y), variance.pixel(x, y));
+        let away = [0, 1, 2].map(|i| light[i] - fill[i]);
+        [0, 1, 2].map(|i| full * one[i].max(0.0) + share * full * away[i] * away[i])
+    })?;
+    let Some(noise) = noise::judge(a, &made, &spread) else {
+        return Ok(None);
+    };
+    if !noise::are_flat_pixels_right(&filled, exact, variance)
+        || case.is_biased(a, &made, &spread, noise)?
+    {
+        return Ok(None);
+    }
+    Ok(Some((share, noise)))
+}
