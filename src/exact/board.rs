@@ -293,7 +293,7 @@ impl Board {
                 (low.min(t), high.max(t))
             });
             let away = (low - middle).max(middle - high) - 1.0;
-            // i_0 is off by three roundings of each of its products, which are no greater than |∇N||∇L|.
+            // i_0 is a quotient of |∇N||∇L| at most and |∇L|²: two roundings above, five below, and its own.
             let roundings = 8.0 * UNIT * n.length() / steepness;
             let between = (middle - middle.round()).abs() - roundings;
             // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm.

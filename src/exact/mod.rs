@@ -4,7 +4,9 @@
 //! its error. What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:
 //!
 //! 1. The picture is quartered until a part shows one colour for certain, or is a single pixel.
-//! 2. In such a pixel the boundaries of what may be seen there cut it into regions: convex polygons where all are lines
+//!    A pixel that shows nothing but a checkerboard, and few of its lines, is one of several that are computed at once (`waiting`, `groups`,
+//!    `together`) or by itself (`grid`).
+//! 2. In any other pixel the boundaries of what may be seen there cut it into regions: convex polygons where all are lines
 //!    (`polygon`), slabs between neighbouring curves where some are conics (`sweep`).
 //! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen there. Boundaries that
 //!    are hidden do no harm: both sides of them get the same colour.
@@ -59,7 +61,7 @@ use self::{
     board::{Sum, UNIT},
     region::{Regions, Shares},
     sides::Sides,
-    waiting::{Floor, Waiting},
+    waiting::{BoardPixel, Waiting},
 };
 
 /// A spot whose bound is no greater than this is not cut into quarters; nor one with the horizon, where squares never end.
@@ -130,7 +132,7 @@ impl<'a> Integrator<'a> {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
                 Part::Open { x, y, live } => match live {
                     [only] if self.is_floor(only) => {
-                        waiting.push(Floor { x, y, live: *only }, &mut |floor, sum| {
+                        waiting.push(BoardPixel { x, y, live: *only }, &mut |floor, sum| {
                             self.set(floor, sum, &mut film, &mut others);
                         });
                     }
@@ -140,7 +142,7 @@ impl<'a> Integrator<'a> {
             ControlFlow::Continue(())
         });
         waiting.finish(&mut |floor, sum| self.set(floor, sum, &mut film, &mut others));
-        for Floor { x, y, live } in others {
+        for BoardPixel { x, y, live } in others {
             if cancel.load(Ordering::Relaxed) {
                 break;
             }
@@ -168,7 +170,13 @@ impl<'a> Integrator<'a> {
     }
 
     /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one of the others.
-    fn set(&self, floor: Floor, sum: Option<Sum>, film: &mut Film, others: &mut Vec<Floor>) {
+    fn set(
+        &self,
+        floor: BoardPixel,
+        sum: Option<Sum>,
+        film: &mut Film,
+        others: &mut Vec<BoardPixel>,
+    ) {
         let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + 8.0 * UNIT));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= ENOUGH) else {
             return others.push(floor);

@@ -13,7 +13,7 @@ use crate::tracer::{Board, Boards, Live, PIXELS, Spot, Views, World};
 
 /// A pixel that shows nothing but a checkerboard.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Floor {
+pub(super) struct BoardPixel {
     /// Its column.
     pub x: u32,
     /// Its row.
@@ -27,12 +27,12 @@ pub(super) struct Floor {
 pub(super) struct Waiting<'a> {
     world: &'a World,
     /// Pixels not looked at so far, all of one checkerboard.
-    next: Vec<Floor>,
+    next: Vec<BoardPixel>,
     /// That checkerboard, as an object of the scene, and what its pixels have in common.
     boards: Option<(usize, Boards)>,
     views: Views,
     corners: Corners,
-    groups: Groups<Floor>,
+    groups: Groups<BoardPixel>,
 }
 
 impl<'a> Waiting<'a> {
@@ -50,7 +50,7 @@ impl<'a> Waiting<'a> {
 
     /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where something else has to be
     /// tried.
-    pub fn push(&mut self, pixel: Floor, tell: &mut impl FnMut(Floor, Option<Sum>)) {
+    pub fn push(&mut self, pixel: BoardPixel, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
         let object = pixel.live.object;
         if !matches!(self.boards, Some((known, _)) if known == object) {
             self.look(tell);
@@ -63,7 +63,7 @@ impl<'a> Waiting<'a> {
     }
 
     /// Computes all that still wait.
-    pub fn finish(mut self, tell: &mut impl FnMut(Floor, Option<Sum>)) {
+    pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
         self.look(tell);
         for group in self.groups.all() {
             compute(group, tell);
@@ -71,7 +71,7 @@ impl<'a> Waiting<'a> {
     }
 
     /// Sorts the pixels that come next by what crosses them.
-    fn look(&mut self, tell: &mut impl FnMut(Floor, Option<Sum>)) {
+    fn look(&mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
         let Some(&last) = self.next.last() else {
             return;
         };
@@ -104,7 +104,7 @@ impl<'a> Waiting<'a> {
 }
 
 /// The integrals of a group's pixels, after which it is empty.
-fn compute(group: &mut Group<Floor>, tell: &mut impl FnMut(Floor, Option<Sum>)) {
+fn compute(group: &mut Group<BoardPixel>, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
     if group.pixels.is_empty() {
         return;
     }
@@ -173,11 +173,11 @@ mod tests {
         let live = world.everything()[0];
         let mut waiting = Waiting::new(world);
         let mut known = HashMap::new();
-        let mut tell = |pixel: Floor, sum| {
+        let mut tell = |pixel: BoardPixel, sum| {
             assert!(known.insert((pixel.x, pixel.y), sum).is_none());
         };
         for (x, y) in order {
-            waiting.push(Floor { x, y, live }, &mut tell);
+            waiting.push(BoardPixel { x, y, live }, &mut tell);
         }
         waiting.finish(&mut tell);
         known

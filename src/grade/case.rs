@@ -266,23 +266,19 @@ fn with_few_pictures(hopeful: Vec<(f64, Idea)>) -> Vec<(f64, Idea)> {
             Make::Scene(_) | Make::Curved(..) | Make::Floor(..) | Make::Squeezed
         )
     };
-    let mut lefts: Vec<_> = hopeful
+    let mut best: Vec<(f64, usize)> = hopeful
         .iter()
-        .filter(|(_, idea)| is_whole(idea))
-        .map(|(left, _)| *left)
+        .enumerate()
+        .filter(|(_, (_, idea))| is_whole(idea))
+        .map(|(at, (left, _))| (*left, at))
         .collect();
-    lefts.sort_by(f64::total_cmp);
-    let most = lefts.get(PICTURES - 1).copied().unwrap_or(f64::INFINITY);
-    let mut room = PICTURES;
+    best.sort_by(|p, q| p.0.total_cmp(&q.0));
+    best.truncate(PICTURES);
+    let is_kept = |at: usize| best.iter().any(|(_, kept)| *kept == at);
     hopeful
         .into_iter()
-        .filter(|(left, idea)| {
-            if !is_whole(idea) {
-                return true;
-            }
-            let is_first = *left <= most && room > 0;
-            room -= usize::from(is_first);
-            is_first
-        })
+        .enumerate()
+        .filter(|(at, (_, idea))| !is_whole(idea) || is_kept(*at))
+        .map(|(_, idea)| idea)
         .collect()
 }

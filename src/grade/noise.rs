@@ -198,7 +198,7 @@ impl Noise {
             false => self.samples,
         };
         let samples = match samples {
-            few if few < 10.0 => (2.0 * few).round() / 2.0,
+            few if few < 10.0 => ((2.0 * few).round() / 2.0).max(0.5),
             many => format!("{many:.1e}").parse().unwrap_or(many),
         };
         Verdict {

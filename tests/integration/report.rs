@@ -159,7 +159,7 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     // A line that flattens is followed where it ends, and doubted as far as the straight one is away.
     let mut bent = series(&[(1, 1.0, 0.4), (4, 1.0, 0.1), (16, 1.0, 0.05)]);
     let needed = bent.needed(0.0250001).unwrap();
-    assert_eq!((needed.per_pixel, needed.seconds), (64.0, 1.0));
+    assert_eq!((needed.per_pixel, needed.seconds), (64.0, 1.75));
     let straight = bent.fit().unwrap().reaches(0.0250001).unwrap();
     assert!((needed.factor.unwrap() - 64.0 / straight).abs() < 1e-3);
     assert!(straight < 50.0);

@@ -151,13 +151,7 @@ fn views(scene: &Scene) -> Vec<Idea> {
         (DVec3::new(eye.y, eye.x, eye.z), "x and y"),
     ] {
         let moved = changed(scene, |scene| scene.camera.eye = other);
-        if other != eye
-            && direction(&moved)
-                .normalize_or_zero()
-                .cross(scene.camera.up)
-                .length()
-                > 1e-6
-        {
+        if other != eye && search::is_seen(&moved) {
             ideas.push(idea(
                 "eye_swapped",
                 format!("the eye's coordinates {letters} are exchanged"),

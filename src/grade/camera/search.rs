@@ -250,13 +250,16 @@ fn nearest(
     Ok(best)
 }
 
+/// The sine of the least angle between the view direction and the up vector that somebody may mean.
+const ALONG_UP: f64 = 1e-6;
+
 /// Whether a camera looks anywhere: not from where it looks to, nor along up.
-fn is_seen(scene: &Scene) -> bool {
+pub(super) fn is_seen(scene: &Scene) -> bool {
     let forward = direction(scene);
     let sine = forward
         .normalize_or_zero()
         .cross(scene.camera.up.normalize_or_zero());
-    sine.length() > 1e-6
+    sine.length() > ALONG_UP
 }
 
 /// What was found by a search has few right digits.

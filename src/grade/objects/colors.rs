@@ -36,8 +36,7 @@ pub fn colors(case: &Case) -> Vec<Idea> {
         let message = format!("{what} has the colour {shown} instead of {wanted}");
         messages.push(message.clone());
         // Where a colour alone cannot explain it, all of them together may.
-        if shape.is_some_and(|_| room == 0) || shape.is_some_and(|shape| case.is_elsewhere(&shape))
-        {
+        if shape.is_some_and(|shape| room == 0 || case.is_elsewhere(&shape)) {
             return;
         }
         room -= usize::from(shape.is_some());

@@ -1,5 +1,7 @@
 //! Objects in a wrong place or of a wrong size.
 
+use std::ops::RangeInclusive;
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -52,6 +54,9 @@ struct Step {
     factor: f64,
 }
 
+/// By what factors an object's size may be off: slopes tell little of more.
+const GROWTH: RangeInclusive<f64> = 0.125..=8.0;
+
 /// Of the objects along whose slopes the errors add up, those for which they do so most.
 fn steps(case: &Case) -> Result<Vec<Step>, RenderError> {
     let mut steps: Vec<(f64, Step)> = Vec::new();
@@ -70,7 +75,8 @@ fn steps(case: &Case) -> Result<Vec<Step>, RenderError> {
             }
         }
     }
-    steps.retain(|(sigmas, step)| *sigmas > SIGMAS && step.by.length() < LITTLE);
+    let is_small = |step: &Step| step.by.length() < LITTLE && GROWTH.contains(&step.factor);
+    steps.retain(|(sigmas, step)| *sigmas > SIGMAS && is_small(step));
     steps.sort_by(|p, q| q.0.total_cmp(&p.0));
     let steps = steps.into_iter().take(SEARCHED);
     Ok(steps.map(|(_, step)| step).collect())

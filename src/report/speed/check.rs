@@ -17,6 +17,9 @@ const FILLED: f64 = 0.9;
 /// So many times as many samples are taken as the line says: most lines flatten.
 const MARGIN: f64 = 1.1;
 
+/// A picture has no more samples than this.
+const MOST: f64 = (1_u64 << 53) as f64;
+
 /// So often samples are taken for an error.
 const TRIES: usize = 3;
 
@@ -115,6 +118,9 @@ fn renders(measured: &Measurement) -> Vec<Render> {
             let needed = needed.filter(|needed| needed.is_extrapolated && tries.count() < TRIES);
             let render = needed.and_then(|needed| {
                 let per_pixel = (MARGIN * needed.per_pixel).ceil();
+                if per_pixel * measured.reference.bounds.len() as f64 > MOST {
+                    return None;
+                }
                 Some(Render {
                     series: at,
                     wanted,

@@ -4,6 +4,7 @@ use super::{
     fit::log_error,
     measure::{Measurement, Point, Series},
     notes::spread,
+    plan::LEAST_SHARE,
 };
 use crate::scene::Method;
 
@@ -122,8 +123,8 @@ impl Series {
         })
     }
 
-    /// The standard error of the logarithm of a point's error. Of a single run it is that of the last point with several, by the root of
-    /// their number.
+    /// The standard error of the logarithm of a point's error. Of a single run it is that of the last point with several, larger by
+    /// the root of how many there were.
     fn log_error(&self, point: &Point) -> Option<f64> {
         let several = |point: &&Point| point.rmse.len() > 1;
         let like = Some(point).filter(several);
@@ -132,8 +133,8 @@ impl Series {
         Some(log_error(&like.rmse)? * runs.sqrt())
     }
 
-    /// The time of a number of samples, and its spread: on the straight line between the points on either side, beyond the last one on
-    /// that through the first and the last. It falls nowhere, and rises in proportion at most.
+    /// The time of a number of samples, and its spread: on the straight line between the points on either side, beyond the last one
+    /// with the slope of that through the first and the last, but in proportion at most, and not much less than that whatever a noisy machine says.
     pub(super) fn seconds_at(&self, per_pixel: f64) -> Option<(f64, f64)> {
         let curve = self.curve();
         let (first, last) = (*curve.first()?, *curve.last()?);
@@ -144,7 +145,9 @@ impl Series {
                 let rise = last.seconds() - first.seconds();
                 let most = last.seconds() / samples(last);
                 let rate = match last.per_pixel > first.per_pixel {
-                    true => (rise / (samples(last) - samples(first))).clamp(0.0, most),
+                    true => {
+                        (rise / (samples(last) - samples(first))).clamp(LEAST_SHARE * most, most)
+                    }
                     false => most,
                 };
                 let seconds = last.seconds() + rate * (per_pixel - samples(last));

@@ -163,7 +163,7 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
     };
     measured.series.iter().any(needs).then(|| {
         "What is extrapolated follows the line through the last of what was measured. × and ÷ is one standard error of it, or how far the line \
-         through all points is from there, if that is more; a line that bends sharply beyond may do so by more than that."
+         through all points is from there, if that is more; where errors bend away further on, the truth is farther off."
             .to_owned()
     })
 }

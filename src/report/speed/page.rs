@@ -407,9 +407,9 @@ fn method(measurements: &[Measurement]) -> String {
          of the n runs’ squared errors. The greater one is given (as the Particle Data Group scales errors), and JSON has both.</li>\n\
          <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
          rounded up to a whole number of samples; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
-         through the last point and another with at most half its samples, and the answer is marked as extrapolated. Where the samples are left to the program \
+         through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
          and time is left, such an answer is tried, the fastest methods first: a tenth more samples are taken in a single run, which is a further point, up to three times. \
-         The standard error is that of the two points’ errors, √((1 − s)²e<sub>a</sub>² + s²e<sub>b</sub>²)/|b| at (1 − s)a + sb in logarithms; of what is extrapolated, at least \
+         The standard error is that of the two points’ errors, √((1 − s)²e<sub>1</sub>² + s²e<sub>2</sub>²) by the slope between them, at 1 − s of the first and s of the second in logarithms; of what is extrapolated, at least \
          the distance from where the least-squares line comes down to the same.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within the standard error of the samples \
          and half of the spread of the times.</li>\n\

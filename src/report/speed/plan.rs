@@ -1,6 +1,6 @@
 //! What is measured, so that it fits into the time there is.
 //!
-//! The exact picture is computed, and every method renders twice, and once with more samples where that takes no time to speak of. That warms
+//! The exact picture is computed, and every method renders twice, and once with more samples where that takes but a part of the time. That warms
 //! the machine up and counts for nothing, unless nothing else gets measured; what it took decides how far the ladder of samples goes and how
 //! many runs there are, where the user leaves that open.
 
@@ -31,7 +31,7 @@ const MORE: u64 = 8;
 const MORE_SHARE: f64 = 0.15;
 
 /// So much of a time with many samples is theirs, whatever a noisy machine says.
-const LEAST_SHARE: f64 = 0.25;
+pub(super) const LEAST_SHARE: f64 = 0.25;
 
 /// So many runs are wanted, and no more than so many are made.
 const RUNS: (u64, u64) = (3, 9);
