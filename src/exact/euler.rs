@@ -2,6 +2,8 @@
 
 use std::array;
 
+use crate::math::ROUND;
+
 /// One more than the highest order there is.
 pub(super) const ORDERS: usize = 22;
 
@@ -85,9 +87,7 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
 pub(super) fn waves_at<const TERMS: usize, const ROWS: usize, const N: usize>(
     t: [f64; N],
 ) -> [[f64; N]; ROWS] {
-    // Adding 1.5·2^52 rounds to an integer and leaves its parity in the last bit; at a tie either neighbour will do, for
-    // the waves are continuous. Half-way to t's last digits nothing is left to be said.
-    const ROUND: f64 = 6755399441055744.0;
+    // At a tie either neighbour will do, for the waves are continuous. Half-way to t's last digits nothing is left to be said.
     let middle = t.map(|t| t - 0.5);
     let shifted = middle.map(|middle| middle + ROUND);
     let eta: [f64; N] = array::from_fn(|i| middle[i] - (shifted[i] - ROUND));

@@ -31,6 +31,9 @@ fn square_wave(n: f64) -> f64 {
     if n as i64 & 1 == 0 { 1.0 } else { -1.0 }
 }
 
+/// A family whose lines are farther away than this is left to others.
+pub(super) const FAR: f64 = 1e9;
+
 /// How many lines are computed at once.
 const LANES: usize = 8;
 
@@ -80,7 +83,6 @@ struct Family<'a> {
 impl<'a> Family<'a> {
     /// `None` if its lines are farther away than anything that is prepared for a spot.
     fn new(board: &'a Board, across: &'a [f64; 3], levels: &[f64; 4]) -> Option<Self> {
-        const FAR: f64 = 1e9;
         let places: [f64; 4] = array::from_fn(|i| form(across, CORNERS[i]) / levels[i]);
         if !places.iter().all(|place| place.abs() < FAR) {
             return None;

@@ -6,6 +6,7 @@
 use multiversion::multiversion;
 
 use super::{
+    grid::FAR,
     polygon::PIXEL,
     together::{Lines, Row, Sums, nearest},
 };
@@ -14,9 +15,6 @@ use crate::tracer::{PIXELS, Views};
 /// At most so many lines cut the pixels into strips, and so many cross those.
 pub(super) const STRIPS: usize = 3;
 const MOST: usize = 12;
-
-/// A family whose lines are farther away than this is left to others.
-const FAR: f64 = 1e9;
 
 /// In which squares some pixels have their corners.
 #[derive(Debug, Default)]

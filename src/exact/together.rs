@@ -18,7 +18,10 @@ use super::{
     groups::{Corners, STRIPS},
     polygon::PIXEL,
 };
-use crate::tracer::{PIXELS, Views};
+use crate::{
+    math::ROUND,
+    tracer::{PIXELS, Views},
+};
 
 /// A number of each pixel.
 pub(super) type Row = [f64; PIXELS];
@@ -106,7 +109,7 @@ impl Lines {
             sign: [0.0; PIXELS],
         }; SIDES];
         let sides = &mut sides[..4 * (few + 1) + few];
-        let is_cut = self.strips(few, sides);
+        let failed = self.strips(few, sides);
         let (mut sums, mut lengths, mut offs) = ([0.0; PIXELS], [0.0; PIXELS], [0.0; PIXELS]);
         for side in &*sides {
             for i in 0..PIXELS {
@@ -140,7 +143,7 @@ impl Lines {
             bounds: array::from_fn(|i| {
                 let roundings = UNIT * lines * (16.0 * lengths[i] + 8.0 * strips + 2.0 * lines);
                 let displaced = offs[i] * (1.0 + strips) + displaced[i] + points;
-                3.0 * displaced + roundings + is_cut[i]
+                3.0 * displaced + roundings + failed[i]
             }),
         }
     }
@@ -298,8 +301,6 @@ fn square_wave(n: f64) -> f64 {
 /// A whole number that is nearest to one below 2^51.
 #[inline(always)]
 pub(super) fn nearest(x: f64) -> f64 {
-    /// Added and taken away again, it rounds to a whole number.
-    const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
     (x + ROUND) - ROUND
 }
 

@@ -18,5 +18,5 @@ pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
 pub use big::{Big, Exact, compare_half_turns};
 pub use double::{Double, two_product, two_sum};
 pub use radius::{Radius, Wide};
-pub use real::{Real, floor};
+pub use real::{ROUND, Real, floor};
 pub use vectors::Vectors;

@@ -52,6 +52,9 @@ pub trait Real: Clone + Debug + Sized {
     fn floor(&self) -> (Self, bool);
 }
 
+/// Added to a number below 2^51 and taken away again, it rounds that to a whole number, whose last bit is that of the sum.
+pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+
 /// The greatest whole number that is not greater, for |x| < 2^63.
 ///
 /// `f64::floor` is a call of a function where not every processor of the kind has an instruction for it.

@@ -9,7 +9,7 @@ use super::{
     outlook::LOOSE_LINE,
     world::{Level, World},
 };
-use crate::math::{Double, Real};
+use crate::math::{Double, ROUND, Real};
 
 /// So many pixels at a time.
 pub const PIXELS: usize = 8;
@@ -82,8 +82,6 @@ impl Boards {
     /// As `Place::together` has it, step by step.
     #[inline(always)]
     fn see(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
-        /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
-        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
         const ONE: u64 = 1.0f64.to_bits();
         // Copies, of which the compiler knows that nothing that is written is one of them.
         let Self {

@@ -7,7 +7,7 @@ use super::{
     local::{Conic, Line, Local, ROUNDINGS},
     squares::Squares,
 };
-use crate::math::{UP, Vectors};
+use crate::math::{ROUND, UP, Vectors};
 
 /// So many samples are evaluated at a time.
 pub(super) const CHUNK: usize = 64;
@@ -168,8 +168,6 @@ fn between(
 /// In which squares of a board the samples lie.
 #[inline(always)]
 fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
-    /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
-    const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
     const ONE: u64 = 1.0f64.to_bits();
     let Local { factors: l, rad } = squares.below;
     let [n0, n1] = squares.across.map(|across| across.factors);

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    math::UP,
+    math::{ROUND, UP},
     tracer::{checkerboard::Checkerboard, world::Level},
 };
 
@@ -166,8 +166,6 @@ impl Mesh {
 
     #[inline(always)]
     fn evaluate(&self, y: f64, length: usize, out: &mut Corners) {
-        /// Added and taken away again, it rounds to a whole number, whose last bit is that of the sum.
-        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
         const ONE: u64 = 1.0f64.to_bits();
         let Squares { across, below, .. } = &self.squares;
         let [n0, n1, l] = [&across[0], &across[1], below].map(|local| {
