@@ -15,7 +15,7 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::DVec2;
 use pinhole::{
     area::Area,
-    render::{Control, render, render_exact},
+    render::{Control, Way, render, render_exact, render_in_a_way},
     sampling::Sampling,
     scene::{self, Scene},
     source::{Source, Sources},
@@ -75,6 +75,19 @@ fn picture(world: &World, scene: &Scene) {
         cancel: &AtomicBool::new(false),
     };
     black_box(render(world, &sampling, whole, &control)).expect("there is memory for it");
+}
+
+/// The same picture, each sample by the hierarchy on its own.
+fn one_by_one(world: &World, scene: &Scene) {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let film = render_in_a_way::<[f64; 3]>(world, &sampling, whole, &control, Way::OneByOne);
+    black_box(film).expect("there is memory for it");
 }
 
 /// Points all over the picture, row by row.
@@ -141,6 +154,9 @@ fn phases(count: usize) {
     let after = (cpu_seconds(), resident_bytes());
     (0..RENDERS).for_each(|_| picture(&world, &scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
+    let start = cpu_seconds();
+    one_by_one(&world, &scene);
+    let plain = cpu_seconds() - start;
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();
     let whole = Area::whole(scene.image.width, scene.image.height);
@@ -158,7 +174,7 @@ fn phases(count: usize) {
     };
     let prepared = after.0 - before.0;
     println!(
-        "{count:9} spheres: world {prepared:.2} CPU s and {bytes:.0} bytes each, render {rendered:.3} CPU s{exact}"
+        "{count:9} spheres: world {prepared:.2} CPU s and {bytes:.0} bytes each, render {rendered:.3} CPU s, one by one {plain:.3}{exact}"
     );
 }
 

@@ -32,7 +32,7 @@ use crate::{
     film::{self, Encoder, Film, TooLarge},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
+    tracer::{Checks, Item, Live, Part, Pixel, Quartering, Room, World},
 };
 
 /// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
@@ -47,6 +47,9 @@ const CHUNK: u64 = 1 << 12;
 /// Up to so many samples a pixel, so many pixels are traced rather than looked at one by one.
 const FEW: u64 = 2;
 const GRAIN: u64 = 4;
+
+/// Up to so many samples of a pixel with many objects are traced one by one.
+const FEW_IN_CROWDS: u64 = 8;
 
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
 const THREADS: usize = 1024;
@@ -70,7 +73,7 @@ pub enum Way {
     Together,
     /// The same by vectors that every processor of the kind has.
     Narrow,
-    /// All of them, one by one, against all objects.
+    /// All of them, one by one, against the objects that the hierarchy knows on their way.
     OneByOne,
 }
 
@@ -155,7 +158,9 @@ pub fn render_in_a_way<P: film::Pixel>(
         encoder: &encoder,
         control,
         way,
-        quartering: Quartering::new(world).down_to(grain),
+        quartering: Quartering::new(world)
+            .down_to(grain)
+            .with_crowds(sampling.samples_per_pixel() <= FEW_IN_CROWDS),
         everything: match way {
             Way::Culled => Vec::new(),
             Way::Together | Way::Narrow | Way::OneByOne => world.everything(),
@@ -330,6 +335,7 @@ impl<P: film::Pixel> Frame<'_, P> {
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.shown[slot]),
                 Part::Open { x, y, live } => self.pixel([x, y], live, checks, &mut film, tally),
+                Part::Crowd { x, y, crowd } => self.in_crowd([x, y], crowd, &mut film, tally),
             }
             ControlFlow::Continue(())
         };
@@ -366,6 +372,30 @@ impl<P: film::Pixel> Frame<'_, P> {
             self.many(x, y, samples, live, tally);
         }
         let Tally { counts, means, .. } = tally;
+        film.pixels[index] = means.take(counts, self.colors, self.encoder);
+    }
+
+    /// Takes the samples of a pixel that has few of them and many objects.
+    fn in_crowd(&self, [x, y]: [u32; 2], crowd: &[Item], film: &mut Tile<P>, tally: &mut Tally<P>) {
+        let index = film.area.index(x, y);
+        let samples = film.samples.of(index);
+        if samples == 0 {
+            return;
+        }
+        let Tally {
+            counts,
+            means,
+            points,
+            ..
+        } = tally;
+        let vectors = self.way.vectors();
+        self.sampling
+            .place(vectors, [x, y], samples, 0..samples, points);
+        for index in 0..points.len() {
+            let slot = self.world.slot_in_crowd(x, y, points.get(index), crowd);
+            counts.add(slot, 1);
+        }
+        film.unreported += samples;
         film.pixels[index] = means.take(counts, self.colors, self.encoder);
     }
 

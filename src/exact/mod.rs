@@ -138,6 +138,12 @@ impl<'a> Integrator<'a> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, live, &mut scratch, cancel)),
                 },
+                // Not asked for.
+                Part::Crowd { x, y, crowd } => {
+                    let mut live = Vec::new();
+                    self.world.live_of(Area::pixel(x, y), crowd, &mut live);
+                    film.set(x, y, self.pixel(x, y, &live, &mut scratch, cancel));
+                }
             }
             ControlFlow::Continue(())
         });

@@ -32,6 +32,7 @@ mod world;
 pub use boards::{Boards, PIXELS, Views};
 pub use camera::{Basis, Point};
 pub use curve::{Conic, Curve, Line};
+pub use hierarchy::Item;
 pub use outlook::{Board, Live, Spot};
 pub use pixel::{Checks, Pixel};
 pub use quartering::{Part, Quartering, Room};

@@ -13,6 +13,7 @@ use crate::{
 use super::{
     cover::{Patch, Range},
     curve::{Crossings, Curve, Line, Place, Surface},
+    hierarchy::Item,
     object::Object,
     world::{Level, World},
 };
@@ -107,19 +108,21 @@ impl World {
         self.live_among(part, among.iter().map(|live| live.object), out);
     }
 
-    /// Of all objects, in file order, those that may be seen in a part of the picture.
-    pub fn live_in(&self, part: Area, out: &mut Vec<Live>) {
-        let mut candidates = Vec::new();
-        self.hierarchy
-            .within(&Patch::new(&self.fast.camera, part), &mut candidates);
-        self.live_among(part, candidates.into_iter(), out);
+    /// The same of a crowd.
+    pub fn live_of(&self, part: Area, crowd: &[Item], out: &mut Vec<Live>) {
+        self.live_among(part, crowd.iter().map(|item| item.object as usize), out);
+        out.sort_unstable_by_key(|live| live.object);
+    }
+
+    /// The inverse depths of the near and the far plane over a patch, where there are any.
+    pub(super) fn clips_over(&self, patch: &Patch) -> [Option<Range>; 2] {
+        [&self.fast.near, &self.fast.far].map(|clip| Some(clip.as_ref()?.over(patch)))
     }
 
     fn live_among(&self, part: Area, among: impl Iterator<Item = usize>, out: &mut Vec<Live>) {
         out.clear();
         let patch = Patch::new(&self.fast.camera, part);
-        let near = self.fast.near.as_ref().map(|form| form.over(&patch));
-        let far = self.fast.far.as_ref().map(|form| form.over(&patch));
+        let [near, far] = self.clips_over(&patch);
         // The nearest of what is met everywhere hides what is farther.
         let mut hidden = f64::NEG_INFINITY;
         for candidate in among {
@@ -141,7 +144,7 @@ impl World {
     }
 
     /// The object in a part of the picture, if it may be seen there.
-    fn cover(
+    pub(super) fn cover(
         &self,
         index: usize,
         patch: &Patch,

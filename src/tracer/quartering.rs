@@ -5,11 +5,12 @@
 
 use std::ops::ControlFlow;
 
-use super::{outlook::Live, pixel::Checks, world::World};
+use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
-/// Of so many candidates those of a quarter are asked of the hierarchy, which looks at a few bytes of each, and not at those of other quarters.
-const MANY: usize = 64;
+/// A part with so many candidates is cut by their bounds alone, without a look at most of them; and with fewer, where crowds are kept.
+const CROWD: usize = 8;
+const KEPT_CROWD: usize = 4;
 
 /// Cuts the parts of one picture.
 #[derive(Debug)]
@@ -17,6 +18,8 @@ pub struct Quartering<'a> {
     world: &'a World,
     /// Parts of so few pixels are not cut.
     grain: u64,
+    /// Whether crowds stay crowds in these.
+    keeps_crowds: bool,
 }
 
 /// A part of the picture.
@@ -38,22 +41,47 @@ pub enum Part<'a> {
         /// The objects that may be seen there, in file order.
         live: &'a [Live],
     },
+    /// The same where there are many objects, at which nobody has looked themselves.
+    Crowd {
+        /// Its column.
+        x: u32,
+        /// Its row.
+        y: u32,
+        /// The objects whose bounds meet the pixel, the one that may be nearest first.
+        crowd: &'a [Item],
+    },
 }
 
 /// The candidates at each depth of the quartering, kept from tile to tile for their room.
 #[derive(Debug, Default)]
-pub struct Room(Vec<Vec<Live>>);
+pub struct Room {
+    crowds: Vec<Vec<Item>>,
+    live: Vec<Vec<Live>>,
+}
 
 impl<'a> Quartering<'a> {
     /// For a prepared scene.
     pub fn new(world: &'a World) -> Self {
-        Self { world, grain: 1 }
+        Self {
+            world,
+            grain: 1,
+            keeps_crowds: false,
+        }
     }
 
     /// The same, but parts of so few pixels are not cut any more: it would cost more than it saves.
     pub fn down_to(self, pixels: u64) -> Self {
         Self {
             grain: pixels,
+            ..self
+        }
+    }
+
+    /// The same, but where there are many objects, those of a pixel are told by their bounds alone, if that is asked for: to look at
+    /// each of them would cost more than it saves a few samples.
+    pub fn with_crowds(self, keeps_crowds: bool) -> Self {
+        Self {
+            keeps_crowds,
             ..self
         }
     }
@@ -75,9 +103,46 @@ impl<'a> Quartering<'a> {
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut live = Vec::new();
-        self.world.live_in(area, &mut live);
-        self.cut(area, &live, 0, room, visit)
+        let mut crowd = take(&mut room.crowds, 0);
+        self.world.crowd_in(area, &mut crowd);
+        let flow = self.disperse(area, &crowd, 0, room, visit);
+        room.crowds[0] = crowd;
+        flow
+    }
+
+    /// Cuts a part by its candidates' bounds until they are few.
+    fn disperse(
+        &self,
+        area: Area,
+        crowd: &[Item],
+        depth: usize,
+        room: &mut Room,
+        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let is_fine = area.pixels() <= self.grain;
+        if is_fine && depth > 0 && self.keeps_crowds && !crowd.is_empty() {
+            return area
+                .iter()
+                .try_for_each(|(x, y)| visit(Part::Crowd { x, y, crowd }, None));
+        }
+        let few = match self.keeps_crowds {
+            true => KEPT_CROWD,
+            false => CROWD,
+        };
+        if crowd.len() < few || is_fine {
+            let mut live = take(&mut room.live, depth);
+            self.world.live_of(area, crowd, &mut live);
+            let flow = self.cut(area, &live, depth + 1, room, visit);
+            room.live[depth] = live;
+            return flow;
+        }
+        let mut below = take(&mut room.crowds, depth + 1);
+        let flow = area.quarters().try_for_each(|quarter| {
+            self.world.crowd(quarter, crowd, &mut below);
+            self.disperse(quarter, &below, depth + 1, room, visit)
+        });
+        room.crowds[depth + 1] = below;
+        flow
     }
 
     fn cut(
@@ -107,18 +172,12 @@ impl<'a> Quartering<'a> {
                 .quarters()
                 .try_for_each(|quarter| self.cut(quarter, live, depth + 1, room, visit));
         }
-        if room.0.len() <= depth {
-            room.0.push(Vec::new());
-        }
-        let mut below = std::mem::take(&mut room.0[depth]);
+        let mut below = take(&mut room.live, depth);
         let flow = area.quarters().try_for_each(|quarter| {
-            match live.len() {
-                ..MANY => self.world.live(quarter, live, &mut below),
-                _ => self.world.live_in(quarter, &mut below),
-            }
+            self.world.live(quarter, live, &mut below);
             self.cut(quarter, &below, depth + 1, room, visit)
         });
-        room.0[depth] = below;
+        room.live[depth] = below;
         flow
     }
 
@@ -139,4 +198,12 @@ impl<'a> Quartering<'a> {
             _ => None,
         }
     }
+}
+
+/// The list of a depth, to be put back there.
+fn take<T>(lists: &mut Vec<Vec<T>>, depth: usize) -> Vec<T> {
+    if lists.len() <= depth {
+        lists.resize_with(depth + 1, Vec::new);
+    }
+    std::mem::take(&mut lists[depth])
 }

@@ -235,6 +235,8 @@ fn what_is_seen_in_a_part_is_live_there() {
         let world = World::new(&scene);
         let everything = world.everything();
         let (mut some, mut all) = (Vec::new(), Vec::new());
+        let (mut whole, mut crowd) = (Vec::new(), Vec::new());
+        world.crowd_in(Area::whole(SIZE, SIZE), &mut whole);
         for _ in 0..20 {
             let ((x, y, _), (right, bottom, _)) = (random.point(), random.point());
             let part = Area {
@@ -243,7 +245,17 @@ fn what_is_seen_in_a_part_is_live_there() {
                 width: x.abs_diff(right) % 8 + 1,
                 height: y.abs_diff(bottom) % 8 + 1,
             };
-            world.live_in(part, &mut some);
+            // By way of another part, as a crowd disperses.
+            let around = Area {
+                x: part.x / 2,
+                y: part.y / 2,
+                width: part.width + part.x - part.x / 2 + 1,
+                height: part.height + part.y - part.y / 2 + 1,
+            };
+            let mut first = Vec::new();
+            world.crowd(around, &whole, &mut first);
+            world.crowd(part, &first, &mut crowd);
+            world.live_of(part, &crowd, &mut some);
             world.live(part, &everything, &mut all);
             // The hierarchy's bounds may leave out more, but nothing else comes in.
             let places: Vec<_> = some.iter().map(|live| live.object).collect();

@@ -173,6 +173,27 @@ fn scenes_of_all_kinds() {
 }
 
 #[test]
+fn crowds_of_all_kinds() {
+    let mut random = Random(31);
+    let mut colors = 0;
+    for index in 0..60 {
+        let mut scene = random_scene(&mut random, index % 2 == 0);
+        let more = (0..8).flat_map(|_| random_scene(&mut random, true).objects);
+        scene.objects.extend(more);
+        // Some of them twice: the first is seen.
+        let again = scene.objects[index % scene.objects.len()].clone();
+        scene.objects.push(again);
+        let method = Method::SAMPLED[index % Method::SAMPLED.len()];
+        // Where samples are few, crowds are traced as crowds.
+        for n in [1, 4, 8, 12] {
+            let scene = with_samples(&scene, method, Count::PerPixel(n));
+            colors += compare(&scene, "a crowd");
+        }
+    }
+    assert!(colors > 60 * 40, "{colors}");
+}
+
+#[test]
 fn scenes_full_of_ties() {
     let mut random = Random(77);
     for _ in 0..300 {

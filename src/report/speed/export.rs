@@ -100,7 +100,7 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
     });
     let needed = errors.iter().map(|&error| match series.needed(error) {
         None => {
-            json!({"error": error, "per_pixel": null, "factor": null, "time": null, "extrapolated": null, "taken": null})
+            json!({"error": error, "per_pixel": null, "factor": null, "time": null, "extrapolated": null, "tried": null})
         }
         Some(needed) => json!({
             "error": error,
@@ -108,7 +108,7 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
             "factor": needed.factor,
             "time": needed.seconds,
             "extrapolated": needed.is_extrapolated,
-            "taken": series.check(error).map(
+            "tried": series.check(error).map(
                 |Check { point, .. }| json!({
                     "per_pixel": point.per_pixel,
                     "time": point.seconds(),

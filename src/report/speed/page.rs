@@ -237,8 +237,8 @@ fn needs(measured: &Measurement) -> String {
     });
     let exact = measured.exact.as_ref().map(|exact| {
         let time = seconds(median(&exact.times));
-        let taken = if is_tried { "<td></td>" } else { "" };
-        format!("<td>–</td><td>{time}</td>{taken}").repeat(measured.errors.len())
+        let tried = if is_tried { "<td></td>" } else { "" };
+        format!("<td>–</td><td>{time}</td>{tried}").repeat(measured.errors.len())
     });
     let names: Vec<_> = measured
         .errors

@@ -40,12 +40,21 @@ impl Ticks {
         }
     }
 
-    /// An axis with numbers at these values, which goes at least to some value.
+    /// An axis with numbers at these values, which rise, and that goes at least to some value: beyond the last of them numbers stand as far
+    /// apart as the last two do.
     pub fn at(values: &[f64], most: f64) -> Self {
         let (low, high) = ends(values.iter().copied());
+        let end = high.max(most) * 1.25;
+        let mut major = values.to_vec();
+        if let [.., before, last] = values
+            && last / before >= 1.5
+        {
+            let next = |value: &f64| Some(value * last / before).filter(|&next| next <= end);
+            major.extend(std::iter::successors(next(last), next).map(f64::round));
+        }
         Self {
-            ends: (low / 1.25, high.max(most) * 1.25),
-            major: values.to_vec(),
+            ends: (low / 1.25, end),
+            major,
             minor: Vec::new(),
         }
     }
@@ -64,5 +73,20 @@ pub fn tick(value: f64) -> String {
         // The shortest way to write it, without what the powers of ten were rounded by.
         true => format!("{}", (value * 1e9).round() / 1e9),
         false => format!("{value:.0e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_go_on_beyond_those_that_were_planned() {
+        assert_eq!(
+            Ticks::at(&[1.0, 4.0, 16.0], 500.0).major,
+            [1.0, 4.0, 16.0, 64.0, 256.0]
+        );
+        assert_eq!(Ticks::at(&[1.0, 4.0, 16.0], 9.0).major, [1.0, 4.0, 16.0]);
+        assert_eq!(Ticks::at(&[8.0], 9.0).major, [8.0]);
     }
 }

@@ -1,6 +1,7 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 
 mod colors;
+mod crowd;
 mod level;
 mod ray;
 
@@ -206,14 +207,27 @@ impl World {
         let mut bar = Nearness::NONE;
         while let Some(mut list) = descent.next(bar) {
             while let Some(index) = list.next(bar) {
-                if self.meet(&r, index, &mut nearest)?
-                    && let Some(Nearest { crossing, .. }) = &nearest
-                {
-                    bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
-                }
+                self.raise(&r, index, &mut nearest, &mut bar)?;
             }
         }
         self.with_color(&r, nearest)
+    }
+
+    /// As [`meet`](World::meet); and where an object is the nearest so far, all that is farther is behind the bar.
+    #[inline]
+    fn raise(
+        &self,
+        r: &Direction<f64>,
+        index: usize,
+        nearest: &mut Option<Nearest<f64>>,
+        bar: &mut Nearness,
+    ) -> Result<(), Doubt> {
+        if self.meet(r, index, nearest)?
+            && let Some(Nearest { crossing, .. }) = nearest
+        {
+            *bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
+        }
+        Ok(())
     }
 
     #[cfg(test)]

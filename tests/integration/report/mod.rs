@@ -177,7 +177,7 @@ fn programs_get_json_and_errors_fall() {
         assert_eq!(needed[2]["extrapolated"], true, "{name}");
         assert!(needed[2]["factor"].as_f64().unwrap() > 1.0, "{name}");
         // Whoever says how many samples are taken gets no others.
-        assert_eq!(needed[2]["taken"], Value::Null);
+        assert_eq!(needed[2]["tried"], Value::Null);
     }
     // Independent samples: each run draws its own seed's, and the errors of the seeds differ.
     let random = methods
@@ -494,7 +494,7 @@ fn what_is_extrapolated_is_tried_where_time_is_left() {
         .unwrap()
         .iter()
         .find(|method| method["method"] == "sobol");
-    assert_eq!(sobol.unwrap()["needed"][0]["taken"]["rmse"], rmse);
+    assert_eq!(sobol.unwrap()["needed"][0]["tried"]["rmse"], rmse);
     assert!(
         speed::page(&[measured])
             .unwrap()

@@ -1,0 +1,169 @@
+//! The grid in which a hierarchy counts: whole numbers for places in the view plane and for how near an object is.
+
+use crate::tracer::{
+    camera::{Direction, Window},
+    cover::{Patch, Range},
+    extent::Extent,
+};
+
+/// The side of the root is 2 to this power: units are far smaller than pixels in a picture of any common size.
+pub(super) const LEVELS: u32 = 24;
+
+/// A rectangle in the units of the grid, ends included.
+#[derive(Clone, Copy, Debug)]
+pub struct Rectangle {
+    pub(super) low: [u32; 2],
+    pub(super) high: [u32; 2],
+}
+
+/// A place in the units of the grid.
+#[derive(Clone, Copy, Debug)]
+pub struct Unit(pub(super) [u32; 2]);
+
+/// An object's bounds, and how near it is at most.
+#[derive(Clone, Copy, Debug)]
+pub struct Item {
+    pub(super) bounds: Rectangle,
+    /// Above what its inverse depths may be.
+    pub nearest: Nearness,
+    /// Its index in the file.
+    pub object: u32,
+}
+
+/// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, which is ordered as the number is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Nearness(u32);
+
+/// From X and Y to the units of the grid.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    least: f64,
+    per_unit: f64,
+    /// The window, ends included: no point outside of it can be asked for.
+    low: [u32; 2],
+    high: [u32; 2],
+}
+
+impl Nearness {
+    /// Nothing is as far as this.
+    pub const NONE: Self = Self(0);
+
+    /// More than a number that is not negative; infinite for NaN.
+    fn above(x: f64) -> Self {
+        if x >= 0.0 {
+            Self((x.to_bits() >> 32) as u32 + 1)
+        } else {
+            Self(u32::MAX)
+        }
+    }
+
+    /// A number or less; none for NaN.
+    pub fn below(x: f64) -> Self {
+        if x > 0.0 {
+            Self((x.to_bits() >> 32) as u32)
+        } else {
+            Self::NONE
+        }
+    }
+}
+
+impl Rectangle {
+    #[inline]
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let meets = |i: usize| (self.low[i] <= other.high[i]) & (other.low[i] <= self.high[i]);
+        meets(0) & meets(1)
+    }
+
+    #[inline]
+    fn holds(&self, other: &Self) -> bool {
+        let holds = |i: usize| (self.low[i] <= other.low[i]) & (other.high[i] <= self.high[i]);
+        holds(0) & holds(1)
+    }
+
+    /// The least that holds both.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1].map(|i| self.low[i].min(other.low[i])),
+            high: [0, 1].map(|i| self.high[i].max(other.high[i])),
+        }
+    }
+}
+
+impl Item {
+    /// Whether it may be met in a rectangle.
+    #[inline]
+    pub fn meets(&self, rectangle: &Rectangle) -> bool {
+        self.bounds.meets(rectangle)
+    }
+
+    /// Whether it may be met at a place.
+    #[inline]
+    pub fn is_at(&self, Unit([x, y]): Unit) -> bool {
+        let Rectangle { low, high } = self.bounds;
+        (low[0] <= x) & (x <= high[0]) & (low[1] <= y) & (y <= high[1])
+    }
+
+    /// Whether it may be met everywhere in a rectangle.
+    #[inline]
+    pub fn may_fill(&self, rectangle: &Rectangle) -> bool {
+        self.bounds.holds(rectangle)
+    }
+}
+
+impl Grid {
+    /// The grid of a window.
+    pub fn new(window: &Window<f64>) -> Self {
+        let half = window.x.max(window.y) * 1.125;
+        let mut grid = Self {
+            least: -half,
+            per_unit: f64::from(1 << LEVELS) / (2.0 * half),
+            low: [0; 2],
+            high: [0; 2],
+        };
+        let reach = [window.x, window.y];
+        grid.low = reach.map(|reach| grid.unit(-reach).saturating_sub(1));
+        grid.high = reach.map(|reach| grid.unit(reach) + 1);
+        grid
+    }
+
+    /// The unit that a coordinate lies in, or the nearest one; the first for NaN.
+    #[inline]
+    fn unit(&self, x: f64) -> u32 {
+        const LAST: u32 = (1 << LEVELS) - 2;
+        (((x - self.least) * self.per_unit) as u32).min(LAST)
+    }
+
+    /// The units of a direction that lies in the window.
+    #[inline]
+    pub(super) fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
+        let at = [self.unit(r.x), self.unit(r.y)];
+        let is_within = |axis: usize| self.low[axis] <= at[axis] && at[axis] <= self.high[axis];
+        (is_within(0) && is_within(1)).then_some(at)
+    }
+
+    /// The ends of some ranges within the window; none if one of them lies outside.
+    fn ends(&self, ranges: [Range; 2]) -> Option<Rectangle> {
+        let low = [0, 1].map(|i| {
+            let low = self.unit(ranges[i].low).saturating_sub(1);
+            low.max(self.low[i])
+        });
+        let high = [0, 1].map(|i| (self.unit(ranges[i].high) + 1).min(self.high[i]));
+        (low[0] <= high[0] && low[1] <= high[1]).then_some(Rectangle { low, high })
+    }
+
+    /// What holds all rays through a patch; none outside of the window.
+    pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
+        let center = [patch.center.x, patch.center.y];
+        self.ends([0, 1].map(|i| Range::about(center[i], patch.half[i])))
+    }
+
+    /// An object in the grid; none outside of the window.
+    pub fn item(&self, object: usize, extent: &Extent) -> Option<Item> {
+        Some(Item {
+            bounds: self.ends(extent.across)?,
+            nearest: Nearness::above(extent.nearest),
+            // More would not fit into memory.
+            object: object as u32,
+        })
+    }
+}

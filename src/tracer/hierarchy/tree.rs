@@ -1,0 +1,288 @@
+//! The cells of a hierarchy, and the objects listed in them.
+
+use std::cmp::Reverse;
+
+use rayon::prelude::*;
+
+use super::grid::{Item, LEVELS, Nearness, Rectangle};
+
+/// A cell with no more objects is not divided.
+const FEW: usize = 32;
+
+/// A cell with more objects is divided by several threads.
+const MANY: usize = 1 << 14;
+
+/// An object in a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Entry {
+    /// Above what its inverse depths may be.
+    pub(super) nearest: Nearness,
+    /// Its index in the file.
+    pub(super) object: u32,
+    /// Its bounds in parts of the cell, ends included.
+    pub(super) low: [u8; 2],
+    pub(super) high: [u8; 2],
+}
+
+/// Cells, the first of which holds the others.
+#[derive(Debug)]
+pub(super) struct Tree {
+    pub(super) cells: Vec<Cell>,
+    pub(super) entries: Vec<Entry>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    /// Where its four quarters are, or 0 if it is not divided.
+    pub(super) quarters: u32,
+    /// Its list among the entries.
+    pub(super) start: u32,
+    pub(super) end: u32,
+    /// The nearest of its own list and of all below it.
+    pub(super) nearest: Nearness,
+}
+
+/// Which of 256 parts of a cell with a side of 2^level holds a coordinate in the cell; of the smallest cells not all parts are used.
+#[inline]
+pub(super) fn part_of(level: u32, x: u32) -> u8 {
+    let within = x & ((1 << level) - 1);
+    match level {
+        0..8 => (within << (8 - level)) as u8,
+        _ => (within >> (level - 8)) as u8,
+    }
+}
+
+/// The first and the last coordinate of a part, from the cell's corner.
+#[inline]
+fn units_of(level: u32, part: u8) -> (u32, u32) {
+    let part = u32::from(part);
+    match level {
+        0..8 => (part >> (8 - level), part >> (8 - level)),
+        _ => (part << (level - 8), ((part + 1) << (level - 8)) - 1),
+    }
+}
+
+impl Tree {
+    /// The tree of all cells.
+    pub(super) fn of(items: Vec<Item>) -> Self {
+        Self::new(Place::ROOT, items)
+    }
+
+    /// The same, by several threads.
+    pub(super) fn of_many(items: Vec<Item>) -> Self {
+        Self::by_threads(Place::ROOT, items)
+    }
+
+    /// The objects that may overlap a rectangle, once for each cell in which they do.
+    pub(super) fn within(&self, rectangle: &Rectangle, out: &mut Vec<Item>) {
+        self.below(0, Place::ROOT, rectangle, out);
+    }
+
+    /// How many bytes it takes.
+    #[cfg(test)]
+    pub(super) fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<Cell>() + self.entries.capacity() * size_of::<Entry>()
+    }
+
+    /// The tree of a cell.
+    fn new(place: Place, items: Vec<Item>) -> Self {
+        // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
+        let mut stack = items;
+        let mut tree = Self::empty();
+        tree.divide(0, place, &mut stack, 0);
+        tree.cells.shrink_to_fit();
+        tree.entries.shrink_to_fit();
+        tree
+    }
+
+    /// The tree of a cell, by several threads.
+    fn by_threads(place: Place, items: Vec<Item>) -> Self {
+        if items.len() <= MANY || place.level == 0 {
+            return Self::new(place, items);
+        }
+        let mut tree = Self::empty();
+        let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
+        tree.list(0, place, &own);
+        let quarters = [0, 1, 2, 3].map(|quarter| {
+            let place = place.quarter(quarter);
+            let items = below.iter().filter(|item| item.meets(&place.bounds()));
+            (place, items.copied().collect::<Vec<_>>())
+        });
+        drop((own, below));
+        let quarters = quarters.into_par_iter();
+        let quarters = quarters.map(|(place, items)| Self::by_threads(place, items));
+        tree.join(quarters.collect());
+        tree
+    }
+
+    fn empty() -> Self {
+        Self {
+            cells: vec![Cell::EMPTY],
+            entries: Vec::new(),
+        }
+    }
+
+    /// Fills a cell and all below it with the items from `start` on.
+    fn divide(&mut self, cell: usize, place: Place, stack: &mut Vec<Item>, start: usize) {
+        if stack.len() - start <= FEW || place.level == 0 {
+            return self.list(cell, place, &stack[start..]);
+        }
+        stack[start..].sort_by_key(|item| !place.keeps(item));
+        let own = stack[start..].partition_point(|item| place.keeps(item));
+        self.list(cell, place, &stack[start..start + own]);
+        let (start, end) = (start + own, stack.len());
+        let quarters = self.cells.len();
+        self.cells.extend([Cell::EMPTY; 4]);
+        self.cells[cell].quarters = quarters as u32;
+        for quarter in 0..4 {
+            let below = place.quarter(quarter);
+            let bounds = below.bounds();
+            for index in start..end {
+                let item = stack[index];
+                if item.meets(&bounds) {
+                    stack.push(item);
+                }
+            }
+            let child = quarters + quarter as usize;
+            self.divide(child, below, stack, end);
+            stack.truncate(end);
+            self.cells[cell].nearest = self.cells[cell].nearest.max(self.cells[child].nearest);
+        }
+    }
+
+    /// Lists items in a cell, behind all lists so far.
+    fn list(&mut self, cell: usize, place: Place, items: &[Item]) {
+        let start = self.entries.len();
+        self.entries
+            .extend(items.iter().map(|item| place.entry(item)));
+        let list = &mut self.entries[start..];
+        list.sort_unstable_by_key(|entry| (Reverse(entry.nearest), entry.object));
+        self.cells[cell] = Cell {
+            nearest: list.first().map_or(Nearness::NONE, |entry| entry.nearest),
+            start: start as u32,
+            end: self.entries.len() as u32,
+            ..self.cells[cell]
+        };
+    }
+
+    /// Puts the trees of its quarters below the only cell so far: their own cells together, then what is below each of them.
+    fn join(&mut self, quarters: Vec<Self>) {
+        self.cells[0].quarters = 1;
+        let mut rest = Vec::new();
+        for quarter in quarters {
+            let (cells, entries) = (4 + rest.len() as u32, self.entries.len() as u32);
+            self.entries.extend_from_slice(&quarter.entries);
+            let mut moved = quarter.cells.into_iter().map(|cell| Cell {
+                quarters: match cell.quarters {
+                    0 => 0,
+                    own => own + cells,
+                },
+                start: cell.start + entries,
+                end: cell.end + entries,
+                nearest: cell.nearest,
+            });
+            if let Some(cell) = moved.next() {
+                self.cells[0].nearest = self.cells[0].nearest.max(cell.nearest);
+                self.cells.push(cell);
+            }
+            rest.extend(moved);
+        }
+        self.cells.append(&mut rest);
+        self.cells.shrink_to_fit();
+        self.entries.shrink_to_fit();
+    }
+
+    /// Adds the objects of a cell, and of those below it, that may overlap a rectangle.
+    fn below(&self, cell: u32, place: Place, rectangle: &Rectangle, out: &mut Vec<Item>) {
+        if !place.bounds().meets(rectangle) {
+            return;
+        }
+        let cell = self.cells[cell as usize];
+        let list = &self.entries[cell.start as usize..cell.end as usize];
+        let items = list.iter().map(|entry| place.item(entry));
+        out.extend(items.filter(|item| item.meets(rectangle)));
+        if cell.quarters > 0 {
+            for quarter in 0..4 {
+                let below = place.quarter(quarter);
+                self.below(cell.quarters + quarter, below, rectangle, out);
+            }
+        }
+    }
+}
+
+impl Cell {
+    const EMPTY: Self = Self {
+        quarters: 0,
+        start: 0,
+        end: 0,
+        nearest: Nearness::NONE,
+    };
+}
+
+/// Where a cell is, and that its side is 2^level.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    corner: [u32; 2],
+    level: u32,
+}
+
+impl Place {
+    const ROOT: Self = Self {
+        corner: [0; 2],
+        level: LEVELS,
+    };
+
+    /// All of the cell.
+    #[inline]
+    fn bounds(self) -> Rectangle {
+        Rectangle {
+            low: self.corner,
+            high: self.corner.map(|corner| corner + ((1 << self.level) - 1)),
+        }
+    }
+
+    /// Whether an object is larger than the cell's quarters, and so not listed below it.
+    fn keeps(self, item: &Item) -> bool {
+        let Rectangle { low, high } = item.bounds;
+        (0..2).any(|axis| high[axis] - low[axis] > 1 << (self.level - 1))
+    }
+
+    /// A quarter: right of the first for 1 and 3, below it for 2 and 3.
+    fn quarter(self, quarter: u32) -> Self {
+        let level = self.level - 1;
+        let [x, y] = self.corner;
+        Self {
+            corner: [x + ((quarter & 1) << level), y + ((quarter >> 1) << level)],
+            level,
+        }
+    }
+
+    fn entry(self, item: &Item) -> Entry {
+        let bounds = self.bounds();
+        let parts = |at: [u32; 2]| {
+            [0, 1].map(|i| part_of(self.level, at[i].clamp(bounds.low[i], bounds.high[i])))
+        };
+        Entry {
+            nearest: item.nearest,
+            object: item.object,
+            low: parts(item.bounds.low),
+            high: parts(item.bounds.high),
+        }
+    }
+
+    /// An object of the cell's list with its bounds in the cell: those that it was listed with, or wider by a part.
+    #[inline]
+    fn item(self, entry: &Entry) -> Item {
+        let low = entry.low.map(|part| units_of(self.level, part).0);
+        let high = entry.high.map(|part| units_of(self.level, part).1);
+        let [x, y] = self.corner;
+        Item {
+            bounds: Rectangle {
+                low: [x + low[0], y + low[1]],
+                high: [x + high[0], y + high[1]],
+            },
+            nearest: entry.nearest,
+            object: entry.object,
+        }
+    }
+}
