@@ -134,8 +134,9 @@ roll, colours averaged without decoding them, an object in the wrong place, too 
 
 JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
 a, b} (in steps), beyond {pixels, share}, tolerance (in steps), equal, likely [{mistake, message, help, \
-rmse, explains}] with the best explanation first; rmse is what it leaves, explains its share of the \
-squared difference, 0 to 1. Of pictures of different sizes rmse, largest and beyond are null.
+rmse, explains, off {right, down, outwards}}] with the best explanation first; rmse is what it leaves, \
+explains its share of the squared difference, 0 to 1, and off is by how many pixels an object is off: its middle, \
+and its outline, away from there. Of pictures of different sizes rmse, largest and beyond are null.
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 

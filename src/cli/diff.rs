@@ -367,6 +367,11 @@ impl Report {
                 "help": verdict.help,
                 "rmse": verdict.rmse,
                 "explains": verdict.explains,
+                "off": verdict.off.map(|off| json!({
+                    "right": off.right,
+                    "down": off.down,
+                    "outwards": off.outwards,
+                })),
             })
         });
         json!({

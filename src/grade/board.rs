@@ -1,9 +1,17 @@
 //! Mistakes of the checkerboard.
 
-use super::{Idea, Make};
+use glam::{DVec2, DVec3};
+
+use super::{
+    Idea, Make,
+    camera::direction,
+    level::axes,
+    objects::moved,
+    search::{Change, rounded},
+};
 use crate::{
     numbers::short,
-    scene::{Checkerboard, Scene, Shape},
+    scene::{Checkerboard, Scene, Shape, View},
 };
 
 /// The checkerboards of a scene, with their indices.
@@ -100,4 +108,107 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
         ));
     }
     ideas
+}
+
+/// Those that are other numbers: its height, the side of its squares, and where they begin.
+pub fn changes(scene: &Scene) -> Vec<Change> {
+    let Some((_, first)) = boards(scene).next() else {
+        return Vec::new();
+    };
+    let (_, pitch) = axes(scene);
+    // Half a pixel, where the camera looks to.
+    let half = 0.5 * pitch * direction(scene).length();
+    let above = scene.camera.eye.y - first.y;
+    let parts = [0.0625, 0.125, 0.25, 0.5, 0.75].into_iter();
+    let height = Change {
+        mistake: "board_height",
+        help: "its plane is y = `y`",
+        with: Box::new(|scene, at| Some(*with_boards(scene, |board| board.y += at[0]))),
+        message: Box::new(move |_, other| {
+            let other = boards(other).next().map_or(first.y, |(_, board)| board.y);
+            format!(
+                "the checkerboard is at a wrong height: as if its y were {} instead of {}",
+                rounded(other),
+                short(first.y)
+            )
+        }),
+        starts: parts
+            .flat_map(|part| [vec![part * above], vec![-part * above]])
+            .collect(),
+        widths: vec![half],
+    };
+    let square = Change {
+        mistake: "board_square",
+        help: "square is the side of one square, in metres",
+        with: Box::new(move |scene, at| {
+            let side = first.square * libm::exp2(at[0]);
+            let other = with_boards(scene, |board| board.square *= libm::exp2(at[0]));
+            (side > 0.0 && side.is_finite()).then_some(*other)
+        }),
+        message: Box::new(move |_, other| {
+            let other = boards(other).next();
+            let other = other.map_or(first.square, |(_, board)| board.square);
+            format!(
+                "the checkerboard's squares have the side {} instead of {}",
+                rounded(other),
+                short(first.square)
+            )
+        }),
+        starts: (-24..=24).map(|k| vec![f64::from(k) / 16.0]).collect(),
+        // Of a corner as far away from the origin.
+        widths: vec![0.5 * pitch / std::f64::consts::LN_2],
+    };
+    let quarters = (0..4).flat_map(|x| (0..8).map(move |z| [x, z]));
+    let side = first.square;
+    let origin = Change {
+        mistake: "board_origin",
+        help: "corners of squares are where x and z are multiples of `square`: take floor(x/square) + floor(z/square), without rounding to \
+               the nearest or a half of the board's size",
+        with: Box::new(|scene, at| Some(with_origin(scene, DVec2::new(at[0], at[1])))),
+        message: Box::new(move |scene, other| {
+            // All else was moved the other way.
+            let by = other.camera.eye - scene.camera.eye;
+            let by = least(-DVec2::new(by.x, by.z) / side) * side;
+            format!(
+                "the checkerboard's squares are displaced: as if they began at ({}, {}) instead of (0, 0)",
+                few(by.x),
+                few(by.y)
+            )
+        }),
+        starts: quarters
+            .map(|at| at.map(|k| 0.25 * side * f64::from(k)).to_vec())
+            .collect(),
+        widths: vec![half; 2],
+    };
+    vec![height, square, origin]
+}
+
+/// A scene whose squares begin elsewhere: all but the checkerboards is moved the other way.
+fn with_origin(scene: &Scene, at: DVec2) -> Scene {
+    let by = -DVec3::new(at.x, 0.0, at.y);
+    let mut scene = scene.clone();
+    scene.camera.eye += by;
+    if let View::Lookat(lookat) = &mut scene.camera.view {
+        *lookat += by;
+    }
+    for object in &mut scene.objects {
+        // Which leaves checkerboards where they are.
+        object.shape = moved(&object.shape, by, 1.0);
+    }
+    scene
+}
+
+/// The least of the displacements, in squares, that look the same: by one square along both axes, or by two along one.
+fn least(by: DVec2) -> DVec2 {
+    let two = |x: f64| x - 2.0 * (x / 2.0).round();
+    let by = DVec2::new(two(by.x), two(by.y));
+    let other = by - DVec2::new(by.x.signum(), by.y.signum());
+    match other.length_squared() < by.length_squared() {
+        true => other,
+        false => by,
+    }
+}
+
+fn few(x: f64) -> String {
+    short((100.0 * x).round() / 100.0)
 }

@@ -8,12 +8,12 @@ use std::cell::{Cell, OnceCell};
 use glam::DVec3;
 
 use super::{
-    Curve, FEW, HOPE, Idea, LEFT, Make, SMALL_HOPE, Verdict, best,
+    Curve, FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE, Verdict, best,
     bias::{Errors, SIGMAS},
-    evidence, exact,
+    evidence,
     extent::{Differences, View},
     level::{self, Level},
-    noise::{self, Noise},
+    noise::{self, Noise, STRAYS},
     objects::{self, Slope},
     size,
 };
@@ -28,13 +28,17 @@ use crate::{
 pub struct Case<'a> {
     pub full: Level<'a>,
     pub small: Level<'a>,
+    pub tiny: Level<'a>,
     /// Of the whole picture, root mean square.
     pub difference: f64,
-    /// Of the small one.
+    /// Of the small one, and of the tiny one.
     pub small_difference: f64,
+    pub tiny_difference: f64,
     /// Where in the whole picture the difference is, and where noise would be.
     pub differences: Differences,
     pub expected: Differences,
+    /// Pixels of one colour that have another one.
+    pub strays: Differences,
     /// The difference, less roundings, and that of the small picture.
     pub errors: Errors,
     pub small_errors: Errors,
@@ -60,7 +64,8 @@ impl<'a> Case<'a> {
             progress: control.progress,
             cancel: control.cancel,
         };
-        let small = Level::small(a, scene, exact)?;
+        let small = Level::small(a, scene, exact, level::SMALL)?;
+        let tiny = Level::small(a, scene, exact, level::TINY)?;
         let variance = noise::variance(scene, exact, &control)?;
         let whole = size(a);
         let square = |x: u32, y: u32| {
@@ -75,9 +80,16 @@ impl<'a> Case<'a> {
             expected: Differences::new(whole, |x, y| {
                 variance.pixel(x, y).iter().map(|one| one.max(0.0)).sum()
             }),
+            strays: Differences::new(whole, |x, y| {
+                let is_flat = noise::is_flat(&variance.pixel(x, y));
+                let is_stray = is_flat && noise::is_off((&a.pixel(x, y), &exact.pixel(x, y)));
+                f64::from(u8::from(is_stray))
+            }),
             errors: Errors::new(a, exact)?,
             small_errors: Errors::new(&small.a, &small.exact)?,
             small,
+            tiny_difference: rmse(&tiny.a, &tiny.exact),
+            tiny,
             variance,
             slopes: OnceCell::new(),
             view: View::of(scene),
@@ -102,7 +114,8 @@ impl<'a> Case<'a> {
         for (_, idea) in hopeful {
             if let Some(left) = self.tried(&idea.make)? {
                 is_curved |= matches!(idea.make, Make::Light(_));
-                found.push(idea.verdict(left, self.difference));
+                let off = self.off(&idea.make);
+                found.push(idea.verdict(left, self.difference, off));
             }
         }
         if is_curved {
@@ -112,23 +125,34 @@ impl<'a> Case<'a> {
         Ok(best(found, self.difference))
     }
 
+    /// How far an object that a mistake changes is off.
+    fn off(&self, make: &Make) -> Option<Off> {
+        match make {
+            Make::Object(_, shapes) => match shapes.as_ref() {
+                [Some(right), Some(wrong)] => self.view.off(right, wrong),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
     /// What a mistake leaves of the difference in the small picture, if it may explain it; 0, if that cannot be said of it there.
     fn hope(&self, make: &Make) -> Result<Option<f64>, RenderError> {
         match make {
+            Make::Object(_, shapes) if self.is_wrong_outside(self.view.extents(shapes)) => {
+                return Ok(None);
+            }
             // A part of the picture costs less than its small picture where that has many objects in each pixel.
             Make::Object(..) if self.full.is_heavy => return Ok(Some(0.0)),
             // Neither single samples nor curves mean the same in a small picture; and what is known need not be guessed.
-            Make::Sample(_) | Make::Light(_) | Make::Curved(..) | Make::Is(_) => {
+            Make::Sample(_) | Make::Light(_) | Make::Curved(..) | Make::Is(..) => {
                 return Ok(Some(0.0));
             }
             _ => {}
         }
         let small = self.small.made(make, &self.control)?;
         let left = rmse(&self.small.a, &small);
-        let hope = match self.small.factor {
-            FEW.. => SMALL_HOPE,
-            _ => HOPE,
-        };
+        let hope = self.hopeful();
         let difference = self.small_difference;
         // A part of the picture costs little, so that what is left is seen there.
         let is_part = matches!(make, Make::Object(..));
@@ -139,8 +163,19 @@ impl<'a> Case<'a> {
         Ok(is_near.then_some(left))
     }
 
+    /// A mistake that leaves less than this share of the small picture's difference may explain it.
+    pub fn hopeful(&self) -> f64 {
+        match self.small.factor {
+            FEW.. => SMALL_HOPE,
+            _ => HOPE,
+        }
+    }
+
     /// What a mistake leaves of the difference, if it explains it, and enough pixels tell of it.
     fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
+        if self.full.is_heavy && !self.is_near_in_a_part(make)? {
+            return Ok(None);
+        }
         let made = self.full.made(make, &self.control)?;
         let left = rmse(&self.full.a, &made);
         let sigmas = self.errors.towards(&self.full.exact, &made, None).sigmas;
@@ -154,6 +189,42 @@ impl<'a> Case<'a> {
             self.is_thin.set(true);
         }
         Ok(is_enough.then_some(left))
+    }
+
+    /// Whether a mistake leaves less than [`HOPE`] of the rows with most of the difference; of those that make the whole picture anew.
+    fn is_near_in_a_part(&self, make: &Make) -> Result<bool, RenderError> {
+        let part = self.worst_rows(BAND);
+        let Some(made) = self.full.part(make, part, &self.control)? else {
+            return Ok(true);
+        };
+        let cut =
+            |film: &Film| Film::from_fn(part.width, part.height, |x, y| film.pixel(x, part.y + y));
+        let (a, exact) = (cut(&self.full.a)?, cut(&self.full.exact)?);
+        Ok(rmse(&a, &made) <= HOPE * rmse(&a, &exact))
+    }
+
+    /// So many rows, those with most of the difference among the picture's bands of as many.
+    pub fn worst_rows(&self, rows: u32) -> Area {
+        let [width, height] = size(&self.full.a);
+        let rows = rows.min(height);
+        let mut worst = Area::whole(width, rows);
+        for band in 1..height.div_ceil(rows) {
+            let y = (band * rows).min(height - rows);
+            let other = Area { y, ..worst };
+            if self.differences.share(other) > self.differences.share(worst) {
+                worst = other;
+            }
+        }
+        worst
+    }
+
+    /// Whether so much is wrong outside of a part of the picture that nothing in it explains that: more of the difference than an explanation
+    /// may leave, and more pixels of one colour than noise may have.
+    pub fn is_wrong_outside(&self, part: Option<Area>) -> bool {
+        let outside = |of: &Differences| 1.0 - part.map_or(0.0, |part| of.share(part));
+        let strays = outside(&self.strays) * self.strays.pixels as f64;
+        outside(&self.differences) > LEFT * LEFT
+            && strays > STRAYS * self.full.a.pixels().len() as f64
     }
 
     /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes.
@@ -222,13 +293,23 @@ impl<'a> Case<'a> {
         // The picture may have the mistake and noise.
         let (full, control) = (&self.full, &self.control);
         let variance = match make {
+            Make::Scene(scene) | Make::Object(scene, _)
+                if noise::has_strays(&full.a, made, scene, |light| light) =>
+            {
+                return Ok(false);
+            }
+            Make::Curved(scene, curve) if noise::has_strays(&full.a, made, scene, curve.to) => {
+                return Ok(false);
+            }
             Make::Film(make) => make(&self.variance)?,
-            Make::Scene(scene) | Make::Object(scene, _) => noise::variance(scene, made, control)?,
+            Make::Is(_, variance) => variance.clone(),
+            Make::Scene(scene) => noise::variance(scene, made, control)?,
+            Make::Object(scene, shapes) => self.variance_with(scene, shapes, made)?,
             Make::Light(curve) => {
                 return Ok(self.is_noise_before(*curve, made, &full.exact, &self.variance)?);
             }
             Make::Curved(scene, curve) => {
-                let means = exact(scene, control)?;
+                let means = level::map(made, curve.back)?;
                 let variance = noise::variance(scene, &means, control)?;
                 return Ok(self.is_noise_before(*curve, made, &means, &variance)?);
             }
@@ -239,6 +320,24 @@ impl<'a> Case<'a> {
         };
         // What is little beside noise may hide another mistake.
         Ok(left <= HOPE * self.difference || !self.is_biased(&full.a, made, &variance, noise)?)
+    }
+
+    /// The variance of one sample in each pixel, with one shape changed.
+    fn variance_with(
+        &self,
+        scene: &Scene,
+        shapes: &[Option<Shape>; 2],
+        made: &Film,
+    ) -> Result<Film, RenderError> {
+        let mut variance = self.variance.clone();
+        let squared = noise::squared(scene);
+        if let Some((part, squares)) = self.full.object(&squared, shapes, &self.control)? {
+            let means = Film::from_fn(part.width, part.height, |x, y| {
+                made.pixel(part.x + x, part.y + y)
+            })?;
+            variance.put(part, noise::of_squares(&squares, &means)?.pixels());
+        }
+        Ok(variance)
     }
 
     /// Whether a curve made the picture from means with noise, which is looked at before the curve.
@@ -254,6 +353,9 @@ impl<'a> Case<'a> {
         Ok(noise::judge_through([a, made], [&before, means], variance).is_some())
     }
 }
+
+/// So many rows of a picture tell whether a mistake makes it, before all of it is made of a scene with many objects.
+const BAND: u32 = 32;
 
 /// So many whole pictures are made at a time of a scene with many objects: those of the mistakes that leave least of the small picture.
 const PICTURES: usize = 2;

@@ -13,6 +13,9 @@ const MISTAKES: f64 = 128.0;
 /// In so large a share of pictures one of them may be named by chance.
 const CHANCE: f64 = 0.05;
 
+/// It takes so many pixels that agree, as many as [`MISTAKES`] and [`CHANCE`] ask for.
+pub const FEWEST: u64 = 16;
+
 /// Two pictures can be told apart where they are farther apart than this, in steps of 8-bit sRGB: when both are rounded.
 const APART: f64 = 1.0;
 
@@ -56,7 +59,8 @@ mod tests {
         for pixels in 0..40 {
             // The mistake makes all of them gray, and so are they.
             let (a, right) = (row(64, pixels), row(64, 0));
-            assert_eq!(is_enough(&a, &right, &a), pixels >= 16, "{pixels}");
+            let expected = u64::from(pixels) >= FEWEST;
+            assert_eq!(is_enough(&a, &right, &a), expected, "{pixels}");
         }
     }
 

@@ -1,10 +1,13 @@
 //! Where an object may be seen, from its place and size alone: a picture changes nowhere else when the object does.
 
+use std::fmt;
+
 use glam::{DVec2, DVec3};
 
 use super::level::axes;
 use crate::{
     area::Area,
+    numbers::short,
     scene::{Scene, Shape},
     tracer::vertices,
 };
@@ -27,6 +30,21 @@ impl View {
             eye: scene.camera.eye,
             whole: Area::whole(scene.image.width, scene.image.height),
         }
+    }
+
+    /// How far a shape's picture is from that of another one.
+    pub fn off(&self, from: &Shape, to: &Shape) -> Option<Off> {
+        let image = |shape: &Shape| {
+            let (middle, radius) = ball(shape)?;
+            let [u, v, w] = self.axes;
+            let from = middle - self.eye;
+            let depth = -from.dot(w);
+            let pixels = 1.0 / (depth * self.pitch);
+            let at = DVec2::new(from.dot(u), -from.dot(v)) * pixels;
+            (depth > 0.0).then_some((at, radius * pixels))
+        };
+        let ((at, radius), (there, other)) = (image(from)?, image(to)?);
+        Off::by(there - at, other - radius)
     }
 
     /// A part of the picture in which all lies that is seen of two shapes, if there are two; `None` if that is nowhere.
@@ -81,6 +99,61 @@ impl View {
             width,
             height,
         })
+    }
+}
+
+/// How far something is off in the picture, in pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Off {
+    /// How far its middle is displaced to the right.
+    pub right: f64,
+    /// And how far down.
+    pub down: f64,
+    /// How much farther from its middle its outline is.
+    pub outwards: f64,
+}
+
+impl Off {
+    /// By so much, if it can be seen.
+    pub fn by(by: DVec2, outwards: f64) -> Option<Self> {
+        let off = Self {
+            right: by.x,
+            down: by.y,
+            outwards,
+        };
+        let all = [off.right, off.down, off.outwards];
+        let is_seen = all.iter().all(|by| by.is_finite()) && all.iter().any(|by| by.abs() >= LEAST);
+        is_seen.then_some(off)
+    }
+}
+
+/// Less than this is not said, in pixels.
+const LEAST: f64 = 0.05;
+
+impl fmt::Display for Off {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let ways = [
+            (self.right, ["to the right", "to the left"]),
+            (self.down, ["down", "up"]),
+            (self.outwards, ["larger all round", "smaller all round"]),
+        ];
+        let seen = ways.into_iter().filter(|(by, _)| by.abs() >= LEAST);
+        let parts: Vec<_> = seen
+            .map(|(by, [positive, negative])| {
+                let way = if by > 0.0 { positive } else { negative };
+                format!("{} {way}", pixels(by.abs()))
+            })
+            .collect();
+        f.write_str(&parts.join(", "))
+    }
+}
+
+/// So many pixels, in three digits.
+pub fn pixels(number: f64) -> String {
+    let rounded = format!("{number:.2e}").parse().unwrap_or(number);
+    match rounded {
+        1.0 => "1 pixel".to_owned(),
+        many => format!("{} pixels", short(many)),
     }
 }
 

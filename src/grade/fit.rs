@@ -15,15 +15,29 @@ const STEPS: usize = 8;
 /// A step that brings less than this share ends the search.
 const GAIN: f64 = 1e-3;
 
-/// Finds the numbers from a start on; `widths` are steps that move the picture by a part of a pixel. `make` is of mistakes in the whole
-/// picture's size. Nothing, if no step from the start is downhill.
+/// Where the problem is far from linear, a step is damped (Marquardt, An algorithm for least-squares estimation of nonlinear parameters,
+/// 1963): for a single number that is these parts of the way, 1, 1/2, 1/4 and 1/10.
+const DAMPINGS: [f64; 4] = [0.0, 1.0, 3.0, 9.0];
+
+/// Numbers whose slopes are alike but for this share of their squares cannot be told apart.
+const ALIKE: f64 = 1e-9;
+
+/// What is found.
+pub struct Fit {
+    pub at: Vec<f64>,
+    /// The root mean square of the differences that it leaves.
+    pub left: f64,
+}
+
+/// Finds the numbers from a start on; `widths` are steps that move the whole picture by half a pixel. `make` is of mistakes in the whole
+/// picture's size. Nothing, if there is no scene at the start.
 pub fn fit(
     level: &Level,
     control: &Control,
     start: &[f64],
     widths: &[f64],
     make: &dyn Fn(&[f64]) -> Option<Make>,
-) -> Result<Option<Vec<f64>>, RenderError> {
+) -> Result<Option<Fit>, RenderError> {
     let film = |at: &[f64]| match make(at) {
         Some(make) => level.made(&make, control).map(Some),
         None => Ok(None),
@@ -31,6 +45,9 @@ pub fn fit(
     let Some(mut current) = film(start)? else {
         return Ok(None);
     };
+    let widths: Vec<_> = (widths.iter())
+        .map(|width| width * f64::from(level.factor))
+        .collect();
     let mut at = start.to_vec();
     let mut left = rmse(&level.a, &current);
     for _ in 0..STEPS {
@@ -40,18 +57,23 @@ pub fn fit(
             beside[i] += widths[i];
             match film(&beside)? {
                 Some(film) => slopes.push(film),
-                None => return Ok(Some(at)),
+                None => return Ok(Some(Fit { at, left })),
             }
         }
-        let Some(way) = solve(&level.a, &current, &slopes) else {
-            break;
-        };
-        // Where the problem is far from linear, a part of the way is better than all of it.
+        let problem = Problem::new(&level.a, &current, &slopes);
         let mut better = None;
-        for part in [1.0, 0.5, 0.25, 0.1] {
-            let next: Vec<_> = (0..at.len())
-                .map(|i| at[i] + part * way[i] * widths[i])
-                .collect();
+        for damping in DAMPINGS {
+            let Some(mut way) = problem.solved(damping) else {
+                continue;
+            };
+            // No step moves the picture by more than its own size, in halves of a pixel.
+            let most = 2.0 * f64::from(level.a.width() + level.a.height());
+            let far = way.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
+            if !far.is_finite() {
+                continue;
+            }
+            way.iter_mut().for_each(|way| *way *= (most / far).min(1.0));
+            let next: Vec<_> = (0..at.len()).map(|i| at[i] + way[i] * widths[i]).collect();
             let Some(film) = film(&next)? else { continue };
             let left_there = rmse(&level.a, &film);
             if left_there < left {
@@ -68,46 +90,64 @@ pub fn fit(
             break;
         }
     }
-    Ok(Some(at))
+    Ok(Some(Fit { at, left }))
 }
 
-/// The least-squares solution of a ≈ current + Σ way · (slope − current), by Gauss's elimination of the normal equations.
-fn solve(a: &Film, current: &Film, slopes: &[Film]) -> Option<Vec<f64>> {
-    let n = slopes.len();
-    let mut matrix = vec![vec![0.0; n + 1]; n];
-    for (at, (p, q)) in a.pixels().iter().zip(current.pixels()).enumerate() {
-        for channel in 0..3 {
-            let slope = |i: usize| slopes[i].pixels()[at][channel] - q[channel];
-            for (i, row) in matrix.iter_mut().enumerate() {
-                let own = slope(i);
-                if own == 0.0 {
-                    continue;
+/// The normal equations of a ≈ current + Σ way · (slope − current), a row for each number.
+struct Problem(Vec<Vec<f64>>);
+
+impl Problem {
+    fn new(a: &Film, current: &Film, slopes: &[Film]) -> Self {
+        let n = slopes.len();
+        let mut matrix = vec![vec![0.0; n + 1]; n];
+        let mut own = vec![0.0; n + 1];
+        for (at, (p, q)) in a.pixels().iter().zip(current.pixels()).enumerate() {
+            for channel in 0..3 {
+                for (own, slope) in own.iter_mut().zip(slopes) {
+                    *own = slope.pixels()[at][channel] - q[channel];
                 }
-                for (j, sum) in row.iter_mut().enumerate() {
-                    *sum += own
-                        * if j < n {
-                            slope(j)
-                        } else {
-                            p[channel] - q[channel]
-                        };
+                own[n] = p[channel] - q[channel];
+                for (i, row) in matrix.iter_mut().enumerate() {
+                    if own[i] != 0.0 {
+                        for (sum, other) in row.iter_mut().zip(&own) {
+                            *sum += own[i] * other;
+                        }
+                    }
                 }
             }
         }
+        Self(matrix)
     }
-    for i in 0..n {
-        let pivot = matrix[i][i];
-        if pivot <= 1e-12 {
+
+    /// Their solution by Gauss's elimination, with so many times its square added to each number's. A number that changes nothing stays.
+    fn solved(&self, damping: f64) -> Option<Vec<f64>> {
+        let mut matrix = self.0.clone();
+        let n = matrix.len();
+        let squares: Vec<f64> = (0..n).map(|i| matrix[i][i]).collect();
+        if squares.iter().all(|square| *square == 0.0) {
             return None;
         }
-        let above = matrix[i].clone();
-        for (j, row) in matrix.iter_mut().enumerate() {
-            if i != j {
-                let factor = row[i] / pivot;
-                for (x, above) in row.iter_mut().zip(&above) {
-                    *x -= factor * above;
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] = match squares[i] {
+                0.0 => 1.0,
+                square => square * (1.0 + damping),
+            };
+        }
+        for i in 0..n {
+            let pivot = matrix[i][i];
+            if pivot <= ALIKE * squares[i] {
+                return None;
+            }
+            let above = matrix[i].clone();
+            for (j, row) in matrix.iter_mut().enumerate() {
+                if i != j {
+                    let factor = row[i] / pivot;
+                    for (x, above) in row.iter_mut().zip(&above) {
+                        *x -= factor * above;
+                    }
                 }
             }
         }
+        Some((0..n).map(|i| matrix[i][n] / matrix[i][i]).collect())
     }
-    Some((0..n).map(|i| matrix[i][n] / matrix[i][i]).collect())
 }

@@ -3,7 +3,7 @@
 use super::{
     Case, LEFT,
     bias::SIGMAS,
-    evidence,
+    evidence, level,
     noise::{self, Noise},
     objects::Near,
     size,
@@ -11,29 +11,20 @@ use super::{
 use crate::{
     area::Area,
     film::{Film, rmse},
-    render::RenderError,
+    render::{self, RenderError},
+    tracer::World,
 };
 
 /// How many samples a pixel has, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up.
 pub fn grid(case: &Case) -> Result<Option<u64>, RenderError> {
     let [width, height] = size(&case.full.a);
-    // The rows with most of the difference tell which grid it may be.
-    let rows = ROWS.min(height);
-    let bands = (0..height.div_ceil(rows)).map(|band| Area {
-        x: 0,
-        y: (band * rows).min(height - rows),
-        width,
-        height: rows,
-    });
-    let share = |band: &Area| case.differences.share(*band);
-    let Some(band) = bands.max_by(|p, q| share(p).total_cmp(&share(q))) else {
-        return Ok(None);
-    };
+    // Some rows tell which grid it may be.
+    let band = case.worst_rows(ROWS);
+    let world = World::new(&case.full.scene);
     for samples in GRIDS {
+        let sampling = level::grid(&case.full.scene, samples);
         for part in [band, Area::whole(width, height)] {
-            let made = case
-                .full
-                .sampled(&case.full.scene, samples, part, &case.control)?;
+            let made = render::render(&world, &sampling, part, &case.control)?;
             let cut =
                 |film: &Film| Film::from_fn(width, part.height, |x, y| film.pixel(x, part.y + y));
             let (a, exact) = (cut(&case.full.a)?, cut(&case.full.exact)?);

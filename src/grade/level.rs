@@ -15,8 +15,9 @@ use crate::{
     tracer::{Basis, World},
 };
 
-/// A picture for searches has about so many columns and rows at most.
-const SMALL: [u32; 2] = [112, 72];
+/// A picture for searches has about so many columns and rows at most, and one for searches from afar.
+pub const SMALL: [u32; 2] = [112, 72];
+pub const TINY: [u32; 2] = [28, 18];
 
 /// More objects than this are many.
 const MANY: usize = 256;
@@ -52,10 +53,10 @@ impl<'a> Level<'a> {
 
     /// A small one, also of the exact picture: each pixel is the mean of a square of pixels. What of the whole is left at its edges is as much on the left as on the
     /// right, and as much at the top as at the bottom, so that the camera still looks at the middle.
-    pub fn small(a: &Film, scene: &Scene, exact: &Film) -> Result<Self, TooLarge> {
+    pub fn small(a: &Film, scene: &Scene, exact: &Film, most: [u32; 2]) -> Result<Self, TooLarge> {
         let whole = [a.width(), a.height()];
-        let mut factor = (whole[0].div_ceil(SMALL[0]))
-            .max(whole[1].div_ceil(SMALL[1]))
+        let mut factor = (whole[0].div_ceil(most[0]))
+            .max(whole[1].div_ceil(most[1]))
             .min(whole[0].min(whole[1]));
         if factor.is_multiple_of(2) && whole.iter().any(|side| !side.is_multiple_of(2)) {
             factor -= 1;
@@ -112,7 +113,7 @@ impl<'a> Level<'a> {
                 };
                 Ok(Film::from_fn(self.a.width(), self.a.height(), pixel)?)
             }
-            Make::Is(film) => Ok(film.clone()),
+            Make::Is(film, _) => Ok(film.clone()),
             Make::Sample(offset) => sampled(&self.scene, *offset, control),
             Make::Squeezed => self.squeezed(control),
         }
@@ -132,8 +133,27 @@ impl<'a> Level<'a> {
         Ok(film)
     }
 
+    /// A part of the whole picture that a mistake makes, if all of it is made anew.
+    pub fn part(
+        &self,
+        make: &Make,
+        part: Area,
+        control: &Control,
+    ) -> Result<Option<Film>, RenderError> {
+        let (scene, curve) = match make {
+            Make::Scene(scene) => (scene, None),
+            Make::Curved(scene, curve) => (scene, Some(curve)),
+            _ => return Ok(None),
+        };
+        let made = render::render_exact(&World::new(scene), part, control)?.film;
+        Ok(Some(match curve {
+            Some(curve) => map(&made, curve.to)?,
+            None => made,
+        }))
+    }
+
     /// The part of the picture that a changed shape changes, if any.
-    fn object(
+    pub fn object(
         &self,
         scene: &Scene,
         shapes: &[Option<Shape>; 2],
@@ -170,7 +190,8 @@ impl<'a> Level<'a> {
         match self.is_heavy && self.factor > 1 {
             true => {
                 let whole = Area::whole(scene.image.width, scene.image.height);
-                self.sampled(scene, SAMPLES, whole, control)
+                let sampling = grid(scene, SAMPLES);
+                render::render(&World::new(scene), &sampling, whole, control)
             }
             false => exact(scene, control),
         }
@@ -216,37 +237,16 @@ impl<'a> Level<'a> {
             factor => resized(scene, [self.a.width(), self.a.height()], factor),
         }
     }
+}
 
-    /// A scene of the whole picture's size, in this one's, by so many samples in a pixel: where many objects are seen in each, that takes a
-    /// small part of the exact one's time.
-    pub fn tried(
-        &self,
-        scene: &Scene,
-        samples: u64,
-        control: &Control,
-    ) -> Result<Film, RenderError> {
-        let scene = self.sized(scene);
-        let whole = Area::whole(scene.image.width, scene.image.height);
-        self.sampled(&scene, samples, whole, control)
-    }
-
-    /// A part of a scene's picture by a grid of samples in each pixel.
-    pub fn sampled(
-        &self,
-        scene: &Scene,
-        samples: u64,
-        part: Area,
-        control: &Control,
-    ) -> Result<Film, RenderError> {
-        let sampler = Sampler {
-            method: Method::Regular,
-            count: Count::PerPixel(samples),
-            seed: 0,
-        };
-        let (width, height) = (scene.image.width, scene.image.height);
-        let sampling = Sampling::new(&sampler, width, height);
-        render::render(&World::new(scene), &sampling, part, control)
-    }
+/// A grid of so many samples in each pixel of a scene's picture.
+pub fn grid(scene: &Scene, samples: u64) -> Sampling {
+    let sampler = Sampler {
+        method: Method::Regular,
+        count: Count::PerPixel(samples),
+        seed: 0,
+    };
+    Sampling::new(&sampler, scene.image.width, scene.image.height)
 }
 
 /// Each number of a picture through a curve.

@@ -5,9 +5,10 @@
 //! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
 //!
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of samples in `noise` and
-//! `shift`. `fixed` knows samples whose errors are
-//! not independent, `bias` errors that add up to something. `case` tries mistakes, and `evidence` says how many pixels it takes to name one. `level` makes pictures smaller, so that `fit` can afford to search, and
-//! `extent` says in which part of one an object can make a difference.
+//! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
+//! not independent, `bias` errors that add up to something. `case` tries mistakes, and `evidence` says how many pixels it takes to name
+//! one. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
+//! difference, and how far it is off there.
 
 mod bias;
 mod board;
@@ -20,6 +21,7 @@ mod fixed;
 mod level;
 mod noise;
 mod objects;
+mod search;
 mod shift;
 mod whole;
 
@@ -35,6 +37,8 @@ use crate::{
     scene::{Scene, Shape},
     tracer::World,
 };
+
+pub use self::extent::Off;
 
 use self::case::Case;
 
@@ -67,6 +71,8 @@ pub struct Verdict {
     pub rmse: Option<f64>,
     /// The share of the squared difference that it explains, 0 to 1.
     pub explains: Option<f64>,
+    /// How far the object is off in the picture, if one is.
+    pub off: Option<Off>,
 }
 
 /// What is found.
@@ -103,8 +109,8 @@ enum Make {
     Curved(Box<Scene>, Curve),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
     Floor(Box<Scene>, fn(DVec2) -> bool),
-    /// This picture.
-    Is(Film),
+    /// This picture, of which one sample in each pixel has this variance.
+    Is(Film, Film),
     /// One sample in each pixel, at this offset from its centre.
     Sample(DVec2),
     /// The whole square window squeezed into the picture.
@@ -175,6 +181,10 @@ fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     if !found.is_empty() {
         return Ok(found);
     }
+    if case.differences.pixels < evidence::FEWEST {
+        // Too few for any.
+        return Ok(found);
+    }
     // What has to be searched for takes longer, what comes last longest.
     let found = case.named(objects::search(case)?)?;
     if !found.is_empty() {
@@ -182,12 +192,25 @@ fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     }
     // A camera that moved a little displaces the picture, nearly.
     let mut ideas = shift::search(case)?;
-    ideas.extend(camera::search(case)?);
+    let changes = camera::single(scene).into_iter();
+    let changes: Vec<_> = changes.chain(board::changes(scene)).collect();
+    let single = search::nearest(case, &changes)?;
+    ideas.extend(single.ideas);
     let found = case.named(ideas)?;
     if !found.is_empty() {
         return Ok(found);
     }
-    Ok(objects::confined(case)?.into_iter().collect())
+    // A camera that is off in several ways is seen all over the picture.
+    if let Some(found) = objects::confined(case)? {
+        return Ok(vec![found]);
+    }
+    let several = search::nearest(case, &camera::several(scene))?;
+    let found = case.named(several.ideas)?;
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    let any = camera::any(case, &single.starts, &several.starts)?;
+    case.named(any.into_iter().collect())
 }
 
 /// Names the mistakes that explain why one picture is not another, of which no scene is known.
@@ -215,7 +238,7 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
             is_thin = true;
             return None;
         }
-        Some(idea.verdict(left, difference))
+        Some(idea.verdict(left, difference, None))
     });
     let likely = best(found.collect(), difference);
     Grade {
@@ -258,16 +281,26 @@ fn best(mut found: Vec<Verdict>, difference: f64) -> Vec<Verdict> {
 }
 
 impl Idea {
-    fn verdict(&self, left: f64, difference: f64) -> Verdict {
-        let share = left / difference;
+    fn verdict(&self, left: f64, difference: f64, off: Option<Off>) -> Verdict {
+        let message = match off {
+            Some(off) => format!("{}: {off}", self.message),
+            None => self.message.clone(),
+        };
         Verdict {
             mistake: self.mistake,
-            message: self.message.clone(),
+            message,
             help: self.help.clone(),
             rmse: Some(left),
-            explains: Some((1.0 - share * share).max(0.0)),
+            explains: Some(explained_share(left, difference)),
+            off,
         }
     }
+}
+
+/// The share of a squared difference that is not left.
+fn explained_share(left: f64, difference: f64) -> f64 {
+    let share = left / difference;
+    (1.0 - share * share).max(0.0)
 }
 
 /// One sample in each pixel, at an offset from its centre.

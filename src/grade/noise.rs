@@ -4,12 +4,14 @@
 //! the squares, which is the exact picture of the same scene with squared colours, less the square of the mean. So noise shows itself by
 //! three signs: it is where that variance is not 0 and nowhere else; it is as often too bright as too dark; and its size gives n.
 
+use std::collections::HashSet;
+
 use glam::DVec2;
 
 use super::{Idea, Make, Verdict, exact};
 use crate::{
     color::{Color, linear_to_srgb},
-    film::Film,
+    film::{Film, TooLarge},
     numbers::short,
     render::{Control, RenderError},
     scene::{Scene, Shape},
@@ -22,7 +24,7 @@ const NO_VARIANCE: f64 = 1e-9;
 const FLAT: f64 = 0.75;
 
 /// So large a share of wrong pixels of one colour is passed over, measured by the number of pixels of several.
-const STRAYS: f64 = 0.005;
+pub const STRAYS: f64 = 0.005;
 
 /// A noisy mean is 0 within this many standard deviations, or this share of the mean absolute error.
 const SIGMAS: f64 = 5.0;
@@ -46,20 +48,20 @@ pub struct Noise {
 
 /// The variance of one sample in each pixel and channel.
 pub fn variance(scene: &Scene, exact_film: &Film, control: &Control) -> Result<Film, RenderError> {
-    let squares = exact(&squared(scene), control)?;
+    Ok(of_squares(&exact(&squared(scene), control)?, exact_film)?)
+}
+
+/// The same from the means of the squares, and the means.
+pub fn of_squares(squares: &Film, means: &Film) -> Result<Film, TooLarge> {
     let pixel = |x, y| {
-        let (squares, means) = (squares.pixel(x, y), exact_film.pixel(x, y));
+        let (squares, means) = (squares.pixel(x, y), means.pixel(x, y));
         [0, 1, 2].map(|i| squares[i] - means[i] * means[i])
     };
-    Ok(Film::from_fn(
-        exact_film.width(),
-        exact_film.height(),
-        pixel,
-    )?)
+    Film::from_fn(means.width(), means.height(), pixel)
 }
 
 /// A scene whose colours are the squares of another's, in linear light.
-fn squared(scene: &Scene) -> Scene {
+pub fn squared(scene: &Scene) -> Scene {
     with_colors(scene, |color| Color {
         srgb: color
             .to_linear()
@@ -135,6 +137,28 @@ pub fn are_flat_pixels_right(a: &Film, exact: &Film, variance: &Film) -> bool {
     let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
     let strays = pixels.filter(|(pair, variance)| is_flat(variance) && is_off(*pair));
     strays.count() as f64 <= STRAYS * a.pixels().len() as f64
+}
+
+/// Whether more pixels are wrong than noise may have among those that have exactly a colour of a scene, taken through a curve. It is known
+/// without their variance that these are of one colour.
+pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> f64) -> bool {
+    let mut colors = HashSet::new();
+    let mut add = |color: Color| {
+        colors.insert(color.to_linear().map(|light| curve(light).to_bits()));
+    };
+    add(scene.image.background);
+    for object in &scene.objects {
+        match object.shape {
+            Shape::Sphere(sphere) => add(sphere.color),
+            Shape::Triangle(triangle) => add(triangle.color),
+            Shape::Box(cuboid) => add(cuboid.color),
+            Shape::Checkerboard(board) => board.colors.into_iter().for_each(&mut add),
+        }
+    }
+    let pixels = a.pixels().iter().zip(exact.pixels());
+    let is_stray =
+        |(p, q): &(&[f64; 3], &[f64; 3])| is_off((p, q)) && colors.contains(&q.map(f64::to_bits));
+    pixels.filter(is_stray).count() as f64 > STRAYS * a.pixels().len() as f64
 }
 
 /// Whether one colour is seen.
@@ -219,6 +243,7 @@ impl Noise {
                 .to_owned(),
             rmse: Some(difference),
             explains: None,
+            off: None,
         }
     }
 }
@@ -234,6 +259,7 @@ pub fn verdict_of_grid(difference: f64, samples: u64) -> Verdict {
         help: "nothing is wrong with the scene or the camera; samples that lie elsewhere in each pixel (jittered, sobol) come closer".to_owned(),
         rmse: Some(difference),
         explains: None,
+            off: None,
     }
 }
 

@@ -8,8 +8,13 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Case, Idea, Make, exact};
-use crate::{film::Film, numbers::short, render::RenderError, scene::Image};
+use super::{Case, Idea, Make, exact, noise};
+use crate::{
+    film::Film,
+    numbers::short,
+    render::RenderError,
+    scene::{Image, Scene},
+};
 
 /// The farthest displacement, in halves of a pixel.
 const REACH: i32 = 8;
@@ -22,8 +27,8 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     if u64::from(width) * u64::from(height) > 1 << 22 || level.is_heavy {
         return Ok(Vec::new());
     }
-    let fine = fine(case)?;
-    let moved = |[x, y]: [i32; 2]| {
+    let fine = fine_picture(case, &level.scene)?;
+    let moved = |fine: &Film, [x, y]: [i32; 2]| {
         // A fine pixel's column is as many halves from the left, and the margin is REACH of them.
         let first = |pixel: u32, by: i32| (2 * pixel as i32 + REACH - by) as u32;
         Film::from_fn(width, height, |column, row| {
@@ -38,14 +43,14 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     let mut left = inside.rmse(&level.a, &level.exact);
     // Downhill in the grid of displacements: the differences' slopes say where to go.
     for _ in 0..6 {
-        let here = moved(at)?;
+        let here = moved(&fine, at)?;
         let [x, y] = inside.slope(&level.a, &here);
         let step = |by: f64| (2.0 * by).round().clamp(-4.0, 4.0) as i32;
         let next = [at[0] + step(x), at[1] + step(y)].map(|by| by.clamp(-REACH, REACH));
         if next == at {
             break;
         }
-        let left_there = inside.rmse(&level.a, &moved(next)?);
+        let left_there = inside.rmse(&level.a, &moved(&fine, next)?);
         if left_there >= left {
             break;
         }
@@ -64,50 +69,56 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
         }
     }
     let message = format!("the whole picture is displaced by {}", way.join(" and "));
-    let idea = |message: String, film: Film| {
+    let idea = |message: String, film: Film, variance: Film| {
         Idea {
         mistake: "shifted",
         message,
         help: "the window's middle is between the pixels, at (width/2, height/2), and pixel (x, y) goes from x to x + 1 and y to y + 1: \
                its centre is at (x + 0.5, y + 0.5)"
             .to_owned(),
-        make: Make::Is(film),
+        make: Make::Is(film, variance),
     }
     };
-    let mut ideas = vec![idea(message.clone(), moved(at)?)];
+    let displaced = moved(&fine, at)?;
+    let squares = moved(&fine_picture(case, &noise::squared(&level.scene))?, at)?;
+    let variance = noise::of_squares(&squares, &displaced)?;
+    let mut ideas = vec![idea(message.clone(), displaced, variance)];
     if at.iter().all(|by| by % 2 == 0) {
         // Whole pixels.
         let from = |pixel: u32, by: i32| i64::from(pixel) - i64::from(by / 2);
-        let empty = Film::from_fn(width, height, |x, y| {
-            let (column, row) = (from(x, at[0]), from(y, at[1]));
-            match (u32::try_from(column), u32::try_from(row)) {
-                (Ok(column), Ok(row)) if column < width && row < height => {
-                    level.exact.pixel(column, row)
+        let empty = |film: &Film| {
+            Film::from_fn(width, height, |x, y| {
+                let (column, row) = (from(x, at[0]), from(y, at[1]));
+                match (u32::try_from(column), u32::try_from(row)) {
+                    (Ok(column), Ok(row)) if column < width && row < height => {
+                        film.pixel(column, row)
+                    }
+                    _ => [0.0; 3],
                 }
-                _ => [0.0; 3],
-            }
-        })?;
+            })
+        };
+        let wrapped = |film: &Film| {
+            let wrap = |at: i64, size: u32| at.rem_euclid(i64::from(size)) as u32;
+            Film::from_fn(width, height, |x, y| {
+                film.pixel(wrap(from(x, at[0]), width), wrap(from(y, at[1]), height))
+            })
+        };
         ideas.push(idea(
             format!("{message}, and black where it is missing then"),
-            empty,
+            empty(&level.exact)?,
+            empty(&case.variance)?,
         ));
-        let wrapped = Film::from_fn(width, height, |x, y| {
-            let wrap = |at: i64, size: u32| at.rem_euclid(i64::from(size)) as u32;
-            level
-                .exact
-                .pixel(wrap(from(x, at[0]), width), wrap(from(y, at[1]), height))
-        })?;
         ideas.push(idea(
             format!("{message}, and what goes out at one edge comes in at the other"),
-            wrapped,
+            wrapped(&level.exact)?,
+            wrapped(&case.variance)?,
         ));
     }
     Ok(ideas)
 }
 
-/// Twice the columns and rows, and a margin of [`REACH`] of them on all sides.
-fn fine(case: &Case) -> Result<Film, RenderError> {
-    let scene = &case.full.scene;
+/// A scene's picture with twice the columns and rows, and a margin of [`REACH`] of them on all sides.
+fn fine_picture(case: &Case, scene: &Scene) -> Result<Film, RenderError> {
     let mut fine = super::level::with_distance(scene, super::level::distance(scene));
     let sides = [scene.image.width, scene.image.height].map(|side| 2 * side + 2 * REACH as u32);
     fine.camera.view_height *= f64::from(sides[1]) / (2.0 * f64::from(scene.image.height));

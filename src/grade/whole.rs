@@ -186,6 +186,7 @@ pub fn sizes(a: &Film, b: &Film) -> Vec<Verdict> {
         help: help.to_owned(),
         rmse: None,
         explains: None,
+        off: None,
     };
     if (width, height) == (b_height, b_width) {
         let turned = [

@@ -1,10 +1,10 @@
 //! Mistakes of the camera.
 
-mod search;
+mod changes;
 
 use glam::DVec3;
 
-pub use self::search::search;
+pub use self::changes::{any, several, single};
 use super::{
     Idea, Make,
     level::{distance, with_distance},
@@ -31,7 +31,7 @@ fn changed(scene: &Scene, change: impl FnOnce(&mut Scene)) -> Scene {
 }
 
 /// The view direction, of any length.
-fn direction(scene: &Scene) -> DVec3 {
+pub fn direction(scene: &Scene) -> DVec3 {
     match scene.camera.view {
         View::Lookat(lookat) => lookat - scene.camera.eye,
         View::Direction(direction) => direction,
@@ -150,8 +150,10 @@ fn views(scene: &Scene) -> Vec<Idea> {
         (DVec3::new(eye.x, eye.z, eye.y), "y and z"),
         (DVec3::new(eye.y, eye.x, eye.z), "x and y"),
     ] {
-        let moved = changed(scene, |scene| scene.camera.eye = other);
-        if other != eye && search::is_seen(&moved) {
+        let moved = changes::seen(changed(scene, |scene| scene.camera.eye = other));
+        if other != eye
+            && let Some(moved) = moved
+        {
             ideas.push(idea(
                 "eye_swapped",
                 format!("the eye's coordinates {letters} are exchanged"),

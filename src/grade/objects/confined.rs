@@ -2,11 +2,16 @@
 
 use glam::DVec3;
 
-use super::{SEARCHED, called, likeliest, moved};
+use super::{
+    ENOUGH, SEARCHED, called,
+    colors::{Near, color},
+    likeliest, moved,
+    search::Blob,
+};
 use crate::{
     area::Area,
     film::{Film, Tolerance, compare, rmse},
-    grade::{Case, Idea, Make, Verdict, noise},
+    grade::{Case, Off, Verdict, explained_share, noise},
     render::RenderError,
     scene::Shape,
 };
@@ -39,21 +44,50 @@ pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
         let Some(rest) = outside(case, part)? else {
             continue;
         };
-        let idea = Idea {
+        let (wrong, off) = (wrong(case, part), off(case, index, part));
+        let mut message = format!(
+            "the picture is wrong only where {} is seen, or near it, in {wrong} pixels: something about it is off",
+            called(scene, index)
+        );
+        if let Some(off) = off {
+            message += &format!("; what has its colour there is displaced: {off}");
+        }
+        let left = rmse(&rest, exact);
+        return Ok(Some(Verdict {
             mistake: "object",
-            message: format!(
-                "the picture is wrong only where {} is seen, or near it: something about it is off",
-                called(scene, index)
-            ),
+            message,
             help: format!(
                 "look at the fields of the {}, and at how its rays are intersected",
                 scene.objects[index].shape.kind()
             ),
-            make: Make::Is(Film::clone(exact)),
-        };
-        return Ok(Some(idea.verdict(rmse(&rest, exact), case.difference)));
+            rmse: Some(left),
+            explains: Some(explained_share(left, case.difference)),
+            off,
+        }));
     }
     Ok(None)
+}
+
+/// How many pixels of a part are wrong.
+fn wrong(case: &Case, part: Area) -> usize {
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    let is_off = |(x, y): &(u32, u32)| noise::is_off((&a.pixel(*x, *y), &exact.pixel(*x, *y)));
+    part.iter().filter(is_off).count()
+}
+
+/// How far what has an object's colour in a part is from where the exact picture has it.
+fn off(case: &Case, index: usize, part: Area) -> Option<Off> {
+    let mut shape = case.full.scene.objects[index].shape;
+    let color = color(&mut shape).first()?.to_linear();
+    let near = Near::to(&color);
+    let films = [&case.full.a, &case.full.exact];
+    let [is, should] = films.map(|film| Blob::of(film, part, &near));
+    if is.pixels.min(should.pixels) < ENOUGH {
+        return None;
+    }
+    // As of a disk.
+    let radius = |blob: &Blob| (blob.pixels as f64 / std::f64::consts::PI).sqrt();
+    Off::by(is.middle - should.middle, radius(&is) - radius(&should))
 }
 
 /// The picture, right in a part of it, if the rest of it differs by roundings or noise alone.
@@ -69,10 +103,7 @@ fn outside(case: &Case, part: Area) -> Result<Option<Film>, RenderError> {
         bounds: None,
     };
     if compare(&rest, exact, rounding).is_ok_and(|found| found.is_equal()) {
-        let is_wrong =
-            |(x, y): &(u32, u32)| noise::is_off((&a.pixel(*x, *y), &exact.pixel(*x, *y)));
-        let wrong = part.iter().filter(is_wrong).take(WRONG).count();
-        return Ok((wrong == WRONG).then_some(rest));
+        return Ok((wrong(case, part) >= WRONG).then_some(rest));
     }
     let none = Film::new(a.width(), a.height())?;
     let variance = Film::from_fn(a.width(), a.height(), |x, y| match is_in(x, y) {

@@ -178,7 +178,7 @@ fn wrong_shapes(shape: &Shape) -> Vec<Wrong> {
 }
 
 /// A shape somewhere else, larger or smaller about its middle.
-fn moved(shape: &Shape, by: DVec3, factor: f64) -> Shape {
+pub fn moved(shape: &Shape, by: DVec3, factor: f64) -> Shape {
     let mut shape = *shape;
     match &mut shape {
         Shape::Sphere(sphere) => {

@@ -7,11 +7,18 @@ use glam::{DVec2, DVec3};
 use super::{
     ENOUGH, SEARCHED, called,
     colors::{Near, color, share},
-    likeliest, moved,
+    likeliest, moved, with_shape,
 };
 use crate::{
+    area::Area,
     film::Film,
-    grade::{Case, Idea, Make, bias::SIGMAS, fit::fit, level::axes},
+    grade::{
+        Case, Idea, LEFT, Make,
+        bias::SIGMAS,
+        extent::ball,
+        fit::{Fit, fit},
+        level::axes,
+    },
     numbers::{short, short_vector},
     render::RenderError,
     scene::{Scene, Shape},
@@ -41,11 +48,24 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
         all.truncate(case.most(SEARCHED));
     }
     let mut ideas = Vec::new();
-    for Step { index, by, factor } in all {
-        ideas.extend(placed(case, index, by, factor)?);
+    let mut explained = None;
+    for step in all {
+        // What explains the picture need not be found again from another start.
+        if explained != Some(step.index)
+            && let Some(object) = Sought::new(case, &step)
+        {
+            let found = object.ideas(&step)?;
+            if found.iter().any(|(left, _)| *left < LEFT * case.difference) {
+                explained = Some(step.index);
+            }
+            ideas.extend(found.into_iter().map(|(_, idea)| idea));
+        }
     }
     Ok(ideas)
 }
+
+/// An object that is searched for may be so many times as large.
+const ROOM: f64 = 1.5;
 
 /// How far an object seems to be moved, in pixels to the right and down, and how much larger it seems to be.
 struct Step {
@@ -85,6 +105,7 @@ fn steps(case: &Case) -> Result<Vec<Step>, RenderError> {
 /// Objects whose colour is elsewhere, or in more or fewer pixels.
 fn blobs(case: &Case) -> Vec<Step> {
     let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+    let whole = Area::whole(a.width(), a.height());
     let mut steps = Vec::new();
     let likely = likeliest(case, 1.0).into_iter();
     for (_, index) in likely
@@ -96,7 +117,7 @@ fn blobs(case: &Case) -> Vec<Step> {
         let colors = color(&mut shape);
         let [color] = colors.as_slice() else { continue };
         let near = Near::to(&color.to_linear());
-        let (is, should) = (Blob::of(a, &near), Blob::of(exact, &near));
+        let (is, should) = (Blob::of(a, whole, &near), Blob::of(exact, whole, &near));
         if is.pixels < ENOUGH || should.pixels < ENOUGH {
             continue;
         }
@@ -114,20 +135,18 @@ fn blobs(case: &Case) -> Vec<Step> {
 }
 
 /// Where and how large a colour is in a picture, in pixels.
-struct Blob {
-    middle: DVec2,
-    pixels: u64,
+pub(super) struct Blob {
+    pub middle: DVec2,
+    pub pixels: u64,
 }
 
 impl Blob {
-    fn of(film: &Film, near: &Near) -> Self {
+    pub fn of(film: &Film, part: Area, near: &Near) -> Self {
         let (mut sum, mut pixels) = (DVec2::ZERO, 0);
-        for y in 0..film.height() {
-            for (x, pixel) in film.row(y).iter().enumerate() {
-                if near.holds(pixel) {
-                    sum += DVec2::new(x as f64, f64::from(y));
-                    pixels += 1;
-                }
+        for (x, y) in part.iter() {
+            if near.holds(&film.pixel(x, y)) {
+                sum += DVec2::new(f64::from(x), f64::from(y));
+                pixels += 1;
             }
         }
         Self {
@@ -137,137 +156,213 @@ impl Blob {
     }
 }
 
-/// An object that is displaced by about so many pixels, and about so many times as large as it should be.
-fn placed(case: &Case, index: usize, by: DVec2, factor: f64) -> Result<Vec<Idea>, RenderError> {
-    let scene = &case.full.scene;
-    let shape = scene.objects[index].shape;
-    let middle = match shape {
-        Shape::Sphere(sphere) => sphere.center,
-        Shape::Triangle(triangle) => triangle.centroid,
-        Shape::Box(cuboid) => (cuboid.min + cuboid.max) / 2.0,
-        Shape::Checkerboard(_) => return Ok(Vec::new()),
-    };
-    let ([u, v, w], pitch) = axes(scene);
-    let depth = (scene.camera.eye - middle).dot(w);
-    if depth <= 0.0 {
-        return Ok(Vec::new());
-    }
-    // What a pixel is at the object's depth, in metres.
-    let pixel = depth * pitch;
-    let name = called(scene, index);
-    let mut ideas = Vec::new();
-    let with = |by: DVec3, factor: f64| {
-        let mut scene = Scene::clone(scene);
-        scene.objects[index].shape = moved(&shape, by, factor);
-        let changed = scene.objects[index].shape;
-        (factor > 0.0)
-            .then(|| Make::Object(Box::new(scene), Box::new([Some(shape), Some(changed)])))
-    };
-    let little = by.length() < LITTLE && (factor - 1.0).abs() < 0.1;
-    let fit = |start: &[f64], widths: &[f64], make: &dyn Fn(&[f64]) -> Option<Make>| {
-        fitted(case, little, start, widths, make)
-    };
-    // Half a pixel.
-    let width = 0.5 * pixel;
+/// An object in front of the camera whose place and size are searched for.
+struct Sought<'a> {
+    case: &'a Case<'a>,
+    index: usize,
+    shape: Shape,
+    name: String,
+    middle: DVec3,
+    radius: f64,
+    /// The camera's u, v and w.
+    axes: [DVec3; 3],
+    depth: f64,
+    /// What a pixel is at its depth, in metres.
+    pixel: f64,
+    is_little: bool,
+}
 
-    // One coordinate wrong is the simplest.
-    for (axis, letter) in [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")] {
-        let depth_change = axis.dot(w);
-        let at = middle - scene.camera.eye;
-        // How many pixels the middle moves for a metre: the derivative of (at · u, −at · v)/depth.
+/// What an idea leaves of the difference, and the idea.
+type Found = (f64, Idea);
+
+impl<'a> Sought<'a> {
+    /// Nothing, if too much else is wrong.
+    fn new(case: &'a Case<'a>, &Step { index, by, factor }: &Step) -> Option<Self> {
+        let scene: &Scene = &case.full.scene;
+        let shape = scene.objects[index].shape;
+        let (middle, radius) = ball(&shape)?;
+        let (axes, pitch) = axes(scene);
+        let depth = (scene.camera.eye - middle).dot(axes[2]);
+        if depth <= 0.0 {
+            return None;
+        }
+        let pixel = depth * pitch;
+        // With room for what the search may find beside that.
+        let there = moved(&shape, (axes[0] * by.x - axes[1] * by.y) * pixel, factor);
+        let around = [shape, there].map(|shape| Some(moved(&shape, DVec3::ZERO, ROOM)));
+        if case.is_wrong_outside(case.view.extents(&around)) {
+            return None;
+        }
+        Some(Self {
+            case,
+            index,
+            shape,
+            name: called(scene, index),
+            middle,
+            radius,
+            axes,
+            depth,
+            pixel,
+            is_little: by.length() < LITTLE && (factor - 1.0).abs() < 0.1,
+        })
+    }
+
+    /// The object displaced by about so many pixels, and about so many times as large as it should be.
+    fn ideas(&self, step: &Step) -> Result<Vec<Found>, RenderError> {
+        // One coordinate wrong is the simplest.
+        let mut ideas = Vec::new();
+        for (axis, letter) in [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")] {
+            ideas.extend(self.along(axis, letter, step.by)?);
+        }
+        let width = self.width();
+        // What is that much larger has its outline farther out by as much.
+        let octaves = width / self.radius / std::f64::consts::LN_2;
+        let size = libm::log2(step.factor);
+        let make = |p: &[f64]| self.with(DVec3::ZERO, libm::exp2(p[0]));
+        ideas.extend(self.fit(&[size], &[octaves], &make)?.and_then(|fit| {
+            let idea = self.displaced(DVec3::ZERO, libm::exp2(fit.at[0]), make(&fit.at)?);
+            Some((fit.left, idea))
+        }));
+        let [u, v, _] = self.axes;
+        let make = |p: &[f64]| self.with(u * p[0] + v * p[1], libm::exp2(p[2]));
+        let start = [step.by.x * self.pixel, -step.by.y * self.pixel, size];
+        let Some(Fit { at, left }) = self.fit(&start, &[width, width, octaves], &make)? else {
+            return Ok(ideas);
+        };
+        let (aside, factor) = (u * at[0] + v * at[1], libm::exp2(at[2]));
+        if aside.length() < 0.05 * self.pixel {
+            return Ok(ideas);
+        }
+        let first = u * start[0] + v * start[1];
+        ideas.extend(self.anywhere([(aside, factor), (first, step.factor)])?);
+        if let Some(make) = make(&at) {
+            ideas.push((left, self.displaced(aside, factor, make)));
+        }
+        Ok(ideas)
+    }
+
+    /// With one coordinate that is another one.
+    fn along(&self, axis: DVec3, letter: &str, by: DVec2) -> Result<Option<Found>, RenderError> {
+        let [u, v, w] = self.axes;
+        let at = self.offset();
+        // How far the middle moves in the picture: the derivative of depth · (at · u, −at · v)/depth.
         let slope = DVec2::new(
-            (axis.dot(u) * depth + at.dot(u) * depth_change) / (depth * depth),
-            -(axis.dot(v) * depth + at.dot(v) * depth_change) / (depth * depth),
-        ) / pitch;
+            axis.dot(u) + at.dot(u) * axis.dot(w) / self.depth,
+            -axis.dot(v) - at.dot(v) * axis.dot(w) / self.depth,
+        );
         let start = match slope.length_squared() {
             0.0 => 0.0,
-            square => slope.dot(by) / square,
+            square => slope.dot(by * self.pixel) / square,
         };
-        let make = |p: &[f64]| with(axis * p[0], 1.0);
-        let Some(found) = fit(&[start], &[width], &make)? else {
-            continue;
+        let make = |p: &[f64]| self.with(axis * p[0], 1.0);
+        let Some(Fit { at, left }) = self.fit(&[start], &[self.width()], &make)? else {
+            return Ok(None);
         };
-        let Some(other) = make(&found) else { continue };
-        let there = middle + axis * found[0];
-        ideas.push(Idea {
-            mistake: "object_place",
-            message: format!(
-                "{name} is in a wrong place: as if the {letter} of its middle were {} instead of {}{}",
-                few(there.dot(axis)),
-                short(middle.dot(axis)),
-                displaced(by)
+        let there = self.middle + axis * at[0];
+        let message = format!(
+            "{} is in a wrong place: as if the {letter} of its middle were {} instead of {}",
+            self.name,
+            few(there.dot(axis)),
+            short(self.middle.dot(axis))
+        );
+        Ok(make(&at).map(|make| (left, self.idea("object_place", message, make))))
+    }
+
+    /// Somewhere else: what looks displaced and larger may be nearer. From the better of two starts.
+    fn anywhere(&self, starts: [(DVec3, f64); 2]) -> Result<Option<Found>, RenderError> {
+        let make = |p: &[f64]| self.with(DVec3::from_slice(p), 1.0);
+        let mut best: Option<Fit> = None;
+        for (aside, factor) in starts {
+            let start = (aside + self.offset()) / factor - self.offset();
+            let found = self.fit(&start.to_array(), &[self.width(); 3], &make)?;
+            if let Some(found) = found
+                && best.as_ref().is_none_or(|best| found.left < best.left)
+            {
+                best = Some(found);
+            }
+            let left = best.as_ref().map_or(f64::INFINITY, |best| best.left);
+            if left < LEFT * self.case.difference {
+                break;
+            }
+        }
+        let Some(Fit { at, left }) = best else {
+            return Ok(None);
+        };
+        let [x, y, z] = (self.middle + DVec3::from_slice(&at)).to_array().map(few);
+        let message = format!(
+            "{} is in a wrong place: as if its middle were ({x}, {y}, {z}) instead of {}",
+            self.name,
+            short_vector(self.middle)
+        );
+        Ok(make(&at).map(|make| (left, self.idea("object_place", message, make))))
+    }
+
+    /// Displaced in the picture, and larger.
+    fn displaced(&self, aside: DVec3, factor: f64, make: Make) -> Idea {
+        let name = &self.name;
+        let size = format!(" is {} times as large as it should be", few(factor));
+        let is_sized = (factor - 1.0).abs() >= 0.01;
+        let (mistake, message) = match (aside == DVec3::ZERO, is_sized) {
+            (true, _) => ("object_size", format!("{name}{size}, or nearer or farther")),
+            (false, false) => ("object_place", format!("{name} is in a wrong place")),
+            (false, true) => (
+                "object_place",
+                format!("{name}{size} (or nearer or farther), and in a wrong place"),
             ),
-            help: format!("its middle is {}", short_vector(middle)),
-            make: other,
-        });
+        };
+        self.idea(mistake, message, make)
     }
 
-    let make = |p: &[f64]| with(u * p[0] + v * p[1], libm::exp2(p[2]));
-    let start = [by.x * pixel, -by.y * pixel, libm::log2(factor)];
-    let Some(found) = fit(&start, &[width, width, 0.01], &make)? else {
-        return Ok(ideas);
-    };
-    let Some(other) = make(&found) else {
-        return Ok(ideas);
-    };
-    let (right, down, factor) = (found[0] / pixel, -found[1] / pixel, libm::exp2(found[2]));
-    let place = displaced(DVec2::new(right, down));
-    let size = match (factor - 1.0).abs() < 0.01 {
-        true => String::new(),
-        false => format!(" is {} times as large as it should be", few(factor)),
-    };
-    let (mistake, message) = match (place.is_empty(), size.is_empty()) {
-        (true, _) => ("object_size", format!("{name}{size}, or nearer or farther")),
-        (false, true) => ("object_place", format!("{name} is in a wrong place{place}")),
-        (false, false) => (
-            "object_place",
-            format!("{name}{size} (or nearer or farther), and in a wrong place{place}"),
-        ),
-    };
-    ideas.push(Idea {
-        mistake,
-        message,
-        help: format!(
-            "its middle is {}; look at its place, its size and the field of view",
-            short_vector(middle)
-        ),
-        make: other,
-    });
-    Ok(ideas)
-}
-
-/// Fits in the small picture what is not little, and then in the whole one. Widths are of the latter.
-fn fitted(
-    case: &Case,
-    little: bool,
-    start: &[f64],
-    widths: &[f64],
-    make: &dyn Fn(&[f64]) -> Option<Make>,
-) -> Result<Option<Vec<f64>>, RenderError> {
-    let (small, full, control) = (&case.small, &case.full, &case.control);
-    let mut at = start.to_vec();
-    if !little && !full.is_heavy {
-        let wide = widths.iter().map(|width| width * f64::from(small.factor));
-        match fit(small, control, start, &wide.collect::<Vec<_>>(), make)? {
-            Some(found) => at = found,
-            None => return Ok(None),
+    fn idea(&self, mistake: &'static str, message: String, make: Make) -> Idea {
+        Idea {
+            mistake,
+            message,
+            help: format!(
+                "its middle is {}; look at its place, its size and the field of view",
+                short_vector(self.middle)
+            ),
+            make,
         }
     }
-    fit(full, control, &at, widths, make)
-}
 
-/// A displacement in words; none, if it is none.
-fn displaced(by: DVec2) -> String {
-    let mut way = Vec::new();
-    for (by, positive, negative) in [(by.x, "to the right", "to the left"), (by.y, "down", "up")] {
-        if by.abs() >= 0.05 {
-            let side = if by > 0.0 { positive } else { negative };
-            way.push(format!("{} pixels {side}", few(by.abs())));
-        }
+    fn with(&self, by: DVec3, factor: f64) -> Option<Make> {
+        let other = moved(&self.shape, by, factor);
+        (factor > 0.0 && factor.is_finite())
+            .then(|| with_shape(&self.case.full.scene, self.index, other))
     }
-    match way.is_empty() {
-        true => String::new(),
-        false => format!(", {}", way.join(" and ")),
+
+    /// From the eye to its middle.
+    /// From the eye to its middle.
+    fn offset(&self) -> DVec3 {
+        self.middle - self.case.full.scene.camera.eye
+    }
+
+    /// Half a pixel.
+    fn width(&self) -> f64 {
+        0.5 * self.pixel
+    }
+
+    /// Fits in the small picture what is not little, and then in the whole one.
+    fn fit(
+        &self,
+        start: &[f64],
+        widths: &[f64],
+        make: &dyn Fn(&[f64]) -> Option<Make>,
+    ) -> Result<Option<Fit>, RenderError> {
+        let Case {
+            small,
+            full,
+            control,
+            ..
+        } = self.case;
+        let mut at = start.to_vec();
+        if !self.is_little && !full.is_heavy {
+            match fit(small, control, start, widths, make)? {
+                Some(found) => at = found.at,
+                None => return Ok(None),
+            }
+        }
+        fit(full, control, &at, widths, make)
     }
 }
 

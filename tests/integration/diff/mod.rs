@@ -2,6 +2,7 @@
 
 mod faint;
 mod mistakes;
+mod numbers;
 mod pictures;
 mod samples;
 
