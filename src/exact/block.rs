@@ -149,7 +149,7 @@ impl<'a> Block<'a> {
         // Five operations make a value of a form of its terms, and five more t and what τ adds to it.
         let off = |axis: usize| {
             let form = board.fine.forms[axis].map(|c| c.hi);
-            board.fine.rad + 16.0 * Double::UNIT * size(&form)
+            board.fine.rads[axis] + 16.0 * Double::UNIT * size(&form)
         };
         let (of_t, of_c, of_l) = (off(self.along), off(across), off(2));
         let Run {

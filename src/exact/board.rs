@@ -5,7 +5,7 @@ use std::{array, sync::atomic::AtomicBool};
 use glam::DVec2;
 
 use super::{
-    cells, edge,
+    cells, edge, finely,
     floor::{Fine, Floor},
     inverse::Inverse,
     sides::Known,
@@ -27,6 +27,12 @@ pub(super) const FAR: f64 = 18.0;
 /// about 1.)
 const DEEP: f64 = 1e13;
 
+/// An edge that crosses no more lines than this may be that of a pixel with so few squares that hardly anything is neglected there; one that
+/// crosses more, but not all, is neglected less than one that runs into the horizon. (A pixel may have a dozen such edges.)
+const COUNTED: f64 = 1e5;
+const COUNTED_TAIL: f64 = 1e-13;
+const FINITE_TAIL: f64 = 1e-10;
+
 /// A sum along the boundary with no greater bound than this is good enough.
 const GOOD_FAR: f64 = 1e-8;
 
@@ -38,6 +44,9 @@ const NEXT_TO_NOTHING: f64 = 1e9;
 
 /// Nor one of no more than this line by line.
 const ENOUGH: f64 = 1e-13;
+
+/// A sum with no greater bound than this is good enough for a pixel in which there are several.
+const FINE: f64 = 1e-12;
 
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
@@ -125,7 +134,8 @@ impl Board {
     /// invertible. The nearer the origin of a and b is to the pixel, the smaller the bounds.
     #[cfg(test)]
     pub(crate) fn new([a, b]: [[f64; 3]; 2], below: [f64; 3]) -> Self {
-        Self::fine([a, b, below].map(|form| form.map(Double::from_f64)), 0.0)
+        let forms = [a, b, below].map(|form| form.map(Double::from_f64));
+        Self::fine(forms, [0.0; 3])
     }
 
     /// The board as a spot sees it.
@@ -138,7 +148,7 @@ impl Board {
                 lo: seen.low[i][k],
             })
         });
-        Self::fine(fine, seen.rad)
+        Self::fine(fine, seen.rads)
     }
 
     /// Whether its forms should be asked for more closely.
@@ -146,12 +156,12 @@ impl Board {
         self.fine.is_doubtful
     }
 
-    fn fine(forms: [[Double; 3]; 3], rad: f64) -> Self {
+    fn fine(forms: [[Double; 3]; 3], rads: [f64; 3]) -> Self {
         let [a, b, below] = forms.map(|form| form.map(|c| c.hi));
         let (l, scale) = normalized(below);
         let [a, b] = [a, b].map(|form| form.map(|c| libm::ldexp(c, -scale)));
         let forms = forms.map(|form| form.map(|c| c.scaled(-scale)));
-        let rad = libm::ldexp(rad, -scale);
+        let rads = rads.map(|rad| libm::ldexp(rad, -scale));
         // Squares may be of any size; the inverse is that of forms of about the same size.
         let [(wide, of_a), (high, of_b)] = [a, b].map(normalized);
         let powers = [of_a, of_b];
@@ -159,8 +169,8 @@ impl Board {
         let inverse = Inverse::of_rounded(&rounded);
         let floor = Floor::new(&inverse, powers);
         let (fine, inverse) = match inverse.is_good() {
-            true => (Fine::rounded(forms, rad, floor.clone()), inverse),
-            false => Fine::new(forms, rad, powers),
+            true => (Fine::rounded(forms, rads, floor.clone()), inverse),
+            false => Fine::new(forms, rads, powers),
         };
         // No less than it may be.
         let volume = inverse.det.abs() * (1.0 - inverse.det_off).max(0.0);
@@ -196,6 +206,12 @@ impl Board {
         cancel: &AtomicBool,
     ) -> Sum {
         let mut sum = self.unchecked(polygon, known, cancel);
+        if sum.bound > FINE
+            && let Some(fine) = finely::sum(self, polygon)
+            && fine.bound < sum.bound
+        {
+            sum = fine;
+        }
         if self.fine.nudge > 0.0 {
             // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
             sum.bound += self.fine.nudge * self.blurred(polygon.iter().copied());
@@ -269,7 +285,8 @@ impl Board {
     /// where i_0 = ∇N·∇L/|∇L|² is where the eye is, which may be far from all lines that there are, and is mostly between two of them. Lines
     /// beyond 2^60 are all within E of the horizon.
     pub(super) fn blurred(&self, points: impl Iterator<Item = DVec2> + Clone) -> f64 {
-        const LINES: f64 = 100.0;
+        // Of 2^60 lines.
+        const MOST: f64 = 100.0;
         let displaced = self.displaced(points.clone());
         if displaced <= ENOUGH {
             return displaced;
@@ -278,6 +295,8 @@ impl Board {
         let gradient = |[x, y, _]: [f64; 3]| DVec2::new(x, y);
         let up = gradient(self.below);
         let (steepness, of_l) = (up.length(), off(&self.below));
+        let levels = points.clone().map(|p| form(&self.below, p));
+        let least = levels.fold(f64::INFINITY, f64::min);
         let strips = self.across.each_ref().map(|across| {
             let n = gradient(*across);
             let middle = n.dot(up) / (steepness * steepness);
@@ -296,9 +315,15 @@ impl Board {
             // i_0 is a quotient of |∇N||∇L| at most and |∇L|²: two roundings above, five below, and its own.
             let roundings = 8.0 * UNIT * n.length() / steepness;
             let between = (middle - middle.round()).abs() - roundings;
-            // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm.
+            // Σ 1/max(|i − i_0|, k), of which those next to i_0 are 3 at most by 1/k, and the others twice a logarithm of their number:
+            // a place is off by no more than itself where L is by no more than half of it, and by what N is.
             let k = n.perp_dot(up).abs() / (steepness * steepness);
-            4.0 * off * (3.0 / k.max(away).max(between).min(1.0) + LINES)
+            let number = 2.0 * (low.abs() + high.abs()) + 4.0 * off / least + 4.0;
+            let others = match least > 2.0 * of_l {
+                true => (2.0 + 2.0 * libm::log(number)).min(MOST),
+                false => MOST,
+            };
+            4.0 * off * (3.0 / k.max(away).max(between).min(1.0) + others)
         });
         let (_, perimeter) = measure(points.clone());
         let widest = 0.5 * perimeter / steepness;
@@ -306,9 +331,19 @@ impl Board {
         displaced.min(lines)
     }
 
-    /// Whether a polygon shows the horizon.
-    pub(crate) fn is_endless(&self, polygon: &[DVec2]) -> bool {
-        polygon.iter().any(|&at| form(&self.below, at) <= 0.0)
+    /// What may be neglected of an edge that crosses so many lines, in square pixels.
+    pub(super) fn tail(&self, lines: f64) -> f64 {
+        match lines {
+            ..=COUNTED => COUNTED_TAIL,
+            ..f64::INFINITY => FINITE_TAIL,
+            _ => self.tail,
+        }
+    }
+
+    /// Whether a polygon shows the horizon, or more squares than one in which hardly anything is neglected.
+    pub(crate) fn is_crowded(&self, polygon: &[DVec2]) -> bool {
+        let is_endless = polygon.iter().any(|&at| form(&self.below, at) <= 0.0);
+        is_endless || squares(&self.visible(polygon)) > COUNTED
     }
 
     /// Along the boundary where the board is far enough for it, square by square where it is not.

@@ -12,9 +12,11 @@
 //! and the family that it crosses less may be chosen.
 
 use super::board::{Board, Corner, Sum, UNIT, measure};
+use super::complex::turn_exactly;
 use super::euler::{square_wave, waves, waves_at};
 use super::horizon;
 use super::sides::Known;
+use crate::math::{Double, Real, two_sum};
 use std::f64::consts::PI;
 
 use multiversion::multiversion;
@@ -23,6 +25,11 @@ use multiversion::multiversion;
 pub(super) const MAX_TERMS: usize = 20;
 /// The series is long enough when what it neglects is below this, in square pixels.
 const TRUNCATION: f64 = 1e-14;
+
+/// In a sum over crossings so many are added on their own, as the terms' signs alternate; and the place of the first of so many is told more
+/// exactly.
+const LANES: usize = 8;
+const CHUNK: usize = 64;
 
 /// (k + 1)!/2.
 const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
@@ -48,7 +55,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
     let (terms, truncation) = terms(board, nearest, &edges, area.abs());
     let mut sum = Sum {
         value: 0.0,
-        bound: truncation + board.displaced(corners.iter().map(|c| c.at)),
+        bound: truncation + board.blurred(corners.iter().map(|c| c.at)),
     };
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;
@@ -167,6 +174,8 @@ pub(super) struct Edge {
     /// dt and dm for every line crossed, and the sense in which they are crossed.
     pub stride: f64,
     pub rise: f64,
+    /// The former more exactly.
+    fine_stride: Double,
     sense: f64,
 }
 
@@ -204,6 +213,11 @@ impl Edge {
             return None;
         }
         let endless = far.depth.is_infinite();
+        let exactly = |i: usize| match endless {
+            true => Double::from_f64(step[i]),
+            false => two_sum(far.floor[i], -near.floor[i]),
+        };
+        let per_line = exactly(t).over(&exactly(c));
         Some(Self {
             sign: if by_b { 1.0 } else { -1.0 },
             potential: if by_b { 1.0 } else { 0.0 },
@@ -216,6 +230,10 @@ impl Edge {
             climb: rise / step[t],
             slope: board.floor.slope[t],
             stride: step[t] / step[c].abs(),
+            fine_stride: match step[c] < 0.0 {
+                true => per_line.negated(),
+                false => per_line,
+            },
             rise: rise / step[c].abs(),
             sense: step[c].signum(),
         })
@@ -254,18 +272,23 @@ impl Edge {
         let ends = series.size(1, self.depth);
         if lines > 0.0 && self.rho != 0.0 {
             let first = if self.sense > 0.0 {
-                self.c.floor() + 1.0 - self.c
+                two_sum(self.c.floor() + 1.0, -self.c)
             } else {
-                self.c - self.c.floor()
+                two_sum(self.c, -self.c.floor())
             };
+            let t = first
+                .times(&self.fine_stride)
+                .plus(&Double::from_f64(self.t));
             let crossings = Crossings {
-                t: self.t + first * self.stride,
-                depth: self.depth + first * self.rise,
+                t: t.hi,
+                turned: [t, self.fine_stride].map(|x| turn_exactly(&x)),
+                depth: self.depth + first.hi * self.rise,
                 edge: self,
                 lines,
             };
             // s jumps by −2s where the first line is crossed, and by turns from there.
-            let jumps = horizon::crossings(&crossings, &series, 0.5 * board.tail / self.rho.abs());
+            let tail = board.tail(lines);
+            let jumps = horizon::crossings(&crossings, &series, 0.5 * tail / self.rho.abs());
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
@@ -362,6 +385,8 @@ impl Series {
 /// The lines of one family that an edge crosses: t and m at the first, and how many there are.
 pub(super) struct Crossings<'a> {
     pub t: f64,
+    /// The former and its step from line to line more exactly, without whole turns, in half turns.
+    turned: [Double; 2],
     pub depth: f64,
     pub edge: &'a Edge,
     pub lines: f64,
@@ -374,8 +399,8 @@ impl Crossings<'_> {
     pub(super) fn one_by_one(&self, series: &Series, lines: f64) -> Sum {
         let mut sum = Sum::default();
         let mut done = 0.0;
-        // Towards the horizon much more than that is neglected in the end.
-        let limit = TRUNCATION * if self.lines.is_finite() { 1.0 } else { 100.0 };
+        // Of blocks there are dozens. Towards the horizon much more than that is neglected in the end.
+        let limit = TRUNCATION * if self.lines.is_finite() { 0.1 } else { 100.0 };
         while done < lines {
             let depth = self.depth + done * self.edge.rise;
             let most = (0.5 * depth / self.edge.rise).floor().clamp(16.0, 4096.0);
@@ -383,10 +408,11 @@ impl Crossings<'_> {
             let (terms, left) = series.enough(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // t is off by a few roundings of its size, which X′, at most π X's bound, takes to X; the sum of the block is
-            // off by its length's roundings of the terms.
-            let reach = self.t.abs() + (done + count) * self.edge.stride.abs();
-            let rounding = UNIT * series.size(1, depth) * (count + 16.0 + 4.0 * PI * reach);
+            // t is off by two roundings, and three of the way that it goes within a chunk, which X′, at most π X's bound, takes to X; half
+            // that way on the average. The sum of the block is off by as many roundings of the terms as are added in a lane.
+            let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
+            let added = count / LANES as f64 + 4.0;
+            let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
             sum.bound += left + count * rounding;
             done += count;
         }
@@ -406,9 +432,6 @@ impl Crossings<'_> {
         done: f64,
         count: f64,
     ) -> f64 {
-        /// So many are added on their own, as the terms' signs alternate.
-        const LANES: usize = 8;
-        const CHUNK: usize = 64;
         let mut sums = [0.0; LANES];
         let mut left = count as usize;
         let mut j = done;
@@ -417,8 +440,9 @@ impl Crossings<'_> {
             // A loop that the compiler makes vectors of, to the end of the last of them; what is too much is not added.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
+            let t = self.turned_at(j);
             for (i, value) in values[..filled].iter_mut().enumerate() {
-                *value = self.at::<TERMS, ROWS>(series, j + f64::from(i as u32));
+                *value = self.at::<TERMS, ROWS>(series, t, j, f64::from(i as u32));
             }
             values[now..filled].fill(0.0);
             for values in values[..filled].chunks_exact(LANES) {
@@ -432,11 +456,23 @@ impl Crossings<'_> {
         ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
-    /// X at a crossing.
+    /// t at crossing j, without whole turns.
+    fn turned_at(&self, j: f64) -> f64 {
+        let [t, stride] = &self.turned;
+        turn_exactly(&t.plus(&stride.times(&Double::from_f64(j)))).hi
+    }
+
+    /// X at crossing j + i, where t is that of crossing j.
     #[inline(always)]
-    fn at<const TERMS: usize, const ROWS: usize>(&self, series: &Series, j: f64) -> f64 {
-        let waves = waves_at::<TERMS, ROWS, 1>([self.t + j * self.edge.stride]);
-        let u = 1.0 / (self.depth + j * self.edge.rise);
+    fn at<const TERMS: usize, const ROWS: usize>(
+        &self,
+        series: &Series,
+        t: f64,
+        j: f64,
+        i: f64,
+    ) -> f64 {
+        let waves = waves_at::<TERMS, ROWS, 1>([t + i * self.turned[1].hi]);
+        let u = 1.0 / (self.depth + (j + i) * self.edge.rise);
         let (mut x, mut k) = (0.0, TERMS);
         while k > 0 {
             x = (x + series.factors[k] * waves[k + 1][0]) * u;

@@ -14,8 +14,8 @@ const NUDGE: f64 = UNIT / (1 << 23) as f64;
 #[derive(Clone, Debug)]
 pub(super) struct Fine {
     pub forms: [[Double; 3]; 3],
-    /// How far their values may be from the true ones.
-    pub rad: f64,
+    /// How far the values of each may be from the true ones.
+    pub rads: [f64; 3],
     pub floor: Floor,
     /// By how much more or less than the true ones they are on purpose, as a part of what rounding them once may be.
     pub nudge: f64,
@@ -43,10 +43,10 @@ pub(super) struct Floor {
 
 impl Fine {
     /// Of forms that rounded ones are as good as.
-    pub fn rounded(forms: [[Double; 3]; 3], rad: f64, floor: Floor) -> Self {
+    pub fn rounded(forms: [[Double; 3]; 3], rads: [f64; 3], floor: Floor) -> Self {
         Self {
             forms,
-            rad,
+            rads,
             floor,
             nudge: 0.0,
             is_needed: false,
@@ -58,11 +58,16 @@ impl Fine {
     ///
     /// Where even double-double numbers hardly tell the forms from dependent ones, they are made more independent: the one factor that det M
     /// depends on most is changed by much less than a rounding, but by much more than the last digit.
-    pub fn new(mut forms: [[Double; 3]; 3], rad: f64, [of_a, of_b]: [i32; 2]) -> (Self, Inverse) {
+    pub fn new(
+        mut forms: [[Double; 3]; 3],
+        rads: [f64; 3],
+        [of_a, of_b]: [i32; 2],
+    ) -> (Self, Inverse) {
         let scales = [of_a, of_b, 0];
         let inverse_of = |forms: &[[Double; 3]; 3]| {
             let forms = array::from_fn(|i| forms[i].map(|c| c.scaled(-scales[i])));
-            Inverse::of_fine(&forms, libm::ldexp(rad, -of_a.min(of_b).min(0)))
+            let rad = (0..3).fold(0.0, |rad: f64, i| rad.max(libm::ldexp(rads[i], -scales[i])));
+            Inverse::of_fine(&forms, rad)
         };
         let mut inverse = inverse_of(&forms);
         let is_doubtful = inverse.is_doubtful();
@@ -77,7 +82,7 @@ impl Fine {
         }
         let fine = Self {
             forms,
-            rad,
+            rads,
             floor: Floor::new(&inverse, [of_a, of_b]),
             nudge,
             is_needed: true,

@@ -47,10 +47,9 @@ pub(super) fn sum(board: &Board) -> Option<Sum> {
     if !levels.iter().all(|&level| level > 0.0) {
         return None;
     }
-    let [a, b] = &board.across;
     let (a, b) = (
-        Family::new(board, a, &levels)?,
-        Family::new(board, b, &levels)?,
+        Family::new(board, 0, &levels)?,
+        Family::new(board, 1, &levels)?,
     );
     let (few, many) = if a.lines() <= b.lines() {
         (a, b)
@@ -72,8 +71,8 @@ const CORNERS: [DVec2; 4] = super::polygon::PIXEL;
 struct Family<'a> {
     across: &'a [f64; 3],
     below: &'a [f64; 3],
-    /// How far a value of the forms may be from the true one.
-    rad: f64,
+    /// How far values of N and ℓ may be from the true ones.
+    rads: [f64; 2],
     /// Between which lines each corner is, by the lower one.
     squares: [f64; 4],
     first: f64,
@@ -82,7 +81,8 @@ struct Family<'a> {
 
 impl<'a> Family<'a> {
     /// `None` if its lines are farther away than anything that is prepared for a spot.
-    fn new(board: &'a Board, across: &'a [f64; 3], levels: &[f64; 4]) -> Option<Self> {
+    fn new(board: &'a Board, axis: usize, levels: &[f64; 4]) -> Option<Self> {
+        let across = &board.across[axis];
         let places: [f64; 4] = array::from_fn(|i| form(across, CORNERS[i]) / levels[i]);
         if !places.iter().all(|place| place.abs() < FAR) {
             return None;
@@ -91,7 +91,7 @@ impl<'a> Family<'a> {
         Some(Self {
             across,
             below: &board.below,
-            rad: board.rad,
+            rads: [board.rads[axis], board.rads[2]],
             squares,
             first: squares.into_iter().fold(FAR, f64::min),
             last: squares.into_iter().fold(-FAR, f64::max),
@@ -115,7 +115,8 @@ impl<'a> Family<'a> {
     #[inline(always)]
     fn off(&self, n: f64, line: &[f64; 3]) -> f64 {
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        let value = 6.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2)) + self.rad * (1.0 + n.abs());
+        let [of_n, of_l] = self.rads;
+        let value = 6.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2)) + of_n + n.abs() * of_l;
         value / line[0].abs().max(line[1].abs())
     }
 
@@ -292,7 +293,7 @@ mod tests {
             across,
             below,
             low: [[0.0; 3]; 3],
-            rad: 0.0,
+            rads: [0.0; 3],
             odd: false,
         }
     }

@@ -39,7 +39,7 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
         * (1..=series.terms)
             .map(|k| series.size(k, all.depth))
             .sum::<f64>();
-    let is_crumb = all.lines > DENSE && trivial <= CRUMB;
+    let is_crumb = all.lines > DENSE && trivial <= CRUMB.min(tolerance);
     if is_crumb || (all.lines > SHORT && trivial <= 0.25 * tolerance) {
         return Sum {
             value: 0.0,

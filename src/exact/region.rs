@@ -22,8 +22,8 @@ pub struct Shares {
     pub by_slot: Vec<(usize, f64)>,
     /// How much area may be with the wrong colour.
     pub bound: f64,
-    /// Whether squares without end are among it.
-    pub is_endless: bool,
+    /// Whether very many squares are among it, or squares without end.
+    pub is_crowded: bool,
 }
 
 /// Collects the regions of one spot.
@@ -42,8 +42,8 @@ pub struct Regions<'a> {
 struct Checkered {
     board: Board,
     odd: bool,
-    /// Bound on the error of its forms' factors.
-    rad: f64,
+    /// How far its forms' values may be off, by the size of their terms.
+    doubt: f64,
 }
 
 /// A region: a polygon, and arcs over some of its sides that bulge out of it or into it.
@@ -120,12 +120,13 @@ impl<'a> Regions<'a> {
             sum.bound += sliver.bound;
         }
         let half = if checkered.odd { -0.5 } else { 0.5 } * sum.value;
-        // The board's own bound is for forms with a rounding in each factor.
-        let bound = 0.5 * sum.bound * (1.0 + checkered.rad / f64::UNIT);
+        // The board's own bound is for forms with a rounding in each factor. Whatever they are, no share is greater than the area.
+        let bound = 0.5 * sum.bound * (1.0 + checkered.doubt / f64::UNIT);
+        let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;
-        self.shares.is_endless |= checkered.board.is_endless(region.polygon);
+        self.shares.is_crowded |= checkered.board.is_crowded(region.polygon);
     }
 
     /// Says that so much of the pixel's area may be with a wrong region, or with none.
@@ -173,7 +174,7 @@ impl Checkered {
             board: Board::of(&seen),
             // From which square floors are counted is a matter of roundings, too.
             odd: seen.odd,
-            rad: seen.rad,
+            doubt: seen.doubt(),
         };
         let checkered = of(world.board(object, spot)?);
         let closely = || world.board_closely(object, spot).map(of);
@@ -189,7 +190,7 @@ impl Shares {
             self.add(slot, 0.25 * area);
         }
         self.bound += 0.25 * quarter.bound;
-        self.is_endless |= quarter.is_endless;
+        self.is_crowded |= quarter.is_crowded;
     }
 
     fn add(&mut self, slot: usize, area: f64) {

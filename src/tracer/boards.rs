@@ -128,7 +128,7 @@ impl Boards {
                 let third = middle.plus(&level.get(i).times(&often)).hi;
                 (factors[0][i], factors[1][i], factors[2][i]) = (first, second, third);
                 sizes[i] = sizes[i].max(first.abs()).max(second.abs()).max(third.abs());
-                let moved = own_rad + rads[2] * (2.0 * whole.abs() + 1.0);
+                let moved = own_rad + rads[2] * (2.0 * whole.abs());
                 let moved = if times.abs() < FAR {
                     moved
                 } else {
@@ -236,7 +236,10 @@ mod tests {
                     let scaled = |form: &[[f64; PIXELS]; 3]| form.map(|factor| factor[i] * scale);
                     assert_eq!(views.across.each_ref().map(scaled), one.across);
                     assert_eq!(scaled(&views.below), one.below);
-                    assert_eq!(views.rad[i] * scale, one.rad);
+                    assert_eq!(
+                        views.rad[i] * scale,
+                        one.rads.into_iter().fold(0.0, f64::max)
+                    );
                     assert_eq!(views.sign[i], if one.odd { -1.0 } else { 1.0 });
                     compared += 1;
                 }

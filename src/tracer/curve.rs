@@ -123,7 +123,7 @@ impl<T: Real> Place<T> {
             odd ^= times as i64 & 1 == 1;
             let often = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
-            (factors, own_rad + rad * (2.0 * times.abs() + 1.0))
+            (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let [a, b] = local;
         let local = [a, b, (below, rad)];

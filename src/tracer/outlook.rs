@@ -81,8 +81,8 @@ pub struct Board {
     pub below: [f64; 3],
     /// What their rounding has left of these factors: of N₀, N₁ and ℓ.
     pub low: [[f64; 3]; 3],
-    /// How far a value of these forms may be from the true one, but for the rounding of the factors.
-    pub rad: f64,
+    /// How far a value of each of these forms may be from the true one, but for the rounding of the factors.
+    pub rads: [f64; 3],
     /// Whether the square [0, 1)² has the second colour.
     pub odd: bool,
 }
@@ -333,12 +333,10 @@ impl World {
     /// An object's squares in a spot, if it is a checkerboard.
     pub fn board(&self, object: usize, spot: Spot) -> Option<Board> {
         let board = self.board_in::<Double>(object, spot)?;
-        // Squares may be too small for the range of `f64`.
-        let factors = board.across.iter().chain([&board.below]).flatten();
-        if board.rad < LOOSE_LINE && factors.into_iter().all(|factor| factor.is_finite()) {
-            return Some(board);
+        match board.doubt() < LOOSE_LINE {
+            true => Some(board),
+            false => self.board_in::<Big>(object, spot),
         }
-        self.board_in::<Big>(object, spot)
     }
 
     /// The same where more than one rounding of the factors matters.
@@ -354,14 +352,31 @@ impl World {
         let place = Place::new(&T::frame(self).camera, spot);
         let [a, b] = &board.across;
         let (lines, is_moved) = place.together([a, b], &board.below);
+        let rads = lines.each_ref().map(|line| line.rad);
         let factors = lines.map(|line| line.factors);
         let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
         Some(Board {
             low: factors.map(|factors| factors.map(|c| c.lo)),
             across: [a, b],
             below,
-            rad: lines.iter().fold(0.0, |rad, line| line.rad.max(rad)),
+            rads,
             odd: board.odd ^ is_moved,
+        })
+    }
+}
+
+impl Board {
+    /// How far the value of a form may be from the true one, by the size of its terms; infinite where squares are too small for the range of
+    /// `f64`.
+    pub fn doubt(&self) -> f64 {
+        let [a, b] = &self.across;
+        let forms = [a, b, &self.below].into_iter().zip(self.rads);
+        forms.fold(0.0, |doubt, ([x, y, z], rad)| {
+            let size = 0.5 * (x.abs() + y.abs()) + z.abs();
+            match size.is_finite() && size > 0.0 {
+                true => doubt.max(rad / size),
+                false => f64::INFINITY,
+            }
         })
     }
 }
