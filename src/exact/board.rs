@@ -30,7 +30,7 @@ const DEEP: f64 = 1e13;
 /// An edge that crosses no more lines than this may be that of a pixel with so few squares that hardly anything is neglected there; one that
 /// crosses more, but not all, is neglected less than one that runs into the horizon. (A pixel may have a dozen such edges.)
 const COUNTED: f64 = 1e5;
-const COUNTED_TAIL: f64 = 1e-13;
+const COUNTED_TAIL: f64 = 4e-14;
 const FINITE_TAIL: f64 = 1e-10;
 
 /// A sum along the boundary with no greater bound than this is good enough.
