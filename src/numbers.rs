@@ -49,6 +49,37 @@ pub fn beside(x: f64, others: &[f64]) -> String {
     }
 }
 
+/// A number that was found in place of another one, in three digits, or as many as it takes to show the first of their difference.
+pub fn found(is: f64, should: f64) -> String {
+    let unit = f64::min(digit(is, 2), digit(is - should, 0));
+    beside(to_unit(is, unit), &[should])
+}
+
+/// The same of a point or a vector, whose coordinates have three digits of the size of `scale`.
+pub fn found_vector(is: DVec3, should: DVec3, scale: f64) -> String {
+    let unit = f64::min(digit(scale, 2), digit((is - should).length(), 0));
+    let [x, y, z] = is.to_array().map(|x| short(to_unit(x, unit)));
+    format!("({x}, {y}, {z})")
+}
+
+/// What one is worth in a number's digit that so many others stand before; infinite if it has none.
+fn digit(x: f64, before: i32) -> f64 {
+    let first = libm::log10(x.abs()).floor();
+    match first.is_finite() {
+        true => libm::pow(10.0, first - f64::from(before)),
+        false => f64::INFINITY,
+    }
+}
+
+fn to_unit(x: f64, unit: f64) -> f64 {
+    let rounded = (x / unit).round() * unit;
+    // Without the tail that a multiple of a power of ten has in binary.
+    match rounded.is_finite() {
+        true => format!("{rounded:.12e}").parse().unwrap_or(x),
+        false => x,
+    }
+}
+
 /// Decimals without the zeros at their end.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') {
@@ -79,6 +110,26 @@ pub fn grouped(count: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_found_differs_from_what_should_be() {
+        for (is, should, text) in [
+            (7.0, 0.0, "7"),
+            (2.0561, 0.0, "2.06"),
+            (3.0041, 3.0, "3.004"),
+            (-1.602, -1.6, "-1.602"),
+            (2.753, 2.75, "2.753"),
+            (5.0, 5.0, "5"),
+            (0.0, 3.0, "0"),
+            (1.00000001, 1.0, "1.00000001"),
+        ] {
+            assert_eq!(found(is, should), text);
+        }
+        let should = DVec3::new(3.0, 3.5, 8.0);
+        let is = DVec3::new(3.00298, 3.50203, 8.00001);
+        assert_eq!(found_vector(is, should, 9.2), "(3.003, 3.502, 8)");
+        assert_eq!(found_vector(1.2 * should, should, 9.2), "(3.6, 4.2, 9.6)");
+    }
 
     #[test]
     fn numbers_keep_the_digits_that_matter() {

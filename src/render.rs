@@ -48,7 +48,7 @@ const CHUNK: u64 = 1 << 12;
 const FEW: u64 = 2;
 const GRAIN: u64 = 4;
 
-/// Up to so many samples of a pixel with many objects are traced one by one.
+/// Up to so many samples of a pixel of a scene with many objects are traced one by one.
 const FEW_IN_CROWDS: u64 = 8;
 
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
@@ -150,6 +150,7 @@ pub fn render_in_a_way<P: film::Pixel>(
         0..=FEW => GRAIN,
         _ => 1,
     };
+    let quartering = Quartering::new(world).down_to(grain);
     let frame = Frame {
         world,
         sampling,
@@ -158,9 +159,10 @@ pub fn render_in_a_way<P: film::Pixel>(
         encoder: &encoder,
         control,
         way,
-        quartering: Quartering::new(world)
-            .down_to(grain)
-            .with_crowds(sampling.samples_per_pixel() <= FEW_IN_CROWDS),
+        quartering: match sampling.samples_per_pixel() {
+            0..=FEW_IN_CROWDS => quartering.for_few_samples(),
+            _ => quartering,
+        },
         everything: match way {
             Way::Culled => Vec::new(),
             Way::Together | Way::Narrow | Way::OneByOne => world.everything(),

@@ -12,10 +12,10 @@ use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
 /// What may be neglected of a side, in square pixels, and what is if that takes too long.
-const NEGLECTED: f64 = 1e-10;
-const AT_WORST: f64 = 4e-9;
+const NEGLECTED: f64 = 5e-11;
+const AT_WORST: f64 = 2e-10;
 /// What may be of both sides together, where rows are so narrow that their late modes hardly differ.
-const NARROW_AT_WORST: f64 = 2e-8;
+const NARROW_AT_WORST: f64 = 4e-10;
 /// No more rows than this, of a square each, are summed one by one for that.
 const PATIENCE: f64 = 200_000.0;
 

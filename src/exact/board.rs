@@ -207,6 +207,7 @@ impl Board {
     ) -> Sum {
         let mut sum = self.unchecked(polygon, known, cancel);
         if sum.bound > FINE
+            && !self.is_crowded(polygon)
             && let Some(fine) = finely::sum(self, polygon)
             && fine.bound < sum.bound
         {

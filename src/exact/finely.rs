@@ -14,8 +14,9 @@ use super::euler::square_wave;
 use super::grid::FAR;
 use crate::math::{Double, Real, two_sum};
 
-/// No more sides of strips by lines than this are looked at: there are some dozens of them to a microsecond.
-const MOST: f64 = 80_000.0;
+/// No more sides of strips by lines than this are looked at: all that 100 000 squares may have, of which there are some dozens to a
+/// microsecond.
+const MOST: f64 = 1e6;
 
 const ZERO: Double = Double { hi: 0.0, lo: 0.0 };
 

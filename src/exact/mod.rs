@@ -68,7 +68,7 @@ use self::{
 /// A spot whose bound is no greater than this is not cut into quarters; nor one with so many squares, or the horizon, that of sums over them
 /// something is neglected, which quarters would neglect, too, and take five times as long.
 const ENOUGH: f64 = 1e-12;
-const ENOUGH_CROWDED: f64 = 4e-9;
+const ENOUGH_CROWDED: f64 = 9e-10;
 /// A bound beyond this is not of roundings but of squares that were too many, which quarters would be, too.
 const HOPELESS: f64 = 1e-7;
 

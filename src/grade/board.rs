@@ -2,15 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{
-    Idea, Make,
-    camera::direction,
-    level::axes,
-    objects::moved,
-    search::{Change, rounded},
-};
+use super::{Idea, Make, camera::direction, level::axes, objects::moved, search::Change};
 use crate::{
-    numbers::short,
+    numbers::{found, short},
     scene::{Checkerboard, Scene, Shape, View},
 };
 
@@ -128,7 +122,7 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
             let other = boards(other).next().map_or(first.y, |(_, board)| board.y);
             format!(
                 "the checkerboard is at a wrong height: as if its y were {} instead of {}",
-                rounded(other),
+                found(other, first.y),
                 short(first.y)
             )
         }),
@@ -150,7 +144,7 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
             let other = other.map_or(first.square, |(_, board)| board.square);
             format!(
                 "the checkerboard's squares have the side {} instead of {}",
-                rounded(other),
+                found(other, first.square),
                 short(first.square)
             )
         }),
@@ -169,10 +163,13 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
             // All else was moved the other way.
             let by = other.camera.eye - scene.camera.eye;
             let by = least(-DVec2::new(by.x, by.z) / side) * side;
+            // No more than a few hundredths of a square are told.
+            let [x, z] = by.to_array().map(|x| match x.abs() < 5e-3 * side {
+                true => "0".to_owned(),
+                false => found(x, 0.0),
+            });
             format!(
-                "the checkerboard's squares are displaced: as if they began at ({}, {}) instead of (0, 0)",
-                few(by.x),
-                few(by.y)
+                "the checkerboard's squares are displaced: as if they began at ({x}, {z}) instead of (0, 0)"
             )
         }),
         starts: quarters
@@ -207,8 +204,4 @@ fn least(by: DVec2) -> DVec2 {
         true => other,
         false => by,
     }
-}
-
-fn few(x: f64) -> String {
-    short((100.0 * x).round() / 100.0)
 }

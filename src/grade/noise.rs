@@ -259,7 +259,7 @@ pub fn verdict_of_grid(difference: f64, samples: u64) -> Verdict {
         help: "nothing is wrong with the scene or the camera; samples that lie elsewhere in each pixel (jittered, sobol) come closer".to_owned(),
         rmse: Some(difference),
         explains: None,
-            off: None,
+        off: None,
     }
 }
 

@@ -9,7 +9,7 @@ use super::{
     fit::{Fit, fit},
     level::Level,
 };
-use crate::{film::rmse, numbers::short, render::RenderError, scene::Scene};
+use crate::{film::rmse, render::RenderError, scene::Scene};
 
 /// So many places are fitted from, the best ones.
 const STARTS: usize = 2;
@@ -119,9 +119,4 @@ fn start(case: &Case, change: &Change) -> Result<Option<Fit>, RenderError> {
         }
     }
     Ok(found)
-}
-
-/// What was found by a search has few right digits.
-pub fn rounded(x: f64) -> String {
-    short(format!("{x:.2e}").parse().unwrap_or(x))
 }

@@ -8,8 +8,13 @@ use std::ops::ControlFlow;
 use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
-/// A part with so many candidates is cut by their bounds alone, without a look at most of them; and with fewer, where crowds are kept.
-const CROWD: usize = 8;
+/// A part with so many candidates is cut by their bounds alone, without a look at most of them.
+const CROWD: usize = 64;
+
+/// The same of a scene with many objects, and where few samples are traced in crowds. Objects that are few may well be large, or slivers
+/// of whose bounds they fill but a small part.
+const MANY: usize = 1 << 14;
+const CROWD_OF_MANY: usize = 8;
 const KEPT_CROWD: usize = 4;
 
 /// Cuts the parts of one picture.
@@ -18,7 +23,9 @@ pub struct Quartering<'a> {
     world: &'a World,
     /// Parts of so few pixels are not cut.
     grain: u64,
-    /// Whether crowds stay crowds in these.
+    /// So many candidates are a crowd.
+    crowd: usize,
+    /// Whether crowds stay crowds in parts that are not cut.
     keeps_crowds: bool,
 }
 
@@ -62,9 +69,11 @@ pub struct Room {
 impl<'a> Quartering<'a> {
     /// For a prepared scene.
     pub fn new(world: &'a World) -> Self {
+        let is_many = world.len() >= MANY;
         Self {
             world,
             grain: 1,
+            crowd: if is_many { CROWD_OF_MANY } else { CROWD },
             keeps_crowds: false,
         }
     }
@@ -77,12 +86,16 @@ impl<'a> Quartering<'a> {
         }
     }
 
-    /// The same, but where there are many objects, those of a pixel are told by their bounds alone, if that is asked for: to look at
-    /// each of them would cost more than it saves a few samples.
-    pub fn with_crowds(self, keeps_crowds: bool) -> Self {
-        Self {
-            keeps_crowds,
-            ..self
+    /// The same, but in a scene of many objects those of a pixel are told by their bounds alone: to look at each of them would cost more than
+    /// it saves a few samples.
+    pub fn for_few_samples(self) -> Self {
+        match self.world.len() >= MANY {
+            true => Self {
+                crowd: KEPT_CROWD,
+                keeps_crowds: true,
+                ..self
+            },
+            false => self,
         }
     }
 
@@ -125,11 +138,7 @@ impl<'a> Quartering<'a> {
                 .iter()
                 .try_for_each(|(x, y)| visit(Part::Crowd { x, y, crowd }, None));
         }
-        let few = match self.keeps_crowds {
-            true => KEPT_CROWD,
-            false => CROWD,
-        };
-        if crowd.len() < few || is_fine {
+        if crowd.len() < self.crowd || is_fine {
             let mut live = take(&mut room.live, depth);
             self.world.live_of(area, crowd, &mut live);
             let flow = self.cut(area, &live, depth + 1, room, visit);

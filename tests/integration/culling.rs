@@ -2,6 +2,7 @@
 
 use std::{
     num::NonZero,
+    ops::ControlFlow,
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
@@ -12,7 +13,7 @@ use pinhole::{
     render::{Control, Way, render_bytes, render_in_a_way},
     sampling::Sampling,
     scene::{Count, Lens, Method, Sampler, Scene, View},
-    tracer::World,
+    tracer::{Part, Quartering, Room, World},
 };
 
 use crate::{
@@ -175,22 +176,37 @@ fn scenes_of_all_kinds() {
 #[test]
 fn crowds_of_all_kinds() {
     let mut random = Random(31);
-    let mut colors = 0;
-    for index in 0..60 {
-        let mut scene = random_scene(&mut random, index % 2 == 0);
-        let more = (0..8).flat_map(|_| random_scene(&mut random, true).objects);
-        scene.objects.extend(more);
+    let mut crowds = 0;
+    for index in 0..6 {
+        let mut all = random_scene(&mut random, index % 2 == 0);
+        let more = (0..20).flat_map(|_| random_scene(&mut random, true).objects);
+        all.objects.extend(more);
+        let tiny: Vec<_> = (0..1 << 14)
+            .map(|_| sphere(random.vector(3.0), random.within(1e-3, 0.03)))
+            .collect();
+        let tiny = tiny.chunks(200);
+        let tiny = tiny.map(|shapes| scene(camera(DVec3::X, DVec3::ZERO), shapes));
+        all.objects.extend(tiny.flat_map(|scene| scene.objects));
         // Some of them twice: the first is seen.
-        let again = scene.objects[index % scene.objects.len()].clone();
-        scene.objects.push(again);
-        let method = Method::SAMPLED[index % Method::SAMPLED.len()];
+        all.objects.extend_from_within(100..300);
+        if index % 3 == 0 {
+            (all.camera.near, all.camera.far) = (3.0, Some(6.0));
+        }
         // Where samples are few, crowds are traced as crowds.
         for n in [1, 4, 8, 12] {
-            let scene = with_samples(&scene, method, Count::PerPixel(n));
-            colors += compare(&scene, "a crowd");
+            let all = with_samples(&all, Method::SAMPLED[index], Count::PerPixel(n));
+            let (plain, _) = part(&all, whole(&all), 1, Way::OneByOne);
+            let (culled, _) = part(&all, whole(&all), 2, Way::Culled);
+            assert_eq!(plain.pixels(), culled.pixels(), "{index}: {n}");
         }
+        let world = World::new(&all);
+        let parts = Quartering::new(&world).for_few_samples();
+        let _ = parts.parts(whole(&all), &mut Room::default(), &mut |part| {
+            crowds += usize::from(matches!(part, Part::Crowd { .. }));
+            ControlFlow::Continue(())
+        });
     }
-    assert!(colors > 60 * 40, "{colors}");
+    assert!(crowds > 6 * 24 * 18 / 4, "{crowds}");
 }
 
 #[test]

@@ -9,10 +9,10 @@ use crate::{
         extent::pixels,
         fit::Fit,
         level::{axes, distance, with_distance},
-        search::{Change, rounded},
+        search::Change,
     },
     math::{Angle, trig},
-    numbers::{short, short_vector},
+    numbers::{self, found, found_vector, short, short_vector},
     render::RenderError,
     scene::{Scene, View},
 };
@@ -260,7 +260,7 @@ fn distance_change(scene: &Scene) -> Change {
             };
             format!(
                 "the view plane is at the wrong distance: as if d were {} instead of {} (a field of view of {} degrees instead of {})",
-                rounded(distance(other)),
+                found(distance(other), distance(scene)),
                 short(distance(scene)),
                 fov(other),
                 fov(scene)
@@ -276,7 +276,7 @@ fn roll_change(scene: &Scene) -> Change {
         message: Box::new(|scene, other| {
             format!(
                 "the camera is rolled wrongly: as if roll were {} degrees instead of {}",
-                rounded(in_degrees(other.camera.roll)),
+                found(in_degrees(other.camera.roll), in_degrees(scene.camera.roll)),
                 short(in_degrees(scene.camera.roll))
             )
         }),
@@ -288,7 +288,7 @@ fn roll_change(scene: &Scene) -> Change {
 fn one_coordinate(what: &str, letter: &str, should: f64, is: f64) -> String {
     format!(
         "{what} is in a wrong place: as if its {letter} were {} instead of {}",
-        rounded(is),
+        found(is, should),
         short(should)
     )
 }
@@ -343,14 +343,14 @@ fn message(scene: &Scene, other: &Scene) -> String {
     }
     let [roll, other_roll] = [scene, other].map(|scene| in_degrees(scene.camera.roll));
     if roll != other_roll {
-        let (is, should) = (rounded(other_roll), short(roll));
+        let (is, should) = (numbers::found(other_roll, roll), short(roll));
         found.push(format!("roll were {is} degrees instead of {should}"));
     }
     let [d, other_d] = [scene, other].map(distance);
     if d != other_d {
         found.push(format!(
             "d were {} instead of {}",
-            rounded(other_d),
+            numbers::found(other_d, d),
             short(d)
         ));
     }
@@ -372,30 +372,22 @@ fn times(should: DVec3, is: DVec3) -> Option<String> {
         .then(|| short((100.0 * times).round() / 100.0))
 }
 
-/// A point or a vector in place of another one, in three digits of the scene's size.
+/// A point or a vector in place of another one.
 fn wrong(what: &str, should: DVec3, is: DVec3, reach: f64) -> String {
-    let unit = libm::pow(10.0, libm::log10(reach).floor() - 2.0);
-    let [x, y, z] = is.to_array().map(|x| {
-        let digits = (x / unit).round();
-        // Without the tail that a multiple of a power of ten has in binary.
-        short(format!("{:.12e}", digits * unit).parse().unwrap_or(x))
-    });
     format!(
-        "{what} were ({x}, {y}, {z}) instead of {}",
+        "{what} were {} instead of {}",
+        found_vector(is, should, reach),
         short_vector(should)
     )
 }
 
-/// The sine of the least angle between the view direction and the up vector that somebody may mean.
-const ALONG_UP: f64 = 1e-6;
-
-/// A scene whose camera looks somewhere: not from where it looks to, nor along up.
+/// A scene whose camera looks somewhere, and not from where it looks to.
 pub fn seen(scene: Scene) -> Option<Scene> {
     let forward = direction(&scene);
-    let sine = forward
-        .normalize_or_zero()
-        .cross(scene.camera.up.normalize_or_zero());
-    let d = distance(&scene);
-    let is_sound = scene.camera.eye.is_finite() && d.is_finite() && d > 0.0;
-    (is_sound && sine.length() > ALONG_UP).then_some(scene)
+    let is_sound = scene.camera.eye.is_finite() && forward.is_finite() && forward != DVec3::ZERO;
+    let is_far = |scene: &Scene| {
+        let d = distance(scene);
+        d.is_finite() && d > 0.0
+    };
+    (is_sound && is_far(&scene)).then_some(scene)
 }

@@ -25,7 +25,11 @@ const PART: f64 = 0.5;
 /// So many pixels have to be wrong there.
 const WRONG: usize = 16;
 
-/// The object in whose part of the picture all of the difference is but noise; of several the one with the smallest part.
+/// Of parts with no less than this share of the most that any has of what is wrong the smallest is looked at first.
+const AS_MUCH: f64 = 0.9;
+
+/// The object in whose part of the picture all of the difference is but noise; of several the one in whose part there is most of what noise
+/// would not make.
 pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
     let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
     let whole = Area::whole(a.width(), a.height());
@@ -36,18 +40,23 @@ pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
             continue;
         }
         let part = case.view.extent(&moved(&shape, DVec3::ZERO, ROOM));
-        parts.extend(part.map(|part| (part.pixels(), index, part)));
+        parts.extend(part.map(|part| (share(case, part), part.pixels(), index, part)));
     }
-    parts.retain(|(pixels, ..)| (*pixels as f64) < PART * whole.pixels() as f64);
-    parts.sort_by_key(|(pixels, index, _)| (*pixels, *index));
-    for (_, index, part) in parts {
-        let Some(rest) = outside(case, part)? else {
+    parts.retain(|(_, pixels, ..)| (*pixels as f64) < PART * whole.pixels() as f64);
+    let most = parts.iter().fold(0.0, |most: f64, part| most.max(part.0));
+    parts.sort_by_key(|(share, pixels, index, _)| (*share < AS_MUCH * most, *pixels, *index));
+    for (_, _, index, part) in parts {
+        let Some(Rest { film: rest, noisy }) = outside(case, part)? else {
             continue;
         };
-        let (wrong, off) = (wrong(case, part), off(case, index, part));
+        let name = called(scene, index);
+        // Noise is in pixels of several colours alone, and displaces what has one.
+        let (but, wrong, off) = match noisy {
+            true => ("but for noise ", strays(case, part), None),
+            false => ("", wrong(case, part), off(case, index, part)),
+        };
         let mut message = format!(
-            "the picture is wrong only where {} is seen, or near it, in {wrong} pixels: something about it is off",
-            called(scene, index)
+            "{but}the picture is wrong only where {name} is seen, or near it, in {wrong} pixels: something about it is off"
         );
         if let Some(off) = off {
             message += &format!("; what has its colour there is displaced: {off}");
@@ -66,6 +75,19 @@ pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
         }));
     }
     Ok(None)
+}
+
+/// The share of what is wrong that is in a part: of pixels of one colour, in which there is no noise, if any are wrong.
+fn share(case: &Case, part: Area) -> f64 {
+    match case.strays.pixels {
+        0 => case.differences.share(part),
+        _ => case.strays.share(part),
+    }
+}
+
+/// How many pixels of one colour are wrong in a part.
+fn strays(case: &Case, part: Area) -> usize {
+    (case.strays.share(part) * case.strays.pixels as f64).round() as usize
 }
 
 /// How many pixels of a part are wrong.
@@ -90,8 +112,15 @@ fn off(case: &Case, index: usize, part: Area) -> Option<Off> {
     Off::by(is.middle - should.middle, radius(&is) - radius(&should))
 }
 
+/// A picture that is right in a part of it.
+struct Rest {
+    film: Film,
+    /// Whether the rest of it differs by more than roundings.
+    noisy: bool,
+}
+
 /// The picture, right in a part of it, if the rest of it differs by roundings or noise alone.
-fn outside(case: &Case, part: Area) -> Result<Option<Film>, RenderError> {
+fn outside(case: &Case, part: Area) -> Result<Option<Rest>, RenderError> {
     let (a, exact) = (&case.full.a, &case.full.exact);
     let is_in = |x: u32, y: u32| Area::pixel(x, y).lies_in(part);
     let rest = Film::from_fn(a.width(), a.height(), |x, y| match is_in(x, y) {
@@ -103,7 +132,11 @@ fn outside(case: &Case, part: Area) -> Result<Option<Film>, RenderError> {
         bounds: None,
     };
     if compare(&rest, exact, rounding).is_ok_and(|found| found.is_equal()) {
-        return Ok((wrong(case, part) >= WRONG).then_some(rest));
+        let is_wrong = wrong(case, part) >= WRONG;
+        return Ok(is_wrong.then_some(Rest {
+            film: rest,
+            noisy: false,
+        }));
     }
     let none = Film::new(a.width(), a.height())?;
     let variance = Film::from_fn(a.width(), a.height(), |x, y| match is_in(x, y) {
@@ -114,5 +147,8 @@ fn outside(case: &Case, part: Area) -> Result<Option<Film>, RenderError> {
         return Ok(None);
     };
     let is_biased = case.is_biased(&rest, exact, &variance, noise)?;
-    Ok((!is_biased).then_some(rest))
+    Ok((!is_biased).then_some(Rest {
+        film: rest,
+        noisy: true,
+    }))
 }

@@ -19,7 +19,7 @@ use crate::{
         fit::{Fit, fit},
         level::axes,
     },
-    numbers::{short, short_vector},
+    numbers::{found, found_vector, short, short_vector},
     render::RenderError,
     scene::{Scene, Shape},
 };
@@ -262,7 +262,7 @@ impl<'a> Sought<'a> {
         let message = format!(
             "{} is in a wrong place: as if the {letter} of its middle were {} instead of {}",
             self.name,
-            few(there.dot(axis)),
+            found(there.dot(axis), self.middle.dot(axis)),
             short(self.middle.dot(axis))
         );
         Ok(make(&at).map(|make| (left, self.idea("object_place", message, make))))
@@ -288,10 +288,11 @@ impl<'a> Sought<'a> {
         let Some(Fit { at, left }) = best else {
             return Ok(None);
         };
-        let [x, y, z] = (self.middle + DVec3::from_slice(&at)).to_array().map(few);
+        let there = self.middle + DVec3::from_slice(&at);
         let message = format!(
-            "{} is in a wrong place: as if its middle were ({x}, {y}, {z}) instead of {}",
+            "{} is in a wrong place: as if its middle were {} instead of {}",
             self.name,
+            found_vector(there, self.middle, self.offset().length()),
             short_vector(self.middle)
         );
         Ok(make(&at).map(|make| (left, self.idea("object_place", message, make))))
@@ -300,7 +301,7 @@ impl<'a> Sought<'a> {
     /// Displaced in the picture, and larger.
     fn displaced(&self, aside: DVec3, factor: f64, make: Make) -> Idea {
         let name = &self.name;
-        let size = format!(" is {} times as large as it should be", few(factor));
+        let size = format!(" is {} times as large as it should be", found(factor, 1.0));
         let is_sized = (factor - 1.0).abs() >= 0.01;
         let (mistake, message) = match (aside == DVec3::ZERO, is_sized) {
             (true, _) => ("object_size", format!("{name}{size}, or nearer or farther")),
@@ -332,7 +333,6 @@ impl<'a> Sought<'a> {
     }
 
     /// From the eye to its middle.
-    /// From the eye to its middle.
     fn offset(&self) -> DVec3 {
         self.middle - self.case.full.scene.camera.eye
     }
@@ -363,13 +363,5 @@ impl<'a> Sought<'a> {
             }
         }
         fit(full, control, &at, widths, make)
-    }
-}
-
-/// What was found by a search has few right digits.
-fn few(x: f64) -> String {
-    match x.abs() < 5e-3 {
-        true => "0".to_owned(),
-        false => short(format!("{x:.2e}").parse().unwrap_or(x)),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{diff, folder, json, mistake, open, pinhole, render, save};
@@ -218,5 +219,46 @@ fn a_picture_of_many_objects_is_judged() {
         );
         let [_, message] = first(&folder, &[]);
         assert!(message.contains(expected), "{set}: {message}");
+    }
+}
+
+#[test]
+fn cameras_are_judged_by_any_lens_and_along_up() {
+    let level = "eye (0, 1, 4) lookat (0, 1, 0) fov 40deg";
+    for (camera, set, expected) in [
+        (level, "camera.fov=44deg", "distance"),
+        (level, "camera.roll=7deg", "roll"),
+        (
+            "eye (0, 6, 0) lookat (0, 0, 0) d 2",
+            "camera.roll=7deg",
+            "roll",
+        ),
+    ] {
+        let folder = plain(&format!(
+            "image {{ width 96 height 64 }} camera {{ {camera} }} sampler {{ method exact }}
+             sphere Ball {{ center (0.7, 1, 0) radius 0.6 color olive }}
+             checkerboard {{ square 1 }}"
+        ));
+        render(&folder, &["-o", "b.png", "--set", set]);
+        // Of a camera that looks along up there is a warning.
+        let output = pinhole(
+            folder.path(),
+            &["diff", "b.png", "a.scn", "--format", "json"],
+        );
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(
+            found["likely"][0]["mistake"], expected,
+            "{camera}, {set}: {found}"
+        );
+    }
+}
+
+#[test]
+fn no_other_object_is_blamed_through_noise() {
+    let folder = plain(PLAIN);
+    for samples in [1, 4] {
+        sampled(&folder, "random", samples, &["Sail.spin=25deg"]);
+        let [_, message] = first(&folder, &[]);
+        assert!(!message.contains("Ball"), "{samples}: {message}");
     }
 }
