@@ -165,11 +165,15 @@ fn view(degrees: f64, depth: f64) -> View {
 }
 
 fn agree(found: Sum, expected: f64, most: f64, what: impl std::fmt::Debug) {
-    /// What is expected has roundings of its own, of products of coordinates up to ½.
+    agree_in_size(found, expected, 1.0, most, what);
+}
+
+/// What is expected has roundings of its own, of products of coordinates up to half a size.
+fn agree_in_size(found: Sum, expected: f64, size: f64, most: f64, what: impl std::fmt::Debug) {
     const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
     let error = (found.value - expected).abs();
     assert!(
-        error <= found.bound + ROUNDINGS && error <= most,
+        error <= found.bound + ROUNDINGS * size && error <= most,
         "{what:?}: {found:?}, not {expected}: {error:e}"
     );
 }
@@ -202,7 +206,9 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            agree(found, brute(view.forms(), &PIXEL), 1e-10, view);
+            // The forms' terms are so many times as large as the pixel's side.
+            let size = view.place.length();
+            agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
         }
     }
