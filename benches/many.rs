@@ -15,7 +15,7 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::DVec2;
 use pinhole::{
     area::Area,
-    render::{Control, Way, render, render_exact, render_in_a_way},
+    render::{Control, Way, render_exact, render_in_a_way},
     sampling::Sampling,
     scene::{self, Scene},
     source::{Source, Sources},
@@ -66,7 +66,7 @@ fn read(count: usize) -> Scene {
         .expect("a scene without mistakes")
 }
 
-fn picture(world: &World, scene: &Scene) {
+fn picture(world: &World, scene: &Scene, way: Way) {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let control = Control {
@@ -74,19 +74,7 @@ fn picture(world: &World, scene: &Scene) {
         progress: &|_| {},
         cancel: &AtomicBool::new(false),
     };
-    black_box(render(world, &sampling, whole, &control)).expect("there is memory for it");
-}
-
-/// The same picture, each sample by the hierarchy on its own.
-fn one_by_one(world: &World, scene: &Scene) {
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
-    let film = render_in_a_way::<[f64; 3]>(world, &sampling, whole, &control, Way::OneByOne);
+    let film = render_in_a_way::<[f64; 3]>(world, &sampling, whole, &control, way);
     black_box(film).expect("there is memory for it");
 }
 
@@ -139,7 +127,7 @@ fn growth(criterion: &mut Criterion) {
         let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
         group.throughput(Throughput::Elements(4 * pixels));
         group.bench_function(BenchmarkId::new("render", count), |bencher| {
-            bencher.iter(|| picture(&world, &scene));
+            bencher.iter(|| picture(&world, &scene, Way::Culled));
         });
     }
     group.finish();
@@ -152,10 +140,11 @@ fn phases(count: usize) {
     let before = (cpu_seconds(), resident_bytes());
     let world = World::new(&scene);
     let after = (cpu_seconds(), resident_bytes());
-    (0..RENDERS).for_each(|_| picture(&world, &scene));
+    (0..RENDERS).for_each(|_| picture(&world, &scene, Way::Culled));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    one_by_one(&world, &scene);
+    // Each sample by the hierarchy on its own.
+    picture(&world, &scene, Way::OneByOne);
     let plain = cpu_seconds() - start;
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();

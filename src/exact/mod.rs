@@ -13,7 +13,8 @@
 //! 4. Areas have closed forms: `arc` for conics. What a region shows of a checkerboard (`board`) is summed row by row where it is
 //!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
-//!    recedes, and in `modes` at any distance.
+//!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, lines that are few are summed in
+//!    double-double (`finely`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 

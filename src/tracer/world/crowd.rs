@@ -66,7 +66,8 @@ impl World {
         }
     }
 
-    /// Asks for all objects of a crowd, which are anywhere in memory, so that they come side by side and not one after the other.
+    /// Asks for all objects of a crowd and for their colours, which are anywhere in memory, so that they come side by side and not one after
+    /// the other, each when a ray asks for it.
     fn fetch(&self, crowd: &[Item]) {
         let first = |item: &Item| match self.objects[item.object as usize] {
             Object::EdgeOn => 0,
