@@ -99,6 +99,8 @@ pub(crate) struct Board {
     horizon: DVec2,
     /// The same for what is displaced across the direction of the horizon: on the horizon, and more for every 1 of L.
     upwards: [f64; 2],
+    /// What roundings leave of L on the horizon.
+    horizon_off: f64,
     /// What may be neglected at the horizon, for an edge that runs into it, in square pixels.
     pub(super) tail: f64,
 }
@@ -192,6 +194,7 @@ impl Board {
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
             upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
+            horizon_off: errors[2],
             tail: 5e-10,
         }
     }
@@ -228,7 +231,9 @@ impl Board {
         };
         let endless = corners.iter().any(|c| c.depth.is_infinite());
         if endless {
-            return self.far_or_both(&corners, known, cancel);
+            let mut sum = self.far_or_both(&corners, known, cancel);
+            sum.bound += self.beside_horizon(&corners);
+            return sum;
         }
         let spans = spans(&corners);
         if spans == [1.0, 1.0] {
@@ -436,10 +441,19 @@ impl Board {
         (place, 16.0 * UNIT / level * terms)
     }
 
-    /// The corner at a point where L has a value; on the horizon, where it is 0.
+    /// How much of a polygon is so near to the horizon that corners there are said to be on it.
+    fn beside_horizon(&self, corners: &[Corner]) -> f64 {
+        let (_, perimeter) = measure(corners.iter().map(|c| c.at));
+        self.upwards[0] * perimeter
+    }
+
+    /// The corner at a point where L has a value; on the horizon, where that is 0 or may be but for roundings.
     pub(super) fn corner(&self, at: DVec2, level: f64) -> Corner {
         let floor = [form(&self.across[0], at), form(&self.across[1], at)];
-        let depth = 1.0 / level;
+        let depth = match level <= self.horizon_off {
+            true => f64::INFINITY,
+            false => 1.0 / level,
+        };
         // Where even the quotient overflows there is nothing but the horizon.
         if depth.is_finite() && (floor[0] * depth).is_finite() && (floor[1] * depth).is_finite() {
             Corner {
