@@ -5,7 +5,7 @@ use std::{array, sync::atomic::AtomicBool};
 use glam::DVec2;
 
 use super::{
-    cells, edge, finely,
+    cells, closely, edge,
     floor::{Fine, Floor},
     inverse::Inverse,
     sides::Known,
@@ -46,7 +46,7 @@ const NEXT_TO_NOTHING: f64 = 1e9;
 const ENOUGH: f64 = 1e-13;
 
 /// A sum with no greater bound than this is good enough for a pixel in which there are several.
-const FINE: f64 = 1e-12;
+pub(super) const FINE: f64 = 1e-12;
 
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
@@ -96,11 +96,11 @@ pub(crate) struct Board {
     /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
     pub(super) displacement: f64,
     /// The direction of the horizon, of length 1.
-    horizon: DVec2,
+    pub(super) horizon: DVec2,
     /// The same for what is displaced across the direction of the horizon: on the horizon, and more for every 1 of L.
-    upwards: [f64; 2],
+    pub(super) upwards: [f64; 2],
     /// What roundings leave of L on the horizon.
-    horizon_off: f64,
+    pub(super) horizon_off: f64,
     /// What may be neglected at the horizon, for an edge that runs into it, in square pixels.
     pub(super) tail: f64,
 }
@@ -112,7 +112,19 @@ pub(crate) struct Board {
 pub(super) struct Corner {
     pub at: DVec2,
     pub floor: [f64; 2],
+    /// What rounding left of the former, where that counts.
+    pub low: [f64; 2],
     pub depth: f64,
+}
+
+impl Corner {
+    /// Where it is along an axis of the floor.
+    pub fn place(&self, axis: usize) -> Double {
+        Double {
+            hi: self.floor[axis],
+            lo: self.low[axis],
+        }
+    }
 }
 
 pub(super) fn form(c: &[f64; 3], p: DVec2) -> f64 {
@@ -125,7 +137,7 @@ pub(super) fn size([x, y, z]: &[f64; 3]) -> f64 {
 }
 
 /// A form by a power of two that brings its largest factor between 1 and 2, and that power.
-fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
+pub(super) fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
     let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
     let exponent = libm::ilogb(largest);
     (form.map(|c| libm::ldexp(c, -exponent)), exponent)
@@ -174,18 +186,10 @@ impl Board {
             true => (Fine::rounded(forms, rads, floor.clone()), inverse),
             false => Fine::new(forms, rads, powers),
         };
-        // No less than it may be.
-        let volume = inverse.det.abs() * (1.0 - inverse.det_off).max(0.0);
-        // A form's value is off by at most three roundings of its largest terms, and M⁻¹ takes that to the picture. The
-        // fourth is for the quotient; coordinates themselves are rounded, too.
+        // A form's value is off by at most three roundings of its largest terms; the fourth is for the quotient.
         let errors = rounded.map(|form| 4.0 * UNIT * size(&form));
-        let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
-        for (error, column) in errors.iter().zip(&inverse.columns) {
-            let column = column.map(f64::abs);
-            displacement += error * column.iter().sum::<f64>() / volume;
-            tilt += error * column[2] / volume;
-        }
         let steepness = libm::hypot(l[0], l[1]);
+        let (displacement, upwards) = displacements(&errors, &inverse, steepness);
         Self {
             across: [a, b],
             below: l,
@@ -193,7 +197,7 @@ impl Board {
             fine,
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
-            upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
+            upwards,
             horizon_off: errors[2],
             tail: 5e-10,
         }
@@ -209,12 +213,9 @@ impl Board {
         cancel: &AtomicBool,
     ) -> Sum {
         let mut sum = self.unchecked(polygon, known, cancel);
-        if sum.bound > FINE
-            && !self.is_crowded(polygon)
-            && let Some(fine) = finely::sum(self, polygon)
-            && fine.bound < sum.bound
-        {
-            sum = fine;
+        if sum.bound > FINE && !self.is_crowded(polygon) {
+            let close = closely::sum(self, polygon);
+            sum = close.filter(|close| close.bound < sum.bound).unwrap_or(sum);
         }
         if self.fine.nudge > 0.0 {
             // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
@@ -348,8 +349,11 @@ impl Board {
 
     /// Whether a polygon shows the horizon, or more squares than one in which hardly anything is neglected.
     pub(crate) fn is_crowded(&self, polygon: &[DVec2]) -> bool {
-        let is_endless = polygon.iter().any(|&at| form(&self.below, at) <= 0.0);
-        is_endless || squares(&self.visible(polygon)) > COUNTED
+        let mut levels = polygon.iter().map(|&at| form(&self.below, at));
+        let is_endless = levels.any(|level| level <= self.horizon_off);
+        // So many that they cannot be counted are more, too.
+        let is_counted = |corners: &[Corner]| squares(corners) <= COUNTED;
+        is_endless || !is_counted(&self.visible(polygon))
     }
 
     /// Along the boundary where the board is far enough for it, square by square where it is not.
@@ -459,12 +463,14 @@ impl Board {
             Corner {
                 at,
                 floor: floor.map(|n| n * depth),
+                low: [0.0; 2],
                 depth,
             }
         } else {
             Corner {
                 at,
                 floor,
+                low: [0.0; 2],
                 depth: f64::INFINITY,
             }
         }
@@ -500,6 +506,25 @@ impl Board {
         }
         kept
     }
+}
+
+/// By how much errors of the forms displace points of the picture, by the inverse of those forms: any way, and across the horizon there and more
+/// for every 1 of L. Coordinates themselves are rounded, too.
+pub(super) fn displacements(
+    errors: &[f64; 3],
+    inverse: &Inverse,
+    steepness: f64,
+) -> (f64, [f64; 2]) {
+    // No less than it may be.
+    let volume = inverse.det.abs() * (1.0 - inverse.det_off).max(0.0);
+    let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
+    for (error, column) in errors.iter().zip(&inverse.columns) {
+        let column = column.map(f64::abs);
+        displacement += error * column.iter().sum::<f64>() / volume;
+        tilt += error * column[2] / volume;
+    }
+    let upwards = [errors[2] / steepness + 4.0 * UNIT, tilt / steepness];
+    (displacement, upwards)
 }
 
 /// How many squares a region meets along each axis.

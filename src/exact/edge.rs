@@ -16,7 +16,7 @@ use super::complex::turn_exactly;
 use super::euler::{square_wave, waves, waves_at};
 use super::horizon;
 use super::sides::Known;
-use crate::math::{Double, Real, two_sum};
+use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
 use multiversion::multiversion;
@@ -133,7 +133,7 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 ) -> (f64, f64) {
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
-        let mut waves = waves::<MOST, ROWS>(corner.floor[i]);
+        let mut waves = waves::<MOST, ROWS>(turned(&corner.place(i)));
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;
@@ -153,17 +153,27 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
+/// A place without whole turns, in half turns.
+fn turned(place: &Double) -> f64 {
+    turn_exactly(place).to_f64()
+}
+
+/// The last whole number before a place.
+fn floor(place: &Double) -> f64 {
+    place.floor().0.to_f64()
+}
+
 /// An edge from its near end to its far one. `c` counts the lines of the family that it crosses less, t those of the other.
 pub(super) struct Edge {
     /// +1 or −1 where the boundary runs from near to far or back, times the sign before ρ ∫ s dX.
     sign: f64,
     /// How Ψ at the edge's end, in the boundary's sense, counts: 1 where t is b, else 0.
     potential: f64,
-    pub c: f64,
-    pub t: f64,
+    c: Double,
+    t: Double,
     pub depth: f64,
-    /// The far end's c and m, unless it is on the horizon.
-    end: Option<(f64, f64, f64)>,
+    /// The far end's c, t and m, unless it is on the horizon.
+    end: Option<(Double, Double, f64)>,
     /// t's change to the far end, infinite for the horizon.
     length: f64,
     /// dc/dt.
@@ -200,42 +210,36 @@ impl Edge {
 
     /// An edge from its near end to its far one, summed along b or along a.
     pub(super) fn along(board: &Board, near: &Corner, far: &Corner, by_b: bool) -> Option<Self> {
-        let (step, rise) = if far.depth.is_infinite() {
-            (far.floor, 1.0)
-        } else {
-            (
-                [far.floor[0] - near.floor[0], far.floor[1] - near.floor[1]],
-                far.depth - near.depth,
-            )
-        };
         let (c, t) = if by_b { (0, 1) } else { (1, 0) };
-        if step[t] == 0.0 {
-            return None;
-        }
         let endless = far.depth.is_infinite();
         let exactly = |i: usize| match endless {
-            true => Double::from_f64(step[i]),
-            false => two_sum(far.floor[i], -near.floor[i]),
+            true => far.place(i),
+            false => far.place(i).minus(&near.place(i)),
         };
-        let per_line = exactly(t).over(&exactly(c));
+        let (across, along) = (exactly(c), exactly(t));
+        if along.hi == 0.0 {
+            return None;
+        }
+        let rise = if endless { 1.0 } else { far.depth - near.depth };
+        let per_line = along.over(&across);
         Some(Self {
             sign: if by_b { 1.0 } else { -1.0 },
             potential: if by_b { 1.0 } else { 0.0 },
-            c: near.floor[c],
-            t: near.floor[t],
+            c: near.place(c),
+            t: near.place(t),
             depth: near.depth,
-            end: (!endless).then(|| (far.floor[c], far.floor[t], far.depth)),
-            length: if endless { f64::INFINITY } else { step[t] },
-            rho: step[c] / step[t],
-            climb: rise / step[t],
+            end: (!endless).then(|| (far.place(c), far.place(t), far.depth)),
+            length: if endless { f64::INFINITY } else { along.hi },
+            rho: across.hi / along.hi,
+            climb: rise / along.hi,
             slope: board.floor.slope[t],
-            stride: step[t] / step[c].abs(),
-            fine_stride: match step[c] < 0.0 {
+            stride: along.hi / across.hi.abs(),
+            fine_stride: match across.is_negative() {
                 true => per_line.negated(),
                 false => per_line,
             },
-            rise: rise / step[c].abs(),
-            sense: step[c].signum(),
+            rise: rise / across.hi.abs(),
+            sense: across.hi.signum(),
         })
     }
 
@@ -260,25 +264,24 @@ impl Edge {
     /// ρ ∫ s(c) dX from near to far.
     fn integral(&self, board: &Board, terms: usize) -> Sum {
         let series = self.series(board, terms);
-        let start = square_wave(self.c);
+        let square = floor(&self.c);
+        let start = square_wave(square);
         let mut sum = Sum {
-            value: -start * series.at(self.t, self.depth),
+            value: -start * series.at(turned(&self.t), self.depth),
             bound: 0.0,
         };
         let lines = self.lines();
         if let Some((c, t, depth)) = self.end {
-            sum.value += square_wave(c) * series.at(t, depth);
+            sum.value += square_wave(floor(&c)) * series.at(turned(&t), depth);
         }
         let ends = series.size(1, self.depth);
         if lines > 0.0 && self.rho != 0.0 {
-            let first = if self.sense > 0.0 {
-                two_sum(self.c.floor() + 1.0, -self.c)
-            } else {
-                two_sum(self.c, -self.c.floor())
+            let within = self.c.minus(&Double::from_f64(square));
+            let first = match self.sense > 0.0 {
+                true => Double::from_f64(1.0).minus(&within),
+                false => within,
             };
-            let t = first
-                .times(&self.fine_stride)
-                .plus(&Double::from_f64(self.t));
+            let t = first.times(&self.fine_stride).plus(&self.t);
             let crossings = Crossings {
                 t: t.hi,
                 turned: [t, self.fine_stride].map(|x| turn_exactly(&x)),
@@ -299,8 +302,8 @@ impl Edge {
 
     /// How many lines it crosses of the family that it crosses less.
     pub(super) fn lines(&self) -> f64 {
-        let beyond = |(c, ..): (f64, f64, f64)| (c.floor() - self.c.floor()).abs();
-        self.end.map_or(f64::INFINITY, beyond)
+        self.end
+            .map_or(f64::INFINITY, |(c, ..)| (floor(&c) - floor(&self.c)).abs())
     }
 
     fn series(&self, board: &Board, terms: usize) -> Series {

@@ -14,8 +14,7 @@ use super::euler::square_wave;
 use super::grid::FAR;
 use crate::math::{Double, Real, two_sum};
 
-/// No more sides of strips by lines than this are looked at, of which there are some dozens to a microsecond. (Some pixels of 100 000 squares
-/// have more, and bounds a tenth above what is wanted; with all of those, pictures of a board take ten times as long.)
+/// No more sides of strips by lines than this are looked at, of which there are some dozens to a microsecond.
 const MOST: f64 = 80_000.0;
 
 const ZERO: Double = Double { hi: 0.0, lo: 0.0 };

@@ -13,8 +13,8 @@
 //! 4. Areas have closed forms: `arc` for conics. What a region shows of a checkerboard (`board`) is summed row by row where it is
 //!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
-//!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, lines that are few are summed in
-//!    double-double (`finely`).
+//!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
+//!    in double-double (`closely`), and near lines, which are few, one by one (`finely`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
@@ -23,6 +23,7 @@ mod block;
 mod board;
 mod bulk;
 mod cells;
+mod closely;
 mod complex;
 mod cutter;
 mod edge;
@@ -70,8 +71,8 @@ use self::{
 /// something is neglected, which quarters would neglect, too, and take five times as long.
 const ENOUGH: f64 = 1e-12;
 const ENOUGH_CROWDED: f64 = 9e-10;
-/// A bound beyond this is not of roundings but of squares that were too many, which quarters would be, too.
-const HOPELESS: f64 = 1e-7;
+/// A spot is cut into no more pieces than about this: as many as it takes to leave out what is next to nothing of it, by quarters.
+const MOST_PIECES: usize = 64;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,11 +92,32 @@ pub struct Integrator<'a> {
     colors: Vec<[f64; 3]>,
 }
 
+/// A part of a pixel.
+#[derive(Debug)]
+struct Piece {
+    spot: Spot,
+    shares: Shares,
+    /// Whether quarters are not known better.
+    is_final: bool,
+}
+
 /// Room for what a pixel needs, kept from pixel to pixel.
 #[derive(Debug, Default)]
 struct Scratch {
     curves: Vec<Curve>,
     sides: Sides,
+}
+
+impl Piece {
+    /// Its share of the pixel that it is a part of.
+    fn area(&self) -> f64 {
+        self.spot.side * self.spot.side
+    }
+
+    /// How far it may put that pixel off.
+    fn bound(&self) -> f64 {
+        self.area() * self.shares.bound
+    }
 }
 
 impl<'a> Integrator<'a> {
@@ -195,10 +217,10 @@ impl<'a> Integrator<'a> {
         film.set(floor.x, floor.y, self.mean(&shares, bound));
     }
 
-    /// The shares of a spot; of its quarters together where the whole is not computed well enough.
+    /// The shares of a spot; of parts of it together where the whole is not computed well enough.
     ///
     /// A part has coordinates of its own, in which roundings are smaller: the widest views need that, in which a pixel sees
-    /// squares both near and far.
+    /// squares both near and far. The part that is known worst is quartered, as long as that helps.
     fn shares(
         &self,
         spot: Spot,
@@ -206,24 +228,40 @@ impl<'a> Integrator<'a> {
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
-        const FINEST: f64 = 0.5;
-        let shares = self.shares_at_once(spot, live, scratch, cancel);
-        let enough = match shares.is_crowded {
+        let mut of = |spot| Piece {
+            spot,
+            shares: self.shares_at_once(spot, live, scratch, cancel),
+            is_final: false,
+        };
+        let whole = of(spot);
+        let mut enough = match whole.shares.is_crowded {
             true => ENOUGH_CROWDED,
             false => ENOUGH,
         };
-        if shares.bound <= enough || shares.bound > HOPELESS || spot.side <= FINEST {
-            return shares;
+        let mut pieces = vec![whole];
+        while pieces.len() <= MOST_PIECES && !cancel.load(Ordering::Relaxed) {
+            let bound: f64 = pieces.iter().map(Piece::bound).sum();
+            let uncertain = pieces.iter_mut().filter(|piece| !piece.is_final);
+            let worst = uncertain.max_by(|one, other| one.bound().total_cmp(&other.bound()));
+            let Some(worst) = worst.filter(|_| bound > enough) else {
+                break;
+            };
+            let quarters = worst.spot.quarters().map(&mut of);
+            let left: f64 = quarters.iter().map(Piece::bound).sum();
+            worst.is_final = left > 0.5 * worst.bound();
+            if left < worst.bound() {
+                let is_final = worst.is_final;
+                let [first, rest @ ..] = quarters.map(|piece| Piece { is_final, ..piece });
+                *worst = first;
+                pieces.extend(rest);
+            }
+            enough = ENOUGH_CROWDED;
         }
         let mut together = Shares::default();
-        for quarter in spot.quarters() {
-            together.add_quarter(&self.shares(quarter, live, scratch, cancel));
+        for piece in &pieces {
+            together.add_part(&piece.shares, piece.area());
         }
-        if together.bound < shares.bound {
-            together
-        } else {
-            shares
-        }
+        together
     }
 
     fn shares_at_once(

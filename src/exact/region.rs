@@ -184,13 +184,13 @@ impl Checkered {
 }
 
 impl Shares {
-    /// Adds those of a quarter.
-    pub fn add_quarter(&mut self, quarter: &Self) {
-        for &(slot, area) in &quarter.by_slot {
-            self.add(slot, 0.25 * area);
+    /// Adds those of a part that is so much of the whole.
+    pub fn add_part(&mut self, part: &Self, area: f64) {
+        for &(slot, share) in &part.by_slot {
+            self.add(slot, area * share);
         }
-        self.bound += 0.25 * quarter.bound;
-        self.is_crowded |= quarter.is_crowded;
+        self.bound += area * part.bound;
+        self.is_crowded |= part.is_crowded;
     }
 
     fn add(&mut self, slot: usize, area: f64) {

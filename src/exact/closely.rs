@@ -1,0 +1,145 @@
+//! The board's integral over a polygon that shows no horizon, from forms in double-double: for what roundings of `f64` would leave in doubt.
+//!
+//! What is far is summed along its boundary as in `edge`, whose terms are as good as its corners are; what is near, line by line (`finely`).
+
+use std::array;
+
+use glam::DVec2;
+
+use super::{
+    board::{Board, Corner, FINE, Sum, displacements, normalized, size},
+    cutter::split,
+    edge, finely,
+    floor::Fine,
+};
+use crate::math::{Double, Real};
+
+/// What is further away than so many squares is summed along its boundary: there all terms neglect less than roundings do.
+const FAR: f64 = 24.0;
+
+/// The integral, positive where squares are however the polygon is oriented; `None` where too many lines are near, or places cannot be told.
+pub(super) fn sum(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
+    let sum = near_and_far(board, polygon);
+    if let Some(sum) = sum.filter(|sum| sum.bound <= FINE) {
+        return Some(sum);
+    }
+    // Of few squares not too far away series leave more than lines do.
+    let lines = finely::sum(board, polygon);
+    let sums = [sum, lines].into_iter().flatten();
+    sums.min_by(|one, other| one.bound.total_cmp(&other.bound))
+}
+
+fn near_and_far(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
+    if board.fine.nudge > 0.0 {
+        return None;
+    }
+    let board = closer(board);
+    let [p, q] = board.floor.slope;
+    let mut line = board.below;
+    line[2] -= 1.0 / (FAR * (p.abs() + q.abs()));
+    let (mut far, mut near) = (Vec::new(), Vec::new());
+    split(polygon, &line, &mut far, &mut near);
+    let mut sum = Sum::default();
+    if far.len() > 2 {
+        let corners = far.iter().map(|&at| corner(&board, at));
+        let corners = corners.collect::<Option<Vec<_>>>()?;
+        sum.add(edge::sum(&board, &corners, None));
+    }
+    if near.len() > 2 {
+        sum.add(finely::sum(&board, &near)?);
+    }
+    Some(sum)
+}
+
+/// The board as it is where corners are told by its fine forms.
+fn closer(board: &Board) -> Board {
+    let [of_a, of_b] = board.across.map(|form| normalized(form).1);
+    let (fine, inverse) = Fine::new(board.fine.forms, board.fine.rads, [of_a, of_b]);
+    let scales = [of_a, of_b, 0];
+    // With a rounding more than in `f64`: the factors themselves are rounded.
+    let errors = array::from_fn(|i| {
+        let form = fine.forms[i].map(|factor| factor.hi);
+        let error = fine.rads[i] + 5.0 * Double::UNIT * size(&form);
+        libm::ldexp(error, -scales[i])
+    });
+    let steepness = libm::hypot(board.below[0], board.below[1]);
+    let (displacement, upwards) = displacements(&errors, &inverse, steepness);
+    Board {
+        floor: fine.floor.clone(),
+        fine,
+        displacement,
+        upwards,
+        ..board.clone()
+    }
+}
+
+/// The corner at a point, unless it is on the horizon or beyond.
+fn corner(board: &Board, at: DVec2) -> Option<Corner> {
+    let [x, y] = [at.x, at.y].map(Double::from_f64);
+    let value = |[a, b, c]: &[Double; 3]| a.times(&x).plus(&b.times(&y)).plus(c);
+    let [a, b, level] = board.fine.forms.each_ref().map(value);
+    let places = [a, b].map(|n| n.over(&level));
+    (level.hi > board.horizon_off).then(|| Corner {
+        at,
+        floor: places.map(|place| place.hi),
+        low: places.map(|place| place.lo),
+        depth: 1.0 / level.hi,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::exact::polygon::PIXEL;
+
+    /// What a level camera sees that is so many squares above the board, of so many pixels of focal length, in a pixel so far below the
+    /// horizon.
+    fn board(degrees: f64, height: f64, focal: f64, down: f64) -> Board {
+        let (sin, cos) = (
+            libm::sin(degrees.to_radians()),
+            libm::cos(degrees.to_radians()),
+        );
+        let steep = 1.0 / (focal * height);
+        let below = [0.0, steep, down * steep];
+        let across = [[-sin / focal, 0.0, cos], [cos / focal, 0.0, sin]];
+        // Squares are counted from a pair of them that the pixel sees, as they are in pictures.
+        let across = across.map(|[x, y, one]| {
+            let seen = 2.0 * (0.5 * one / below[2]).round();
+            [x, y - seen * below[1], one - seen * below[2]]
+        });
+        Board::new(across, below)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+
+        #[test]
+        fn along_the_boundary_it_is_what_lines_one_by_one_give(
+            degrees in 0.0..360.0_f64,
+            height in 1.0..10.0_f64,
+            focal in 20.0..800.0_f64,
+            deepest in 40.0..400.0_f64,
+        ) {
+            // The upper side of the pixel sees what is so deep.
+            let down = 0.5 + focal * height / deepest;
+            let board = board(degrees, height, focal, down);
+            for polygon in [&PIXEL[..], &PIXEL[1..]] {
+                let lines = finely::sum(&board, polygon);
+                prop_assume!(lines.is_some());
+                let lines = lines.unwrap_or_default();
+                let both = near_and_far(&board, polygon).unwrap_or_default();
+                let off = (both.value - lines.value).abs();
+                prop_assert!(both.bound > 0.0 && both.bound <= FINE, "{both:?}");
+                prop_assert!(lines.bound <= 1e-15, "{lines:?}");
+                prop_assert!(off <= both.bound + lines.bound, "{both:?}, not {lines:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_horizon_is_left_to_others() {
+        assert!(sum(&board(30.0, 2.0, 100.0, 0.3), &PIXEL).is_none());
+    }
+}
