@@ -40,6 +40,7 @@ pub mod math;
 pub mod numbers;
 pub mod source;
 pub mod suggest;
+pub mod threads;
 
 pub mod syntax;
 

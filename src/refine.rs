@@ -12,8 +12,9 @@ use rayon::prelude::*;
 use crate::{
     area::Area,
     film::Film,
-    render::{Control, RenderError, pool, render},
+    render::{Control, RenderError, render},
     sampling::Sampling,
+    threads,
     tracer::World,
 };
 
@@ -59,7 +60,7 @@ pub fn coarse(
         .collect();
     let (width, height) = (part.width.div_ceil(side), part.height.div_ceil(side));
     let film = std::sync::Mutex::new(Film::new(width, height)?);
-    pool(control.threads)?.install(|| {
+    threads::pool(control.threads)?.install(|| {
         (0..height).into_par_iter().for_each(|row| {
             if control.cancel.load(Ordering::Relaxed) {
                 return;

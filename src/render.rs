@@ -19,7 +19,7 @@ use std::{
     },
 };
 
-use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
+use rayon::prelude::*;
 use thiserror::Error;
 
 use self::{
@@ -32,6 +32,7 @@ use crate::{
     film::{self, Encoder, Film, TooLarge},
     math::Vectors,
     sampling::Sampling,
+    threads,
     tracer::{Checks, Item, Live, Part, Pixel, Quartering, Room, World},
 };
 
@@ -50,9 +51,6 @@ const GRAIN: u64 = 4;
 
 /// Up to so many samples of a pixel of a scene with many objects are traced one by one.
 const FEW_IN_CROWDS: u64 = 8;
-
-/// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
-const THREADS: usize = 1024;
 
 /// How a render is watched, and by how many it is done.
 pub struct Control<'a> {
@@ -169,7 +167,7 @@ pub fn render_in_a_way<P: film::Pixel>(
         },
     };
     let side = tile_side(sampling, part);
-    pool(control.threads)?.install(|| {
+    threads::pool(control.threads)?.install(|| {
         wanted(part.tiles(side), control)
             .par_bridge()
             .for_each_init(
@@ -222,7 +220,7 @@ fn render_exact_as<P: film::Pixel>(
     });
     let integrator = Integrator::new(world);
     let encoder = Encoder::new();
-    pool(control.threads)?.install(|| {
+    threads::pool(control.threads)?.install(|| {
         wanted(part.tiles(TILE), control)
             .par_bridge()
             .for_each(|tile| {
@@ -280,15 +278,6 @@ fn finished<T>(made: Mutex<T>, control: &Control) -> Result<T, RenderError> {
         return Err(RenderError::Cancelled);
     }
     Ok(made.into_inner().unwrap_or_else(PoisonError::into_inner))
-}
-
-/// So many threads, or as many as there are processors.
-pub(crate) fn pool(
-    threads: Option<NonZero<usize>>,
-) -> Result<ThreadPool, rayon::ThreadPoolBuildError> {
-    // Rayon takes 0 for as many as there are processors.
-    let threads = threads.map_or(0, |threads| threads.get().min(THREADS));
-    ThreadPoolBuilder::new().num_threads(threads).build()
 }
 
 /// The side of the tiles: smaller where pixels have many samples, or are few.

@@ -1,6 +1,6 @@
 //! What users type.
 
-use std::path::PathBuf;
+use std::{num::NonZero, path::PathBuf};
 
 use clap::{
     Parser, Subcommand, ValueEnum,
@@ -81,6 +81,21 @@ pub enum Command {
     /// Print the manual page
     #[command(after_help = MAN_EXAMPLES)]
     Man,
+}
+
+impl Command {
+    /// How many threads are asked for.
+    pub fn threads(&self) -> Option<NonZero<usize>> {
+        let wanted = match self {
+            Self::Render(args) => args.threads,
+            #[cfg(feature = "preview")]
+            Self::Watch(args) => args.threads,
+            Self::Diff(args) => args.threads,
+            Self::Report(args) => args.threads,
+            _ => None,
+        };
+        NonZero::new(usize::try_from(wanted?).unwrap_or(usize::MAX))
+    }
 }
 
 const RENDER_EXAMPLES: &str = "\

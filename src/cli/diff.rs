@@ -2,7 +2,6 @@
 
 use std::{
     fmt::Write,
-    num::NonZero,
     path::Path,
     sync::atomic::{AtomicBool, Ordering},
 };
@@ -45,9 +44,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let a = film::read_picture(&a).map_err(|error| unreadable(&args.a, &error))?;
     let b = input::whole(&args.b).map_err(|error| unreadable(&args.b, &error))?;
     let cancel = interrupt.watch();
-    let threads = threads(args);
     let control = Control {
-        threads,
+        threads: None,
         progress: &|_| {},
         cancel,
     };
@@ -66,7 +64,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         let Some(scene) = input.scene().scene else {
             return Ok(Status::SceneErrors);
         };
-        match exact(&scene, threads, cancel) {
+        match exact(&scene, cancel) {
             Ok(exact) => Other::Scene(Box::new(scene), exact),
             Err(error) => return ended(error),
         }
@@ -154,11 +152,6 @@ fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
 }
 
-fn threads(args: &DiffArgs) -> Option<NonZero<usize>> {
-    let threads = args.threads?;
-    NonZero::new(usize::try_from(threads).unwrap_or(usize::MAX))
-}
-
 fn ended(error: RenderError) -> Result<Status, Trouble> {
     match error {
         RenderError::Cancelled => Ok(Status::Interrupted),
@@ -166,15 +159,11 @@ fn ended(error: RenderError) -> Result<Status, Trouble> {
     }
 }
 
-fn exact(
-    scene: &Scene,
-    threads: Option<NonZero<usize>>,
-    cancel: &AtomicBool,
-) -> Result<Exact, RenderError> {
+fn exact(scene: &Scene, cancel: &AtomicBool) -> Result<Exact, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     progress::watched(whole.pixels(), |done| {
         let control = Control {
-            threads,
+            threads: None,
             progress: &|more| {
                 done.fetch_add(more, Ordering::Relaxed);
             },

@@ -33,6 +33,7 @@ use std::{
 };
 
 use clap::Parser;
+use pinhole::threads;
 
 use self::{
     args::{Args, Command},
@@ -43,6 +44,9 @@ use self::{
 pub fn run() -> ExitCode {
     // Help, version and wrong usage end here, the latter with status 2.
     let args = Args::parse();
+    if let Some(wanted) = args.command.threads() {
+        threads::limit(wanted);
+    }
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args),

@@ -2,7 +2,6 @@
 
 use std::{
     io::{self, IsTerminal},
-    num::NonZero,
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
 };
@@ -75,11 +74,6 @@ impl Picture {
     }
 }
 
-/// As many threads as are asked for.
-pub fn threads(wanted: Option<u64>) -> Option<NonZero<usize>> {
-    NonZero::new(usize::try_from(wanted?).unwrap_or(usize::MAX))
-}
-
 /// What is kept of a picture's pixels.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
@@ -95,7 +89,6 @@ pub fn picture(
     world: &World,
     part: Area,
     keep: Keep,
-    threads: Option<NonZero<usize>>,
     cancel: &AtomicBool,
 ) -> Result<Picture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
@@ -111,7 +104,7 @@ pub fn picture(
     };
     progress::watched(expected, |done| {
         let control = Control {
-            threads,
+            threads: None,
             progress: &|more| {
                 done.fetch_add(more, Ordering::Relaxed);
             },

@@ -10,7 +10,7 @@ use super::{
     input::{Input, shown},
     interrupt::Interrupt,
     output,
-    picture::{Output, picture, threads},
+    picture::{Output, picture},
 };
 
 /// Renders a scene.
@@ -40,8 +40,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let cancel = interrupt.watch();
     let started = Instant::now();
     let world = World::new(&scene);
-    let threads = threads(args.threads);
-    let picture = match picture(&scene, &world, part, output.keep(), threads, cancel) {
+    let picture = match picture(&scene, &world, part, output.keep(), cancel) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
         Err(error) => return Err(Trouble(error.to_string())),

@@ -1,6 +1,6 @@
 //! `report`: how right Pinhole is, and how fast.
 
-use std::{num::NonZero, sync::atomic::Ordering};
+use std::sync::atomic::Ordering;
 
 use pinhole::{
     render::{Control, RenderError},
@@ -36,10 +36,9 @@ fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble>
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);
     let total = inputs.saturating_mul(numerics::cases().count() as u64);
-    let threads = threads(args);
     let table = progress::watched(total, |done| {
         let control = Control {
-            threads,
+            threads: None,
             progress: &|more| {
                 done.fetch_add(more, Ordering::Relaxed);
             },
@@ -56,10 +55,4 @@ fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble>
         true => Status::Done,
         false => Status::Interrupted,
     })
-}
-
-/// How many threads are asked for.
-pub fn threads(args: &ReportArgs) -> Option<NonZero<usize>> {
-    let threads = usize::try_from(args.threads?).unwrap_or(usize::MAX);
-    NonZero::new(threads)
 }

@@ -24,7 +24,6 @@ use super::{
     input::{Input, check_standard, is_standard, shown},
     interrupt::Interrupt,
     output, progress,
-    report::threads,
 };
 
 /// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
@@ -104,7 +103,7 @@ fn request(args: &ReportArgs) -> Request {
         runs: args.runs,
         errors: args.errors.clone(),
         budget: Duration::from_secs(args.budget),
-        threads: threads(args),
+        threads: None,
     }
 }
 

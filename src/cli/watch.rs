@@ -2,7 +2,6 @@
 
 use std::{
     fs,
-    num::NonZero,
     path::Path,
     sync::{
         Arc,
@@ -28,7 +27,7 @@ use super::{
     input::{self, Input, shown},
     interrupt::Interrupt,
     output,
-    picture::{Keep, Output, Picture, picture, threads},
+    picture::{Keep, Output, Picture, picture},
     show::Screen,
 };
 
@@ -129,13 +128,7 @@ fn make(
     let Some(scene) = reading.scene else {
         return Ok(None);
     };
-    let picture = match with_sketch(
-        &scene,
-        output.keep(),
-        threads(args.threads),
-        is_stale,
-        screen,
-    ) {
+    let picture = match with_sketch(&scene, output.keep(), is_stale, screen) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(None),
         Err(error) => return Err(Trouble(error.to_string())),
@@ -168,14 +161,13 @@ const PATIENCE: Duration = Duration::from_millis(200);
 fn with_sketch(
     scene: &Scene,
     keep: Keep,
-    threads: Option<NonZero<usize>>,
     is_stale: &AtomicBool,
     screen: &mut Screen,
 ) -> Result<Picture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let world = World::new(scene);
     let Some(side) = screen.side(whole) else {
-        return picture(scene, &world, whole, keep, threads, is_stale);
+        return picture(scene, &world, whole, keep, is_stale);
     };
     thread::scope(|scope| {
         let (done, wait) = mpsc::channel::<()>();
@@ -186,7 +178,7 @@ fn with_sketch(
                     return;
                 }
                 let control = Control {
-                    threads,
+                    threads: None,
                     progress: &|_| {},
                     cancel: is_stale,
                 };
@@ -195,7 +187,7 @@ fn with_sketch(
                 }
             }
         });
-        let picture = picture(scene, &world, whole, Keep::Light, threads, is_stale);
+        let picture = picture(scene, &world, whole, Keep::Light, is_stale);
         drop(done);
         picture
     })

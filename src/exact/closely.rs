@@ -7,8 +7,9 @@ use std::array;
 use glam::DVec2;
 
 use super::{
-    board::{Board, Corner, FINE, Sum, displacements, normalized, size},
+    board::{Board, Corner, FINE, Sum, normalized, size},
     cutter::split,
+    displaced::displacements,
     edge, finely,
     floor::Fine,
 };

@@ -26,6 +26,7 @@ mod cells;
 mod closely;
 mod complex;
 mod cutter;
+mod displaced;
 mod edge;
 mod euler;
 mod exponential;
@@ -71,6 +72,8 @@ use self::{
 /// something is neglected, which quarters would neglect, too, and take five times as long.
 const ENOUGH: f64 = 1e-12;
 const ENOUGH_CROWDED: f64 = 9e-10;
+/// Quarters are cut further only where they are off by more than this together: that takes as long again for each of them.
+const TOLERABLE: f64 = 1e-7;
 /// A spot is cut into no more pieces than about this: as many as it takes to leave out what is next to nothing of it, by quarters.
 const MOST_PIECES: usize = 64;
 
@@ -220,7 +223,8 @@ impl<'a> Integrator<'a> {
     /// The shares of a spot; of parts of it together where the whole is not computed well enough.
     ///
     /// A part has coordinates of its own, in which roundings are smaller: the widest views need that, in which a pixel sees
-    /// squares both near and far. The part that is known worst is quartered, as long as that helps.
+    /// squares both near and far. The part that is known worst is quartered: once if the whole is not known as well as it could be, and again as
+    /// long as that helps much where far too little is known.
     fn shares(
         &self,
         spot: Spot,
@@ -255,7 +259,7 @@ impl<'a> Integrator<'a> {
                 *worst = first;
                 pieces.extend(rest);
             }
-            enough = ENOUGH_CROWDED;
+            enough = TOLERABLE;
         }
         let mut together = Shares::default();
         for piece in &pieces {

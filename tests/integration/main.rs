@@ -35,6 +35,8 @@ mod report;
 mod robustness;
 mod sampling;
 mod syntax;
+#[cfg(target_os = "linux")]
+mod threads;
 mod tracer;
 #[cfg(all(unix, feature = "preview"))]
 mod watch;

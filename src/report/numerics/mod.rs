@@ -34,7 +34,7 @@ pub use self::{
     table::{Claim, Row, Table},
     trial::Tally,
 };
-use crate::render::{Control, pool};
+use crate::{render::Control, threads::pool};
 
 /// A hard case.
 #[derive(Clone, Copy, Debug)]

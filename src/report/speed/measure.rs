@@ -22,6 +22,7 @@ use crate::{
         hash::{Key, scale},
     },
     scene::{Count, Method, Sampler, Scene},
+    threads,
     tracer::World,
 };
 
@@ -252,7 +253,7 @@ fn empty(plan: &Plan) -> Measurement {
         threads: plan
             .request
             .threads
-            .map_or(machine.processors, NonZero::get),
+            .map_or_else(threads::available, NonZero::get),
         machine,
         seed: plan.scene.sampler.seed,
         rungs: plan.rungs.clone(),

@@ -7,7 +7,6 @@
 
 use std::{
     collections::BTreeMap,
-    num::NonZero,
     ops::Range,
     sync::{
         atomic::{AtomicBool, AtomicUsize, Ordering},
@@ -23,6 +22,7 @@ use crate::{
         comments::{self, Start},
         tree::Item,
     },
+    threads,
 };
 
 /// What is done with the parts is done by one thread: more than these would wait for it.
@@ -44,8 +44,7 @@ pub fn parse_in_parts<'s>(
     if parts.is_empty() {
         return false;
     }
-    let threads = thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = threads.min(parts.len()).min(MOST_THREADS);
+    let threads = threads::available().min(parts.len()).min(MOST_THREADS);
     let next = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
     let work = |found: mpsc::SyncSender<_>| {

@@ -12,7 +12,7 @@ pub(super) use self::level::Level;
 use std::cmp::Ordering;
 
 use glam::DVec2;
-use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
+use rayon::{ThreadPool, prelude::*};
 
 use self::{
     colors::Colors,
@@ -30,6 +30,7 @@ use crate::{
     color::Color,
     math::{Big, Double, Doubt, Real},
     scene::{self, Scene},
+    threads,
 };
 
 /// The scene prepared for one picture: made once, then asked at any sample point from any thread.
@@ -471,6 +472,6 @@ impl World {
 /// Threads to prepare so many objects; none if they are few, or if the system starts none.
 fn threads_for(objects: usize) -> Option<ThreadPool> {
     (objects >= MANY)
-        .then(|| ThreadPoolBuilder::new().build().ok())
+        .then(|| threads::pool(None).ok())
         .flatten()
 }

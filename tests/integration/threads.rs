@@ -1,0 +1,50 @@
+//! How many threads the program starts.
+
+use std::{
+    fmt::Write,
+    fs,
+    process::{Child, Stdio},
+    thread,
+    time::Duration,
+};
+
+use tempfile::TempDir;
+
+use crate::program::command;
+
+/// The most threads that a process was seen with until it ended.
+fn most(process: &mut Child) -> usize {
+    let tasks = format!("/proc/{}/task", process.id());
+    let mut most = 0;
+    while process.try_wait().expect("a status").is_none() {
+        most = most.max(fs::read_dir(&tasks).map_or(0, Iterator::count));
+        thread::sleep(Duration::from_micros(200));
+    }
+    most
+}
+
+#[test]
+fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
+    let folder = TempDir::new().expect("a folder");
+    let mut text = String::from("image { width 8 height 8 }\n");
+    for index in 0..30_000 {
+        let (x, y) = (index % 173, index / 173);
+        let _ = writeln!(
+            text,
+            "sphere {{ center ({x}, {y}, -9.5) radius 0.25 color olive }}"
+        );
+    }
+    fs::write(folder.path().join("a.scn"), text).expect("a scene");
+    let most = |threads: &str| {
+        let arguments = ["render", "a.scn", "--threads", threads];
+        let mut process = command(folder.path(), &arguments)
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program");
+        most(&mut process)
+    };
+    let (one, six) = (most("1"), most("6"));
+    // Besides those there are the first one, and those that wait for Ctrl-C.
+    assert!(one <= 4, "{one}");
+    assert!(six >= 6, "{six}");
+}
