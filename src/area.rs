@@ -57,6 +57,17 @@ impl Area {
             && other.rows().start < self.rows().end
     }
 
+    /// The smallest one with both.
+    pub fn with(self, other: Self) -> Self {
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        Self {
+            x,
+            y,
+            width: (self.x + self.width).max(other.x + other.width) - x,
+            height: (self.y + self.height).max(other.y + other.height) - y,
+        }
+    }
+
     /// Its pixels' columns and rows in the picture, row by row.
     pub fn iter(self) -> impl Iterator<Item = (u32, u32)> {
         (0..self.height)

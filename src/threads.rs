@@ -12,7 +12,8 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
 const MOST: usize = 1024;
 
-/// What the process was limited to; 0 where it was not.
+/// What the process was limited to; 0 where it was not. This is the one thing that is kept for a whole process, as processors are; it changes how long
+/// things take and nothing else.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
 /// From now on this process starts no more threads at once than this, unless it is told otherwise for something.
@@ -20,7 +21,7 @@ pub fn limit(threads: NonZero<usize>) {
     LIMIT.store(threads.get().min(MOST), Ordering::Relaxed);
 }
 
-/// One thread for each processor, or as many as the process is limited to.
+/// One thread for each processor, or as many as the process is limited to, whatever variables of the environment say.
 pub(crate) fn available() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
         0 => thread::available_parallelism().map_or(1, NonZero::get),

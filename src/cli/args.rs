@@ -148,10 +148,12 @@ scene, simple mistakes that explain the difference are named: a mirrored picture
 roll, colours averaged without decoding them, an object in the wrong place, too few samples.
 
 JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
-a, b} (in steps), beyond {pixels, share}, tolerance (in steps), equal, likely [{mistake, message, help, \
-rmse, explains, off {right, down, outwards}}] with the best explanation first; rmse is what it leaves, \
-explains its share of the squared difference, 0 to 1, and off is by how many pixels an object is off: its middle, \
-and its outline, away from there. Of pictures of different sizes rmse, largest and beyond are null.
+a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be judged, as the exact picture's bound is too \
+large there), tolerance (in steps), equal, likely [{mistake, message, help, rmse, explains, off {right, down, \
+outwards}}] with the best explanation first, thin (whether a simple mistake would explain it, of which too few \
+pixels tell); rmse is what an explanation leaves, explains its share of the squared difference, 0 to 1, and off is by how many \
+pixels an object is off: its middle, and its outline, away from there. Of pictures of different sizes rmse, \
+largest, beyond and undecided are null.
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 

@@ -376,6 +376,7 @@ impl Report {
             "tolerance": self.tolerance,
             "equal": found.is_some_and(Comparison::is_equal),
             "likely": likely.collect::<Vec<_>>(),
+            "thin": self.grade.is_thin,
         })
     }
 }

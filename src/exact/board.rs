@@ -41,6 +41,9 @@ const GOOD_FAR: f64 = 1e-8;
 /// Where roundings displace points by more than this, in pixels, edges and floor no longer fit each other.
 const MISFIT: f64 = 0.1;
 
+/// Where they displace points by no more than this, what may be on the horizon but for them is said to be on it.
+const BESIDE: f64 = 1e-11;
+
 /// What is farther than this m is next to nothing of a pixel.
 const NEXT_TO_NOTHING: f64 = 1e9;
 
@@ -194,7 +197,10 @@ impl Board {
             displacement,
             horizon: DVec2::new(l[1], -l[0]) / steepness,
             upwards,
-            horizon_off: errors[2],
+            horizon_off: match displacement <= BESIDE {
+                true => 0.5 * errors[2],
+                false => 0.0,
+            },
             tail: 5e-10,
         }
     }
@@ -229,7 +235,14 @@ impl Board {
         let endless = corners.iter().any(|c| c.depth.is_infinite());
         if endless {
             let mut sum = self.far_or_both(&corners, known, cancel);
-            sum.bound += self.beside_horizon(&corners);
+            let is_beside = |&at: &DVec2| {
+                let level = form(&self.below, at);
+                level > 0.0 && level <= self.horizon_off
+            };
+            if polygon.iter().any(is_beside) {
+                // Said to be on the horizon, such corners displace what is seen once more as roundings do.
+                sum.bound += self.blurred(corners.iter().map(|c| c.at));
+            }
             return sum;
         }
         let spans = spans(&corners);
@@ -265,7 +278,7 @@ impl Board {
     pub(crate) fn is_crowded(&self, polygon: &[DVec2]) -> bool {
         let mut levels = polygon.iter().map(|&at| form(&self.below, at));
         let is_endless = levels.any(|level| level <= self.horizon_off);
-        // So many that they cannot be counted are more, too.
+        // Of squares without number there is no count: then it is NaN.
         let is_counted = |corners: &[Corner]| squares(corners) <= COUNTED;
         is_endless || !is_counted(&self.visible(polygon))
     }
@@ -357,12 +370,6 @@ impl Board {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         (place, 16.0 * UNIT / level * terms)
-    }
-
-    /// How much of a polygon is so near to the horizon that corners there are said to be on it.
-    fn beside_horizon(&self, corners: &[Corner]) -> f64 {
-        let (_, perimeter) = measure(corners.iter().map(|c| c.at));
-        self.upwards[0] * perimeter
     }
 
     /// The corner at a point where L has a value; on the horizon, where that is 0 or may be but for roundings.

@@ -199,7 +199,7 @@ impl Edge {
         }
         let step = |i: usize| match far.depth.is_infinite() {
             true => far.floor[i].abs(),
-            false => (far.floor[i] - near.floor[i]).abs(),
+            false => far.place(i).minus(&near.place(i)).hi.abs(),
         };
         let mut edge = Self::along(board, near, far, step(0) <= step(1))?;
         if !forward {
@@ -296,7 +296,7 @@ impl Edge {
             sum.bound += 2.0 * jumps.bound;
         }
         sum.value *= self.rho;
-        sum.bound = self.rho.abs() * (sum.bound + 16.0 * UNIT * ends);
+        sum.bound = self.rho.abs() * (sum.bound + 32.0 * UNIT * ends);
         sum
     }
 

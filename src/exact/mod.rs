@@ -74,8 +74,8 @@ const ENOUGH: f64 = 1e-12;
 const ENOUGH_CROWDED: f64 = 9e-10;
 /// Quarters are cut further only where they are off by more than this together: that takes as long again for each of them.
 const TOLERABLE: f64 = 1e-7;
-/// A spot is cut into no more pieces than about this: as many as it takes to leave out what is next to nothing of it, by quarters.
-const MOST_PIECES: usize = 64;
+/// Pieces of a spot are quartered no more often than this: what is left of it by so many quarters of quarters is next to nothing.
+const MOST_CUTS: usize = 21;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,9 +100,18 @@ pub struct Integrator<'a> {
 struct Piece {
     spot: Spot,
     shares: Shares,
-    /// Whether quarters are not known better.
+    /// Whether it is not worth while to quarter it: its quarters, or those of what it is a quarter of, leave more than half as much in doubt.
     is_final: bool,
 }
+
+/// A spot with more objects than this, and more curves than the third root of that, is quartered if those are not in all of its quarters,
+/// down to spots of such a side.
+const SEVERAL: usize = 4;
+const MANY_CURVES: u64 = 16 * 16 * 16;
+const SMALLEST: f64 = 1.0 / 4096.0;
+/// Of more curves than the third root of that it cannot be told in spots larger than this whether they go their own ways.
+const VERY_MANY_CURVES: u64 = 48 * 48 * 48;
+const LARGE: f64 = 1.0 / 16.0;
 
 /// Room for what a pixel needs, kept from pixel to pixel.
 #[derive(Debug, Default)]
@@ -112,14 +121,15 @@ struct Scratch {
 }
 
 impl Piece {
-    /// Its share of the pixel that it is a part of.
-    fn area(&self) -> f64 {
-        self.spot.side * self.spot.side
+    /// Its share of a spot that it is a part of.
+    fn area(&self, of: Spot) -> f64 {
+        let side = self.spot.side / of.side;
+        side * side
     }
 
-    /// How far it may put that pixel off.
-    fn bound(&self) -> f64 {
-        self.area() * self.shares.bound
+    /// How far it may put that spot off.
+    fn bound(&self, of: Spot) -> f64 {
+        self.area(of) * self.shares.bound
     }
 }
 
@@ -232,6 +242,14 @@ impl<'a> Integrator<'a> {
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
+        if let Some(quarters) = self.with_fewer_curves(spot, live, &mut scratch.curves, cancel) {
+            let mut together = Shares::default();
+            for (quarter, live) in &quarters {
+                let shares = self.shares(*quarter, live, scratch, cancel);
+                together.add_part(&shares, 0.25);
+            }
+            return together;
+        }
         let mut of = |spot| Piece {
             spot,
             shares: self.shares_at_once(spot, live, scratch, cancel),
@@ -242,18 +260,24 @@ impl<'a> Integrator<'a> {
             true => ENOUGH_CROWDED,
             false => ENOUGH,
         };
+        let off = |piece: &Piece| piece.bound(spot);
         let mut pieces = vec![whole];
-        while pieces.len() <= MOST_PIECES && !cancel.load(Ordering::Relaxed) {
-            let bound: f64 = pieces.iter().map(Piece::bound).sum();
-            let uncertain = pieces.iter_mut().filter(|piece| !piece.is_final);
-            let worst = uncertain.max_by(|one, other| one.bound().total_cmp(&other.bound()));
-            let Some(worst) = worst.filter(|_| bound > enough) else {
+        for _ in 0..MOST_CUTS {
+            let bound: f64 = pieces.iter().map(off).sum();
+            if bound <= enough || cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            let uncertain = pieces
+                .iter_mut()
+                .filter(|piece| !piece.is_final && off(piece) > 0.0);
+            let Some(worst) = uncertain.max_by(|one, other| off(one).total_cmp(&off(other))) else {
                 break;
             };
+            let before = off(worst);
             let quarters = worst.spot.quarters().map(&mut of);
-            let left: f64 = quarters.iter().map(Piece::bound).sum();
-            worst.is_final = left > 0.5 * worst.bound();
-            if left < worst.bound() {
+            let after: f64 = quarters.iter().map(off).sum();
+            worst.is_final = after > 0.5 * before;
+            if after < before {
                 let is_final = worst.is_final;
                 let [first, rest @ ..] = quarters.map(|piece| Piece { is_final, ..piece });
                 *worst = first;
@@ -263,9 +287,41 @@ impl<'a> Integrator<'a> {
         }
         let mut together = Shares::default();
         for piece in &pieces {
-            together.add_part(&piece.shares, piece.area());
+            together.add_part(&piece.shares, piece.area(spot));
         }
         together
+    }
+
+    /// The quarters of a spot with what may be seen in each, if they take less time than all of it at once: n curves cross in some n² places,
+    /// at each of which all of them are looked at. Where curves go their own ways, half of them pass through a quarter; what is hidden there
+    /// has none.
+    fn with_fewer_curves(
+        &self,
+        spot: Spot,
+        live: &[Live],
+        curves: &mut Vec<Curve>,
+        cancel: &AtomicBool,
+    ) -> Option<[(Spot, Vec<Live>); 4]> {
+        if live.len() <= SEVERAL || spot.side <= SMALLEST {
+            return None;
+        }
+        let mut time = |spot, live: &[Live]| {
+            self.world.curves(spot, live, cancel, curves);
+            (curves.len() as u64).saturating_pow(3)
+        };
+        let whole = time(spot, live);
+        if whole <= MANY_CURVES {
+            return None;
+        }
+        let mut together = 0;
+        let quarters = spot.quarters().map(|quarter| {
+            let mut seen = Vec::new();
+            self.world.live_in(quarter, live, &mut seen);
+            together += time(quarter, &seen);
+            (quarter, seen)
+        });
+        let is_large = spot.side > LARGE && whole > VERY_MANY_CURVES;
+        (is_large || together <= whole / 4 * 3).then_some(quarters)
     }
 
     fn shares_at_once(

@@ -109,12 +109,18 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
     let Some((_, first)) = boards(scene).next() else {
         return Vec::new();
     };
-    let (_, pitch) = axes(scene);
-    // Half a pixel, where the camera looks to.
-    let half = 0.5 * pitch * direction(scene).length();
+    vec![
+        height(scene, first),
+        square(scene, first),
+        origin(scene, first),
+    ]
+}
+
+fn height(scene: &Scene, first: Checkerboard) -> Change {
     let above = scene.camera.eye.y - first.y;
     let parts = [0.0625, 0.125, 0.25, 0.5, 0.75].into_iter();
-    let height = Change {
+    Change {
+        numbers: Vec::new(),
         mistake: "board_height",
         help: "its plane is y = `y`",
         with: Box::new(|scene, at| Some(*with_boards(scene, |board| board.y += at[0]))),
@@ -129,9 +135,14 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
         starts: parts
             .flat_map(|part| [vec![part * above], vec![-part * above]])
             .collect(),
-        widths: vec![half],
-    };
-    let square = Change {
+        widths: vec![half_a_pixel(scene)],
+    }
+}
+
+fn square(scene: &Scene, first: Checkerboard) -> Change {
+    let (_, pitch) = axes(scene);
+    Change {
+        numbers: Vec::new(),
         mistake: "board_square",
         help: "square is the side of one square, in metres",
         with: Box::new(move |scene, at| {
@@ -151,10 +162,14 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
         starts: (-24..=24).map(|k| vec![f64::from(k) / 16.0]).collect(),
         // Of a corner as far away from the origin.
         widths: vec![0.5 * pitch / std::f64::consts::LN_2],
-    };
+    }
+}
+
+fn origin(scene: &Scene, first: Checkerboard) -> Change {
     let quarters = (0..4).flat_map(|x| (0..8).map(move |z| [x, z]));
     let side = first.square;
-    let origin = Change {
+    Change {
+        numbers: Vec::new(),
         mistake: "board_origin",
         help: "corners of squares are where x and z are multiples of `square`: take floor(x/square) + floor(z/square), without rounding to \
                the nearest or a half of the board's size",
@@ -175,9 +190,14 @@ pub fn changes(scene: &Scene) -> Vec<Change> {
         starts: quarters
             .map(|at| at.map(|k| 0.25 * side * f64::from(k)).to_vec())
             .collect(),
-        widths: vec![half; 2],
-    };
-    vec![height, square, origin]
+        widths: vec![half_a_pixel(scene); 2],
+    }
+}
+
+/// What half a pixel is where the camera looks to, in metres.
+fn half_a_pixel(scene: &Scene) -> f64 {
+    let (_, pitch) = axes(scene);
+    0.5 * pitch * direction(scene).length()
 }
 
 /// A scene whose squares begin elsewhere: all but the checkerboards is moved the other way.

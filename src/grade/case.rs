@@ -8,12 +8,13 @@ use std::cell::{Cell, OnceCell};
 use glam::DVec3;
 
 use super::{
-    Curve, FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE, Verdict, best,
+    Curve, FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE,
     bias::{Errors, SIGMAS},
+    choice::{self, Explanation},
     evidence,
     extent::{Differences, View},
     level::{self, Level},
-    noise::{self, Noise, STRAYS},
+    noise::{self, Noise},
     objects::{self, Slope},
     size,
 };
@@ -99,7 +100,16 @@ impl<'a> Case<'a> {
     }
 
     /// Those that explain the difference, best first.
-    pub fn named(&self, ideas: Vec<Idea>) -> Result<Vec<Verdict>, RenderError> {
+    pub fn named(&self, ideas: Vec<Idea>) -> Result<Vec<Explanation>, RenderError> {
+        self.best_of(Vec::new(), ideas)
+    }
+
+    /// The same beside others, which are simpler.
+    pub fn best_of(
+        &self,
+        mut found: Vec<Explanation>,
+        ideas: Vec<Idea>,
+    ) -> Result<Vec<Explanation>, RenderError> {
         let mut hopeful = Vec::new();
         for idea in ideas {
             if let Some(left) = self.hope(&idea.make)? {
@@ -109,20 +119,45 @@ impl<'a> Case<'a> {
         if self.full.is_heavy {
             hopeful = with_few_pictures(hopeful);
         }
-        let mut found = Vec::new();
         let mut is_curved = false;
         for (_, idea) in hopeful {
-            if let Some(left) = self.tried(&idea.make)? {
+            if let Some((left, made)) = self.tried(&idea.make)? {
                 is_curved |= matches!(idea.make, Make::Light(_));
                 let off = self.off(&idea.make);
-                found.push(idea.verdict(left, self.difference, off));
+                found.push(Explanation {
+                    verdict: idea.verdict(left, self.difference, off),
+                    make: idea.make,
+                    made,
+                });
             }
         }
         if is_curved {
             // Of single samples a curve makes other colours, which is the same, said less simply.
-            found.retain(|verdict| verdict.mistake != "colors");
+            found.retain(|one| one.verdict.mistake != "colors");
         }
-        Ok(best(found, self.difference))
+        Ok(choice::best(found, &self.full.a, self.difference)?)
+    }
+
+    /// Whether the first of some explanations leaves nothing but roundings or noise.
+    pub fn is_all(&self, found: &[Explanation]) -> Result<bool, RenderError> {
+        let Some(Explanation { make, made, .. }) = found.first() else {
+            return Ok(false);
+        };
+        // What comes in at the edges of a displaced picture may be anything.
+        if matches!(make, Make::Is(..)) {
+            return Ok(true);
+        }
+        // Numbers that were found are not known to the last digit, which may round a byte the other way.
+        if self.is_rounding(made, evidence::APART) {
+            return Ok(true);
+        }
+        Ok(match self.noise_in(make, made)? {
+            // Small errors of another number would pass for noise of many samples.
+            Some((variance, noise)) => {
+                noise.is_coarse() && !self.is_biased(&self.full.a, made, &variance, noise)?
+            }
+            None => false,
+        })
     }
 
     /// How far an object that a mistake changes is off.
@@ -171,8 +206,8 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// What a mistake leaves of the difference, if it explains it, and enough pixels tell of it.
-    fn tried(&self, make: &Make) -> Result<Option<f64>, RenderError> {
+    /// What a mistake leaves of the difference, and what it makes, if it explains it, and enough pixels tell of it.
+    fn tried(&self, make: &Make) -> Result<Option<(f64, Film)>, RenderError> {
         if self.full.is_heavy && !self.is_near_in_a_part(make)? {
             return Ok(None);
         }
@@ -188,7 +223,7 @@ impl<'a> Case<'a> {
         if !is_enough {
             self.is_thin.set(true);
         }
-        Ok(is_enough.then_some(left))
+        Ok(is_enough.then_some((left, made)))
     }
 
     /// Whether a mistake leaves less than [`HOPE`] of the rows with most of the difference; of those that make the whole picture anew.
@@ -219,12 +254,12 @@ impl<'a> Case<'a> {
     }
 
     /// Whether so much is wrong outside of a part of the picture that nothing in it explains that: more of the difference than an explanation
-    /// may leave, and more pixels of one colour than noise may have.
+    /// may leave, and a pixel of one colour, which noise has none of.
     pub fn is_wrong_outside(&self, part: Option<Area>) -> bool {
         let outside = |of: &Differences| 1.0 - part.map_or(0.0, |part| of.share(part));
         let strays = outside(&self.strays) * self.strays.pixels as f64;
-        outside(&self.differences) > LEFT * LEFT
-            && strays > STRAYS * self.full.a.pixels().len() as f64
+        // The number of them, but for roundings.
+        outside(&self.differences) > LEFT * LEFT && strays > 0.5
     }
 
     /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes.
@@ -283,43 +318,64 @@ impl<'a> Case<'a> {
             return Ok(true);
         }
         // The mistake may be small, and the rest rounding.
-        let rounding = Tolerance {
-            steps: 0.501,
-            bounds: None,
-        };
-        if compare(&self.full.a, made, rounding).is_ok_and(|found| found.is_equal()) {
+        if self.is_rounding(made, evidence::APART) {
             return Ok(true);
         }
         // The picture may have the mistake and noise.
         let (full, control) = (&self.full, &self.control);
-        let variance = match make {
-            Make::Scene(scene) | Make::Object(scene, _)
-                if noise::has_strays(&full.a, made, scene, |light| light) =>
-            {
-                return Ok(false);
-            }
-            Make::Curved(scene, curve) if noise::has_strays(&full.a, made, scene, curve.to) => {
-                return Ok(false);
-            }
-            Make::Film(make) => make(&self.variance)?,
-            Make::Is(_, variance) => variance.clone(),
-            Make::Scene(scene) => noise::variance(scene, made, control)?,
-            Make::Object(scene, shapes) => self.variance_with(scene, shapes, made)?,
+        match make {
             Make::Light(curve) => {
                 return Ok(self.is_noise_before(*curve, made, &full.exact, &self.variance)?);
             }
             Make::Curved(scene, curve) => {
+                if noise::has_strays(&full.a, made, scene, curve.to) {
+                    return Ok(false);
+                }
                 let means = level::map(made, curve.back)?;
                 let variance = noise::variance(scene, &means, control)?;
                 return Ok(self.is_noise_before(*curve, made, &means, &variance)?);
             }
-            _ => return Ok(false),
+            _ => {}
+        }
+        Ok(match self.noise_in(make, made)? {
+            // What is little beside noise may hide another mistake.
+            Some((variance, noise)) => {
+                left <= HOPE * self.difference
+                    || !self.is_biased(&full.a, made, &variance, noise)?
+            }
+            None => false,
+        })
+    }
+
+    /// Whether the picture is another one but for so many steps of 8-bit sRGB.
+    fn is_rounding(&self, made: &Film, steps: f64) -> bool {
+        let tolerance = Tolerance {
+            steps,
+            bounds: None,
         };
-        let Some(noise) = noise::judge(&full.a, made, &variance) else {
-            return Ok(false);
+        compare(&self.full.a, made, tolerance).is_ok_and(|found| found.is_equal())
+    }
+
+    /// The noise in which alone the picture differs from what a mistake makes, and the variance of one sample.
+    fn noise_in(&self, make: &Make, made: &Film) -> Result<Option<(Film, Noise)>, RenderError> {
+        let (a, control) = (&self.full.a, &self.control);
+        if let Make::Scene(scene) | Make::Object(scene, _) = make
+            && noise::has_strays(a, made, scene, |light| light)
+        {
+            return Ok(None);
+        }
+        let variance = match make {
+            Make::Film(make) => make(&self.variance)?,
+            Make::Is(_, variance) => variance.clone(),
+            Make::Scene(scene) => noise::variance(scene, made, control)?,
+            Make::Object(scene, shapes) => self.variance_with(scene, shapes, made)?,
+            _ => return Ok(None),
         };
-        // What is little beside noise may hide another mistake.
-        Ok(left <= HOPE * self.difference || !self.is_biased(&full.a, made, &variance, noise)?)
+        let Some(variance) = noise::beside_edges(a, made, &variance)? else {
+            return Ok(None);
+        };
+        let noise = noise::judge(a, made, &variance);
+        Ok(noise.map(|noise| (variance, noise)))
     }
 
     /// The variance of one sample in each pixel, with one shape changed.
@@ -381,6 +437,6 @@ fn with_few_pictures(hopeful: Vec<(f64, Idea)>) -> Vec<(f64, Idea)> {
         .into_iter()
         .enumerate()
         .filter(|(at, (_, idea))| !is_whole(idea) || is_kept(*at))
-        .map(|(_, idea)| idea)
+        .map(|(_, one)| one)
         .collect()
 }

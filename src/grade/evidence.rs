@@ -7,17 +7,19 @@
 
 use crate::{color::linear_to_srgb, film::Film};
 
-/// More mistakes than this are not thought of before those that are searched for.
+/// More mistakes than this are not thought of before those that are searched for, in pictures of a dozen objects: some forty of the whole
+/// picture, the camera and the board, and up to seven of each object. A number that is searched for is one mistake more.
 const MISTAKES: f64 = 128.0;
 
-/// In so large a share of pictures one of them may be named by chance.
+/// In so large a share of pictures one of them may be named by chance: as usual in statistics, where all of a picture's pixels that tell of
+/// anything are as few as can be; each pixel more that agrees halves it, about.
 const CHANCE: f64 = 0.05;
 
 /// It takes so many pixels that agree, as many as [`MISTAKES`] and [`CHANCE`] ask for.
 pub const FEWEST: u64 = 16;
 
 /// Two pictures can be told apart where they are farther apart than this, in steps of 8-bit sRGB: when both are rounded.
-const APART: f64 = 1.0;
+pub const APART: f64 = 1.0;
 
 /// Whether enough pixels of a picture side with what a mistake makes, against what is right.
 pub fn is_enough(a: &Film, right: &Film, made: &Film) -> bool {

@@ -180,13 +180,7 @@ fn union(a: Option<Area>, b: Option<Area>) -> Option<Area> {
     let (Some(a), Some(b)) = (a, b) else {
         return a.or(b);
     };
-    let (x, y) = (a.x.min(b.x), a.y.min(b.y));
-    Some(Area {
-        x,
-        y,
-        width: (a.x + a.width).max(b.x + b.width) - x,
-        height: (a.y + a.height).max(b.y + b.height) - y,
-    })
+    Some(a.with(b))
 }
 
 /// Sums of some number of each pixel over parts of a picture, each in a moment.

@@ -9,20 +9,22 @@ use crate::{
     render::{Control, RenderError},
 };
 
-/// So many steps are taken at most.
+/// So many steps are taken at most. Near the end each doubles the digits, so that three are enough there; the others are to get near.
 const STEPS: usize = 8;
 
-/// A step that brings less than this share ends the search.
+/// A step that brings less than this share ends the search: steps that double the digits bring more until there is nothing left to bring.
 const GAIN: f64 = 1e-3;
 
 /// Where the problem is far from linear, a step is damped (Marquardt, An algorithm for least-squares estimation of nonlinear parameters,
 /// 1963): for a single number that is these parts of the way, 1, 1/2, 1/4 and 1/10.
 const DAMPINGS: [f64; 4] = [0.0, 1.0, 3.0, 9.0];
 
-/// Numbers whose slopes are alike but for this share of their squares cannot be told apart.
+/// Numbers whose slopes are alike but for this share of their squares cannot be told apart: the slopes are differences over half a pixel,
+/// whose curvature alone makes them differ by more.
 const ALIKE: f64 = 1e-9;
 
 /// What is found.
+#[derive(Clone)]
 pub struct Fit {
     pub at: Vec<f64>,
     /// The root mean square of the differences that it leaves.

@@ -15,14 +15,20 @@ use crate::{
     tracer::{Basis, World},
 };
 
-/// A picture for searches has about so many columns and rows at most, and one for searches from afar.
+/// A picture for searches has about so many columns and rows at most, and one for searches from afar: an exact picture of the first takes
+/// a few milliseconds, of which a fit takes some dozens, and one of the second, which the hundreds of places cost where a search begins,
+/// a tenth of that. In the second an object of a quarter of the width still has a few pixels.
 pub const SMALL: [u32; 2] = [112, 72];
 pub const TINY: [u32; 2] = [28, 18];
 
-/// More objects than this are many.
+/// More objects than this are many: about half as many as the pixels of a tiny picture, so that most of these see several.
 const MANY: usize = 256;
 
-/// The samples in each pixel of a small picture that is not exact, as there are too many objects.
+/// A small picture with fewer columns or rows than this is one whose pixels see much each, from what is near to the horizon.
+const THIN: u32 = 3;
+
+/// The samples in each pixel of a small picture that is not exact, as it would take too long: their errors are those of 1/16 of a pixel,
+/// and a start needs to be right within one.
 const SAMPLES: u64 = 16;
 
 /// A picture, its scene and the scene's exact picture, of one size.
@@ -35,7 +41,10 @@ pub struct Level<'a> {
     pub exact: Cow<'a, Film>,
     /// The side of one of its pixels, in pixels of the whole picture.
     pub factor: u32,
-    /// Whether it has so many objects that a small exact picture takes longer than the whole one: many are seen in each of its pixels.
+    /// Which part of the scene's picture it is.
+    part: Area,
+    /// Whether it has so many objects, or is so thin, that a small exact picture takes longer than the whole one: each of its pixels sees
+    /// much.
     pub is_heavy: bool,
 }
 
@@ -47,8 +56,23 @@ impl<'a> Level<'a> {
             scene: Cow::Borrowed(scene),
             exact: Cow::Borrowed(exact),
             factor: 1,
+            part: Area::whole(scene.image.width, scene.image.height),
             is_heavy: scene.objects.len() > MANY,
         }
+    }
+
+    /// Some rows of the whole picture, for mistakes that are another scene.
+    pub fn rows(&self, part: Area) -> Result<Level<'_>, TooLarge> {
+        let cut =
+            |film: &Film| Film::from_fn(part.width, part.height, |x, y| film.pixel(x, part.y + y));
+        Ok(Level {
+            a: Cow::Owned(cut(&self.a)?),
+            scene: Cow::Borrowed(&*self.scene),
+            exact: Cow::Owned(cut(&self.exact)?),
+            factor: self.factor,
+            part,
+            is_heavy: self.is_heavy,
+        })
     }
 
     /// A small one, also of the exact picture: each pixel is the mean of a square of pixels. What of the whole is left at its edges is as much on the left as on the
@@ -87,9 +111,10 @@ impl<'a> Level<'a> {
         Ok(Self {
             a: Cow::Owned(means(a)?),
             exact: Cow::Owned(means(exact)?),
-            is_heavy: scene.objects.len() > MANY,
+            is_heavy: scene.objects.len() > MANY || size[0].min(size[1]) < THIN && factor > 1,
             scene: Cow::Owned(scene),
             factor,
+            part: Area::whole(size[0], size[1]),
         })
     }
 
@@ -98,6 +123,9 @@ impl<'a> Level<'a> {
         match make {
             Make::Film(make) => Ok(make(&self.exact)?),
             Make::Light(curve) => Ok(map(&self.exact, curve.to)?),
+            Make::Scene(scene) if self.factor == 1 => {
+                Ok(render::render_exact(&World::new(scene), self.part, control)?.film)
+            }
             Make::Scene(scene) => self.picture(&self.sized(scene), control),
             Make::Object(scene, shapes) => self.with_object(scene, shapes, control),
             Make::Curved(scene, curve) => {

@@ -6,14 +6,15 @@
 //!
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
-//! not independent, `bias` errors that add up to something. `case` tries mistakes, and `evidence` says how many pixels it takes to name
-//! one. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
+//! not independent, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
+//! one, and `choice` which of several it is. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
 mod bias;
 mod board;
 mod camera;
 mod case;
+mod choice;
 mod evidence;
 mod extent;
 mod fit;
@@ -35,28 +36,25 @@ use crate::{
     film::{Film, TooLarge, rmse},
     render::{self, Control, RenderError},
     scene::{Scene, Shape},
+    threads,
     tracer::World,
 };
 
 pub use self::extent::Off;
 
-use self::case::Case;
+use self::{case::Case, choice::Explanation};
 
-/// A mistake explains a difference if it leaves less than this share of its root mean square.
+/// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
 const LEFT: f64 = 0.2;
 
-/// A mistake that leaves less than this share is looked at further: the rest may be noise.
+/// A mistake that leaves less than this share is looked at further: the rest may be noise, of four times the squares of what it explains.
+/// What leaves more has to go with the errors beyond all chance.
 const HOPE: f64 = 0.9;
 
-/// The same in a picture that is smaller by [`FEW`] or more, in whose pixels noise is averaged away.
+/// The same in a picture that is smaller by [`FEW`] or more, in each of whose pixels the noise of nine or more is averaged: a third of it is
+/// left, and half of the share with some room.
 const SMALL_HOPE: f64 = 0.5;
 const FEW: u32 = 3;
-
-/// Of several explanations, those that leave more than so many times what the best one leaves are not named.
-const RIVAL: f64 = 1.5;
-
-/// So many explanations are named at most.
-const NAMED: usize = 3;
 
 /// A simple mistake that explains a difference.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,39 +136,47 @@ pub fn scene(
         });
     }
     let case = Case::new(a, scene, exact, control)?;
-    let likely = explained(&case)?;
+    let likely = match samples(&case)? {
+        Some(verdict) => vec![verdict],
+        None => mistakes(&case)?,
+    };
     Ok(Grade {
         is_thin: likely.is_empty() && case.is_thin.get(),
         likely,
     })
 }
 
-/// The mistakes that explain a difference, from the likeliest kind on.
-fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
-    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+/// What is said of a picture in which nothing but its samples is wrong.
+fn samples(case: &Case) -> Result<Option<Verdict>, RenderError> {
+    let (a, exact) = (&case.full.a, &case.full.exact);
     // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer.
     let found = case.named(noise::ideas())?;
-    if !found.is_empty() {
-        return Ok(found);
+    if let Some(first) = found.into_iter().next() {
+        return Ok(Some(first.verdict));
     }
     if let Some(noise) = noise::judge(a, exact, &case.variance)
         && !case.is_biased(a, exact, &case.variance, noise)?
+        && !objects::is_in_one_part(case)
     {
-        return Ok(vec![noise.verdict(case.difference)]);
+        return Ok(Some(noise.verdict(case.difference)));
     }
     if let Some(samples) = fixed::grid(case)? {
-        return Ok(vec![noise::verdict_of_grid(case.difference, samples)]);
+        return Ok(Some(noise::verdict_of_grid(case.difference, samples)));
     }
-    if let Some((share, noise)) = fixed::empty(case)? {
-        return Ok(vec![noise.verdict_with_empty(case.difference, share)]);
-    }
+    let empty = fixed::empty(case)?;
+    Ok(empty.map(|(share, noise)| noise.verdict_with_empty(case.difference, share)))
+}
+
+/// The mistakes that explain a difference, from the likeliest kind on.
+fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
+    let scene = &case.full.scene;
     let ideas = whole::ideas(scene)
         .into_iter()
         .chain(camera::ideas(scene))
         .chain(board::ideas(scene))
         .chain(objects::ideas(case))
         .chain(objects::colors(case));
-    let mut found = case.named(ideas.collect())?;
+    let mut found = verdicts(case.named(ideas.collect())?);
     if let [first, others @ ..] = found.as_slice()
         && first.mistake != "colors"
         && others.iter().any(|other| other.mistake == "colors")
@@ -188,29 +194,50 @@ fn explained(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     // What has to be searched for takes longer, what comes last longest.
     let found = case.named(objects::search(case)?)?;
     if !found.is_empty() {
-        return Ok(found);
+        return Ok(verdicts(found));
     }
+    numbers(case)
+}
+
+/// The numbers of the camera or the checkerboard that explain a difference, as few of them as leave nothing but roundings and noise.
+fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
+    let scene = &case.full.scene;
     // A camera that moved a little displaces the picture, nearly.
     let mut ideas = shift::search(case)?;
     let changes = camera::single(scene).into_iter();
     let changes: Vec<_> = changes.chain(board::changes(scene)).collect();
     let single = search::nearest(case, &changes)?;
     ideas.extend(single.ideas);
-    let found = case.named(ideas)?;
-    if !found.is_empty() {
-        return Ok(found);
+    let mut found = case.named(ideas)?;
+    if case.is_all(&found)? {
+        return Ok(verdicts(found));
     }
     // A camera that is off in several ways is seen all over the picture.
-    if let Some(found) = objects::confined(case)? {
-        return Ok(vec![found]);
+    if found.is_empty()
+        && let Some(verdict) = objects::confined(case)?
+    {
+        return Ok(vec![verdict]);
     }
-    let several = search::nearest(case, &camera::several(scene))?;
-    let found = case.named(several.ideas)?;
-    if !found.is_empty() {
-        return Ok(found);
+    let changes = match found.is_empty() {
+        true => camera::several(scene),
+        false => camera::several_near(scene, &single.starts),
+    };
+    let several = search::nearest(case, &changes)?;
+    found = case.best_of(found, several.ideas)?;
+    if case.is_all(&found)? {
+        return Ok(verdicts(found));
     }
-    let any = camera::any(case, &single.starts, &several.starts)?;
-    case.named(any.into_iter().collect())
+    let starts: Vec<_> = single.starts.into_iter().chain(several.starts).collect();
+    let any = camera::any(case, &starts)?;
+    found = case.best_of(found, any.into_iter().collect())?;
+    match found.is_empty() {
+        true => Ok(objects::reaching_out(case)?.into_iter().collect()),
+        false => Ok(verdicts(found)),
+    }
+}
+
+fn verdicts(found: Vec<Explanation>) -> Vec<Verdict> {
+    found.into_iter().map(|found| found.verdict).collect()
 }
 
 /// Names the mistakes that explain why one picture is not another, of which no scene is known.
@@ -238,9 +265,13 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
             is_thin = true;
             return None;
         }
-        Some(idea.verdict(left, difference, None))
+        Some(Explanation {
+            verdict: idea.verdict(left, difference, None),
+            make: idea.make,
+            made,
+        })
     });
-    let likely = best(found.collect(), difference);
+    let likely = choice::best(found.collect(), a, difference).map_or_else(|_| Vec::new(), verdicts);
     Grade {
         is_thin: likely.is_empty() && is_thin,
         likely,
@@ -255,29 +286,6 @@ fn size(film: &Film) -> [u32; 2] {
 fn exact(scene: &Scene, control: &Control) -> Result<Film, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     Ok(render::render_exact(&World::new(scene), whole, control)?.film)
-}
-
-/// The best of some verdicts on a difference, best first. Of those that leave the same, the one thought of first is the simplest.
-fn best(mut found: Vec<Verdict>, difference: f64) -> Vec<Verdict> {
-    let left = |verdict: &Verdict| verdict.rmse.unwrap_or(0.0);
-    let Some(least) = found.iter().map(left).reduce(f64::min) else {
-        return found;
-    };
-    // What rounding to bytes leaves is no difference between explanations.
-    found.retain(|verdict| left(verdict) <= RIVAL * least.max(1e-3));
-    // What the best one leaves may be noise, beside which the difference that a mistake makes is small.
-    let rest = |left: f64| left * left - least * least;
-    found.retain(|verdict| {
-        let own = left(verdict);
-        own <= 1e-3 || rest(own) <= LEFT * LEFT * rest(difference)
-    });
-    let is_level = |verdict: &Verdict| left(verdict) <= (1.05 * least).max(1e-3);
-    found.sort_by(|p, q| match (is_level(p), is_level(q)) {
-        (true, true) => std::cmp::Ordering::Equal,
-        _ => left(p).total_cmp(&left(q)),
-    });
-    found.truncate(NAMED);
-    found
 }
 
 impl Idea {
@@ -313,16 +321,19 @@ fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, Rend
         .collect();
     let (width, height) = (scene.image.width, scene.image.height);
     let mut film = Film::new(width, height)?;
-    let rows: Vec<Vec<_>> = (0..height)
-        .into_par_iter()
-        .map(|y| {
-            if control.cancel.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
-            }
-            let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
-            Ok(row.collect())
-        })
-        .collect::<Result<_, _>>()?;
+    let row = |y| {
+        if control.cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
+        Ok(row.collect())
+    };
+    let rows: Vec<Vec<_>> = threads::pool(control.threads)?.install(|| {
+        (0..height)
+            .into_par_iter()
+            .map(row)
+            .collect::<Result<_, _>>()
+    })?;
     for (y, row) in (0..).zip(rows) {
         film.put(
             Area {

@@ -4,12 +4,13 @@
 //! the squares, which is the exact picture of the same scene with squared colours, less the square of the mean. So noise shows itself by
 //! three signs: it is where that variance is not 0 and nowhere else; it is as often too bright as too dark; and its size gives n.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec2;
 
 use super::{Idea, Make, Verdict, exact};
 use crate::{
+    area::Area,
     color::{Color, linear_to_srgb},
     film::{Film, TooLarge},
     numbers::short,
@@ -17,28 +18,35 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// A variance below this is none: it is less than that of a pixel with a millionth of another colour.
+/// A variance below this is none: a pixel with so little has less than 1e-9 of the lightest colour beside the darkest, so that of a million
+/// such pixels with a thousand samples each none is likely to show it; and the exact picture itself is known to 1e-12 where it has one colour.
 const NO_VARIANCE: f64 = 1e-9;
 
-/// How far a pixel of one colour may be off, in steps of 8-bit sRGB: rounded, and a little.
+/// How far a pixel of one colour may be off, in steps of 8-bit sRGB: rounded, which is half a step, and half of that for another decoding
+/// of the colour's bytes, whose light is rounded, too.
 const FLAT: f64 = 0.75;
 
-/// So large a share of wrong pixels of one colour is passed over, measured by the number of pixels of several.
-pub const STRAYS: f64 = 0.005;
-
-/// A noisy mean is 0 within this many standard deviations, or this share of the mean absolute error.
+/// A noisy mean is 0 within this many standard deviations: beyond them to either side is 2 exp(−12.5), a chance of 1 in 100 000, as of so
+/// many independent errors of random signs. A mean of fewer than their square, 25 errors, is never beyond.
 const SIGMAS: f64 = 5.0;
+
+/// Or within this share of the mean absolute error: samples that are the same in all pixels have errors that hang together. It is a choice.
 const BIAS: f64 = 0.12;
 
 /// A mean of samples of at most so many is seldom right: they are multiples of a part, and few of those are what a pixel's mean is. It is so
 /// that in a pixel of two colours n samples may be right within [`FLAT`] of one of n + 1 numbers, out of 255.
 const RIGHT: f64 = 2.0 * FLAT / 255.0;
 
-/// Pixels are looked at for that if one sample has at least this variance there.
+/// Pixels are looked at for that if one sample has at least this variance there: that of a fiftieth of black in white. With less the only
+/// multiple that is near may be no sample of it at all.
 const WIDE: f64 = 0.02;
 
 /// With a probability below this some pixel of a picture is farther off than is thought possible.
 const CHANCE: f64 = 1e-3;
+
+/// More than so many samples beside an edge that is known as well as they tell of it are no chance where one is expected: by Poisson, one
+/// in a million.
+const STRAYS: usize = 8;
 
 /// Noise that looks as if there were so many independent samples in a pixel.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +100,7 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
 /// The same of two pictures that a curve made of means, for which noise is judged. What is right within a step is right in the pictures.
 pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> Option<Noise> {
     let [a, exact] = means;
-    let (mut mixed, mut strays) = (0u64, 0u64);
+    let (mut mixed, mut off) = (0u64, 0u64);
     let (mut variances, mut squares) = (0.0, 0.0);
     let mut sums = [[0.0f64; 3]; 3];
     let mut spread = Spread::default();
@@ -100,13 +108,14 @@ pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> O
     let pairs = shown[0].pixels().iter().zip(shown[1].pixels());
     for (((p, q), variance), pair) in pixels.zip(pairs) {
         if is_flat(variance) {
-            strays += u64::from(is_off(pair));
-            if strays as f64 > STRAYS * a.pixels().len() as f64 {
+            // Whatever the samples are, all see the same there.
+            if is_off(pair) {
                 return None;
             }
             continue;
         }
         mixed += 1;
+        off += u64::from(is_off(pair));
         spread.add(p, q, variance, pair);
         for i in 0..3 {
             let error = p[i] - q[i];
@@ -122,29 +131,30 @@ pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> O
     };
     let samples = variances / squares;
     // A single sample already has the whole variance; more than that is no noise.
-    // As many errors of one sign and size pass for even.
-    let is_noise = mixed as f64 > SIGMAS * SIGMAS
+    // So few errors as pass for even whatever their signs show nothing.
+    let is_noise = off as f64 > SIGMAS * SIGMAS
         && spread.is_everywhere(mixed)
-        && strays as f64 <= STRAYS * mixed as f64
         && sums.into_iter().all(is_even)
         && samples > 0.75
         && samples.is_finite();
     is_noise.then_some(Noise { samples })
 }
 
-/// Whether pixels of one colour have it, but for a few.
+/// Whether all pixels of one colour have it.
 pub fn are_flat_pixels_right(a: &Film, exact: &Film, variance: &Film) -> bool {
     let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
-    let strays = pixels.filter(|(pair, variance)| is_flat(variance) && is_off(*pair));
-    strays.count() as f64 <= STRAYS * a.pixels().len() as f64
+    pixels
+        .into_iter()
+        .all(|(pair, variance)| !is_flat(variance) || !is_off(pair))
 }
 
-/// Whether more pixels are wrong than noise may have among those that have exactly a colour of a scene, taken through a curve. It is known
-/// without their variance that these are of one colour.
+/// Whether a pixel has another colour than the one which is seen there and all around in the picture of a scene, taken through a curve.
+/// Noise has no such pixel, and it is known without the variance. Numbers that were looked for are known to a part of a pixel only,
+/// so that pixels beside others of another colour do not count.
 pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> f64) -> bool {
     let mut colors = HashSet::new();
     let mut add = |color: Color| {
-        colors.insert(color.to_linear().map(|light| curve(light).to_bits()));
+        colors.insert(bits(&color.to_linear().map(&curve)));
     };
     add(scene.image.background);
     for object in &scene.objects {
@@ -155,10 +165,51 @@ pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> 
             Shape::Checkerboard(board) => board.colors.into_iter().for_each(&mut add),
         }
     }
-    let pixels = a.pixels().iter().zip(exact.pixels());
+    let whole = Area::whole(a.width(), a.height());
+    whole.iter().any(|(x, y)| {
+        let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
+        is_off((&p, &q))
+            && colors.contains(&bits(&q))
+            && around(exact, [x, y]).all(|(x, y)| bits(&exact.pixel(x, y)) == bits(&q))
+    })
+}
+
+/// The variance of samples where the place of edges is known to a part of a pixel only: in pixels of one colour that are off it is that
+/// of the neighbour with the most. None, if more are off than that may be of.
+///
+/// An edge of L pixels that n samples each tell of is known to a δ with about 4 L n δ² = 1. Where it is off by δ it misses δ L pixels, and
+/// a share of about δ/2 of each of these, so that L n δ²/2 samples show it: 1/8 for each number that is known so well, and below 1 for all.
+pub fn beside_edges(a: &Film, made: &Film, variance: &Film) -> Result<Option<Film>, TooLarge> {
+    let sum = |variance: [f64; 3]| variance.iter().sum::<f64>();
     let is_stray =
-        |(p, q): &(&[f64; 3], &[f64; 3])| is_off((p, q)) && colors.contains(&q.map(f64::to_bits));
-    pixels.filter(is_stray).count() as f64 > STRAYS * a.pixels().len() as f64
+        |x, y| is_flat(&variance.pixel(x, y)) && is_off((&a.pixel(x, y), &made.pixel(x, y)));
+    let whole = Area::whole(a.width(), a.height());
+    let strays = whole.iter().filter(|&(x, y)| is_stray(x, y));
+    if strays.take(STRAYS + 1).count() > STRAYS {
+        return Ok(None);
+    }
+    Film::from_fn(a.width(), a.height(), |x, y| {
+        let own = variance.pixel(x, y);
+        if !is_stray(x, y) {
+            return own;
+        }
+        around(variance, [x, y])
+            .map(|(x, y)| variance.pixel(x, y))
+            .max_by(|p, q| sum(*p).total_cmp(&sum(*q)))
+            .unwrap_or(own)
+    })
+    .map(Some)
+}
+
+/// A pixel and its neighbours.
+fn around(film: &Film, [x, y]: [u32; 2]) -> impl Iterator<Item = (u32, u32)> {
+    let [columns, rows] = [(x, film.width()), (y, film.height())]
+        .map(|(at, size)| at.saturating_sub(1)..(at + 2).min(size));
+    rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
+}
+
+fn bits(light: &[f64; 3]) -> [u64; 3] {
+    light.map(f64::to_bits)
 }
 
 /// Whether one colour is seen.
@@ -166,19 +217,34 @@ pub fn is_flat(variance: &[f64; 3]) -> bool {
     variance.iter().all(|&variance| variance < NO_VARIANCE)
 }
 
+/// Whether one sample has a notable variance.
+pub fn is_wide(variance: &[f64; 3]) -> bool {
+    variance.iter().any(|&variance| variance > WIDE)
+}
+
 /// Whether two pixels differ by more than what rounding does.
 pub fn is_off((p, q): (&[f64; 3], &[f64; 3])) -> bool {
-    (0..3)
-        .any(|i| p[i] != q[i] && 255.0 * (linear_to_srgb(p[i]) - linear_to_srgb(q[i])).abs() > FLAT)
+    (0..3).any(|i| steps(p[i], q[i]) > FLAT)
+}
+
+/// How far apart two numbers are, in steps of 8-bit sRGB.
+fn steps(p: f64, q: f64) -> f64 {
+    match p == q {
+        true => 0.0,
+        false => 255.0 * (linear_to_srgb(p) - linear_to_srgb(q)).abs(),
+    }
 }
 
 /// Whether errors are all over, as those of samples are, or large and in a few places.
 #[derive(Default)]
 struct Spread {
-    largest: f64,
+    /// The largest exponent of a chance, for each sample.
+    least_likely: f64,
     /// Pixels with a notable variance, and those among them that are right.
     wide: u64,
     right: u64,
+    /// How many of them have a mean, in parts that are less than any picture can tell.
+    alike: HashMap<[i64; 3], u64>,
 }
 
 impl Spread {
@@ -189,26 +255,49 @@ impl Spread {
         variance: &[f64; 3],
         pair: (&[f64; 3], &[f64; 3]),
     ) {
-        let errors = [0, 1, 2].map(|i| (p[i] - q[i]).abs());
-        self.largest = errors.into_iter().fold(self.largest, f64::max);
-        if variance.iter().any(|&variance| variance > WIDE) {
+        for i in 0..3 {
+            let steps = steps(pair.0[i], pair.1[i]);
+            if steps > FLAT {
+                // Half a step of it is rounding.
+                let error = (p[i] - q[i]).abs() * (1.0 - 0.5 / steps);
+                self.least_likely = self.least_likely.max(exponent(variance[i], error));
+            }
+        }
+        if is_wide(variance) {
             self.wide += 1;
             self.right += u64::from(!is_off(pair));
+            *self
+                .alike
+                .entry(q.map(|mean| (mean / NO_VARIANCE).round() as i64))
+                .or_default() += 1;
         }
     }
 
-    /// The mean of n samples is off by more than t with a probability of at most 2 exp(−2nt²) (Hoeffding 1963): the largest of all errors
-    /// bounds n, and n the share of pixels that are right.
+    /// The least likely of all errors bounds the number of samples, and that the share of pixels that are right. Those of the same mean, as
+    /// along an edge that is parallel to the picture's, may all be right or none.
     fn is_everywhere(&self, mixed: u64) -> bool {
         let means = 3.0 * mixed as f64;
-        let samples = libm::log(2.0 * means / CHANCE) / (2.0 * self.largest * self.largest);
-        let wide = self.wide as f64;
-        let right = (RIGHT * (samples + 1.0)).min(1.0) * wide;
-        self.right as f64 <= right + SIGMAS * wide.sqrt()
+        let samples = libm::log(2.0 * means / CHANCE) / self.least_likely;
+        let right = (RIGHT * (samples + 1.0)).min(1.0) * self.wide as f64;
+        let squares: f64 = self.alike.values().map(|&n| n as f64 * n as f64).sum();
+        samples >= 1.0 && self.right as f64 <= right + SIGMAS * squares.sqrt()
     }
 }
 
+/// The mean of n samples between 0 and 1 of a variance v is off by t to one side with a probability of at most exp(−n x), for this x:
+/// v ((1 + u) ln(1 + u) − u), where u = t/v (Bennett, Probability inequalities for the sum of independent random variables, 1962).
+fn exponent(variance: f64, error: f64) -> f64 {
+    let variance = variance.max(NO_VARIANCE);
+    let times = error / variance;
+    variance * ((1.0 + times) * libm::log1p(times) - times)
+}
+
 impl Noise {
+    /// Whether it is of so few samples that a pixel seldom is right. Noise of more looks like small errors of any other kind.
+    pub fn is_coarse(&self) -> bool {
+        RIGHT * self.samples < 1.0
+    }
+
     /// What is said of it.
     pub fn verdict(&self, difference: f64) -> Verdict {
         self.verdict_with_empty(difference, 0.0)

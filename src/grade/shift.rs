@@ -16,7 +16,8 @@ use crate::{
     scene::{Image, Scene},
 };
 
-/// The farthest displacement, in halves of a pixel.
+/// The farthest displacement, in halves of a pixel: four pixels, more than rounding a place up, down or twice comes to. What is farther is
+/// a camera that looks elsewhere.
 const REACH: i32 = 8;
 
 /// The displacement that explains most, if any explains something.

@@ -3,11 +3,14 @@
 //! The ranges of an object's forms over the rectangle, widened by the error bounds of its decisions, so that what is said here of
 //! the rectangle is also what every sample in it says.
 
+use glam::DVec2;
+
 use crate::{area::Area, math::UP};
 
 use super::{
     camera::{Camera, Direction},
     form::Form,
+    outlook::Spot,
 };
 
 /// A rectangle of the view plane.
@@ -45,6 +48,16 @@ impl Patch {
         Self {
             center: camera.direction(&middle),
             half: [half(area.width), half(area.height)],
+        }
+    }
+
+    /// The square of a spot.
+    pub fn of_spot(camera: &Camera<f64>, spot: Spot) -> Self {
+        let half = 0.5 * spot.side * camera.pitch * UP + f64::MIN_POSITIVE;
+        let middle = camera.sample_point(spot.x, spot.y, spot.offset(DVec2::ZERO));
+        Self {
+            center: camera.direction(&middle),
+            half: [half; 2],
         }
     }
 }

@@ -105,12 +105,20 @@ impl World {
 
     /// Of some candidates, in file order, those that may be seen in a part of the picture.
     pub fn live(&self, part: Area, among: &[Live], out: &mut Vec<Live>) {
-        self.live_among(part, among.iter().map(|live| live.object), out);
+        let patch = Patch::new(&self.fast.camera, part);
+        self.live_among(&patch, among.iter().map(|live| live.object), out);
+    }
+
+    /// The same in a spot.
+    pub fn live_in(&self, spot: Spot, among: &[Live], out: &mut Vec<Live>) {
+        let patch = Patch::of_spot(&self.fast.camera, spot);
+        self.live_among(&patch, among.iter().map(|live| live.object), out);
     }
 
     /// The same of a crowd.
     pub fn live_of(&self, part: Area, crowd: &[Item], out: &mut Vec<Live>) {
-        self.live_among(part, crowd.iter().map(|item| item.object as usize), out);
+        let patch = Patch::new(&self.fast.camera, part);
+        self.live_among(&patch, crowd.iter().map(|item| item.object as usize), out);
         out.sort_unstable_by_key(|live| live.object);
     }
 
@@ -119,14 +127,13 @@ impl World {
         [&self.fast.near, &self.fast.far].map(|clip| Some(clip.as_ref()?.over(patch)))
     }
 
-    fn live_among(&self, part: Area, among: impl Iterator<Item = usize>, out: &mut Vec<Live>) {
+    fn live_among(&self, patch: &Patch, among: impl Iterator<Item = usize>, out: &mut Vec<Live>) {
         out.clear();
-        let patch = Patch::new(&self.fast.camera, part);
-        let [near, far] = self.clips_over(&patch);
+        let [near, far] = self.clips_over(patch);
         // The nearest of what is met everywhere hides what is farther.
         let mut hidden = f64::NEG_INFINITY;
         for candidate in among {
-            let Some(live) = self.cover(candidate, &patch, near, far) else {
+            let Some(live) = self.cover(candidate, patch, near, far) else {
                 continue;
             };
             if live.inverse_depth.high < hidden {
@@ -139,7 +146,7 @@ impl World {
         }
         out.retain(|live| live.inverse_depth.high >= hidden);
         if out.len() > 1 {
-            self.drop_covered(&patch, out);
+            self.drop_covered(patch, out);
         }
     }
 

@@ -45,19 +45,14 @@ fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Output, Duratio
     (output, time)
 }
 
-/// A picture of one pixel, in which triangles pierce each other so often that its exact mean takes more than a minute.
+/// A picture of one pixel, in which so many spheres are nearly the same that its exact mean takes more than a minute.
 pub fn long_pixel() -> String {
     let mut scene = "image { width 1  height 1 }\n\
-                     camera { eye (0, 0, 2)  direction (0, 0, -1)  d 2 }\n\
+                     camera { eye (0, 0, 100)  direction (0, 0, -1)  d 1 }\n\
                      sampler { method exact }\n"
         .to_owned();
     for i in 0..150 {
-        // Spread evenly, by irrational steps.
-        let [x, y, z, right, up] = [0.618, 0.755, 0.570, 0.414, 0.732]
-            .map(|step: f64| (step * f64::from(i)).fract() - 0.5);
-        scene += &format!(
-            "triangle {{ centroid ({x:.3}, {y:.3}, {z:.3})  normal ({right:.3}, {up:.3}, 1) }}\n"
-        );
+        scene += &format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n");
     }
     scene
 }

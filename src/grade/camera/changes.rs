@@ -35,7 +35,7 @@ const OF_ROLL: &str =
 const OF_DISTANCE: &str =
     "look at d, view_height and fov: d = view_height/(2 tan(fov/2)), s = view_height/height";
 
-/// One number: first the distance and the roll, then one coordinate of the eye or of the point looked at.
+/// One number: the distance, the roll, one coordinate of the eye or of the point looked at.
 pub fn single(scene: &Scene) -> Vec<Change> {
     let mut changes = vec![distance_change(scene), roll_change(scene)];
     let axes = [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")];
@@ -52,6 +52,8 @@ pub fn single(scene: &Scene) -> Vec<Change> {
     if let View::Lookat(lookat) = scene.camera.view {
         for (axis, letter) in axes {
             changes.push(Change {
+                // They are two numbers, in the picture.
+                numbers: Vec::new(),
                 mistake: "lookat",
                 help: OF_LOOKAT,
                 with: Box::new(move |scene, at| {
@@ -103,66 +105,36 @@ pub fn several(scene: &Scene) -> Vec<Change> {
     ]
 }
 
-/// Several fields of the camera, as few of them as explain the picture; from what was found of [`single`] and [`several`].
-pub fn any(
-    case: &Case,
-    single: &[Option<Fit>],
-    several: &[Option<Fit>],
-) -> Result<Option<Idea>, RenderError> {
+/// The same, near to what was found of one number each.
+pub fn several_near(scene: &Scene, single: &[(Vec<usize>, Fit)]) -> Vec<Change> {
+    let of_eye = single
+        .iter()
+        .filter(|(numbers, _)| EYE.contains(&numbers[0]));
+    let eyes = of_eye.map(|(numbers, fit)| spread(numbers, &fit.at)[..EYE.len()].to_vec());
+    let (what, help) = look_field(scene);
+    vec![
+        Change {
+            starts: eyes.collect(),
+            ..of(scene, "eye", OF_EYE, EYE)
+        },
+        of(scene, what, help, LOOK),
+    ]
+}
+
+/// Several fields of the camera, as few of them as explain the picture; from what was found of one field, or of a part of one.
+pub fn any(case: &Case, starts: &[(Vec<usize>, Fit)]) -> Result<Option<Idea>, RenderError> {
     if case.full.is_heavy {
         // It takes some hundreds of pictures.
         return Ok(None);
     }
+    let Some(all) = all_fields(case, starts)? else {
+        return Ok(None);
+    };
+    if all.left > case.hopeful() * case.small_difference {
+        return Ok(None);
+    }
+    let (fields, at) = fewest_fields(case, all)?;
     let scene: &Scene = &case.full.scene;
-    let of_fields = |fields: &[&[usize]]| of(scene, "camera", OF_EYE, &fields.concat());
-    let mut fields = FIELDS.to_vec();
-    let all = of_fields(&fields);
-    let alone = [DISTANCE, ROLL].into_iter().zip(single);
-    let mut starts: Vec<_> = alone
-        .chain([EYE, LOOK].into_iter().zip(several))
-        .filter_map(|(numbers, start)| {
-            let start = start.as_ref()?;
-            Some((start.left, spread(numbers, &start.at)))
-        })
-        .collect();
-    starts.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let mut near: Option<Fit> = None;
-    for (_, start) in starts.into_iter().take(2) {
-        if let Some(fit) = all.fit(case, &case.tiny, &start)?
-            && near.as_ref().is_none_or(|near| fit.left < near.left)
-        {
-            near = Some(fit);
-        }
-    }
-    let Some(near) = near else {
-        return Ok(None);
-    };
-    let Some(Fit { mut at, left }) = all.fit(case, &case.small, &near.at)? else {
-        return Ok(None);
-    };
-    if left > case.hopeful() * case.small_difference {
-        return Ok(None);
-    }
-    // A field that explains less than a tenth of what has to be explained is right.
-    let enough = (1.05 * left).max(0.1 * LEFT * case.small_difference);
-    while fields.len() > 1 {
-        let mut without: Option<(Fit, Vec<&[usize]>)> = None;
-        for one in &fields {
-            let mut rest = fields.clone();
-            rest.retain(|field| field != one);
-            let change = of_fields(&rest);
-            let start: Vec<f64> = rest.concat().into_iter().map(|number| at[number]).collect();
-            if let Some(found) = change.fit(case, &case.small, &start)?
-                && found.left < without.as_ref().map_or(enough, |(fit, _)| fit.left)
-            {
-                without = Some((found, rest));
-            }
-        }
-        let Some((found, rest)) = without else { break };
-        at = spread(&rest.concat(), &found.at);
-        fields = rest;
-    }
-    let numbers = fields.concat();
     let (what, help) = match fields.as_slice() {
         [one] if *one == EYE => ("eye", OF_EYE),
         [one] if *one == LOOK => look_field(scene),
@@ -173,8 +145,69 @@ pub fn any(
             "several fields of the camera seem to be off at once, or one that all of them follow from",
         ),
     };
-    let found: Vec<f64> = numbers.iter().map(|number| at[*number]).collect();
-    Ok(of(scene, what, help, &numbers).idea(scene, &found))
+    let numbers = fields.concat();
+    let mut found: Vec<f64> = numbers.iter().map(|number| at[*number]).collect();
+    let change = of(scene, what, help, &numbers);
+    if case.small.is_heavy
+        && let Some(fit) = change.refined(case, &found)?
+    {
+        found = fit.at;
+    }
+    Ok(change.idea(scene, &found))
+}
+
+/// All numbers that come nearest to the small picture, from the best two of some starts: each start is the best of its kind, and what
+/// two of them have in common the fit finds from either.
+fn all_fields(case: &Case, starts: &[(Vec<usize>, Fit)]) -> Result<Option<Fit>, RenderError> {
+    let all = of_fields(&case.full.scene, &FIELDS);
+    let is_field = |(numbers, _): &&(Vec<usize>, Fit)| FIELDS.contains(&numbers.as_slice());
+    let mut starts: Vec<_> = starts.iter().filter(is_field).collect();
+    starts.sort_by(|p, q| p.1.left.total_cmp(&q.1.left));
+    let mut near: Option<Fit> = None;
+    for (numbers, start) in starts.into_iter().take(2) {
+        if let Some(fit) = all.fit(case, &case.tiny, &spread(numbers, &start.at))?
+            && near.as_ref().is_none_or(|near| fit.left < near.left)
+        {
+            near = Some(fit);
+        }
+    }
+    match near {
+        Some(near) => all.fit(case, &case.small, &near.at),
+        None => Ok(None),
+    }
+}
+
+/// As few fields as come as near, and all numbers then.
+fn fewest_fields(
+    case: &Case,
+    Fit { mut at, left }: Fit,
+) -> Result<(Vec<&'static [usize]>, Vec<f64>), RenderError> {
+    let mut fields = FIELDS.to_vec();
+    // A field that explains less than a tenth of what has to be explained is right, and so is one without which a twentieth more is left:
+    // that is what a number brings that is fitted to noise in a few hundred pixels.
+    let enough = (1.05 * left).max(0.1 * LEFT * case.small_difference);
+    while fields.len() > 1 {
+        let mut without: Option<(Fit, Vec<&[usize]>)> = None;
+        for one in &fields {
+            let mut rest = fields.clone();
+            rest.retain(|field| field != one);
+            let start: Vec<f64> = rest.concat().into_iter().map(|number| at[number]).collect();
+            if let Some(found) =
+                of_fields(&case.full.scene, &rest).fit(case, &case.small, &start)?
+                && found.left < without.as_ref().map_or(enough, |(fit, _)| fit.left)
+            {
+                without = Some((found, rest));
+            }
+        }
+        let Some((found, rest)) = without else { break };
+        at = spread(&rest.concat(), &found.at);
+        fields = rest;
+    }
+    Ok((fields, at))
+}
+
+fn of_fields(scene: &Scene, fields: &[&[usize]]) -> Change {
+    of(scene, "camera", OF_EYE, &fields.concat())
 }
 
 /// A change of some of the numbers.
@@ -185,6 +218,7 @@ fn of(scene: &Scene, mistake: &'static str, help: &'static str, numbers: &[usize
         mistake,
         help,
         widths: numbers.iter().map(|number| all[*number]).collect(),
+        numbers: numbers.clone(),
         with: Box::new(move |scene, at| posed(scene, &spread(&numbers, at))),
         message: Box::new(message),
         starts: Vec::new(),
@@ -361,7 +395,8 @@ fn message(scene: &Scene, other: &Scene) -> String {
     format!("{what}: as if {}", found.join("; and as if "))
 }
 
-/// Places that are nearer than this share of the way to where the camera looks are the same.
+/// Places that are nearer than this share of the way to where the camera looks are the same: a number of times that is told has two
+/// decimals, of which the last is half of it.
 const FINE: f64 = 5e-3;
 
 /// How many times as long a vector is as another one of the same direction.

@@ -4,7 +4,7 @@ mod changes;
 
 use glam::DVec3;
 
-pub use self::changes::{any, several, single};
+pub use self::changes::{any, several, several_near, single};
 use super::{
     Idea, Make,
     level::{distance, with_distance},

@@ -12,7 +12,8 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// A colour is another one if it is off by more than this, in steps of 8-bit sRGB; nearer is the same.
+/// A colour is another one if it is off by more than this, in steps of 8-bit sRGB; nearer is the same: both are rounded, and
+/// a power in place of the curve makes light colours differ by two.
 const NEAR: f64 = 2.5;
 
 /// Other colours: those that the picture shows where the exact one shows an object alone; last of all of them at once, if there are

@@ -11,27 +11,57 @@ use super::{
 use crate::{
     area::Area,
     film::{Film, Tolerance, compare, rmse},
-    grade::{Case, Off, Verdict, explained_share, noise},
+    grade::{Case, LEFT, Off, Verdict, evidence::FEWEST, explained_share, noise},
     render::RenderError,
     scene::Shape,
 };
 
-/// How much larger an object may be, or how much of its size beside its place.
+/// How much larger an object may be, or how much of its size beside its place. It is a choice: with more room the parts of neighbours have
+/// all of it, too; with less an edge that is off by a little is outside.
 const ROOM: f64 = 1.25;
 
-/// An object takes the blame if its part of the picture is less than this share of it.
+/// An object takes the blame if its part of the picture is less than this share of it: of what is wrong all over, half of the picture would
+/// have half by chance.
 const PART: f64 = 0.5;
 
-/// So many pixels have to be wrong there.
-const WRONG: usize = 16;
+/// So many pixels have to be wrong there: as many as name a mistake if all agree.
+const WRONG: usize = FEWEST as usize;
 
-/// Of parts with no less than this share of the most that any has of what is wrong the smallest is looked at first.
+/// Of parts with no less than this share of the most that any has of what is wrong the smallest is looked at first: a part is that of a ball
+/// around its object, and the corner of a larger one may hold some of the rest.
 const AS_MUCH: f64 = 0.9;
 
 /// The object in whose part of the picture all of the difference is but noise; of several the one in whose part there is most of what noise
 /// would not make.
 pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
-    let (a, exact, scene) = (&case.full.a, &case.full.exact, &case.full.scene);
+    let mut found = Vec::new();
+    for (_, _, index, part) in parts(case) {
+        if let Some(rest) = outside(case, part)? {
+            let is_clean = !rest.noisy;
+            found.push((index, part, rest));
+            if is_clean {
+                break;
+            }
+        }
+    }
+    // Where nothing else is wrong there is no noise, and so it is where another object's part leaves that to noise. Of two that are
+    // seen in the same place a few pixels do not tell which it is.
+    let is_plain = found.last().is_some_and(|(_, _, rest)| !rest.noisy);
+    let is_told = found.len() < 2 || case.strays.pixels >= TELLING;
+    let chosen = match (is_plain, is_told) {
+        (true, _) => found.pop(),
+        (false, true) => found.into_iter().next(),
+        (false, false) => None,
+    };
+    Ok(chosen.map(|(index, part, rest)| blamed(case, index, part, &rest)))
+}
+
+/// The share of what is wrong that is in a part, its pixels, the object and the part.
+type Part = (f64, u64, usize, Area);
+
+/// Those that may take the blame, in the order in which they are looked at.
+fn parts(case: &Case) -> Vec<Part> {
+    let (a, scene) = (&case.full.a, &case.full.scene);
     let whole = Area::whole(a.width(), a.height());
     let mut parts = Vec::new();
     for (_, index) in likeliest(case, ROOM).into_iter().take(SEARCHED) {
@@ -45,36 +75,105 @@ pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
     parts.retain(|(_, pixels, ..)| (*pixels as f64) < PART * whole.pixels() as f64);
     let most = parts.iter().fold(0.0, |most: f64, part| most.max(part.0));
     parts.sort_by_key(|(share, pixels, index, _)| (*share < AS_MUCH * most, *pixels, *index));
-    for (_, _, index, part) in parts {
-        let Some(Rest { film: rest, noisy }) = outside(case, part)? else {
-            continue;
-        };
-        let name = called(scene, index);
-        // Noise is in pixels of several colours alone, and displaces what has one.
-        let (but, wrong, off) = match noisy {
-            true => ("but for noise ", strays(case, part), None),
-            false => ("", wrong(case, part), off(case, index, part)),
-        };
-        let mut message = format!(
-            "{but}the picture is wrong only where {name} is seen, or near it, in {wrong} pixels: something about it is off"
-        );
-        if let Some(off) = off {
-            message += &format!("; what has its colour there is displaced: {off}");
-        }
-        let left = rmse(&rest, exact);
-        return Ok(Some(Verdict {
-            mistake: "object",
-            message,
-            help: format!(
-                "look at the fields of the {}, and at how its rays are intersected",
-                scene.objects[index].shape.kind()
-            ),
-            rmse: Some(left),
-            explains: Some(explained_share(left, case.difference)),
-            off,
-        }));
+    parts
+}
+
+/// The object whose part alone explains the difference, if all that is wrong is there or joined on to it:
+/// it may be much larger than it should be. Noise joins on to everything, so that it takes a picture that is right elsewhere; and so do
+/// objects that a camera displaces, of which it has to be known that it is not off.
+pub fn reaching_out(case: &Case) -> Result<Option<Verdict>, RenderError> {
+    let parts = parts(case);
+    let whole = Area::whole(case.full.a.width(), case.full.a.height());
+    let own = |part: &Part| case.differences.share(part.3);
+    let Some(most) = parts.iter().max_by(|p, q| own(p).total_cmp(&own(q))) else {
+        return Ok(None);
+    };
+    let part = joined(case, most.3);
+    if own(most) < 1.0 - LEFT * LEFT || part.pixels() as f64 >= PART * whole.pixels() as f64 {
+        return Ok(None);
     }
-    Ok(None)
+    let rest = outside(case, part)?.filter(|rest| !rest.noisy);
+    Ok(rest.map(|rest| blamed(case, most.2, part, &rest)))
+}
+
+/// A part of the picture and the wrong pixels that are joined on to it.
+fn joined(case: &Case, mut part: Area) -> Area {
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    loop {
+        let [x, y] = [part.x, part.y].map(|at| at.saturating_sub(1));
+        let around = Area {
+            x,
+            y,
+            width: (part.x + part.width + 1).min(a.width()) - x,
+            height: (part.y + part.height + 1).min(a.height()) - y,
+        };
+        let is_off = |&(x, y): &(u32, u32)| noise::is_off((&a.pixel(x, y), &exact.pixel(x, y)));
+        let wrong = around.iter().filter(is_off);
+        let larger = wrong.fold(part, |part, (x, y)| part.with(Area::pixel(x, y)));
+        if larger == part {
+            return part;
+        }
+        part = larger;
+    }
+}
+
+/// What is said of an object in whose part of the picture all is wrong that is wrong.
+fn blamed(case: &Case, index: usize, part: Area, rest: &Rest) -> Verdict {
+    let (exact, scene) = (&case.full.exact, &case.full.scene);
+    let name = called(scene, index);
+    // Noise is in pixels of several colours alone, and displaces what has one.
+    let (but, wrong, off) = match rest.noisy {
+        true => ("but for noise ", strays(case, part), None),
+        false => ("", wrong(case, part), off(case, index, part)),
+    };
+    let pixels = if wrong == 1 { "pixel" } else { "pixels" };
+    let mut message = format!(
+        "{but}the picture is wrong only where {name} is seen, or near it, in {wrong} {pixels}: something about it is off"
+    );
+    if let Some(off) = off {
+        message += &format!("; what has its colour there is displaced: {off}");
+    }
+    let left = rmse(&rest.film, exact);
+    Verdict {
+        mistake: "object",
+        message,
+        help: format!(
+            "look at the fields of the {}, and at how its rays are intersected",
+            scene.objects[index].shape.kind()
+        ),
+        rmse: Some(left),
+        explains: Some(explained_share(left, case.difference)),
+        off,
+    }
+}
+
+/// So many pixels of one colour tell which of two objects it is, the one with the smaller part. It is a choice: one or two are seen at an edge
+/// of both.
+const TELLING: u64 = 3;
+
+/// Whether all pixels that are off are in one object's part of the picture, and most of those that noise would change are not: samples
+/// that leave nearly all edges right do not leave only those of one object wrong.
+pub fn is_in_one_part(case: &Case) -> bool {
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    let whole = Area::whole(a.width(), a.height());
+    let (mut off, mut mixed) = (Vec::new(), Vec::new());
+    for (x, y) in whole.iter() {
+        if noise::is_off((&a.pixel(x, y), &exact.pixel(x, y))) {
+            off.push(Area::pixel(x, y));
+        } else if noise::is_wide(&case.variance.pixel(x, y)) {
+            mixed.push(Area::pixel(x, y));
+        }
+    }
+    let mut objects = case.full.scene.objects.iter();
+    objects.any(|object| {
+        let part = case.view.extent(&moved(&object.shape, DVec3::ZERO, ROOM));
+        part.is_some_and(|part| {
+            !matches!(object.shape, Shape::Checkerboard(_))
+                && !off.is_empty()
+                && off.iter().all(|pixel| pixel.lies_in(part))
+                && mixed.iter().filter(|pixel| !pixel.lies_in(part)).count() > off.len()
+        })
+    })
 }
 
 /// The share of what is wrong that is in a part: of pixels of one colour, in which there is no noise, if any are wrong.
@@ -146,8 +245,11 @@ fn outside(case: &Case, part: Area) -> Result<Option<Rest>, RenderError> {
     let Some(noise) = noise::judge(&rest, exact, &variance) else {
         return Ok(None);
     };
-    let is_biased = case.is_biased(&rest, exact, &variance, noise)?;
-    Ok((!is_biased).then_some(Rest {
+    // Without a pixel that noise does not explain any object may be right.
+    if strays(case, part) == 0 || case.is_biased(&rest, exact, &variance, noise)? {
+        return Ok(None);
+    }
+    Ok(Some(Rest {
         film: rest,
         noisy: true,
     }))

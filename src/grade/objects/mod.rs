@@ -9,7 +9,7 @@ use glam::DVec3;
 
 pub use self::{
     colors::{Near, colors},
-    confined::confined,
+    confined::{confined, is_in_one_part, reaching_out},
     search::search,
     slopes::{Slope, slopes},
 };
@@ -21,13 +21,15 @@ use crate::{
 };
 
 /// So many objects are tried as they may be wrong, and so many are searched for, those in whose part of the picture most of the difference is.
+/// Both are choices, for time: of one wrong object the part has all of it, so that only those seen around it come before it. Each that is
+/// tried takes a part of the picture, each that is searched for some dozen fits.
 const TRIED: usize = 24;
 const SEARCHED: usize = 6;
 
-/// So many objects are moved a little, to see what that changes.
-const SLOPES: usize = 24;
+/// So many objects are moved a little, to see what that changes: those that are tried.
+const SLOPES: usize = TRIED;
 
-/// So many pixels of an object show where it is.
+/// So many pixels of an object show where it is: their mean place is known to a fifth of what one of them tells.
 const ENOUGH: u64 = 6;
 
 /// What an object is called.

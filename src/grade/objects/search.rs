@@ -24,14 +24,16 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// A search for an object's place is worth its time if the pixels of its colour have this share of the squared difference.
+/// A search for an object's place is worth its time if the pixels of its colour have this share of the squared difference: what is wrong
+/// is where it is and is not, so that nearly all of it is theirs; others of its colour and noise leave less.
 const OWN: f64 = 0.4;
 
 /// And if the part of the picture in which it should be has this share: if it is elsewhere, that has as much, unless what is there is of
-/// about its colour.
+/// about its colour. Of a white object on a white and black floor half is lost on each side, and less than a half of the rest.
 const OWN_PART: f64 = 0.1;
 
-/// What moves an object by less than this, in pixels, is seen best by what a smaller step changes.
+/// What moves an object by less than this, in pixels, is seen best by what a smaller step changes: a step's half pixel and the pixel's own
+/// width on either side overlap with it.
 const LITTLE: f64 = 3.0;
 
 /// Objects in a wrong place or of a wrong size, found by what a small step of them changes, or by their colours.
@@ -46,6 +48,8 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     if case.full.is_heavy {
         // Each is fitted many times.
         all.truncate(case.most(SEARCHED));
+    } else {
+        all.extend(unknown(case, &all));
     }
     let mut ideas = Vec::new();
     let mut explained = None;
@@ -64,7 +68,25 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     Ok(ideas)
 }
 
-/// An object that is searched for may be so many times as large.
+/// Objects that may be off in some way that neither a small step nor a colour shows, as all that is wrong is near them: the likeliest ones.
+fn unknown(case: &Case, known: &[Step]) -> Vec<Step> {
+    let indices = likeliest(case, ROOM).into_iter().map(|(_, index)| index);
+    let steps = indices.take(SEARCHED).map(|index| Step {
+        index,
+        by: DVec2::ZERO,
+        factor: 1.0,
+        is_known: false,
+    });
+    let is_new = |step: &Step| known.iter().all(|known| known.index != step.index);
+    let is_sought = |step: &Step| is_new(step) && Sought::new(case, step).is_some();
+    steps.filter(is_sought).take(UNKNOWN).collect()
+}
+
+/// So many of those. It is a choice, for time: the likeliest, and one that is seen in the same part of the picture.
+const UNKNOWN: usize = 2;
+
+/// An object that is searched for may be so many times as large as it seems. It is a choice: what is seen of it may be half of it, and what
+/// is in a larger part of the picture may be another one's.
 const ROOM: f64 = 1.5;
 
 /// How far an object seems to be moved, in pixels to the right and down, and how much larger it seems to be.
@@ -72,6 +94,8 @@ struct Step {
     index: usize,
     by: DVec2,
     factor: f64,
+    /// Whether the picture says so, or nothing is known.
+    is_known: bool,
 }
 
 /// By what factors an object's size may be off: slopes tell little of more.
@@ -91,7 +115,13 @@ fn steps(case: &Case) -> Result<Vec<Step>, RenderError> {
             }
             _ => {
                 let index = slope.index;
-                steps.push((sum.sigmas.abs(), Step { index, by, factor }));
+                let step = Step {
+                    index,
+                    by,
+                    factor,
+                    is_known: true,
+                };
+                steps.push((sum.sigmas.abs(), step));
             }
         }
     }
@@ -129,7 +159,12 @@ fn blobs(case: &Case) -> Vec<Step> {
         if by.length() < 0.05 && (factor - 1.0).abs() < 0.002 {
             continue;
         }
-        steps.push(Step { index, by, factor });
+        steps.push(Step {
+            index,
+            by,
+            factor,
+            is_known: true,
+        });
     }
     steps
 }
@@ -177,7 +212,10 @@ type Found = (f64, Idea);
 
 impl<'a> Sought<'a> {
     /// Nothing, if too much else is wrong.
-    fn new(case: &'a Case<'a>, &Step { index, by, factor }: &Step) -> Option<Self> {
+    fn new(case: &'a Case<'a>, step: &Step) -> Option<Self> {
+        let &Step {
+            index, by, factor, ..
+        } = step;
         let scene: &Scene = &case.full.scene;
         let shape = scene.objects[index].shape;
         let (middle, radius) = ball(&shape)?;
@@ -203,7 +241,7 @@ impl<'a> Sought<'a> {
             axes,
             depth,
             pixel,
-            is_little: by.length() < LITTLE && (factor - 1.0).abs() < 0.1,
+            is_little: step.is_known && by.length() < LITTLE && (factor - 1.0).abs() < 0.1,
         })
     }
 

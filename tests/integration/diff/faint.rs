@@ -208,7 +208,18 @@ fn a_picture_of_many_objects_is_judged() {
     let folder = plain(&scene);
     sampled(&folder, "multi_jittered", 16, &[]);
     assert_eq!(mistake(&folder), "noise");
-    for (set, expected) in [("s404.radius=1.1", "`s404`"), ("camera.roll=2deg", "roll")] {
+    for (set, expected) in [
+        ("s404.radius=1.1", "`s404`"),
+        ("camera.roll=2deg", "roll were 2 degrees instead of 0"),
+        (
+            "camera.fov=52deg",
+            "a field of view of 52 degrees instead of 50",
+        ),
+        (
+            "camera.fov=50.3deg",
+            "a field of view of 50.3 degrees instead of 50",
+        ),
+    ] {
         assert!(
             pinhole(
                 folder.path(),

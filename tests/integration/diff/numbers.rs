@@ -46,6 +46,55 @@ fn several_coordinates_of_the_eye_are_named() {
 }
 
 #[test]
+fn coordinates_that_are_off_by_little_are_all_named() {
+    let folder = folder();
+    for (set, words) in [
+        (
+            "camera.eye=(3.004, 3.503, 8)",
+            "eye were (3.004, 3.503, 8) instead",
+        ),
+        (
+            "camera.eye=(3.006, 3.5, 8.005)",
+            "eye were (3.006, 3.5, 8.005) instead",
+        ),
+        (
+            "camera.lookat=(0.203, 0.796, 0)",
+            "lookat were (0.203, 0.796, 0) instead",
+        ),
+    ] {
+        let (_, message, _) = first(&folder, &[set]);
+        assert!(message.contains(words), "{set}: {message}");
+    }
+}
+
+#[test]
+fn one_thing_is_said_of_one_object() {
+    let folder = folder();
+    for set in ["Ball.center=(-1.3, 1, 0)", "Crate.center=(2.2, 0.75, -0.5)"] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        let found = json(&folder, &["b.png", "a.scn"]);
+        assert_eq!(found["likely"].as_array().unwrap().len(), 1, "{found:#}");
+        let message = found["likely"][0]["message"].as_str().unwrap();
+        // One coordinate explains it, and so is the simplest.
+        assert!(message.contains("the x of its middle"), "{message}");
+    }
+}
+
+#[test]
+fn a_picture_of_few_rows_is_no_trap() {
+    let folder = folder();
+    let sizes = ["--set", "image.width=300", "--set", "image.height=3"];
+    let eye = ["-o", "b.png", "--set", "camera.eye=(3.3, 3.7, 8)"];
+    render(&folder, &[&eye[..], &sizes].concat());
+    let found = json(&folder, &[&["b.png", "a.scn"], &sizes[..]].concat());
+    let message = found["likely"][0]["message"].as_str().unwrap_or("none");
+    assert!(
+        message == "none" || message.contains("eye were (3.3, 3.7, 8) "),
+        "{found:#}"
+    );
+}
+
+#[test]
 fn a_camera_that_looks_elsewhere_is_named() {
     let folder = folder();
     for set in [

@@ -203,7 +203,8 @@ fn json_says_everything() {
             "undecided",
             "tolerance",
             "equal",
-            "likely"
+            "likely",
+            "thin"
         ]
     );
     assert_eq!(

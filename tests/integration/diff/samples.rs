@@ -1,9 +1,11 @@
 //! Mistakes of samples: too few, in the wrong place, averaged wrongly.
 
+use std::fs;
+
 use image::{ImageBuffer, Rgb};
 use serde_json::Value;
 
-use super::{diff, folder, json, mistake, open, render, save};
+use super::{SCENE, diff, folder, json, mistake, open, render, save};
 
 #[test]
 fn mistakes_of_sampling_are_named() {
@@ -166,6 +168,7 @@ fn a_pixel_or_two_tell_of_no_mistake() {
             render(&folder, &[&["-o", "b.png"], &sets[..], &method].concat());
             let found = json(&folder, &[&["b.png", "a.scn"], &sets[..]].concat());
             assert_eq!(found["likely"], Value::Array(Vec::new()), "{size}, {wrong}");
+            assert!(found["thin"].is_boolean(), "{found}");
             assert!(found["beyond"]["pixels"].as_u64().unwrap() <= most);
         }
     }
@@ -177,6 +180,8 @@ fn a_pixel_or_two_tell_of_no_mistake() {
         "sampler.per_pixel=1",
     ];
     render(&folder, &[&["-o", "b.png"], &one[..], &sample].concat());
+    let found = json(&folder, &[&["b.png", "a.scn"], &one[..]].concat());
+    assert_eq!(found["thin"], true, "{found}");
     let (_, text) = diff(&folder, &[&["b.png", "a.scn"], &one[..]].concat());
     assert!(
         text.ends_with(
@@ -194,6 +199,50 @@ fn a_wrong_object_is_no_noise() {
     render(&folder, &[&moved, &small[..]].concat());
     let found = json(&folder, &[&["b.png", "a.scn"], &small[..]].concat());
     assert_eq!(found["likely"][0]["mistake"], "object_place", "{found:#}");
+}
+
+#[test]
+fn a_band_of_wrong_colours_is_no_noise() {
+    let folder = folder();
+    let far = SCENE.replace("navy", "black").replace(
+        "box Crate { center (2, 0.75, -0.5) }",
+        "box Crate { center (1, 0.3, -6) size (0.6, 0.6, 0.6) color orange }",
+    );
+    let size = ["--set", "image.width=320", "--set", "image.height=180"];
+    fs::write(folder.path().join("a.scn"), far).unwrap();
+    for height in ["0.68", "0.76"] {
+        let size_of_box = format!("Crate.size=(0.6, {height}, 0.6)");
+        for method in ["random", "multi_jittered", "sobol"] {
+            let method = format!("sampler.method={method}");
+            let sets = [
+                "--set",
+                &size_of_box,
+                "--set",
+                &method,
+                "--set",
+                "sampler.per_pixel=16",
+            ];
+            render(&folder, &[&["-o", "b.png"], &size[..], &sets].concat());
+            let found = json(&folder, &[&["b.png", "a.scn"], &size[..]].concat());
+            let first = &found["likely"][0];
+            assert_ne!(first["mistake"], "noise", "{height}, {method}");
+            // A few pixels do not tell which object it is.
+            if let Some(message) = first["message"].as_str() {
+                assert!(message.contains("`Crate`"), "{height}, {method}: {message}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_few_wrong_edges_are_no_noise() {
+    let folder = folder();
+    // All but the pixels around the ball is right.
+    render(
+        &folder,
+        &["-o", "b.png", "--set", "Ball.center=(-1.59, 1, 0)"],
+    );
+    assert_ne!(mistake(&folder), "noise");
 }
 
 #[test]

@@ -347,6 +347,27 @@ fn up_to_a_hundred_thousand_squares() {
     }
 }
 
+/// The eye close above the board in as wide a view as can be: of a pixel with the middle of the picture at a corner, some quarters are known
+/// exactly, and of others no quarters are known better.
+#[test]
+fn a_pixel_next_to_the_middle_of_the_widest_views() {
+    for (fov, square) in [("179.99999999", "2.9e-06"), ("179.9999999", "1e-7")] {
+        let text = format!(
+            "image {{ width 6 height 5 }}
+             camera {{ eye (0, 0.0288, 5) direction (-0.985, -0.328, -1) roll 118.4deg fov {fov}deg }}
+             sampler {{ method exact }}
+             checkerboard {{ square {square} }}"
+        );
+        let bound = bound_at(&text, [1, 0]);
+        assert!(bound <= 1e-7, "{fov}, {square}: {bound:e}");
+    }
+    let text = "image { width 6 height 4 }
+        camera { eye (0.3, 2, 1) direction (0.2, -0.3, -1) roll 5deg d 1e-8 }
+        sampler { method exact }
+        checkerboard { square 1e-7 }";
+    assert!(exact(&read(text)).bound() <= 1e-7);
+}
+
 /// Sixty million squares before a far plane, which none of the pixel's sides goes beyond.
 #[test]
 fn very_many_squares_before_a_far_plane() {

@@ -2,7 +2,7 @@
 
 mod board;
 
-use std::{f64::consts::PI, num::NonZero, sync::atomic::AtomicBool};
+use std::{f64::consts::PI, fmt::Write, num::NonZero, sync::atomic::AtomicBool};
 
 use dashu_ratio::RBig;
 use glam::{DVec2, dvec3};
@@ -610,6 +610,28 @@ fn bounds_keep_their_promise() {
         let exact = exact(&scene);
         assert!(exact.bound() <= 1e-9, "{direction:?}: {:e}", exact.bound());
     }
+}
+
+/// So many spheres that pierce each other in one pixel, most of what bounds them hidden.
+#[test]
+fn a_heap_in_one_pixel() {
+    let mut text = String::from(
+        "image { width 3 height 3 }
+         camera { eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }
+         sampler { method exact }\n",
+    );
+    let mut random = Random(7);
+    for color in ["olive", "teal", "orange", "red", "blue"].repeat(8) {
+        let [at, more]: [DVec2; 2] = [random.offset(), random.offset()];
+        let (x, y, z) = (40.0 * at.x, 40.0 * at.y, 40.0 * more.x);
+        let radius = 20.0 * (0.6 + more.y);
+        let _ = writeln!(
+            text,
+            "sphere {{ center ({x}, {y}, {z}) radius {radius} color {color} }}"
+        );
+    }
+    let seen = exact(&read(&text));
+    assert!(seen.bound() <= 1e-12, "{:e}", seen.bound());
 }
 
 #[test]
