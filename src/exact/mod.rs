@@ -104,7 +104,7 @@ struct Piece {
     is_final: bool,
 }
 
-/// A spot with more objects than this, and more curves than the third root of that, is quartered if those are not in all of its quarters,
+/// A spot with more objects than this, and more curves than the third root of that, is quartered if these are not in all of its quarters,
 /// down to spots of such a side.
 const SEVERAL: usize = 4;
 const MANY_CURVES: u64 = 16 * 16 * 16;
@@ -313,11 +313,11 @@ impl<'a> Integrator<'a> {
         if whole <= MANY_CURVES {
             return None;
         }
-        let mut together = 0;
+        let mut together = 0_u64;
         let quarters = spot.quarters().map(|quarter| {
             let mut seen = Vec::new();
             self.world.live_in(quarter, live, &mut seen);
-            together += time(quarter, &seen);
+            together = together.saturating_add(time(quarter, &seen));
             (quarter, seen)
         });
         let is_large = spot.side > LARGE && whole > VERY_MANY_CURVES;
