@@ -5,6 +5,7 @@ use std::{array, sync::atomic::AtomicBool};
 use glam::DVec2;
 
 use super::{
+    care::Care,
     cells, closely,
     displaced::displacements,
     edge,
@@ -47,8 +48,8 @@ const BESIDE: f64 = 1e-11;
 /// What is farther than this m is next to nothing of a pixel.
 const NEXT_TO_NOTHING: f64 = 1e9;
 
-/// A sum with no greater bound than this is good enough for a pixel in which there are several.
-pub(super) const FINE: f64 = 1e-12;
+/// Squares that are smaller than a pixel by this power of two may be too small to be seen.
+const TINY: i32 = 24;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -102,6 +103,8 @@ pub(crate) struct Board {
     pub(super) horizon_off: f64,
     /// What may be neglected at the horizon, for an edge that runs into it, in square pixels.
     pub(super) tail: f64,
+    /// How closely it is looked at where roundings leave something in doubt.
+    pub(super) care: Care,
 }
 
 /// A corner of a region: where it is in the picture, what floor it shows, and m there.
@@ -202,26 +205,45 @@ impl Board {
                 false => 0.0,
             },
             tail: 5e-10,
+            care: Care::Usual,
         }
     }
 
     /// The integral of s(a)·s(b) over what a convex polygon shows of the floor, in square pixels; positive where the
-    /// squares are, however the polygon is oriented. Some of its sides may be known, if it is a whole pixel. Once it is cancelled
-    /// any sum will do.
+    /// squares are, however the polygon is oriented; or 0, with a bound on it, where squares are too small to be seen. Some of its sides may
+    /// be known, if it is a whole pixel. Once it is cancelled any sum will do.
     pub(super) fn over(
         &self,
         polygon: &[DVec2],
         known: Option<&mut Known>,
         cancel: &AtomicBool,
     ) -> Sum {
+        let enough = self.care.enough(polygon);
+        let next_to_nothing = || Sum {
+            value: 0.0,
+            bound: self.most(polygon),
+        };
+        let [of_a, of_b] = self.fine.floor.powers;
+        if of_a.max(of_b) >= TINY {
+            let sum = next_to_nothing();
+            if sum.bound <= Care::Great.enough(polygon) {
+                return sum.within(polygon.iter().copied());
+            }
+        }
         let mut sum = self.unchecked(polygon, known, cancel);
-        if sum.bound > FINE && !self.is_crowded(polygon) {
+        if sum.bound > enough && !self.is_crowded(polygon) {
             let close = closely::sum(self, polygon);
             sum = close.filter(|close| close.bound < sum.bound).unwrap_or(sum);
         }
         if self.fine.nudge > 0.0 {
             // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
             sum.bound += self.fine.nudge * self.blurred(polygon.iter().copied());
+        }
+        if sum.bound > enough {
+            let other = next_to_nothing();
+            // Neither may be a number.
+            let is_better = sum.value.is_finite() && sum.bound <= other.bound;
+            sum = if is_better { sum } else { other };
         }
         sum.within(polygon.iter().copied())
     }

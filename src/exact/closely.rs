@@ -7,7 +7,7 @@ use std::array;
 use glam::DVec2;
 
 use super::{
-    board::{Board, Corner, FINE, Sum, normalized, size},
+    board::{Board, Corner, Sum, normalized, size},
     cutter::split,
     displaced::displacements,
     edge, finely,
@@ -15,13 +15,14 @@ use super::{
 };
 use crate::math::{Double, Real};
 
-/// What is further away than so many squares is summed along its boundary: there all terms neglect less than roundings do.
-const FAR: f64 = 24.0;
+/// What is further away than so many squares is summed along its boundary: there all terms of the series, of which `board` is content with
+/// fewer, neglect less than roundings do.
+const FARTHER: f64 = 24.0;
 
 /// The integral, positive where squares are however the polygon is oriented; `None` where too many lines are near, or places cannot be told.
 pub(super) fn sum(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
     let sum = near_and_far(board, polygon);
-    if let Some(sum) = sum.filter(|sum| sum.bound <= FINE) {
+    if let Some(sum) = sum.filter(|sum| sum.bound <= board.care.enough(polygon)) {
         return Some(sum);
     }
     // Of few squares not too far away series leave more than lines do.
@@ -37,7 +38,7 @@ fn near_and_far(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
     let board = closer(board);
     let [p, q] = board.floor.slope;
     let mut line = board.below;
-    line[2] -= 1.0 / (FAR * (p.abs() + q.abs()));
+    line[2] -= 1.0 / (FARTHER * (p.abs() + q.abs()));
     let (mut far, mut near) = (Vec::new(), Vec::new());
     split(polygon, &line, &mut far, &mut near);
     let mut sum = Sum::default();
@@ -93,7 +94,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::exact::polygon::PIXEL;
+    use crate::exact::{care::FINE, polygon::PIXEL};
 
     /// What a level camera sees that is so many squares above the board, of so many pixels of focal length, in a pixel so far below the
     /// horizon.

@@ -10,7 +10,7 @@ use super::{
 /// A displacement of no more area than this is not looked at closely.
 const LITTLE: f64 = 1e-14;
 /// Nor one of no more than this line by line.
-const ENOUGH: f64 = 1e-13;
+const SMALL: f64 = 1e-13;
 
 impl Board {
     /// By how much rounding may change what a polygon shows of the board: the displacement of its boundary.
@@ -52,7 +52,7 @@ impl Board {
         // Of 2^60 lines.
         const MOST: f64 = 100.0;
         let displaced = self.displaced(points.clone());
-        if displaced <= ENOUGH {
+        if displaced <= SMALL {
             return displaced;
         }
         let off = |form: &[f64; 3]| 8.0 * UNIT * size(form);

@@ -76,7 +76,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            sum.bound += 16.0 * UNIT * size;
+            sum.bound += (16.0 * UNIT + 2.0 * board.floor.misfit) * size;
         }
     }
     sum.value *= board.floor.handed * area.signum();
@@ -295,8 +295,11 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
+        // X at either end is rounded. And K, which all of it has before it, does not quite fit the corners; nor do the slopes, whose powers
+        // are in the later terms, which are less.
+        let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
-        sum.bound = self.rho.abs() * (sum.bound + 32.0 * UNIT * ends);
+        sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.floor.misfit * all);
         sum
     }
 

@@ -2,20 +2,23 @@
 //!
 //! The same formula as that of `grid`: the lines of one family, of which there are fewer, cut the polygon into strips, and each line of the
 //! other takes twice what lies beyond it from what came before. Where a polygon is seen grazing, hundreds of lines cross it, each of which
-//! may be displaced by some roundings; here those are of 2⁻¹⁰².
+//! may be displaced by some roundings; here those are of 2⁻¹⁰². With great care a long and narrow polygon is cut across first: most lines
+//! would miss most of its strips.
 
 use std::array;
 
 use glam::DVec2;
 use multiversion::multiversion;
 
-use super::board::{Board, Sum, UNIT};
+use super::board::{Board, Sum, UNIT, measure};
 use super::euler::square_wave;
-use super::grid::FAR;
+use super::grid::OUT_OF_REACH;
 use crate::math::{Double, Real, two_sum};
 
-/// No more sides of strips by lines than this are looked at, of which there are some dozens to a microsecond.
-const MOST: f64 = 80_000.0;
+/// Where there are more sides of strips by lines than so many for every square, most lines miss most strips.
+const WASTEFUL: f64 = 12.0;
+/// With no more lines than these, which are computed at once, nothing is gained by fewer.
+const FEW_LINES: f64 = 2.0 * LANES as f64;
 
 const ZERO: Double = Double { hi: 0.0, lo: 0.0 };
 
@@ -29,6 +32,20 @@ const OFF: f64 = 4.0 * Double::UNIT;
 /// whose places cannot be told.
 pub(super) fn sum(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
     let corners: Vec<Point> = polygon.iter().map(|&at| Point::exactly(at)).collect();
+    let area = (0..corners.len()).fold(ZERO, |sum, i| {
+        sum.plus(&corners[i].cross(&corners[(i + 1) % corners.len()]))
+    });
+    let mut left = board.care.patience();
+    let mut sum = in_pieces(board, &corners, f64::INFINITY, &mut left)?;
+    if area.is_negative() {
+        sum.value = -sum.value;
+    }
+    Some(sum)
+}
+
+/// The same, positive where squares are if the polygon runs in the positive sense; of all sides by lines so many are left to look at. Not
+/// more lines may cross it than so many.
+fn in_pieces(board: &Board, corners: &[Point], most: f64, left: &mut f64) -> Option<Sum> {
     let levels: Vec<Double> = corners
         .iter()
         .map(|at| value(&board.fine.forms[2], at))
@@ -37,26 +54,62 @@ pub(super) fn sum(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
         return None;
     }
     let (a, b) = (
-        Family::new(board, 0, &corners, &levels)?,
-        Family::new(board, 1, &corners, &levels)?,
+        Family::new(board, 0, corners, &levels)?,
+        Family::new(board, 1, corners, &levels)?,
     );
+    let points = a.places.iter().zip(&b.places);
+    let (area, _) = measure(points.map(|(&a, &b)| DVec2::new(a, b)));
+    let lines = a.lines() + b.lines();
+    let squares = lines + 1.0 + area.abs();
     let (few, many) = match a.lines() <= b.lines() {
         true => (a, b),
         false => (b, a),
     };
     let sides = corners.len() as f64 + 3.0 * few.lines();
-    if sides * (many.lines() + 1.0) > MOST {
+    let all = sides * (many.lines() + 1.0);
+    let is_wasteful = many.lines() > FEW_LINES && all > WASTEFUL * squares;
+    if is_wasteful && board.care.cuts_long_ones() {
+        let middle = (0.5 * (many.first + many.last)).floor() + 0.5;
+        let halves = cut(corners, &many.line(middle));
+        // A half has half of these lines; unless places are so uncertain that nothing is cut.
+        if lines > most || halves.iter().any(|half| half.len() < 3) {
+            return None;
+        }
+        let most = 0.8 * lines + 4.0;
+        let mut sum = Sum::default();
+        for half in halves {
+            sum.add(in_pieces(board, &half, most, left)?);
+            // What the addition leaves.
+            sum.bound += UNIT * sum.value.abs();
+        }
+        // Both halves have the same corners on the cut, which a few roundings may keep off the sides.
+        sum.bound += 16.0 * OFF;
+        return Some(sum);
+    }
+    *left -= all;
+    if *left < 0.0 {
         return None;
     }
-    let strips = Strips::new(&few, &corners)?;
-    let mut sum = strips.beyond(&few, &many);
-    let area = (0..corners.len()).fold(ZERO, |sum, i| {
-        sum.plus(&corners[i].cross(&corners[(i + 1) % corners.len()]))
-    });
-    if area.is_negative() {
-        sum.value = -sum.value;
+    Some(Strips::new(&few, corners)?.beyond(&few, &many))
+}
+
+/// The parts of a convex polygon on either side of a line.
+fn cut(corners: &[Point], line: &[Double; 3]) -> [Vec<Point>; 2] {
+    let mut halves = [Vec::new(), Vec::new()];
+    let values: Vec<Double> = corners.iter().map(|at| value(line, at)).collect();
+    for (i, corner) in corners.iter().enumerate() {
+        let next = (i + 1) % corners.len();
+        let half = usize::from(values[i].is_negative());
+        halves[half].push(*corner);
+        if values[i].is_negative() != values[next].is_negative() {
+            let t = values[i].over(&values[i].minus(&values[next]));
+            let at = corner.towards(&corners[next], &t);
+            for half in &mut halves {
+                half.push(at);
+            }
+        }
     }
-    Some(sum)
+    halves
 }
 
 /// A point of the picture.
@@ -104,7 +157,8 @@ struct Family<'a> {
     below: &'a [Double; 3],
     /// How far values of N and of L may be from the true ones.
     rads: [f64; 2],
-    /// Between which lines each corner is, by the lower one.
+    /// Where each corner is, in squares, and between which lines, by the lower one.
+    places: Vec<f64>,
     squares: Vec<f64>,
     first: f64,
     last: f64,
@@ -114,19 +168,22 @@ impl<'a> Family<'a> {
     /// `None` if its lines are too far away for it.
     fn new(board: &'a Board, axis: usize, corners: &[Point], levels: &[Double]) -> Option<Self> {
         let (across, below) = (&board.fine.forms[axis], &board.fine.forms[2]);
-        let places = corners.iter().zip(levels);
-        let squares: Vec<f64> = places
-            .map(|(at, level)| value(across, at).over(level).floor().0.hi)
-            .collect();
-        if !squares.iter().all(|square| square.abs() < FAR) {
+        let (mut places, mut squares) = (Vec::new(), Vec::new());
+        for (at, level) in corners.iter().zip(levels) {
+            let place = value(across, at).over(level);
+            places.push(place.hi);
+            squares.push(place.floor().0.hi);
+        }
+        if !squares.iter().all(|square| square.abs() < OUT_OF_REACH) {
             return None;
         }
         Some(Self {
             across,
             below,
             rads: [board.fine.rads[axis], board.fine.rads[2]],
-            first: squares.iter().copied().fold(FAR, f64::min),
-            last: squares.iter().copied().fold(-FAR, f64::max),
+            first: squares.iter().copied().fold(OUT_OF_REACH, f64::min),
+            last: squares.iter().copied().fold(-OUT_OF_REACH, f64::max),
+            places,
             squares,
         })
     }
@@ -250,7 +307,7 @@ impl Strips {
         let displaced = many.displacement() * (1.0 + strips) + few.displacement();
         Sum {
             value: square_wave(many.first) * sum.hi,
-            bound: 3.0 * displaced + OFF * roundings + UNIT,
+            bound: 3.0 * displaced + OFF * roundings + UNIT * sum.hi.abs(),
         }
     }
 }
@@ -385,7 +442,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::exact::{cells, polygon::PIXEL};
+    use crate::exact::{care::Care, cells, polygon::PIXEL};
 
     fn board([a, b]: [[f64; 2]; 2], place: [f64; 2], tilt: [f64; 2]) -> Board {
         let below = [tilt[0], tilt[1], 1.0];
@@ -414,6 +471,35 @@ mod tests {
         for board in [many, endless, far] {
             assert!(sum(&board, &PIXEL).is_none());
         }
+    }
+
+    #[test]
+    fn a_long_and_narrow_polygon_in_pieces() {
+        // Some 1400 lines of either family pass between its long sides, a few at a time.
+        let mut seen = board([[1000.0, 930.0], [-1000.0, 940.0]], [0.3, -0.2], [0.1, 0.0]);
+        let polygon = [(-0.5, -0.001), (0.5, -0.002), (0.5, 0.001), (-0.5, 0.002)];
+        let polygon = polygon.map(|(x, y)| DVec2::new(x, y));
+        assert!(sum(&seen, &polygon).is_none());
+        seen.care = Care::Great;
+        let whole = sum(&seen, &polygon).expect("few squares");
+        assert!(whole.bound < 1e-14, "{whole:?}");
+        // Cut by hand into sixteen, each with few lines.
+        seen.care = Care::Usual;
+        let at = |x: f64| {
+            let [p, q, r, s] = polygon;
+            [p.lerp(q, x), s.lerp(r, x)]
+        };
+        let mut parts = Sum::default();
+        for i in 0..16 {
+            let [[p, s], [q, r]] = [i, i + 1].map(|i| at(f64::from(i) / 16.0));
+            parts.add(sum(&seen, &[p, q, r, s]).expect("few lines"));
+        }
+        // Corners of these are rounded.
+        let off = (whole.value - parts.value).abs();
+        assert!(
+            off <= whole.bound + parts.bound + 32.0 * UNIT,
+            "{whole:?}, not {parts:?}"
+        );
     }
 
     proptest! {

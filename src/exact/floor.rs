@@ -37,8 +37,14 @@ pub(super) struct Floor {
     pub per_slope: [Sum; 2],
     /// How far det M may be from the true one, relative to it.
     uncertain: f64,
+    /// How far K may be from that of the very forms, relative to it: these fit the corners that they have been asked for.
+    pub misfit: f64,
     /// Whether the floor is seen mirrored: the sign of det M.
     pub handed: f64,
+    /// K for squares as large as two powers of two, of which there are about as many in the picture as pixels. K itself may be out of the range
+    /// of numbers where squares are very small.
+    scaled_density: f64,
+    pub powers: [i32; 2],
 }
 
 impl Fine {
@@ -90,6 +96,15 @@ impl Fine {
         };
         (fine, inverse)
     }
+
+    /// K at most, unless the forms, and so K, have been changed on purpose; for squares as large as the floor's powers of two.
+    pub fn most_scaled_density(&self) -> f64 {
+        let uncertain = self.floor.uncertain;
+        match self.nudge == 0.0 && uncertain < 0.5 {
+            true => self.floor.scaled_density * (1.0 + 2.0 * uncertain),
+            false => f64::INFINITY,
+        }
+    }
 }
 
 impl Floor {
@@ -107,7 +122,10 @@ impl Floor {
             density: libm::ldexp(1.0 / det.abs(), -of_a - of_b),
             per_slope: [per_slope(0, of_b), per_slope(1, of_a)],
             uncertain: inverse.det_off,
+            misfit: inverse.det_misfit,
             handed: det.signum(),
+            scaled_density: 1.0 / det.abs(),
+            powers: [of_a, of_b],
         }
     }
 

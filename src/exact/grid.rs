@@ -32,7 +32,7 @@ fn square_wave(n: f64) -> f64 {
 }
 
 /// A family whose lines are farther away than this is left to others.
-pub(super) const FAR: f64 = 1e9;
+pub(super) const OUT_OF_REACH: f64 = 1e9;
 
 /// How many lines are computed at once.
 const LANES: usize = 8;
@@ -84,7 +84,7 @@ impl<'a> Family<'a> {
     fn new(board: &'a Board, axis: usize, levels: &[f64; 4]) -> Option<Self> {
         let across = &board.across[axis];
         let places: [f64; 4] = array::from_fn(|i| form(across, CORNERS[i]) / levels[i]);
-        if !places.iter().all(|place| place.abs() < FAR) {
+        if !places.iter().all(|place| place.abs() < OUT_OF_REACH) {
             return None;
         }
         let squares = places.map(floor);
@@ -93,8 +93,8 @@ impl<'a> Family<'a> {
             below: &board.below,
             rads: [board.rads[axis], board.rads[2]],
             squares,
-            first: squares.into_iter().fold(FAR, f64::min),
-            last: squares.into_iter().fold(-FAR, f64::max),
+            first: squares.into_iter().fold(OUT_OF_REACH, f64::min),
+            last: squares.into_iter().fold(-OUT_OF_REACH, f64::max),
         })
     }
 

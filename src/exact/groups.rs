@@ -6,7 +6,7 @@
 use multiversion::multiversion;
 
 use super::{
-    grid::FAR,
+    grid::OUT_OF_REACH,
     polygon::PIXEL,
     together::{Lines, Row, Sums, nearest},
 };
@@ -62,7 +62,7 @@ impl Corners {
                 doubt[i] += if is_good { 0.0 } else { f64::INFINITY };
             }
         }
-        let (mut firsts, mut lasts) = ([[FAR; PIXELS]; 2], [[-FAR; PIXELS]; 2]);
+        let (mut firsts, mut lasts) = ([[OUT_OF_REACH; PIXELS]; 2], [[-OUT_OF_REACH; PIXELS]; 2]);
         for family in 0..2 {
             let [x, y, z] = &across[family];
             let (first, last) = (&mut firsts[family], &mut lasts[family]);
@@ -71,7 +71,7 @@ impl Corners {
                 let mut squares = [0.0; PIXELS];
                 for i in 0..PIXELS {
                     let place = (x[i] * at.x + y[i] * at.y + z[i]) / level[i];
-                    doubt[i] += if place.abs() < FAR {
+                    doubt[i] += if place.abs() < OUT_OF_REACH {
                         0.0
                     } else {
                         f64::INFINITY

@@ -22,6 +22,8 @@ pub(super) struct Inverse {
     pub minors_off: [f64; 2],
     /// The same for det M.
     pub det_off: f64,
+    /// How far that may be from det M of the very forms, relative to it.
+    pub det_misfit: f64,
 }
 
 impl Inverse {
@@ -87,12 +89,14 @@ impl Inverse {
                 l[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
+        let off = |unit: f64| match is_singular {
+            true => f64::INFINITY,
+            false => 8.0 * unit * products / det.abs() + 4.0 * UNIT,
+        };
         Self {
             minors_off: [minor_off(&columns[0], b), minor_off(&columns[1], a)],
-            det_off: match is_singular {
-                true => f64::INFINITY,
-                false => 8.0 * unit * products / det.abs() + 4.0 * UNIT,
-            },
+            det_off: off(unit),
+            det_misfit: off(Double::UNIT),
             columns,
             det,
         }

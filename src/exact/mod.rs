@@ -14,7 +14,8 @@
 //!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
 //!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
-//!    in double-double (`closely`), and near lines, which are few, one by one (`finely`).
+//!    in double-double (`closely`), and near lines, which are few, one by one (`finely`); how long that may take is a matter of `care`.
+//!    Of squares too small to be seen it is told only how little they leave (`small`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
@@ -22,6 +23,7 @@ mod arc;
 mod block;
 mod board;
 mod bulk;
+mod care;
 mod cells;
 mod closely;
 mod complex;
@@ -43,6 +45,7 @@ mod region;
 mod resonance;
 mod sides;
 mod sliver;
+mod small;
 mod strip;
 mod sweep;
 #[cfg(test)]
@@ -63,6 +66,7 @@ use crate::{
 
 use self::{
     board::{Sum, UNIT},
+    care::Care,
     region::{Regions, Shares},
     sides::Sides,
     waiting::{BoardPixel, Waiting},
@@ -232,9 +236,9 @@ impl<'a> Integrator<'a> {
 
     /// The shares of a spot; of parts of it together where the whole is not computed well enough.
     ///
-    /// A part has coordinates of its own, in which roundings are smaller: the widest views need that, in which a pixel sees
-    /// squares both near and far. The part that is known worst is quartered: once if the whole is not known as well as it could be, and again as
-    /// long as that helps much where far too little is known.
+    /// Few squares are looked at more closely then. And a part has coordinates of its own, in which roundings are smaller: the widest views
+    /// need that, in which a pixel sees squares both near and far. The part that is known worst is quartered: once if the whole is not known
+    /// as well as it could be, and again as long as that helps much where far too little is known.
     fn shares(
         &self,
         spot: Spot,
@@ -250,20 +254,29 @@ impl<'a> Integrator<'a> {
             }
             return together;
         }
-        let mut of = |spot| Piece {
+        let mut with = |care, spot| Piece {
             spot,
-            shares: self.shares_at_once(spot, live, scratch, cancel),
+            shares: self.shares_at_once(spot, live, care, scratch, cancel),
             is_final: false,
         };
-        let whole = of(spot);
-        let mut enough = match whole.shares.is_crowded {
+        let mut care = Care::Usual;
+        let mut whole = with(care, spot);
+        let enough = match whole.shares.is_crowded {
             true => ENOUGH_CROWDED,
             false => ENOUGH,
         };
+        if whole.shares.of_boards > enough && !whole.shares.is_crowded {
+            care = Care::Great;
+            let again = with(care, spot);
+            if again.shares.bound < whole.shares.bound {
+                whole = again;
+            }
+        }
         let off = |piece: &Piece| piece.bound(spot);
         let mut pieces = vec![whole];
-        for _ in 0..MOST_CUTS {
+        for cuts in 0..MOST_CUTS {
             let bound: f64 = pieces.iter().map(off).sum();
+            let enough = if cuts == 0 { enough } else { TOLERABLE };
             if bound <= enough || cancel.load(Ordering::Relaxed) {
                 break;
             }
@@ -274,7 +287,7 @@ impl<'a> Integrator<'a> {
                 break;
             };
             let before = off(worst);
-            let quarters = worst.spot.quarters().map(&mut of);
+            let quarters = worst.spot.quarters().map(|quarter| with(care, quarter));
             let after: f64 = quarters.iter().map(off).sum();
             worst.is_final = after > 0.5 * before;
             if after < before {
@@ -283,7 +296,6 @@ impl<'a> Integrator<'a> {
                 *worst = first;
                 pieces.extend(rest);
             }
-            enough = TOLERABLE;
         }
         let mut together = Shares::default();
         for piece in &pieces {
@@ -328,12 +340,13 @@ impl<'a> Integrator<'a> {
         &self,
         spot: Spot,
         live: &[Live],
+        care: Care,
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
         let Scratch { curves, sides, .. } = scratch;
         self.world.curves(spot, live, cancel, curves);
-        let regions = Regions::new(self.world, spot, live, sides, cancel);
+        let regions = Regions::new(self.world, spot, live, sides, care, cancel);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         if lines_alone {
             polygon::shares(curves, regions)

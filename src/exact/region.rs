@@ -12,6 +12,7 @@ use crate::{
 use super::{
     arc::Arc,
     board::Board,
+    care::Care,
     sides::{Known, Sides},
 };
 
@@ -22,6 +23,8 @@ pub struct Shares {
     pub by_slot: Vec<(usize, f64)>,
     /// How much area may be with the wrong colour.
     pub bound: f64,
+    /// How much of that boards leave, by what is not known of their squares.
+    pub of_boards: f64,
     /// Whether very many squares are among it, or squares without end.
     pub is_crowded: bool,
 }
@@ -35,6 +38,8 @@ pub struct Regions<'a> {
     sides: &'a mut Sides,
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
+    /// How closely boards are looked at.
+    care: Care,
     shares: Shares,
     cancel: &'a AtomicBool,
 }
@@ -65,6 +70,7 @@ impl<'a> Regions<'a> {
         spot: Spot,
         live: &'a [Live],
         sides: &'a mut Sides,
+        care: Care,
         cancel: &'a AtomicBool,
     ) -> Self {
         Self {
@@ -73,6 +79,7 @@ impl<'a> Regions<'a> {
             live,
             sides,
             boards: Vec::new(),
+            care,
             shares: Shares::default(),
             cancel,
         }
@@ -126,6 +133,7 @@ impl<'a> Regions<'a> {
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;
+        self.shares.of_boards += bound;
         self.shares.is_crowded |= checkered.board.is_crowded(region.polygon);
     }
 
@@ -158,7 +166,8 @@ impl<'a> Regions<'a> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
-                let checkered = Checkered::new(self.world, object, self.spot)?;
+                let mut checkered = Checkered::new(self.world, object, self.spot)?;
+                checkered.board.care = self.care;
                 self.boards.push((object, checkered));
                 self.boards.len() - 1
             }
@@ -190,6 +199,7 @@ impl Shares {
             self.add(slot, area * share);
         }
         self.bound += area * part.bound;
+        self.of_boards += area * part.of_boards;
         self.is_crowded |= part.is_crowded;
     }
 

@@ -19,7 +19,7 @@ const PIXEL: [DVec2; 4] = [
 ];
 
 /// Nothing is cancelled here.
-static WANTED: AtomicBool = AtomicBool::new(false);
+pub(super) static WANTED: AtomicBool = AtomicBool::new(false);
 
 impl Board {
     /// The integral over a polygon of which no side is known.

@@ -7,7 +7,7 @@ use pinhole::{
     scene::Scene,
 };
 
-use super::{exact, part_adds_up, read};
+use super::{exact, part, part_adds_up, read};
 use crate::tracer::Random;
 
 /// Where the horizon passes next to the centres of pixels, level or along their diagonals.
@@ -53,6 +53,69 @@ fn the_widest_views_of_a_board() {
             ));
             let bound = exact(&scene).bound();
             assert!(bound <= 1e-8, "{lens} {direction} {roll}: {bound:e}");
+        }
+    }
+}
+
+/// In very wide views a pixel may see thousands of squares one behind another, and no horizon.
+#[test]
+fn up_to_a_hundred_thousand_squares_in_wide_views() {
+    for (camera, square, x, y) in [
+        (
+            "eye (0, 157.4019629802236, 0) direction (-0.24392, 0, 0.14156) d 5.394e-6 far 11.7184",
+            73.5,
+            [0, 6],
+            [2, 3],
+        ),
+        (
+            "eye (-3.761, 73.0078700358, -1.4975) direction (-0.76386, -0.028555, 0.09058) roll 90deg d 1.1174e-4",
+            642.0,
+            [3, 4],
+            [0, 4],
+        ),
+        (
+            "eye (3.4158975, 0.0422285609, -1.3490885) direction (1, 0, -1) d 3.1924e-4",
+            2.8656e-5,
+            [0, 6],
+            [3, 4],
+        ),
+        (
+            "eye (0, 0.107641568, -4.564254) direction (0.079364, -1, 0.066323) d 2e-3",
+            0.04485549,
+            [0, 1],
+            [2, 3],
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width 6 height 4 }}
+             camera {{ {camera} }}
+             sampler {{ method exact }}
+             checkerboard {{ y 0 square {square} }}"
+        ));
+        let area = Area {
+            x: x[0],
+            y: y[0],
+            width: x[1] - x[0],
+            height: y[1] - y[0],
+        };
+        let bound = part(&scene, area).bound();
+        assert!(bound <= 1e-12, "{camera}: {bound:e}");
+    }
+}
+
+/// Of squares too small to be seen, however small, next to nothing is left but their mean.
+#[test]
+fn squares_too_small_to_be_seen() {
+    for lens in ["fov 40deg", "fov 1e-7deg", "d 1e-9"] {
+        for square in ["1e-30", "1e-100", "1e-300"] {
+            let scene = read(&format!(
+                "image {{ width 6 height 4 }}
+                 camera {{ eye (0.3, 1.7, 8) direction (1, -0.1, -2) roll 20deg {lens} }}
+                 sampler {{ method exact }}
+                 checkerboard {{ y 0 square {square} colors (white, black) }}"
+            ));
+            let film = exact(&scene);
+            assert!(film.bound() <= 1e-12, "{lens} {square}: {:e}", film.bound());
         }
     }
 }
