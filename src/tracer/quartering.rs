@@ -11,11 +11,14 @@ use crate::area::Area;
 /// A part with so many candidates is cut by their bounds alone, without a look at most of them.
 const CROWD: usize = 64;
 
-/// The same of a scene with many objects, and where few samples are traced in crowds. Objects that are few may well be large, or slivers
+/// The same of a scene with many objects; and where few samples are traced in crowds. Objects that are few may well be large, or slivers
 /// of whose bounds they fill but a small part.
 const MANY: usize = 1 << 14;
 const CROWD_OF_MANY: usize = 8;
 const KEPT_CROWD: usize = 4;
+
+/// A tile with so many objects for each of its pixels has many for a few samples, too.
+const MANY_A_PIXEL: f64 = 0.25;
 
 /// Cuts the parts of one picture.
 #[derive(Debug)]
@@ -23,9 +26,7 @@ pub struct Quartering<'a> {
     world: &'a World,
     /// Parts of so few pixels are not cut.
     grain: u64,
-    /// So many candidates are a crowd.
-    crowd: usize,
-    /// Whether crowds stay crowds in parts that are not cut.
+    /// Whether crowds, where there are many objects, stay crowds in parts that are not cut.
     keeps_crowds: bool,
 }
 
@@ -59,6 +60,15 @@ pub enum Part<'a> {
     },
 }
 
+/// How the crowd of a tile is dispersed.
+#[derive(Clone, Copy)]
+struct Dispersal {
+    /// So many candidates are a crowd.
+    crowd: usize,
+    /// Whether it stays one in parts that are not cut.
+    keeps: bool,
+}
+
 /// The candidates at each depth of the quartering, kept from tile to tile for their room.
 #[derive(Debug, Default)]
 pub struct Room {
@@ -69,11 +79,9 @@ pub struct Room {
 impl<'a> Quartering<'a> {
     /// For a prepared scene.
     pub fn new(world: &'a World) -> Self {
-        let is_many = world.len() >= MANY;
         Self {
             world,
             grain: 1,
-            crowd: if is_many { CROWD_OF_MANY } else { CROWD },
             keeps_crowds: false,
         }
     }
@@ -86,16 +94,12 @@ impl<'a> Quartering<'a> {
         }
     }
 
-    /// The same, but in a scene of many objects those of a pixel are told by their bounds alone: to look at each of them would cost more than
+    /// The same, but where there are many objects those of a pixel are told by their bounds alone: to look at each of them would cost more than
     /// it saves a few samples.
     pub fn for_few_samples(self) -> Self {
-        match self.world.len() >= MANY {
-            true => Self {
-                crowd: KEPT_CROWD,
-                keeps_crowds: true,
-                ..self
-            },
-            false => self,
+        Self {
+            keeps_crowds: true,
+            ..self
         }
     }
 
@@ -118,7 +122,17 @@ impl<'a> Quartering<'a> {
     ) -> ControlFlow<()> {
         let mut crowd = take(&mut room.crowds, 0);
         self.world.crowd_in(area, &mut crowd);
-        let flow = self.disperse(area, &crowd, 0, room, visit);
+        let is_dense = crowd.len() as f64 >= MANY_A_PIXEL * area.pixels() as f64;
+        let are_many = self.world.len() >= MANY || self.keeps_crowds && is_dense;
+        let way = Dispersal {
+            crowd: match (are_many, self.keeps_crowds) {
+                (false, _) => CROWD,
+                (true, false) => CROWD_OF_MANY,
+                (true, true) => KEPT_CROWD,
+            },
+            keeps: are_many && self.keeps_crowds,
+        };
+        let flow = self.disperse(area, &crowd, way, 0, room, visit);
         room.crowds[0] = crowd;
         flow
     }
@@ -128,17 +142,18 @@ impl<'a> Quartering<'a> {
         &self,
         area: Area,
         crowd: &[Item],
+        way: Dispersal,
         depth: usize,
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let is_fine = area.pixels() <= self.grain;
-        if is_fine && depth > 0 && self.keeps_crowds && !crowd.is_empty() {
+        if is_fine && depth > 0 && way.keeps && !crowd.is_empty() {
             return area
                 .iter()
                 .try_for_each(|(x, y)| visit(Part::Crowd { x, y, crowd }, None));
         }
-        if crowd.len() < self.crowd || is_fine {
+        if crowd.len() < way.crowd || is_fine {
             let mut live = take(&mut room.live, depth);
             self.world.live_of(area, crowd, &mut live);
             let flow = self.cut(area, &live, depth + 1, room, visit);
@@ -148,7 +163,7 @@ impl<'a> Quartering<'a> {
         let mut below = take(&mut room.crowds, depth + 1);
         let flow = area.quarters().try_for_each(|quarter| {
             self.world.crowd(quarter, crowd, &mut below);
-            self.disperse(quarter, &below, depth + 1, room, visit)
+            self.disperse(quarter, &below, way, depth + 1, room, visit)
         });
         room.crowds[depth + 1] = below;
         flow
