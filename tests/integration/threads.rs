@@ -23,6 +23,15 @@ fn most(process: &mut Child) -> usize {
     most
 }
 
+fn most_of(folder: &TempDir, arguments: &[&str]) -> usize {
+    let mut process = command(folder.path(), arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program");
+    most(&mut process)
+}
+
 #[test]
 fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
     let folder = TempDir::new().expect("a folder");
@@ -35,16 +44,36 @@ fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
         );
     }
     fs::write(folder.path().join("a.scn"), text).expect("a scene");
-    let most = |threads: &str| {
-        let arguments = ["render", "a.scn", "--threads", threads];
-        let mut process = command(folder.path(), &arguments)
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program");
-        most(&mut process)
-    };
+    let most = |threads: &str| most_of(&folder, &["render", "a.scn", "--threads", threads]);
     let (one, six) = (most("1"), most("6"));
     // Besides those there are the first one, and those that wait for Ctrl-C.
+    assert!(one <= 4, "{one}");
+    assert!(six >= 6, "{six}");
+}
+
+#[test]
+fn no_more_than_were_asked_for_look_for_a_mistake() {
+    let folder = TempDir::new().expect("a folder");
+    let scene = |roll: f64| {
+        format!(
+            "image {{ width 320 height 180 }}
+             camera {{ eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll {roll}deg d 2.75 }}
+             sampler {{ per_pixel 4 }}
+             sphere {{ center (-1.6, 1, 0) color olive }}
+             checkerboard {{}}"
+        )
+    };
+    for (name, roll) in [("right.scn", 0.0), ("wrong.scn", 7.0)] {
+        fs::write(folder.path().join(name), scene(roll)).expect("a scene");
+    }
+    most_of(&folder, &["render", "wrong.scn", "-o", "wrong.png"]);
+    let most = |threads: &str| {
+        most_of(
+            &folder,
+            &["diff", "wrong.png", "right.scn", "--threads", threads],
+        )
+    };
+    let (one, six) = (most("1"), most("6"));
     assert!(one <= 4, "{one}");
     assert!(six >= 6, "{six}");
 }
