@@ -164,8 +164,9 @@ impl Lines {
     fn curvature(&self) -> f64 {
         if self.is_steady() {
             // m⁻³ is off by 3·gN/2m from its value in the middle, and m⁻²·F by as much at most, since |F| and |yF′| are at
-            // most ½; Σ 4/π²n² is ½.
-            return 0.5 * self.cubes().min(self.squares()) * 3.0 / STEADY;
+            // most ½; Σ 4/π²n² is ½. Roundings put m off, too.
+            let change = self.rise.abs() * self.lines / self.nearest() + 4.0 * UNIT;
+            return 0.5 * self.cubes().min(self.squares()) * 3.0 * change;
         }
         // |R″|/2 ≤ 0.04 on the whole line below −iθ, and each of pY_p and cY_c has a second derivative by j of at most 3·m⁻²w⁻².
         let ends = self.ends().iter().flatten().count() as f64;
