@@ -8,6 +8,11 @@ use super::{
 };
 use crate::scene::Method;
 
+/// Between two counts of samples whose logarithms are h apart, the logarithm of what an error takes is taken to be off by up to h²/4 times this from
+/// the straight line: of counts four times as large as the one before by a tenth half-way, which is more than any method was seen to be
+/// (sobol, between powers of four: 6 %).
+const SAG: f64 = 0.2;
+
 /// What an error takes of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Needed {
@@ -66,7 +71,8 @@ impl Series {
     ///
     /// With standard errors ε of the logarithms of both errors, the place x = (1 − s)·a + s·b on the line has that of
     /// √((1 − s)²ε_a² + s²ε_b²) by its slope. Beyond the last point the truth may bend away: there the distance from where the line through
-    /// all points comes down to it counts, if that is greater.
+    /// all points comes down to it counts, if that is greater. Between two it may sag, most half-way, and more than all points show where
+    /// they are the counts that a method likes best: there so much counts as [`SAG`] says.
     pub fn needed(&self, error: f64) -> Option<Needed> {
         let curve = self.curve();
         let first = *curve.first()?;
@@ -109,6 +115,8 @@ impl Series {
         });
         if enough.is_some() {
             per_pixel = per_pixel.min(b.per_pixel as f64);
+            let sag = SAG * (x_b - x) * (x - x_a);
+            doubt = doubt.map(|doubt| (doubt * doubt + sag * sag).sqrt());
         } else if let Some(straight) = self.fit().and_then(|fit| fit.reaches(error)) {
             let bend = (libm::log(straight) - x).abs();
             doubt = Some(doubt.map_or(bend, |doubt| doubt.max(bend)));

@@ -75,8 +75,9 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     let needed = straight.needed(0.1414214).unwrap();
     assert_eq!((needed.per_pixel, needed.is_extrapolated), (8.0, false));
     assert!((needed.seconds - 5.0 / 3.0).abs() < 1e-12, "{needed:?}");
-    // Half-way between two: √(¼ + ¼) · 0.01 by a slope of ½.
-    let factor = libm::exp(0.02 * 0.5f64.sqrt());
+    // Half-way between two: √(¼ + ¼) · 0.01 by a slope of ½; and what the line may sag there, 0.2 of log 2 twice.
+    let (noise, sag) = (0.02 * 0.5f64.sqrt(), 0.2 * libm::log(2.0) * libm::log(2.0));
+    let factor = libm::exp(libm::hypot(noise, sag));
     assert!((needed.factor.unwrap() - factor).abs() < 1e-6, "{needed:?}");
     // As far beyond the last one: √(1 + 4) · 0.01 by ½; the time on the line from the first to the last.
     let needed = straight.needed(0.0500001).unwrap();
