@@ -257,7 +257,7 @@ fn needs(measured: &Measurement) -> String {
         return String::new();
     }
     table(
-        "What an error takes: samples per pixel by the lines between the points, × and ÷ one standard error, and their time. A star marks what lies \
+        "What an error takes: samples per pixel by the lines between the points, × and ÷ one standard error and what these lines may sag, and their time. A star marks what lies \
          beyond the measured range; where it was tried, the last column is what the last try left of the error.",
         &names,
         rows,
@@ -409,7 +409,9 @@ fn method(measurements: &[Measurement]) -> String {
          rounded up to a whole number of samples; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
          through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
          and time is left, such an answer is tried, the fastest methods first: a tenth more samples are taken in a single run, which is a further point, up to three times. \
-         The standard error is that of the two points’ errors, √((1 − s)²e<sub>1</sub>² + s²e<sub>2</sub>²) by the slope between them, at 1 − s of the first and s of the second in logarithms; of what is extrapolated, at least \
+         The standard error is that of the two points’ errors, √((1 − s)²e<sub>1</sub>² + s²e<sub>2</sub>²) by the slope between them, at 1 − s of the first and s of the second in logarithms, \
+         and with it, by the root of both squares, what that line may sag between them: 0.2·(x₂ − x)(x − x₁), a tenth half-way between a count and four \
+         times as many; of what is extrapolated, at least \
          the distance from where the least-squares line comes down to the same.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within the standard error of the samples \
          and half of the spread of the times.</li>\n\
