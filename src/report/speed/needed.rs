@@ -72,7 +72,7 @@ impl Series {
     /// With standard errors ε of the logarithms of both errors, the place x = (1 − s)·a + s·b on the line has that of
     /// √((1 − s)²ε_a² + s²ε_b²) by its slope. Beyond the last point the truth may bend away: there the distance from where the line through
     /// all points comes down to it counts, if that is greater. Between two it may sag, most half-way, and more than all points show where
-    /// they are the counts that a method likes best: there so much counts as [`SAG`] says.
+    /// they are the counts that a method likes best: there `SAG` says how much counts.
     pub fn needed(&self, error: f64) -> Option<Needed> {
         let curve = self.curve();
         let first = *curve.first()?;
