@@ -10,7 +10,7 @@ use pinhole::{
     color::Color,
     film::Film,
     math::Angle,
-    render::{Control, render},
+    render::{Control, Exact, render, render_exact},
     sampling::Sampling,
     scene::{
         Camera, Checkerboard, Count, Cuboid, Lens, Method, Sampler, Scene, Shape, Sphere, Triangle,
@@ -23,6 +23,9 @@ use proptest::prelude::*;
 use crate::tracer::scene;
 
 const SIZE: u32 = 24;
+
+/// By which the pictures are sampled whose samples no law moves.
+const METHOD: Method = Method::MultiJittered;
 
 /// A camera and some objects.
 #[derive(Clone, Debug)]
@@ -178,7 +181,7 @@ impl Stage {
     }
 
     fn picture(&self) -> Picture {
-        picture(&self.scene(Method::MultiJittered, false))
+        picture(&self.scene(METHOD, false))
     }
 }
 
@@ -213,6 +216,41 @@ fn picture(scene: &Scene) -> Picture {
     (0..scene.image.height).map(bits).collect()
 }
 
+/// The exact pictures of two scenes are the same, as far as their bounds allow to say so; or one is the other's mirror image.
+fn agree(before: &Scene, after: &Scene, is_mirrored: bool) {
+    let [before, after] = [before, after].map(exact);
+    let width = before.film.width();
+    for (index, (mean, bound)) in before.film.pixels().iter().zip(&before.bounds).enumerate() {
+        let (x, y) = (index as u32 % width, index as u32 / width);
+        let x = if is_mirrored { width - 1 - x } else { x };
+        let (other, other_bound) = (
+            after.film.pixel(x, y),
+            after.bounds[(y * width + x) as usize],
+        );
+        // A rounding of each, besides.
+        let most = f64::from(*bound) + f64::from(other_bound) + f64::EPSILON;
+        for channel in 0..3 {
+            let error = (mean[channel] - other[channel]).abs();
+            assert!(error <= most, "{x}, {y}: {error:e} > {most:e}");
+        }
+        assert!(*bound <= 1e-6, "{x}, {y}: {bound:e}");
+    }
+}
+
+/// The exact picture of a scene, with fewer pixels.
+fn exact(scene: &Scene) -> Exact {
+    const EXACT_SIZE: u32 = 12;
+    let mut scene = scene.clone();
+    (scene.image.width, scene.image.height) = (EXACT_SIZE, EXACT_SIZE);
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let whole = Area::whole(EXACT_SIZE, EXACT_SIZE);
+    render_exact(&World::new(&scene), whole, &control).unwrap()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
@@ -223,6 +261,7 @@ proptest! {
         let mut after = stage.mapped(turn, turn, 1.0);
         turn_vertical(&mut after, 180.0);
         prop_assert_eq!(stage.picture(), after.picture());
+        agree(&stage.scene(METHOD, false), &after.scene(METHOD, false), false);
     }
 
     #[test]
@@ -231,8 +270,9 @@ proptest! {
         let turn = |v: DVec3| dvec3(v.z, v.y, -v.x);
         let mut after = stage.mapped(turn, turn, 1.0);
         turn_vertical(&mut after, 90.0);
-        let after = picture(&after.scene(Method::MultiJittered, true));
-        prop_assert_eq!(stage.picture(), after);
+        let after = after.scene(METHOD, true);
+        prop_assert_eq!(stage.picture(), picture(&after));
+        agree(&stage.scene(METHOD, false), &after, false);
     }
 
     #[test]
@@ -243,6 +283,7 @@ proptest! {
         let by = dvec3(f64::from(x - even), y, f64::from(z));
         let after = stage.mapped(|p| p + by, |v| v, 1.0);
         prop_assert_eq!(stage.picture(), after.picture());
+        agree(&stage.scene(METHOD, false), &after.scene(METHOD, false), false);
     }
 
     #[test]
@@ -252,8 +293,9 @@ proptest! {
         let odd = 1 - i32::rem_euclid(x + z, 2);
         let by = dvec3(f64::from(x + odd), 0.0, f64::from(z));
         let after = stage.mapped(|p| p + by, |v| v, 1.0);
-        let after = picture(&after.scene(Method::MultiJittered, true));
-        prop_assert_eq!(stage.picture(), after);
+        let after = after.scene(METHOD, true);
+        prop_assert_eq!(stage.picture(), picture(&after));
+        agree(&stage.scene(METHOD, false), &after, false);
     }
 
     #[test]
@@ -261,6 +303,7 @@ proptest! {
         let scale = libm::exp2(f64::from(exponent));
         let after = stage.mapped(|p| p * scale, |v| v * scale, scale);
         prop_assert_eq!(stage.picture(), after.picture());
+        agree(&stage.scene(METHOD, false), &after.scene(METHOD, false), false);
     }
 
     #[test]
@@ -274,25 +317,32 @@ proptest! {
                 triangle.spin = -triangle.spin;
             }
         }
-        let mut after = picture(&after.scene(Method::Regular, true));
+        let (stage, after) = (stage.scene(Method::Regular, false), after.scene(Method::Regular, true));
+        agree(&stage, &after, true);
+        let mut after = picture(&after);
         for row in &mut after {
             row.reverse();
         }
-        prop_assert_eq!(picture(&stage.scene(Method::Regular, false)), after);
+        prop_assert_eq!(picture(&stage), after);
     }
 
     #[test]
     fn a_symmetric_scene_gives_a_symmetric_picture(
-        eye in vector(), down in coordinate(), center in vector(), radius in length(), size in length(), count in 1u64..12
+        eye in vector(), down in coordinate(), center in vector(), radius in length(), size in length(), count in 1u64..12,
+        d in length(), is_lookat in any::<bool>()
     ) {
         let in_plane = |v: DVec3| dvec3(0.0, v.y, v.z);
+        let (eye, direction) = (in_plane(eye) + DVec3::Z * 8.0, dvec3(0.0, down / 4.0, -1.0));
         let stage = Stage {
             camera: Camera {
-                eye: in_plane(eye) + DVec3::Z * 8.0,
-                view: View::Direction(dvec3(0.0, down / 4.0, -1.0)),
+                eye,
+                view: match is_lookat {
+                    true => View::Lookat(eye + direction),
+                    false => View::Direction(direction),
+                },
                 up: DVec3::Y,
                 roll: Angle::default(),
-                lens: Lens::Distance(2.0),
+                lens: Lens::Distance(d),
                 view_height: 4.0,
                 near: 0.5,
                 far: Some(20.0),
@@ -317,6 +367,7 @@ proptest! {
         // Odd and even numbers of columns and samples.
         scene.image.width = SIZE - (count as u32 & 1);
         scene.sampler.count = Count::PerPixel(count);
+        agree(&scene, &scene, true);
         let picture = picture(&scene);
         for row in &picture {
             let mirrored: Vec<_> = row.iter().rev().copied().collect();
