@@ -1,12 +1,13 @@
-//! Predictions are tried: the samples that an error should take are taken, where that was extrapolated.
+//! Predictions are tried: the samples that an error should take are taken.
 //!
 //! A line through the logarithms of a few errors is straight; the truth need not be. Where the samples were left to the plan and time is
-//! left of what it was given, the methods render once more, the fastest first, with a few more samples than the line says, and again if
-//! that was too few. What comes out are further points: what an error takes then lies between two of them.
+//! left of what it was given, the methods render once more: first where the line was extrapolated, with a few more samples than it says,
+//! and again if that was too few; then with what the lines between two points say, until one of them is close. Of each the fastest come
+//! first. What comes out are further points: what an error takes then lies between two of them.
 
 use super::{
     measure::{Measurement, Point, run},
-    needed::Check,
+    needed::{Check, Needed},
     plan::Plan,
 };
 use crate::render::{Control, RenderError};
@@ -14,8 +15,11 @@ use crate::render::{Control, RenderError};
 /// Of the time left so much may be filled with estimates.
 const FILLED: f64 = 0.9;
 
-/// So many times as many samples are taken as the line says: most lines flatten.
+/// Beyond what was measured so many times as many samples are taken as the line says: most lines flatten.
 const MARGIN: f64 = 1.1;
+
+/// Between two points the line is trusted where it may be off by this part at most.
+const CLOSE: f64 = 0.01;
 
 /// A picture has no more samples than this.
 const MOST: f64 = (1_u64 << 53) as f64;
@@ -37,6 +41,7 @@ struct Render {
     per_pixel: u64,
     /// The estimate.
     seconds: f64,
+    is_extrapolated: bool,
 }
 
 impl<'a> Checks<'a> {
@@ -108,17 +113,24 @@ fn left(plan: &Plan, measured: &Measurement) -> f64 {
     }
 }
 
-/// What is to be tried by what is known, the fastest first.
+/// What is to be tried by what is known, in this order.
 fn renders(measured: &Measurement) -> Vec<Render> {
     let mut renders = Vec::new();
     for (at, series) in measured.series.iter().enumerate() {
         for &wanted in &measured.errors {
             let tries = series.checks.iter().filter(|check| check.wanted == wanted);
             let needed = series.needed(wanted);
-            let needed = needed.filter(|needed| needed.is_extrapolated && tries.count() < TRIES);
+            let is_open = |needed: &Needed| needed.is_extrapolated || needed.sag > CLOSE;
+            let needed = needed.filter(|needed| is_open(needed) && tries.count() < TRIES);
             let render = needed.and_then(|needed| {
-                let per_pixel = (MARGIN * needed.per_pixel).ceil();
-                if per_pixel * measured.reference.bounds.len() as f64 > MOST {
+                let per_pixel = match needed.is_extrapolated {
+                    true => (MARGIN * needed.per_pixel).ceil(),
+                    false => needed.per_pixel,
+                };
+                let is_measured = |point: &&Point| point.per_pixel as f64 == per_pixel;
+                if per_pixel * measured.reference.bounds.len() as f64 > MOST
+                    || series.curve().iter().any(is_measured)
+                {
                     return None;
                 }
                 Some(Render {
@@ -126,11 +138,16 @@ fn renders(measured: &Measurement) -> Vec<Render> {
                     wanted,
                     per_pixel: per_pixel as u64,
                     seconds: series.seconds_at(per_pixel)?.0,
+                    is_extrapolated: needed.is_extrapolated,
                 })
             });
             renders.extend(render);
         }
     }
-    renders.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    // Those that lie beyond all that was measured may be off by the most.
+    renders.sort_by(|a, b| {
+        let by_kind = b.is_extrapolated.cmp(&a.is_extrapolated);
+        by_kind.then(a.seconds.total_cmp(&b.seconds))
+    });
     renders
 }

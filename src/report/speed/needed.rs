@@ -27,6 +27,8 @@ pub struct Needed {
     pub spread: f64,
     /// Whether it lies beyond what was measured.
     pub is_extrapolated: bool,
+    /// Between two points, how much its logarithm may be off because the line between them sags; else 0.
+    pub sag: f64,
 }
 
 /// Samples taken because an error should take them.
@@ -83,6 +85,7 @@ impl Series {
                 seconds: first.seconds(),
                 spread: spread(&first.times),
                 is_extrapolated: false,
+                sag: 0.0,
             });
         }
         let enough = curve.iter().position(|point| point.error() <= error);
@@ -113,9 +116,10 @@ impl Series {
             let (a, b) = ((1.0 - share) * a, share * b);
             (a * a + b * b).sqrt() / slope.abs()
         });
+        let mut sag = 0.0;
         if enough.is_some() {
             per_pixel = per_pixel.min(b.per_pixel as f64);
-            let sag = SAG * (x_b - x) * (x - x_a);
+            sag = SAG * (x_b - x) * (x - x_a);
             doubt = doubt.map(|doubt| (doubt * doubt + sag * sag).sqrt());
         } else if let Some(straight) = self.fit().and_then(|fit| fit.reaches(error)) {
             let bend = (libm::log(straight) - x).abs();
@@ -128,6 +132,7 @@ impl Series {
             seconds,
             spread,
             is_extrapolated: enough.is_none(),
+            sag,
         })
     }
 

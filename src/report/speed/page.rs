@@ -258,7 +258,7 @@ fn needs(measured: &Measurement) -> String {
     }
     table(
         "What an error takes: samples per pixel by the lines between the points, × and ÷ one standard error and what these lines may sag, and their time. A star marks what lies \
-         beyond the measured range; where it was tried, the last column is what the last try left of the error.",
+         beyond the measured range; where an answer was tried, the last column is what the last try left of the error.",
         &names,
         rows,
         exact,
@@ -408,7 +408,8 @@ fn method(measurements: &[Measurement]) -> String {
          <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
          rounded up to a whole number of samples; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
          through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
-         and time is left, such an answer is tried, the fastest methods first: a tenth more samples are taken in a single run, which is a further point, up to three times. \
+         and time is left, answers are tried up to three times, the fastest methods first: in a single run, which is a further point, a tenth more samples are taken than is extrapolated; \
+         and after that those between two points, where the line between them may be off by more than a hundredth. \
          The standard error is that of the two points’ errors, √((1 − s)²e<sub>1</sub>² + s²e<sub>2</sub>²) by the slope between them, at 1 − s of the first and s of the second in logarithms, \
          and with it, by the root of both squares, what that line may sag between them: 0.2·(x₂ − x)(x − x₁), a tenth half-way between a count and four \
          times as many; of what is extrapolated, at least \

@@ -179,7 +179,12 @@ pub(super) fn slope(fit: Option<Fit>) -> String {
         None => "-".to_owned(),
         Some(fit) => match fit.slope_error {
             None => format!("{:.3}", fit.slope),
-            Some(error) => format!("{:.3} ± {error:.3}", fit.slope),
+            Some(error) => {
+                // An error that is not 0 does not look as if it were.
+                let digits = (3..9).find(|&digits| error * libm::exp10(f64::from(digits)) >= 0.5);
+                let digits = digits.unwrap_or(3) as usize;
+                format!("{:.digits$} ± {error:.digits$}", fit.slope)
+            }
         },
     }
 }

@@ -430,7 +430,7 @@ fn wrong_arguments_are_told() {
 }
 
 #[test]
-fn what_is_extrapolated_is_tried_where_time_is_left() {
+fn answers_are_tried_where_time_is_left() {
     let text = SCENE.replace("width 48 height 32", "width 12 height 8");
     let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
     let scene = scene::read(&sources).scene.unwrap();
@@ -468,6 +468,14 @@ fn what_is_extrapolated_is_tried_where_time_is_left() {
         needed.is_extrapolated && needed.per_pixel > 1024.0,
         "{needed:?}"
     );
+    let points = &sobol().unwrap().points;
+    let [.., before, last] = points.as_slice() else {
+        panic!("{points:?}");
+    };
+    let between = (before.error() * last.error()).sqrt();
+    let line = sobol().unwrap().needed(between).unwrap();
+    assert!(!line.is_extrapolated && line.sag > 0.05, "{line:?}");
+    measured.errors.push(between);
     let checks = Checks::new(&plan, &measured);
     assert!(checks.total() > 0);
     checks.run(&mut measured, &control).unwrap();
@@ -475,16 +483,24 @@ fn what_is_extrapolated_is_tried_where_time_is_left() {
         .series
         .iter()
         .find(|series| series.method == Method::Sobol);
-    let check = sobol.unwrap().check(2e-4).unwrap();
-    assert_eq!(sobol.unwrap().curve().last(), Some(&&check.point));
     // A tenth more than the line said; or another try after that.
-    assert!(check.point.per_pixel as f64 >= 1.1 * needed.per_pixel);
+    let first = &sobol.unwrap().checks[0];
+    assert_eq!(first.wanted, 2e-4);
+    assert!(first.point.per_pixel as f64 >= 1.1 * needed.per_pixel);
     let needed = sobol.unwrap().needed(2e-4).unwrap();
+    let most = sobol.unwrap().curve().last().unwrap().per_pixel;
     assert!(
-        !needed.is_extrapolated && check.point.error() <= 2e-4,
+        !needed.is_extrapolated && needed.per_pixel <= most as f64,
         "{needed:?}"
     );
-    assert!(needed.per_pixel <= check.point.per_pixel as f64);
+    // Between two points, what the line says is taken, until a point is close.
+    let needed = sobol.unwrap().needed(between).unwrap();
+    let tries: Vec<_> = sobol.unwrap().checks.iter().collect();
+    let tries: Vec<_> = tries.iter().filter(|it| it.wanted == between).collect();
+    assert_eq!(tries[0].point.per_pixel as f64, line.per_pixel);
+    assert!(needed.sag <= 0.01 || tries.len() == 3, "{needed:?}");
+    assert!(needed.sag < line.sag, "{needed:?}");
+    let check = sobol.unwrap().check(2e-4).unwrap();
     let text = speed::table(&measured);
     assert!(text.contains("  tried: "), "{text}");
     let rmse = check.point.error();
