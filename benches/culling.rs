@@ -219,8 +219,8 @@ fn textbook(scene: &Scene) -> impl Fn() {
         for (x, y) in Area::whole(width, height).iter() {
             let count = sampling.count(x, y);
             sampling.place(Vectors::Widest, [x, y], count, 0..count, &mut points);
-            for index in 0..points.len() {
-                if let Some(hit) = textbook.seen(x, y, points.get(index)) {
+            for offset in points.iter() {
+                if let Some(hit) = textbook.seen(x, y, offset) {
                     seen[2 * hit.object + usize::from(hit.odd)] += 1;
                 }
             }

@@ -5,7 +5,8 @@
 //! number of threads nor the tiles nor the part asked for can change a bit of a pixel.
 //!
 //! Where it is certain that one colour is seen, samples are neither placed nor traced: the mean of equal colours is that colour. In the
-//! other pixels they are traced many at a time, and against those objects alone that may be seen there.
+//! other pixels they are traced many at a time, and against those objects alone that may be seen there; or one by one, where to know more
+//! would cost more.
 
 mod tally;
 mod tile;
@@ -33,7 +34,7 @@ use crate::{
     math::Vectors,
     sampling::Sampling,
     threads,
-    tracer::{Checks, Item, Live, Part, Pixel, Quartering, Room, World},
+    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
 };
 
 /// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
@@ -42,15 +43,14 @@ const TILE: u32 = 64;
 /// A tile has about so many samples, where that takes fewer pixels.
 const TILE_SAMPLES: u64 = 1 << 18;
 
+/// And no tile is made so small that it has fewer.
+const FEW_SAMPLES: u64 = 1 << 8;
+
+/// So few samples are placed by the vectors that every processor has.
+const FEW: u64 = 8;
+
 /// A pixel's samples are taken so many at a time; a pixel with more is shared by the threads.
 const CHUNK: u64 = 1 << 12;
-
-/// Up to so many samples a pixel, so many pixels are traced rather than looked at one by one.
-const FEW: u64 = 2;
-const GRAIN: u64 = 4;
-
-/// Up to so many samples of a pixel of a scene with many objects are traced one by one.
-const FEW_IN_CROWDS: u64 = 8;
 
 /// How a render is watched, and by how many it is done.
 pub struct Control<'a> {
@@ -65,7 +65,8 @@ pub struct Control<'a> {
 /// How samples are traced. All ways make the same picture, to the bit: the slower ones are there to be compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// None where one colour is certain, else many at a time, against what may be seen in their pixel.
+    /// None where one colour is certain, else many at a time, against what may be seen in their pixel, or one by one where to know that would
+    /// cost more.
     Culled,
     /// All of them, many at a time, against all objects.
     Together,
@@ -144,11 +145,6 @@ pub fn render_in_a_way<P: film::Pixel>(
         .collect();
     let encoder = Encoder::new();
     let shown: Vec<_> = colors.iter().map(|&light| P::of(light, &encoder)).collect();
-    let grain = match sampling.samples_per_pixel() {
-        0..=FEW => GRAIN,
-        _ => 1,
-    };
-    let quartering = Quartering::new(world).down_to(grain);
     let frame = Frame {
         world,
         sampling,
@@ -157,13 +153,10 @@ pub fn render_in_a_way<P: film::Pixel>(
         encoder: &encoder,
         control,
         way,
-        quartering: match sampling.samples_per_pixel() {
-            0..=FEW_IN_CROWDS => quartering.for_few_samples(),
-            _ => quartering,
-        },
+        quartering: Quartering::for_samples(world, sampling.mean_count()),
         everything: match way {
-            Way::Culled => Vec::new(),
-            Way::Together | Way::Narrow | Way::OneByOne => world.everything(),
+            Way::Culled | Way::OneByOne => Vec::new(),
+            Way::Together | Way::Narrow => world.everything(),
         },
     };
     let side = tile_side(sampling, part);
@@ -283,7 +276,10 @@ fn finished<T>(made: Mutex<T>, control: &Control) -> Result<T, RenderError> {
 /// The side of the tiles: smaller where pixels have many samples, or are few.
 fn tile_side(sampling: &Sampling, part: Area) -> u32 {
     let samples = sampling.samples_per_pixel().max(1);
-    let pixels = (TILE_SAMPLES / samples).min(part.pixels() / 64).max(1);
+    let pixels = (TILE_SAMPLES / samples)
+        .min(part.pixels() / 64)
+        .max(FEW_SAMPLES / samples)
+        .max(1);
     // A square root of a number that fits; and a power of two, whose quarters are squares.
     let side = (pixels.isqrt() as u32).min(TILE);
     1 << side.ilog2()
@@ -301,7 +297,7 @@ struct Frame<'a, P> {
     control: &'a Control<'a>,
     way: Way,
     quartering: Quartering<'a>,
-    /// All objects, for the ways that cull nothing.
+    /// All objects, for the ways that ask all of them.
     everything: Vec<Live>,
 }
 
@@ -319,85 +315,85 @@ impl<P: film::Pixel> Frame<'_, P> {
             pixels: vec![background; tile.pixels() as usize],
             unreported: 0,
         };
-        let mut visit = |part: Part, checks: Option<&Checks>| {
-            if self.control.cancel.load(Ordering::Relaxed) {
-                return ControlFlow::Break(());
+        let mut visit = |part: Part, checks: Option<&Checks>| match part {
+            Part::Flat { area, slot } => {
+                film.fill(area, self.shown[slot]);
+                self.go_on()
             }
-            match part {
-                Part::Flat { area, slot } => film.fill(area, self.shown[slot]),
-                Part::Open { x, y, live } => self.pixel([x, y], live, checks, &mut film, tally),
-                Part::Crowd { x, y, crowd } => self.in_crowd([x, y], crowd, &mut film, tally),
+            Part::Open { x, y, live } => {
+                self.pixel([x, y], Trace::Together(live, checks), &mut film, tally)
             }
-            ControlFlow::Continue(())
+            Part::Plain { area, live } => {
+                let trace = live.map_or(Trace::OneByOne, Trace::Among);
+                let mut pixels = area.iter();
+                pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
+            }
         };
         let flow = match self.way {
             Way::Culled => self.quartering.parts_and_checks(tile, room, &mut visit),
-            Way::Together | Way::Narrow | Way::OneByOne => tile.iter().try_for_each(|(x, y)| {
+            Way::Together | Way::Narrow => tile.iter().try_for_each(|(x, y)| {
                 let live = &self.everything;
                 visit(Part::Open { x, y, live }, None)
             }),
+            Way::OneByOne => visit(
+                Part::Plain {
+                    area: tile,
+                    live: None,
+                },
+                None,
+            ),
         };
         (self.control.progress)(film.unreported);
         flow.is_continue().then_some(film.pixels)
+    }
+
+    /// Whether anybody wants to see more.
+    fn go_on(&self) -> ControlFlow<()> {
+        match self.control.cancel.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     }
 
     /// Takes the samples of a pixel.
     fn pixel(
         &self,
         [x, y]: [u32; 2],
-        live: &[Live],
-        checks: Option<&Checks>,
+        trace: Trace,
         film: &mut Tile<P>,
         tally: &mut Tally<P>,
-    ) {
+    ) -> ControlFlow<()> {
         let index = film.area.index(x, y);
         let samples = film.samples.of(index);
         if samples == 0 {
-            return;
+            return self.go_on();
         }
+        let trace = match trace {
+            // To prepare the pixel would take longer.
+            Trace::Together(live, _) if samples == 1 => Trace::Among(live),
+            _ => trace,
+        };
         if samples <= CHUNK {
-            self.look([x, y], live, checks, &mut tally.pixel);
-            self.chunk(x, y, samples, 0, tally);
+            self.look([x, y], trace, &mut tally.pixel);
+            self.chunk(x, y, samples, 0, trace, tally);
             film.unreported += samples;
         } else {
-            self.many(x, y, samples, live, tally);
+            self.many(x, y, samples, trace, tally);
         }
         let Tally { counts, means, .. } = tally;
         film.pixels[index] = means.take(counts, self.colors, self.encoder);
+        self.go_on()
     }
 
-    /// Takes the samples of a pixel that has few of them and many objects.
-    fn in_crowd(&self, [x, y]: [u32; 2], crowd: &[Item], film: &mut Tile<P>, tally: &mut Tally<P>) {
-        let index = film.area.index(x, y);
-        let samples = film.samples.of(index);
-        if samples == 0 {
-            return;
-        }
-        let Tally {
-            counts,
-            means,
-            points,
-            ..
-        } = tally;
-        let vectors = self.way.vectors();
-        self.sampling
-            .place(vectors, [x, y], samples, 0..samples, points);
-        for index in 0..points.len() {
-            let slot = self.world.slot_in_crowd(x, y, points.get(index), crowd);
-            counts.add(slot, 1);
-        }
-        film.unreported += samples;
-        film.pixels[index] = means.take(counts, self.colors, self.encoder);
-    }
-
-    fn look(&self, at: [u32; 2], live: &[Live], checks: Option<&Checks>, pixel: &mut Pixel) {
-        if self.way != Way::OneByOne {
+    /// Prepares a pixel, where samples are traced together.
+    fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut Pixel) {
+        if let Trace::Together(live, checks) = trace {
             self.world.look(at, live, checks, pixel);
         }
     }
 
     /// All samples of a pixel that has many, on all threads.
-    fn many(&self, x: u32, y: u32, samples: u64, live: &[Live], tally: &mut Tally<P>) {
+    fn many(&self, x: u32, y: u32, samples: u64, trace: Trace, tally: &mut Tally<P>) {
         // A few thousand chunks at a time, so that what is gathered from the threads stays small.
         const BATCH: u64 = CHUNK << 10;
         let mut first = 0;
@@ -410,12 +406,13 @@ impl<P: film::Pixel> Frame<'_, P> {
                 .fold(
                     || {
                         let mut tally = Tally::<P>::new(slots);
-                        self.look([x, y], live, None, &mut tally.pixel);
+                        self.look([x, y], trace, &mut tally.pixel);
                         tally
                     },
                     |mut tally, chunk| {
                         if !self.control.cancel.load(Ordering::Relaxed) {
-                            self.chunk(x, y, samples, first + chunk * CHUNK, &mut tally);
+                            let first = first + chunk * CHUNK;
+                            self.chunk(x, y, samples, first, trace, &mut tally);
                         }
                         tally
                     },
@@ -438,7 +435,7 @@ impl<P: film::Pixel> Frame<'_, P> {
     }
 
     /// Counts up to [`CHUNK`] samples of a pixel that has `samples`, from the one with index `first` on.
-    fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, tally: &mut Tally<P>) {
+    fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, trace: Trace, tally: &mut Tally<P>) {
         let end = samples.min(first + CHUNK);
         let Tally {
             counts,
@@ -446,21 +443,42 @@ impl<P: film::Pixel> Frame<'_, P> {
             points,
             ..
         } = tally;
-        let vectors = self.way.vectors();
+        let vectors = match end - first {
+            // To choose others takes longer.
+            0..FEW => Vectors::Baseline,
+            _ => self.way.vectors(),
+        };
         self.sampling
             .place(vectors, [x, y], samples, first..end, points);
-        if self.way == Way::OneByOne {
-            for index in 0..points.len() {
-                counts.add(self.world.slot_at(x, y, points.get(index)), 1);
-            }
-        } else {
-            self.world.count(
+        match trace {
+            Trace::Together(..) => self.world.count(
                 pixel,
                 points.lanes(),
                 points.len(),
                 vectors,
                 |slot, samples| counts.add(slot, samples),
-            );
+            ),
+            Trace::Among(live) => {
+                for offset in points.iter() {
+                    counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
+                }
+            }
+            Trace::OneByOne => {
+                for offset in points.iter() {
+                    counts.add(self.world.slot_at(x, y, offset), 1);
+                }
+            }
         }
     }
+}
+
+/// How the samples of a pixel are traced.
+#[derive(Clone, Copy)]
+enum Trace<'a> {
+    /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where that is known.
+    Together(&'a [Live], Option<&'a Checks>),
+    /// One by one, against these.
+    Among(&'a [Live]),
+    /// One by one, against the objects that the hierarchy knows on their way.
+    OneByOne,
 }

@@ -180,11 +180,12 @@ impl<'a> Integrator<'a> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, live, &mut scratch, cancel)),
                 },
-                // Not asked for.
-                Part::Crowd { x, y, crowd } => {
-                    let mut live = Vec::new();
-                    self.world.live_of(Area::pixel(x, y), crowd, &mut live);
-                    film.set(x, y, self.pixel(x, y, &live, &mut scratch, cancel));
+                // Does not come: whatever it costs, the picture is to be known.
+                Part::Plain { area, .. } => {
+                    let live = self.world.everything();
+                    for (x, y) in area.iter() {
+                        film.set(x, y, self.pixel(x, y, &live, &mut scratch, cancel));
+                    }
                 }
             }
             ControlFlow::Continue(())

@@ -132,6 +132,11 @@ impl Sampling {
         self.total.div_ceil(self.pixels)
     }
 
+    /// How many samples a pixel has on average.
+    pub fn mean_count(&self) -> f64 {
+        self.total as f64 / self.pixels as f64
+    }
+
     /// How many samples each pixel has, if all have the same number.
     pub fn same_count(&self) -> Option<u64> {
         match &self.share {
@@ -161,7 +166,7 @@ impl Sampling {
     pub fn points(&self, x: u32, y: u32, count: u64, range: Range<u64>, out: &mut Vec<DVec2>) {
         let mut points = Points::default();
         self.place(Vectors::Widest, [x, y], count, range, &mut points);
-        out.extend((0..points.len()).map(|index| points.get(index)));
+        out.extend(points.iter());
     }
 
     /// The same points in the place of those before, by vectors of either kind.

@@ -24,9 +24,10 @@ impl Points {
         self.len == 0
     }
 
-    /// The point with this index.
-    pub fn get(&self, index: usize) -> DVec2 {
-        DVec2::new(self.x[index], self.y[index])
+    /// All of them in their order.
+    pub fn iter(&self) -> impl Iterator<Item = DVec2> {
+        let [x, y] = [&self.x, &self.y].map(|lane| lane[..self.len].iter());
+        x.zip(y).map(|(&x, &y)| DVec2::new(x, y))
     }
 
     /// Their coordinates. Behind the last there may be more, up to a multiple of eight, that lie anywhere in the pixel.

@@ -226,7 +226,9 @@ impl World {
                     _ => None,
                 }
             };
+            // Only planes that are equal in `f64` can be equal in double-double, for which it takes time to prepare them.
             front < back
+                && a.equals(b)
                 && matches!((planes(front, i), planes(back, j)), (Some(a), Some(b)) if a.equals(&b))
         };
         let (a, b) = (f64::object(self, front), f64::object(self, back));

@@ -176,7 +176,7 @@ fn scenes_of_all_kinds() {
 #[test]
 fn crowds_of_all_kinds() {
     let mut random = Random(31);
-    let mut crowds = 0;
+    let (mut dense, mut open) = (0, 0);
     for index in 0..6 {
         let mut all = random_scene(&mut random, index % 2 == 0);
         let more = (0..20).flat_map(|_| random_scene(&mut random, true).objects);
@@ -192,21 +192,58 @@ fn crowds_of_all_kinds() {
         if index % 3 == 0 {
             (all.camera.near, all.camera.far) = (3.0, Some(6.0));
         }
-        // Where samples are few, crowds are traced as crowds.
-        for n in [1, 4, 8, 12] {
+        // Few samples are traced one by one where objects are dense, many together.
+        for n in [1, 4, 8, 12, 100] {
             let all = with_samples(&all, Method::SAMPLED[index], Count::PerPixel(n));
             let (plain, _) = part(&all, whole(&all), 1, Way::OneByOne);
             let (culled, _) = part(&all, whole(&all), 2, Way::Culled);
             assert_eq!(plain.pixels(), culled.pixels(), "{index}: {n}");
         }
         let world = World::new(&all);
-        let parts = Quartering::new(&world).for_few_samples();
-        let _ = parts.parts(whole(&all), &mut Room::default(), &mut |part| {
-            crowds += usize::from(matches!(part, Part::Crowd { .. }));
-            ControlFlow::Continue(())
-        });
+        for (samples, pixels) in [(1.0, &mut dense), (1e4, &mut open)] {
+            let parts = Quartering::for_samples(&world, samples);
+            let _ = parts.parts(whole(&all), &mut Room::default(), &mut |part| {
+                *pixels += match part {
+                    Part::Plain { area, .. } if samples == 1.0 => area.pixels(),
+                    Part::Open { .. } if samples > 1.0 => 1,
+                    _ => 0,
+                };
+                ControlFlow::Continue(())
+            });
+        }
     }
-    assert!(crowds > 6 * 24 * 18 / 4, "{crowds}");
+    // Nearly all of their pixels.
+    let all = 6 * 24 * 18;
+    assert!(
+        dense > all / 2 && open > all / 2,
+        "{dense} and {open} of {all}"
+    );
+}
+
+#[test]
+fn parts_cover_each_pixel_once() {
+    let mut random = Random(7);
+    for index in 0..40 {
+        let mut all = random_scene(&mut random, index % 2 == 0);
+        let more = (0..index).flat_map(|_| random_scene(&mut random, true).objects);
+        all.objects.extend(more);
+        let world = World::new(&all);
+        let area = whole(&all);
+        for samples in [0.01, 1.0, 3.0, 8.0, 64.0, f64::INFINITY] {
+            let mut seen = vec![0; area.pixels() as usize];
+            let parts = Quartering::for_samples(&world, samples);
+            let flow = parts.parts(area, &mut Room::default(), &mut |part| {
+                let part = match part {
+                    Part::Flat { area, .. } | Part::Plain { area, .. } => area,
+                    Part::Open { x, y, .. } => Area::pixel(x, y),
+                };
+                part.iter().for_each(|(x, y)| seen[area.index(x, y)] += 1);
+                ControlFlow::Continue(())
+            });
+            assert!(flow.is_continue());
+            assert!(seen.iter().all(|&times| times == 1), "{index}: {samples}");
+        }
+    }
 }
 
 #[test]

@@ -16,10 +16,6 @@ pub struct Rectangle {
     pub(super) high: [u32; 2],
 }
 
-/// A place in the units of the grid.
-#[derive(Clone, Copy, Debug)]
-pub struct Unit(pub(super) [u32; 2]);
-
 /// An object's bounds, and how near it is at most.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
@@ -80,8 +76,21 @@ impl Rectangle {
         holds(0) & holds(1)
     }
 
+    /// What two that meet have in common.
+    pub(super) fn within(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1].map(|i| self.low[i].max(other.low[i])),
+            high: [0, 1].map(|i| self.high[i].min(other.high[i])),
+        }
+    }
+
+    /// Its longer side.
+    pub(super) fn side(&self) -> u32 {
+        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) + 1
+    }
+
     /// The least that holds both.
-    pub(super) fn with(&self, other: &Self) -> Self {
+    fn with(&self, other: &Self) -> Self {
         Self {
             low: [0, 1].map(|i| self.low[i].min(other.low[i])),
             high: [0, 1].map(|i| self.high[i].max(other.high[i])),
@@ -90,17 +99,15 @@ impl Rectangle {
 }
 
 impl Item {
+    /// Adds what it is elsewhere.
+    pub fn add(&mut self, other: &Self) {
+        self.bounds = self.bounds.with(&other.bounds);
+    }
+
     /// Whether it may be met in a rectangle.
     #[inline]
     pub fn meets(&self, rectangle: &Rectangle) -> bool {
         self.bounds.meets(rectangle)
-    }
-
-    /// Whether it may be met at a place.
-    #[inline]
-    pub fn is_at(&self, Unit([x, y]): Unit) -> bool {
-        let Rectangle { low, high } = self.bounds;
-        (low[0] <= x) & (x <= high[0]) & (low[1] <= y) & (y <= high[1])
     }
 
     /// Whether it may be met everywhere in a rectangle.

@@ -10,19 +10,15 @@
 
 mod descent;
 mod grid;
+mod search;
 mod tree;
-
-use std::cmp::Reverse;
 
 use rayon::ThreadPool;
 
-use self::{
-    descent::Descent,
-    grid::{Rectangle, Unit},
-    tree::Tree,
-};
+use self::{grid::Rectangle, search::Search, tree::Tree};
 use super::{camera::Direction, cover::Patch};
 
+pub use self::descent::Descent;
 pub use self::grid::{Grid, Item, Nearness};
 
 /// The objects that may be seen, by where in the view plane they are.
@@ -54,25 +50,18 @@ impl Hierarchy {
         self.grid.rectangle(patch)
     }
 
-    /// Where a direction is; none outside of the window.
-    #[inline]
-    pub fn unit(&self, r: &Direction<f64>) -> Option<Unit> {
-        self.grid.units(r).map(Unit)
-    }
-
-    /// The objects that rays through a rectangle may meet, the one that may be nearest first, with bounds of what they are in it.
-    pub fn within(&self, rectangle: &Rectangle, out: &mut Vec<Item>) {
-        out.clear();
-        self.tree.within(rectangle, out);
-        out.sort_unstable_by_key(|item| (Reverse(item.nearest), item.object));
-        // Those that lie in several cells.
-        out.dedup_by(|next, item| {
-            let is_same = next.object == item.object;
-            if is_same {
-                item.bounds = item.bounds.with(&next.bounds);
-            }
-            is_same
-        });
+    /// The objects that rays through a rectangle may meet, the one that may be nearest first, with bounds of what they are in it. Left out are
+    /// those that one hides which fills the rectangle: `behind` tells what is not nearer than one that may. Whether that is so: if they seem to
+    /// be more than `most`, it is not, and they are neither all of them nor in order.
+    #[must_use]
+    pub fn within(
+        &self,
+        rectangle: &Rectangle,
+        most: usize,
+        behind: impl FnMut(u32) -> Nearness,
+        out: &mut Vec<Item>,
+    ) -> bool {
+        Search::new(&self.tree, rectangle, most, behind, out).run()
     }
 
     /// How many bytes it takes.

@@ -73,11 +73,6 @@ impl Tree {
         Self::by_threads(Place::ROOT, items)
     }
 
-    /// The objects that may overlap a rectangle, once for each cell in which they do.
-    pub(super) fn within(&self, rectangle: &Rectangle, out: &mut Vec<Item>) {
-        self.below(0, Place::ROOT, rectangle, out);
-    }
-
     /// How many bytes it takes.
     #[cfg(test)]
     pub(super) fn bytes(&self) -> usize {
@@ -191,23 +186,6 @@ impl Tree {
         self.cells.shrink_to_fit();
         self.entries.shrink_to_fit();
     }
-
-    /// Adds the objects of a cell, and of those below it, that may overlap a rectangle.
-    fn below(&self, cell: u32, place: Place, rectangle: &Rectangle, out: &mut Vec<Item>) {
-        if !place.bounds().meets(rectangle) {
-            return;
-        }
-        let cell = self.cells[cell as usize];
-        let list = &self.entries[cell.start as usize..cell.end as usize];
-        let items = list.iter().map(|entry| place.item(entry));
-        out.extend(items.filter(|item| item.meets(rectangle)));
-        if cell.quarters > 0 {
-            for quarter in 0..4 {
-                let below = place.quarter(quarter);
-                self.below(cell.quarters + quarter, below, rectangle, out);
-            }
-        }
-    }
 }
 
 impl Cell {
@@ -221,24 +199,29 @@ impl Cell {
 
 /// Where a cell is, and that its side is 2^level.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+pub(super) struct Place {
     corner: [u32; 2],
     level: u32,
 }
 
 impl Place {
-    const ROOT: Self = Self {
+    pub(super) const ROOT: Self = Self {
         corner: [0; 2],
         level: LEVELS,
     };
 
     /// All of the cell.
     #[inline]
-    fn bounds(self) -> Rectangle {
+    pub(super) fn bounds(self) -> Rectangle {
         Rectangle {
             low: self.corner,
             high: self.corner.map(|corner| corner + ((1 << self.level) - 1)),
         }
+    }
+
+    /// Its side.
+    pub(super) fn side(self) -> u32 {
+        1 << self.level
     }
 
     /// Whether an object is larger than the cell's quarters, and so not listed below it.
@@ -248,7 +231,7 @@ impl Place {
     }
 
     /// A quarter: right of the first for 1 and 3, below it for 2 and 3.
-    fn quarter(self, quarter: u32) -> Self {
+    pub(super) fn quarter(self, quarter: u32) -> Self {
         let level = self.level - 1;
         let [x, y] = self.corner;
         Self {
@@ -272,7 +255,7 @@ impl Place {
 
     /// An object of the cell's list with its bounds in the cell: those that it was listed with, or wider by a part.
     #[inline]
-    fn item(self, entry: &Entry) -> Item {
+    pub(super) fn item(self, entry: &Entry) -> Item {
         let low = entry.low.map(|part| units_of(self.level, part).0);
         let high = entry.high.map(|part| units_of(self.level, part).1);
         let [x, y] = self.corner;

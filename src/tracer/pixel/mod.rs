@@ -28,7 +28,7 @@ pub use self::{
 };
 
 /// Fewer samples than this are not worth the preparation.
-const FEW: usize = 4;
+const FEW: usize = 2;
 
 /// A pixel's objects, prepared for many samples. Kept from pixel to pixel for its room.
 #[derive(Debug, Default)]

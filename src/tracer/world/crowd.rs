@@ -5,15 +5,11 @@
 
 use std::hint::black_box;
 
-use glam::DVec2;
-
-use super::{Seen, World};
+use super::World;
 use crate::{
     area::Area,
-    math::Doubt,
     tracer::{
-        camera::Point,
-        cover::Patch,
+        cover::{Patch, Range},
         hierarchy::{Item, Nearness},
         object::Object,
     },
@@ -23,13 +19,18 @@ use crate::{
 const NEARBY: usize = 128;
 
 impl World {
-    /// All objects whose bounds meet a part of the picture, the one that may be nearest first.
-    pub fn crowd_in(&self, part: Area, out: &mut Vec<Item>) {
+    /// All objects whose bounds meet a part of the picture and that are not behind one which fills it, the one that may be nearest first;
+    /// whether that is so. If they seem to be more than `most`, it is not, and they are neither all of them nor in order.
+    #[must_use]
+    pub fn crowd_in(&self, part: Area, most: usize, out: &mut Vec<Item>) -> bool {
         out.clear();
         let patch = Patch::new(&self.fast.camera, part);
-        if let Some(rectangle) = self.hierarchy.rectangle(&patch) {
-            self.hierarchy.within(&rectangle, out);
-        }
+        let Some(rectangle) = self.hierarchy.rectangle(&patch) else {
+            return true;
+        };
+        let clips = self.clips_over(&patch);
+        let behind = |object: u32| self.behind(object as usize, &patch, clips);
+        self.hierarchy.within(&rectangle, most, behind, out)
     }
 
     /// Of a crowd those whose bounds meet a part of the picture and are not behind an object that fills it, in the same order. Only of
@@ -48,21 +49,25 @@ impl World {
             kept += usize::from(item.meets(&rectangle));
         }
         out.truncate(kept);
-        let [near, far] = self.clips_over(&patch);
+        let clips = self.clips_over(&patch);
         let mut hidden = Nearness::NONE;
         for item in out.iter().filter(|item| item.may_fill(&rectangle)) {
             if item.nearest <= hidden {
                 break;
             }
-            if let Some(live) = self.cover(item.object as usize, &patch, near, far)
-                && live.is_whole
-            {
-                hidden = hidden.max(Nearness::below(live.inverse_depth.low));
-            }
+            hidden = hidden.max(self.behind(item.object as usize, &patch, clips));
         }
         out.truncate(out.partition_point(|item| item.nearest > hidden));
         if out.len() < NEARBY && among.len() >= NEARBY {
             self.fetch(out);
+        }
+    }
+
+    /// All that is not nearer than this is behind an object, if that fills a patch.
+    fn behind(&self, object: usize, patch: &Patch, [near, far]: [Option<Range>; 2]) -> Nearness {
+        match self.cover(object, patch, near, far) {
+            Some(live) if live.is_whole => Nearness::below(live.inverse_depth.low),
+            _ => Nearness::NONE,
         }
     }
 
@@ -74,33 +79,5 @@ impl World {
             _ => self.slots(item.object as usize)[0],
         };
         black_box(crowd.iter().map(first).sum::<usize>());
-    }
-
-    /// What [`slot_at`](World::slot_at) answers where a crowd, the one that may be nearest first, holds all that may be seen.
-    pub fn slot_in_crowd(&self, x: u32, y: u32, offset: DVec2, crowd: &[Item]) -> usize {
-        let point = self.fast.camera.sample_point(x, y, offset);
-        match self.seen_in_crowd(&point, crowd) {
-            Ok(seen) => self.slot(seen),
-            Err(Doubt) => self.slot(self.seen_after_doubt(&point)),
-        }
-    }
-
-    /// What is seen as far as `f64` can tell.
-    #[inline]
-    fn seen_in_crowd(&self, point: &Point, crowd: &[Item]) -> Result<Option<Seen>, Doubt> {
-        let r = self.fast.camera.direction(point);
-        let Some(unit) = self.hierarchy.unit(&r) else {
-            return self.seen::<f64>(point);
-        };
-        let (mut nearest, mut bar) = (None, Nearness::NONE);
-        for item in crowd {
-            if item.nearest <= bar {
-                break;
-            }
-            if item.is_at(unit) {
-                self.raise(&r, item.object as usize, &mut nearest, &mut bar)?;
-            }
-        }
-        self.with_color(&r, nearest)
     }
 }

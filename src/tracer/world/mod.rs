@@ -22,7 +22,7 @@ use super::{
     camera::{Basis, Direction, Point},
     crossing::{Crossing, Part},
     form::Form,
-    hierarchy::{Grid, Hierarchy, Item, Nearness},
+    hierarchy::{Descent, Grid, Hierarchy, Item, Nearness},
     object::Object,
     outlook::Live,
 };
@@ -200,18 +200,48 @@ impl World {
     #[inline]
     fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
         let r = self.fast.camera.direction(point);
-        let Some(mut descent) = self.hierarchy.at(&r) else {
-            return self.seen::<f64>(point);
+        match self.hierarchy.at(&r) {
+            Some(descent) => {
+                let nearest = self.nearest_on(descent, &r, |_| ())?;
+                self.with_color(&r, nearest)
+            }
+            None => self.seen::<f64>(point),
+        }
+    }
+
+    /// How many objects a ray asks whether it meets them.
+    pub fn asked(&self, x: u32, y: u32, offset: DVec2) -> usize {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        let r = self.fast.camera.direction(&point);
+        let Some(descent) = self.hierarchy.at(&r) else {
+            return self.len();
         };
+        let mut asked = 0;
+        match self.nearest_on(descent, &r, |_| asked += 1) {
+            Ok(_) => asked,
+            // Then all are asked whose bounds hold the point.
+            Err(Doubt) => self.candidates(&point).len(),
+        }
+    }
+
+    /// The nearest crossing with the objects on the way down the hierarchy; `ask` is told each of them that is asked.
+    #[inline]
+    fn nearest_on(
+        &self,
+        mut descent: Descent,
+        r: &Direction<f64>,
+        mut ask: impl FnMut(usize),
+    ) -> Result<Option<Nearest<f64>>, Doubt> {
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
         while let Some(mut list) = descent.next(bar) {
             while let Some(index) = list.next(bar) {
-                self.raise(&r, index, &mut nearest, &mut bar)?;
+                ask(index);
+                self.raise(r, index, &mut nearest, &mut bar)?;
             }
         }
-        self.with_color(&r, nearest)
+        Ok(nearest)
     }
 
     /// As [`meet`](World::meet); and where an object is the nearest so far, all that is farther is behind the bar.

@@ -1,33 +1,28 @@
-//! The picture cut into parts that show one colour for certain, and pixels of which that is not known.
+//! The picture cut into parts that show one colour for certain, pixels of which that is not known, and parts where to know more is not worth
+//! what it costs.
 //!
 //! Sampled and exact pictures share it: what is certain of a part is so for every ray through it, and for every decision about
 //! one.
 
+mod budget;
+#[cfg(test)]
+mod tests;
+
 use std::ops::ControlFlow;
 
+use self::budget::{Budget, FEW};
 use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
-/// A part with so many candidates is cut by their bounds alone, without a look at most of them.
-const CROWD: usize = 64;
-
-/// The same of a scene with many objects; and where few samples are traced in crowds. Objects that are few may well be large, or slivers
-/// of whose bounds they fill but a small part.
-const MANY: usize = 1 << 14;
-const CROWD_OF_MANY: usize = 8;
-const KEPT_CROWD: usize = 4;
-
-/// A tile with so many objects for each of its pixels has many for a few samples, too.
-const MANY_A_PIXEL: f64 = 0.25;
+/// A part with so many candidates is cut by their bounds alone, without a look at most of them. Fewer may well be large, or slivers of
+/// whose bounds they fill but a small part.
+const CROWD: usize = 32;
 
 /// Cuts the parts of one picture.
 #[derive(Debug)]
 pub struct Quartering<'a> {
     world: &'a World,
-    /// Parts of so few pixels are not cut.
-    grain: u64,
-    /// Whether crowds, where there are many objects, stay crowds in parts that are not cut.
-    keeps_crowds: bool,
+    budget: Budget,
 }
 
 /// A part of the picture.
@@ -40,7 +35,7 @@ pub enum Part<'a> {
         /// The colour's slot in the palette.
         slot: usize,
     },
-    /// A pixel in which more than one colour may be seen; or one of a few together in which that is so.
+    /// A pixel in which more than one colour may be seen.
     Open {
         /// Its column.
         x: u32,
@@ -49,24 +44,13 @@ pub enum Part<'a> {
         /// The objects that may be seen there, in file order.
         live: &'a [Live],
     },
-    /// The same where there are many objects, at which nobody has looked themselves.
-    Crowd {
-        /// Its column.
-        x: u32,
-        /// Its row.
-        y: u32,
-        /// The objects whose bounds meet the pixel, the one that may be nearest first.
-        crowd: &'a [Item],
+    /// More than one colour may be seen, and to trace the samples one by one costs less than to know more.
+    Plain {
+        /// Where it lies.
+        area: Area,
+        /// The objects that may be seen there, in file order, if they are few.
+        live: Option<&'a [Live]>,
     },
-}
-
-/// How the crowd of a tile is dispersed.
-#[derive(Clone, Copy)]
-struct Dispersal {
-    /// So many candidates are a crowd.
-    crowd: usize,
-    /// Whether it stays one in parts that are not cut.
-    keeps: bool,
 }
 
 /// The candidates at each depth of the quartering, kept from tile to tile for their room.
@@ -77,30 +61,16 @@ pub struct Room {
 }
 
 impl<'a> Quartering<'a> {
-    /// For a prepared scene.
+    /// For a prepared scene whose picture is to be known exactly: no part is [`Plain`](Part::Plain).
     pub fn new(world: &'a World) -> Self {
-        Self {
-            world,
-            grain: 1,
-            keeps_crowds: false,
-        }
+        let budget = Budget::ENDLESS;
+        Self { world, budget }
     }
 
-    /// The same, but parts of so few pixels are not cut any more: it would cost more than it saves.
-    pub fn down_to(self, pixels: u64) -> Self {
-        Self {
-            grain: pixels,
-            ..self
-        }
-    }
-
-    /// The same, but where there are many objects those of a pixel are told by their bounds alone: to look at each of them would cost more than
-    /// it saves a few samples.
-    pub fn for_few_samples(self) -> Self {
-        Self {
-            keeps_crowds: true,
-            ..self
-        }
+    /// The same for a picture with so many samples a pixel, on average.
+    pub fn for_samples(world: &'a World, samples: f64) -> Self {
+        let budget = Budget::of(samples);
+        Self { world, budget }
     }
 
     /// Shows `visit` the parts of an area, until it has seen enough. They cover the area, and each pixel once.
@@ -121,20 +91,24 @@ impl<'a> Quartering<'a> {
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut crowd = take(&mut room.crowds, 0);
-        self.world.crowd_in(area, &mut crowd);
-        let is_dense = crowd.len() as f64 >= MANY_A_PIXEL * area.pixels() as f64;
-        let are_many = self.world.len() >= MANY || self.keeps_crowds && is_dense;
-        let way = Dispersal {
-            crowd: match (are_many, self.keeps_crowds) {
-                (false, _) => CROWD,
-                (true, false) => CROWD_OF_MANY,
-                (true, true) => KEPT_CROWD,
-            },
-            keeps: are_many && self.keeps_crowds,
+        let mut budget = self.budget;
+        let mut is_found = self.find(area, budget.most(area), &mut crowd);
+        if !is_found {
+            budget = budget.probed(self.world, area);
+            is_found = budget.most(area) > self.budget.most(area)
+                && self.find(area, budget.most(area), &mut crowd);
+        }
+        let flow = match is_found {
+            true => self.disperse(area, &crowd, budget, 0, room, visit),
+            false => visit(Part::Plain { area, live: None }, None),
         };
-        let flow = self.disperse(area, &crowd, way, 0, room, visit);
         room.crowds[0] = crowd;
         flow
+    }
+
+    /// Finds the candidates of an area, if they do not seem to be more than `most`.
+    fn find(&self, area: Area, most: usize, crowd: &mut Vec<Item>) -> bool {
+        most > 0 && self.world.crowd_in(area, most, crowd)
     }
 
     /// Cuts a part by its candidates' bounds until they are few.
@@ -142,28 +116,29 @@ impl<'a> Quartering<'a> {
         &self,
         area: Area,
         crowd: &[Item],
-        way: Dispersal,
+        mut budget: Budget,
         depth: usize,
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let is_fine = area.pixels() <= self.grain;
-        if is_fine && depth > 0 && way.keeps && !crowd.is_empty() {
-            return area
-                .iter()
-                .try_for_each(|(x, y)| visit(Part::Crowd { x, y, crowd }, None));
+        if crowd.len() > budget.most(area) {
+            budget = budget.probed(self.world, area);
         }
-        if crowd.len() < way.crowd || is_fine {
+        if crowd.len() > budget.most(area) {
+            return visit(Part::Plain { area, live: None }, None);
+        }
+        let is_for_a_look = crowd.len() < CROWD && budget.is_for_a_look(area, crowd.len());
+        if is_for_a_look || area.pixels() == 1 {
             let mut live = take(&mut room.live, depth);
             self.world.live_of(area, crowd, &mut live);
-            let flow = self.cut(area, &live, depth + 1, room, visit);
+            let flow = self.cut(area, &live, budget, depth + 1, room, visit);
             room.live[depth] = live;
             return flow;
         }
         let mut below = take(&mut room.crowds, depth + 1);
         let flow = area.quarters().try_for_each(|quarter| {
             self.world.crowd(quarter, crowd, &mut below);
-            self.disperse(quarter, &below, way, depth + 1, room, visit)
+            self.disperse(quarter, &below, budget, depth + 1, room, visit)
         });
         room.crowds[depth + 1] = below;
         flow
@@ -173,6 +148,7 @@ impl<'a> Quartering<'a> {
         &self,
         area: Area,
         live: &[Live],
+        mut budget: Budget,
         depth: usize,
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
@@ -180,26 +156,34 @@ impl<'a> Quartering<'a> {
         if let Some(slot) = self.only_slot(area, live) {
             return visit(Part::Flat { area, slot }, None);
         }
-        if area.pixels() <= self.grain {
-            return area
-                .iter()
-                .try_for_each(|(x, y)| visit(Part::Open { x, y, live }, None));
+        if live.len() > budget.most(area) {
+            budget = budget.probed(self.world, area);
+        }
+        if live.len() > budget.most(area) {
+            let live = (live.len() <= FEW).then_some(live);
+            return visit(Part::Plain { area, live }, None);
+        }
+        if area.pixels() == 1 {
+            let Area { x, y, .. } = area;
+            return visit(Part::Open { x, y, live }, None);
         }
         if let [only] = live
             && only.is_whole
         {
-            if let Some(flow) = self.world.checks(area, live, visit) {
+            if budget.is_for_checks()
+                && let Some(flow) = self.world.checks(area, live, visit)
+            {
                 return flow;
             }
             // What hides all else in the whole does so in its quarters.
             return area
                 .quarters()
-                .try_for_each(|quarter| self.cut(quarter, live, depth + 1, room, visit));
+                .try_for_each(|quarter| self.cut(quarter, live, budget, depth + 1, room, visit));
         }
         let mut below = take(&mut room.live, depth);
         let flow = area.quarters().try_for_each(|quarter| {
             self.world.live(quarter, live, &mut below);
-            self.cut(quarter, &below, depth + 1, room, visit)
+            self.cut(quarter, &below, budget, depth + 1, room, visit)
         });
         room.live[depth] = below;
         flow

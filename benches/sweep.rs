@@ -1,0 +1,227 @@
+//! Whether culling is ever slower than tracing one by one: `cargo bench --bench sweep`. See README.md beside this file.
+//!
+//! Scenes of five kinds, with few and many objects, small and large, in pictures of few and many pixels with few and many samples.
+
+mod spheres;
+
+use std::{
+    env, fmt::Write, hint::black_box, num::NonZero, sync::atomic::AtomicBool, time::Instant,
+};
+
+use pinhole::{
+    area::Area,
+    film::Film,
+    render::{Control, Way, render_in_a_way},
+    sampling::Sampling,
+    scene::{self, Count, Method, Scene},
+    source::{Source, Sources},
+    tracer::World,
+};
+
+use self::spheres::Random;
+
+/// What a scene is full of.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Spheres,
+    /// Long and thin triangles.
+    Slivers,
+    Triangles,
+    Boxes,
+    /// Boards, which have no end.
+    Boards,
+}
+
+const KINDS: [Kind; 5] = [
+    Kind::Spheres,
+    Kind::Slivers,
+    Kind::Triangles,
+    Kind::Boxes,
+    Kind::Boards,
+];
+const COUNTS: [usize; 7] = [3, 30, 300, 3_000, 12_000, 20_000, 100_000];
+/// The pictures' widths.
+const WIDTHS: [u32; 3] = [48, 192, 768];
+/// The objects' sizes, in heights of the picture.
+const SIZES: [f64; 3] = [0.003, 0.03, 0.3];
+const SAMPLES: [u64; 8] = [1, 2, 3, 4, 8, 9, 16, 64];
+
+/// A picture with more samples says nothing that one with fewer does not.
+const MOST_SAMPLES: u64 = 1 << 20;
+
+/// A way is timed for so many seconds at least, in turns with the other.
+const SECONDS: f64 = 0.02;
+const ROUNDS: usize = 3;
+
+/// A picture with a lower ratio is timed for longer.
+const DOUBTED: f64 = 0.95;
+
+/// What was measured of a scene.
+struct Measured {
+    name: String,
+    /// One by one, over culled.
+    ratio: f64,
+}
+
+fn main() {
+    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    let arguments: Vec<String> = env::args().collect();
+    if !arguments.iter().any(|argument| argument == "--bench") {
+        return;
+    }
+    let wanted = |name: &str| {
+        let mut filters = arguments.iter().skip(1).filter(|it| !it.starts_with("--"));
+        filters.all(|filter| name.contains(filter.as_str()))
+    };
+    let mut all = Vec::new();
+    for kind in KINDS {
+        for count in COUNTS {
+            for size in SIZES {
+                sweep(kind, count, size, &wanted, &mut all);
+            }
+        }
+    }
+    all.sort_unstable_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let below = |limit: f64| all.iter().filter(|measured| measured.ratio < limit).count();
+    println!(
+        "{} pictures; below 0.9 of one by one: {}, below 1: {}, below 1.5: {}; the worst:",
+        all.len(),
+        below(0.9),
+        below(1.0),
+        below(1.5),
+    );
+    for Measured { name, ratio } in all.iter().take(40) {
+        println!("{ratio:6.2} {name}");
+    }
+}
+
+/// Measures the pictures of one scene.
+fn sweep(
+    kind: Kind,
+    count: usize,
+    size: f64,
+    wanted: &impl Fn(&str) -> bool,
+    all: &mut Vec<Measured>,
+) {
+    let layers = count as f64 * size * size;
+    if layers > 300.0 || matches!(kind, Kind::Boards) && count > 30 {
+        // A ray would meet hundreds of objects; and boards are in every ray's way.
+        return;
+    }
+    let text = scene_text(kind, count, size);
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    let scene = scene::read(&sources)
+        .scene
+        .expect("a scene without mistakes");
+    for width in WIDTHS {
+        let height = width * 9 / 16;
+        let pixels = u64::from(width) * u64::from(height);
+        let samples = SAMPLES
+            .into_iter()
+            .filter(|samples| samples * pixels <= MOST_SAMPLES);
+        let mut scene = scene.clone();
+        (scene.image.width, scene.image.height) = (width, height);
+        let named: Vec<_> = samples
+            .map(|samples| {
+                let name =
+                    format!("{count} {kind:?} of {size} at {width} × {height}, {samples} a pixel");
+                (name, samples)
+            })
+            .filter(|(name, _)| wanted(name))
+            .collect();
+        if named.is_empty() {
+            continue;
+        }
+        let world = World::new(&scene);
+        for (name, samples) in named {
+            scene.sampler.method = Method::Hammersley;
+            scene.sampler.count = Count::PerPixel(samples);
+            let ratio = ratio(&scene, &world);
+            println!("{name:60} {ratio:6.2}");
+            all.push(Measured { name, ratio });
+        }
+    }
+}
+
+/// How many times as fast culling is, by the least times of both, taken in turns on one thread.
+fn ratio(scene: &Scene, world: &World) -> f64 {
+    let [width, height] = [scene.image.width, scene.image.height];
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    let seconds = |way: Way| {
+        let start = Instant::now();
+        let film: Result<Film, _> = render_in_a_way(
+            world,
+            &sampling,
+            Area::whole(width, height),
+            &control(),
+            way,
+        );
+        black_box(film.expect("there is memory for it"));
+        start.elapsed().as_secs_f64()
+    };
+    let [mut one, mut culled] = [Way::OneByOne, Way::Culled].map(seconds);
+    let times = (SECONDS / culled).ceil().clamp(1.0, 20.0) as usize;
+    for round in 0..4 * ROUNDS * times {
+        // What seems to be slower may have met a busy moment.
+        if round >= ROUNDS * times && one >= DOUBTED * culled {
+            break;
+        }
+        one = one.min(seconds(Way::OneByOne));
+        culled = culled.min(seconds(Way::Culled));
+    }
+    one / culled
+}
+
+fn control() -> Control<'static> {
+    static CANCEL: AtomicBool = AtomicBool::new(false);
+    Control {
+        threads: NonZero::new(1),
+        progress: &|_| {},
+        cancel: &CANCEL,
+    }
+}
+
+/// So many objects of a size, all over the picture and at distances from 5 to 50.
+fn scene_text(kind: Kind, count: usize, size: f64) -> String {
+    let mut random = Random(1);
+    let mut text =
+        String::from("camera { eye (0, 0, 0)  direction (0, 0, -1)  d 2  view_height 2 }\n");
+    for index in 0..count {
+        let depth = 5.0 * libm::exp10(random.between(0.0, 1.0));
+        // The picture's height there.
+        let height = depth;
+        let x = random.between(-0.92, 0.92) * height;
+        let y = random.between(-0.52, 0.52) * height;
+        let size = random.between(0.6, 1.4) * size * height;
+        let color = index % 0xfff;
+        let [a, b, c] = [(); 3].map(|()| random.between(-1.0, 1.0));
+        let _ = match kind {
+            Kind::Spheres => writeln!(
+                text,
+                "sphere {{ center ({x}, {y}, -{depth})  radius {}  color #{color:03x} }}",
+                size / 2.0
+            ),
+            Kind::Triangles => writeln!(
+                text,
+                "triangle {{ centroid ({x}, {y}, -{depth})  normal ({a}, {b}, 1)  sides ({size}, {size}, {size})  color #{color:03x} }}",
+            ),
+            Kind::Slivers => writeln!(
+                text,
+                "triangle {{ centroid ({x}, {y}, -{depth})  normal ({a}, {b}, 1)  spin {}rad  sides ({size}, {size}, {})  color #{color:03x} }}",
+                3.0 * c,
+                size / 50.0
+            ),
+            Kind::Boxes => writeln!(
+                text,
+                "box {{ center ({x}, {y}, -{depth})  size ({size}, {}, {size})  color #{color:03x} }}",
+                size * (1.5 + c)
+            ),
+            Kind::Boards => writeln!(
+                text,
+                "checkerboard {{ y {}  square {size}  colors (#{color:03x}, white) }}",
+                a * 3.0
+            ),
+        };
+    }
+    text
+}

@@ -1,0 +1,101 @@
+//! What it may cost to learn what is seen in a part: a small share of what it costs to trace its samples one by one.
+//!
+//! So a picture takes hardly longer than that, whatever is in it. All is counted in samples that meet few objects on their way.
+
+use glam::DVec2;
+
+use crate::{area::Area, tracer::world::World};
+
+/// A part is cut if it has so many samples for each candidate: to look at a candidate's bounds in each quarter takes a few hundredths of
+/// their time.
+const A_CANDIDATE: f64 = 16.0;
+
+/// To look at candidates themselves takes longer than at their bounds: that is begun where so many times as many could be paid for.
+const LOOK: usize = 4;
+
+/// So few candidates are looked at wherever they are looked for: they cost little, and may fill the part.
+pub const FEW: usize = 4;
+
+/// In the time in which a pixel is prepared to trace its samples together so many of them are traced one by one, and in the time that this
+/// share of a candidate adds to that, one more.
+const A_PIXEL: f64 = 1.0;
+const OF_A_PIXEL: f64 = 0.7;
+
+/// What a board shows in several pixels is worth knowing from so many samples a pixel on.
+const A_CHECK: f64 = 3.0;
+
+/// A part with fewer samples is not worth a probe.
+const PROBED: f64 = 256.0;
+
+/// What an object that a ray asks costs, beside what a ray does.
+const AN_OBJECT: f64 = 0.2;
+
+/// What the samples of a pixel cost, one by one.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// As many samples that meet few objects cost as much.
+    samples: f64,
+    /// Whether rays were asked what they cost.
+    is_probed: bool,
+}
+
+impl Budget {
+    /// For a picture that is to be known whatever it costs.
+    pub const ENDLESS: Self = Self {
+        samples: f64::INFINITY,
+        is_probed: true,
+    };
+
+    /// For so many samples a pixel.
+    pub fn of(samples: f64) -> Self {
+        Self {
+            samples,
+            is_probed: false,
+        }
+    }
+
+    /// So many candidates of a part are worth looking at.
+    pub fn most(self, area: Area) -> usize {
+        let shared = match area.pixels() {
+            1 => 0.0,
+            pixels => self.samples * pixels as f64 / A_CANDIDATE,
+        };
+        self.most_in_a_pixel().max(shared) as usize
+    }
+
+    /// Whether so many are so few that they are looked at themselves, not only at their bounds.
+    pub fn is_for_a_look(self, area: Area, candidates: usize) -> bool {
+        candidates <= FEW
+            || candidates * LOOK <= self.most(area)
+            || candidates as f64 <= self.most_in_a_pixel()
+    }
+
+    /// Whether what a board shows in several pixels is worth knowing.
+    pub fn is_for_checks(self) -> bool {
+        self.samples >= A_CHECK
+    }
+
+    /// The same budget, or a greater one where the rays of a part are found to ask many objects.
+    pub fn probed(self, world: &World, area: Area) -> Self {
+        if self.is_probed || self.samples * (area.pixels() as f64) < PROBED {
+            return self;
+        }
+        let (mut rays, mut asked) = (0.0, 0);
+        for quarter in area.quarters() {
+            let (x, y) = (
+                quarter.x + quarter.width / 2,
+                quarter.y + quarter.height / 2,
+            );
+            asked += world.asked(x, y, DVec2::ZERO);
+            rays += 1.0;
+        }
+        Self {
+            samples: self.samples * (1.0 + AN_OBJECT * asked as f64 / rays),
+            is_probed: true,
+        }
+    }
+
+    fn most_in_a_pixel(self) -> f64 {
+        OF_A_PIXEL * (self.samples - A_PIXEL)
+    }
+}

@@ -1,0 +1,136 @@
+//! What is found of a part, and what that may cost.
+
+use std::{fmt::Write, ops::ControlFlow};
+
+use glam::dvec3;
+
+use super::{Part, Quartering, Room, budget::Budget};
+use crate::{
+    area::Area,
+    scene::{self, Scene},
+    source::{Source, Sources},
+    tracer::World,
+};
+
+const SIZE: u32 = 64;
+
+fn read(objects: &str) -> Scene {
+    let text = format!(
+        "image {{ width {SIZE} height {SIZE} }} camera {{ eye (0, 0, 0) direction (0, 0, -1) d 2 }} {objects}"
+    );
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    scene::read(&sources).scene.unwrap()
+}
+
+/// A thousand spheres of a depth all over the picture.
+fn thousand_spheres(depth: f64) -> String {
+    let mut text = String::new();
+    for index in 0..1000 {
+        let at = dvec3(
+            f64::from(index % 40) - 19.5,
+            f64::from(index / 40) - 12.0,
+            0.0,
+        ) * 0.02;
+        let at = at * depth;
+        let _ = write!(
+            text,
+            "sphere {{ center ({}, {}, {}) radius {} }} ",
+            at.x,
+            at.y,
+            -depth,
+            depth * 0.004
+        );
+    }
+    text
+}
+
+#[test]
+fn what_a_wall_hides_is_not_found() {
+    let wall = "box { min (-9, -9, -5) max (9, 9, -4) }";
+    let mut crowd = Vec::new();
+    for (depth, behind) in [(8.0, true), (3.0, false)] {
+        let world = World::new(&read(&format!("{} {wall}", thousand_spheres(depth))));
+        let whole = Area::whole(SIZE, SIZE);
+        assert_eq!(world.crowd_in(whole, 4, &mut crowd), behind);
+        assert!(world.crowd_in(whole, 1 << 20, &mut crowd));
+        assert_eq!(crowd.len() == 1, behind);
+        assert!(behind || crowd.len() == 1001, "{}", crowd.len());
+        // Neither where it lies across the cells of the hierarchy.
+        for part in whole.tiles(7) {
+            assert!(world.crowd_in(part, 1 << 20, &mut crowd));
+            assert!(crowd.len() == 1 || !behind, "{part:?}");
+        }
+    }
+}
+
+#[test]
+fn budgets_of_all_sizes() {
+    let (pixel, tile) = (Area::pixel(0, 0), Area::whole(64, 64));
+    let most = |samples, area| Budget::of(samples).most(area);
+    assert_eq!([0.0, 0.3, 1.0].map(|samples| most(samples, pixel)), [0; 3]);
+    assert_eq!(
+        [0.0, 0.003, 1.0].map(|samples| most(samples, tile)),
+        [0, 0, 256]
+    );
+    assert_eq!(most(64.0, pixel), 44);
+    assert!(most(libm::exp2(60.0), tile) > 1 << 60);
+    assert_eq!(Budget::ENDLESS.most(pixel), usize::MAX);
+    assert!(Budget::of(16.0).is_for_a_look(tile, 4) && !Budget::of(1.0).is_for_a_look(tile, 128));
+}
+
+#[test]
+fn rays_that_ask_many_objects_raise_the_budget() {
+    let slivers: String = (0..400)
+        .map(|index| {
+            let depth = 5.0 + f64::from(index) / 1000.0;
+            format!(
+                "triangle {{ centroid ({}, 0, -{depth}) normal (0, 0, 1) spin 45deg sides (8, 8, 0.001) }} ",
+                f64::from(index % 20) / 40.0 - 0.25
+            )
+        })
+        .collect();
+    let (slivers, spheres) = (read(&slivers), read(&thousand_spheres(5.0)));
+    let raised = |scene: &Scene| {
+        let area = Area::whole(SIZE, SIZE);
+        let budget = Budget::of(1.0);
+        let probed = budget.probed(&World::new(scene), area);
+        probed.most(area) as f64 / budget.most(area) as f64
+    };
+    assert!(raised(&slivers) > 5.0, "{}", raised(&slivers));
+    assert!(raised(&spheres) < 2.0, "{}", raised(&spheres));
+    // Few samples are not worth it.
+    let world = World::new(&slivers);
+    let few = Budget::of(1.0).probed(&world, Area::whole(8, 8));
+    assert_eq!(
+        few.most(Area::whole(8, 8)),
+        Budget::of(1.0).most(Area::whole(8, 8))
+    );
+}
+
+#[test]
+fn parts_are_of_all_kinds_but_for_exact_pictures() {
+    let floor = "checkerboard { square 0.3 y -1 } sphere { center (0, 1, -6) }";
+    let world = World::new(&read(&format!("{} {floor}", thousand_spheres(5.0))));
+    let count = |quartering: &Quartering| {
+        let mut kinds = [0; 4];
+        for tile in Area::whole(SIZE, SIZE).tiles(16) {
+            let flow = quartering.parts(tile, &mut Room::default(), &mut |part| {
+                kinds[match part {
+                    Part::Flat { .. } => 0,
+                    Part::Open { .. } => 1,
+                    Part::Plain { live: Some(_), .. } => 2,
+                    Part::Plain { live: None, .. } => 3,
+                }] += 1;
+                ControlFlow::Continue(())
+            });
+            assert!(flow.is_continue());
+        }
+        kinds
+    };
+    let [one, three] = [1.0, 3.0].map(|samples| count(&Quartering::for_samples(&world, samples)));
+    let found = |kind: usize| one[kind] + three[kind] > 0;
+    assert!((0..4).all(found), "{one:?} {three:?}");
+    let [flat, open, plain @ ..] = count(&Quartering::new(&world));
+    assert!(flat > 0 && open > 0 && plain == [0, 0]);
+    assert_eq!(count(&Quartering::for_samples(&world, 0.0)), [0, 0, 0, 16]);
+}
