@@ -16,7 +16,7 @@ pub use self::{
 use super::{Case, Idea, Make};
 use crate::{
     math::Angle,
-    scene::{Scene, Shape},
+    scene::{Cuboid, Scene, Shape, Triangle},
     tracer::vertices,
 };
 
@@ -141,6 +141,7 @@ fn wrong_shapes(shape: &Shape) -> Vec<Wrong> {
             for by in [half, -half] {
                 wrong.push(("object_place", message, help, moved(shape, by, 1.0)));
             }
+            wrong.extend(resized(cuboid));
         }
         Shape::Triangle(triangle) => {
             let [left, right, apex] = vertices(&triangle);
@@ -154,7 +155,7 @@ fn wrong_shapes(shape: &Shape) -> Vec<Wrong> {
             ] {
                 wrong.push(("object_place", message, help, moved(shape, by, 1.0)));
             }
-            let mut changed = |message, help, change: &dyn Fn(&mut crate::scene::Triangle)| {
+            let mut changed = |message, help, change: &dyn Fn(&mut Triangle)| {
                 let mut other = triangle;
                 change(&mut other);
                 wrong.push(("object_orientation", message, help, Shape::Triangle(other)));
@@ -173,10 +174,108 @@ fn wrong_shapes(shape: &Shape) -> Vec<Wrong> {
                 other.spin = -other.spin
             });
             changed("is not spun", spins, &|other| other.spin = Angle::default());
+            let normal = "normal is (x, y, z), and points to the side from which the triangle is seen as it is described";
+            for (message, sign) in [
+                (
+                    "has a normal whose x has the wrong sign",
+                    DVec3::new(-1.0, 1.0, 1.0),
+                ),
+                (
+                    "has a normal whose y has the wrong sign",
+                    DVec3::new(1.0, -1.0, 1.0),
+                ),
+                (
+                    "has a normal whose z has the wrong sign",
+                    DVec3::new(1.0, 1.0, -1.0),
+                ),
+            ] {
+                changed(message, normal, &|other| other.normal *= sign);
+            }
+            for (message, exchange) in [
+                (
+                    "has a normal whose x and y are exchanged",
+                    exchanged([1, 0, 2]),
+                ),
+                (
+                    "has a normal whose x and z are exchanged",
+                    exchanged([2, 1, 0]),
+                ),
+                (
+                    "has a normal whose y and z are exchanged",
+                    exchanged([0, 2, 1]),
+                ),
+            ] {
+                changed(message, normal, &|other| {
+                    other.normal = exchange(other.normal)
+                });
+            }
+            let sides = "sides are (a, b, c): a from the base's left end to the apex, b from its right end, c the base";
+            for (message, exchange) in [
+                ("has its sides a and c exchanged", exchanged([2, 1, 0])),
+                ("has its sides b and c exchanged", exchanged([0, 2, 1])),
+                ("has its sides in the order b, c, a", exchanged([1, 2, 0])),
+                ("has its sides in the order c, a, b", exchanged([2, 0, 1])),
+            ] {
+                changed(message, sides, &|other| other.sides = exchange(other.sides));
+            }
         }
         _ => {}
     }
     wrong
+}
+
+/// A vector whose components are those at these places of another one.
+fn exchanged(places: [usize; 3]) -> impl Fn(DVec3) -> DVec3 {
+    move |v| DVec3::from(places.map(|place| v[place]))
+}
+
+/// A box of wrong sizes around its centre.
+fn resized(cuboid: Cuboid) -> impl Iterator<Item = Wrong> {
+    let (middle, size) = ((cuboid.min + cuboid.max) / 2.0, cuboid.max - cuboid.min);
+    let help = "size is (x, y, z): the lengths of the edges along the three axes, half of each on either side of the center";
+    let sizes = [
+        (
+            "has its sizes along x and y exchanged",
+            exchanged([1, 0, 2])(size),
+        ),
+        (
+            "has its sizes along x and z exchanged",
+            exchanged([2, 1, 0])(size),
+        ),
+        (
+            "has its sizes along y and z exchanged",
+            exchanged([0, 2, 1])(size),
+        ),
+        (
+            "is twice as long along x as it should be",
+            size * DVec3::new(2.0, 1.0, 1.0),
+        ),
+        (
+            "is twice as long along y as it should be",
+            size * DVec3::new(1.0, 2.0, 1.0),
+        ),
+        (
+            "is twice as long along z as it should be",
+            size * DVec3::new(1.0, 1.0, 2.0),
+        ),
+        (
+            "is half as long along x as it should be",
+            size * DVec3::new(0.5, 1.0, 1.0),
+        ),
+        (
+            "is half as long along y as it should be",
+            size * DVec3::new(1.0, 0.5, 1.0),
+        ),
+        (
+            "is half as long along z as it should be",
+            size * DVec3::new(1.0, 1.0, 0.5),
+        ),
+    ];
+    sizes.into_iter().map(move |(message, size)| {
+        let (min, max) = (middle - size / 2.0, middle + size / 2.0);
+        let shape = Shape::Box(Cuboid { min, max, ..cuboid });
+        ("object_size", message, help, shape)
+    })
 }
 
 /// A shape somewhere else, larger or smaller about its middle.

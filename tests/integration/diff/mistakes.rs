@@ -190,6 +190,19 @@ fn mistakes_that_another_scene_makes_are_named() {
         render(&folder, &["-o", "b.png", "--set", set]);
         assert_eq!(mistake(&folder), expected, "{set}");
     }
+    for (set, expected) in [
+        ("Sail.normal=(-0.3, 0, 1)", "whose x has the wrong sign"),
+        ("Sail.normal=(1, 0, 0.3)", "whose x and z are exchanged"),
+        ("Sail.sides=(1, 2, 2)", "`Sail` has its sides"),
+        ("Crate.size=(1.5, 0.5, 2)", "sizes along x and y exchanged"),
+        ("Crate.size=(2, 1.5, 0.5)", "sizes along x and z exchanged"),
+        ("Crate.size=(1, 1.5, 2)", "twice as long along x"),
+        ("Crate.size=(0.5, 1.5, 1)", "half as long along z"),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+        assert!(text.contains(expected), "{set}: {text}");
+    }
     render(&folder, &["-o", "b.png", "--set", "camera.d=2.1"]);
     let (_, text) = diff(&folder, &["b.png", "a.scn"]);
     assert!(text.contains("as if d were 2.1 instead of 2.75"), "{text}");
