@@ -60,7 +60,7 @@ pub fn coarse(
         .collect();
     let (width, height) = (part.width.div_ceil(side), part.height.div_ceil(side));
     let film = std::sync::Mutex::new(Film::new(width, height)?);
-    threads::pool(control.threads)?.install(|| {
+    threads::install(control.threads, || {
         (0..height).into_par_iter().for_each(|row| {
             if control.cancel.load(Ordering::Relaxed) {
                 return;
@@ -83,7 +83,7 @@ pub fn coarse(
             let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
             film.put(place, &blocks);
         });
-    });
+    })?;
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);
     }

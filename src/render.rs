@@ -160,7 +160,7 @@ pub fn render_in_a_way<P: film::Pixel>(
         },
     };
     let side = tile_side(sampling, part);
-    threads::pool(control.threads)?.install(|| {
+    threads::install(control.threads, || {
         wanted(part.tiles(side), control)
             .par_bridge()
             .for_each_init(
@@ -173,7 +173,7 @@ pub fn render_in_a_way<P: film::Pixel>(
                     film.put(tile.within(part), &pixels);
                 },
             );
-    });
+    })?;
     finished(film, control)
 }
 
@@ -213,7 +213,7 @@ fn render_exact_as<P: film::Pixel>(
     });
     let integrator = Integrator::new(world);
     let encoder = Encoder::new();
-    threads::pool(control.threads)?.install(|| {
+    threads::install(control.threads, || {
         wanted(part.tiles(TILE), control)
             .par_bridge()
             .for_each(|tile| {
@@ -253,7 +253,7 @@ fn render_exact_as<P: film::Pixel>(
                 exact.certain += certain as u64;
                 (control.progress)(tile.pixels());
             });
-    });
+    })?;
     finished(exact, control)
 }
 

@@ -29,12 +29,34 @@ pub(crate) fn available() -> usize {
     }
 }
 
+/// Does something on so many threads, or on as many as are available. They are started for it, but where it is already done on so many:
+/// what starts hundreds of renders has them done on the same threads.
+///
+/// # Errors
+///
+/// If the system starts none.
+pub(crate) fn install<R: Send>(
+    threads: Option<NonZero<usize>>,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, ThreadPoolBuildError> {
+    let wanted = number(threads);
+    match rayon::current_thread_index() {
+        Some(_) if rayon::current_num_threads() == wanted => Ok(work()),
+        _ => Ok(pool(threads)?.install(work)),
+    }
+}
+
 /// So many threads, or as many as are available.
 ///
 /// # Errors
 ///
 /// If the system starts none.
 pub(crate) fn pool(threads: Option<NonZero<usize>>) -> Result<ThreadPool, ThreadPoolBuildError> {
-    let threads = threads.map_or_else(available, |threads| threads.get().min(MOST));
-    ThreadPoolBuilder::new().num_threads(threads).build()
+    ThreadPoolBuilder::new()
+        .num_threads(number(threads))
+        .build()
+}
+
+fn number(threads: Option<NonZero<usize>>) -> usize {
+    threads.map_or_else(available, |threads| threads.get().min(MOST))
 }

@@ -135,15 +135,18 @@ pub fn scene(
             is_thin: false,
         });
     }
-    let case = Case::new(a, scene, exact, control)?;
-    let likely = match samples(&case)? {
-        Some(verdict) => vec![verdict],
-        None => mistakes(&case)?,
-    };
-    Ok(Grade {
-        is_thin: likely.is_empty() && case.is_thin.get(),
-        likely,
-    })
+    // Hundreds of pictures may be made, all by the same threads.
+    threads::install(control.threads, || {
+        let case = Case::new(a, scene, exact, control)?;
+        let likely = match samples(&case)? {
+            Some(verdict) => vec![verdict],
+            None => mistakes(&case)?,
+        };
+        Ok(Grade {
+            is_thin: likely.is_empty() && case.is_thin.get(),
+            likely,
+        })
+    })?
 }
 
 /// What is said of a picture in which nothing but its samples is wrong.
@@ -328,12 +331,12 @@ fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, Rend
         let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
         Ok(row.collect())
     };
-    let rows: Vec<Vec<_>> = threads::pool(control.threads)?.install(|| {
+    let rows: Vec<Vec<_>> = threads::install(control.threads, || {
         (0..height)
             .into_par_iter()
             .map(row)
             .collect::<Result<_, _>>()
-    })?;
+    })??;
     for (y, row) in (0..).zip(rows) {
         film.put(
             Area {

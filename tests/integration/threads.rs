@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::program::command;
 
-/// The most threads that a process was seen with until it ended.
+/// The most threads that a process was seen with until it ended. It may have had more: one looks only now and then.
 fn most(process: &mut Child) -> usize {
     let tasks = format!("/proc/{}/task", process.id());
     let mut most = 0;
@@ -32,6 +32,15 @@ fn most_of(folder: &TempDir, arguments: &[&str]) -> usize {
     most(&mut process)
 }
 
+/// Holds the program to one thread, and to six when it is asked for six, beside the first one and those that wait for Ctrl-C.
+fn hold_to_the_number_asked_for(folder: &TempDir, arguments: &[&str]) {
+    let most = |threads: &str| most_of(folder, &[arguments, &["--threads", threads]].concat());
+    let one = most("1");
+    assert!(one <= 4, "{one}");
+    // On a busy machine it may be over before all that it starts are seen.
+    assert!((0..20).any(|_| most("6") >= 6));
+}
+
 #[test]
 fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
     let folder = TempDir::new().expect("a folder");
@@ -44,11 +53,7 @@ fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
         );
     }
     fs::write(folder.path().join("a.scn"), text).expect("a scene");
-    let most = |threads: &str| most_of(&folder, &["render", "a.scn", "--threads", threads]);
-    let (one, six) = (most("1"), most("6"));
-    // Besides those there are the first one, and those that wait for Ctrl-C.
-    assert!(one <= 4, "{one}");
-    assert!(six >= 6, "{six}");
+    hold_to_the_number_asked_for(&folder, &["render", "a.scn"]);
 }
 
 #[test]
@@ -67,13 +72,5 @@ fn no_more_than_were_asked_for_look_for_a_mistake() {
         fs::write(folder.path().join(name), scene(roll)).expect("a scene");
     }
     most_of(&folder, &["render", "wrong.scn", "-o", "wrong.png"]);
-    let most = |threads: &str| {
-        most_of(
-            &folder,
-            &["diff", "wrong.png", "right.scn", "--threads", threads],
-        )
-    };
-    let (one, six) = (most("1"), most("6"));
-    assert!(one <= 4, "{one}");
-    assert!(six >= 6, "{six}");
+    hold_to_the_number_asked_for(&folder, &["diff", "wrong.png", "right.scn"]);
 }

@@ -34,7 +34,7 @@ pub use self::{
     table::{Claim, Row, Table},
     trial::Tally,
 };
-use crate::{render::Control, threads::pool};
+use crate::{render::Control, threads};
 
 /// A hard case.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +88,7 @@ const BLOCK: u64 = 100;
 pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolBuildError> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
-    let tallies = pool(control.threads)?.install(|| {
+    let tallies = threads::install(control.threads, || {
         (0..cases.len() as u64 * blocks)
             .into_par_iter()
             .take_any_while(|_| !control.cancel.load(Ordering::Relaxed))
@@ -109,7 +109,7 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolB
                 || vec![Tally::default(); cases.len()],
                 |a, b| a.into_iter().zip(b).map(|(a, b)| a.plus(b)).collect(),
             )
-    });
+    })?;
     let rows = cases.iter().zip(tallies).map(|(case, tally)| Row {
         id: case.id,
         title: case.title,
