@@ -20,7 +20,7 @@ use super::{
     fit::median,
     marker::{Look, Place},
     measure::{Measurement, Point},
-    table::{error, seconds, slope},
+    table::{error, marked_slope, seconds},
     ticks::{Ticks, ends, tick},
 };
 use crate::numbers;
@@ -109,7 +109,7 @@ pub fn against_samples(measured: &Measurement) -> String {
         |point| point.per_pixel as f64,
         |measured, at| {
             let series = &measured.series[at];
-            format!("{}  {}", series.method.name(), slope(series.fit()))
+            format!("{}  {}", series.method.name(), marked_slope(series))
         },
     );
     let rungs: Vec<_> = measured.rungs.iter().map(|&rung| rung as f64).collect();

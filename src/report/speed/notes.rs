@@ -139,18 +139,30 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
             method_list(&flat)
         ));
     }
-    if measured
+    let mut scatter = measured
         .series
         .iter()
-        .any(|series| series.method == Method::Scatter)
-    {
-        notes.push(
+        .filter(|series| series.method == Method::Scatter);
+    if let Some(scatter) = scatter.next() {
+        let slope = match has_empty_pixels(scatter) {
+            true => {
+                "; the slope (*) has the errors of those in it, and is steeper than that of more samples"
+            }
+            false => "",
+        };
+        notes.push(format!(
             "scatter lets its samples fall anywhere in the picture: with n per pixel on average a share of about exp(−n) of the \
-             pixels gets none (37 % at 1, 2 % at 4) and shows the background instead."
-                .to_owned(),
-        );
+             pixels gets none (37 % at 1, 2 % at 4) and shows the background instead{slope}."
+        ));
     }
     notes
+}
+
+/// Whether the line through a method's errors goes through some of pictures in which more than a thousandth of the pixels has no sample: with n
+/// that fall anywhere, a share of about exp(−n).
+pub(super) fn has_empty_pixels(series: &Series) -> bool {
+    let few = |point: &Point| libm::exp(-(point.per_pixel as f64)) > 1e-3;
+    series.method == Method::Scatter && series.points.iter().any(few)
 }
 
 fn extrapolation(measured: &Measurement) -> Option<String> {

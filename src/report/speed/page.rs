@@ -11,7 +11,7 @@ use super::{
     measure::{Measurement, Point, Series},
     notes::{NOISY, notes, spread, verdicts},
     picture,
-    table::{cells, count, error, factor, plural, seconds, slope, tried},
+    table::{cells, count, error, factor, marked_slope, plural, seconds, tried},
 };
 use crate::{numbers, scene::Method};
 
@@ -145,7 +145,7 @@ fn errors(measured: &Measurement) -> String {
         row.push(error(
             series.points.last().map_or(0.0, |point| point.largest),
         ));
-        row.push(slope(series.fit()));
+        row.push(marked_slope(series));
         (series.method.name(), row)
     });
     let bound = numbers::at_most(measured.reference.bound());

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{
     fit::{Fit, median},
     measure::{Measurement, Point, Series},
-    notes::{NOISY, notes, spread, verdicts},
+    notes::{NOISY, has_empty_pixels, notes, spread, verdicts},
 };
 use crate::{numbers, scene::Method, suggest};
 
@@ -27,6 +27,9 @@ pub fn table(measured: &Measurement) -> String {
     for note in notes(measured) {
         text += &wrapped(&format!("note: {note}"));
     }
+    text += &wrapped(
+        "million rays/s: all samples by the time that they take; of pixels that are certain to show one colour none needs to be traced.",
+    );
     text
 }
 
@@ -60,7 +63,7 @@ fn errors(measured: &Measurement) -> String {
             let _ = write!(text, "{cell:>9}");
         }
         let largest = series.points.last().map_or(0.0, |point| point.largest);
-        let _ = writeln!(text, "{:>10}  {}", error(largest), slope(series.fit()));
+        let _ = writeln!(text, "{:>10}  {}", error(largest), marked_slope(series));
     }
     if measured.exact.is_some() {
         let width = 9 * measured.rungs.len() + 10;
@@ -173,8 +176,14 @@ pub(super) fn cells(
         .collect()
 }
 
+/// The slope of a method's errors, marked where a note says what else is in it.
+pub(super) fn marked_slope(series: &Series) -> String {
+    let mark = if has_empty_pixels(series) { " *" } else { "" };
+    format!("{}{mark}", slope(series.fit()))
+}
+
 /// A slope with its standard error.
-pub(super) fn slope(fit: Option<Fit>) -> String {
+fn slope(fit: Option<Fit>) -> String {
     match fit {
         None => "-".to_owned(),
         Some(fit) => match fit.slope_error {
