@@ -187,6 +187,9 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         // What explains the whole picture explains all of its colours.
         found.retain(|verdict| verdict.mistake != "colors");
     }
+    if found.is_empty() {
+        found = verdicts(case.named(whole::pairs())?);
+    }
     if !found.is_empty() {
         return Ok(found);
     }
@@ -208,7 +211,8 @@ fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     // A camera that moved a little displaces the picture, nearly.
     let mut ideas = shift::search(case)?;
     let changes = camera::single(scene).into_iter();
-    let changes: Vec<_> = changes.chain(board::changes(scene)).collect();
+    let changes = changes.chain(board::changes(scene));
+    let changes: Vec<_> = changes.chain(camera::clips(scene)).collect();
     let single = search::nearest(case, &changes)?;
     ideas.extend(single.ideas);
     let mut found = case.named(ideas)?;
@@ -251,9 +255,22 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
             is_thin: false,
         };
     }
+    let mut grade = best(a, b, whole::films());
+    if grade.likely.is_empty() {
+        let pairs = best(a, b, whole::pairs());
+        grade = Grade {
+            is_thin: pairs.likely.is_empty() && (grade.is_thin || pairs.is_thin),
+            ..pairs
+        };
+    }
+    grade
+}
+
+/// Those that explain the difference of two pictures.
+fn best(a: &Film, b: &Film, ideas: Vec<Idea>) -> Grade {
     let difference = rmse(a, b);
     let mut is_thin = false;
-    let found = whole::films().into_iter().filter_map(|idea| {
+    let found = ideas.into_iter().filter_map(|idea| {
         let made = match &idea.make {
             Make::Film(make) => make(b),
             Make::Light(curve) => level::map(b, curve.to),

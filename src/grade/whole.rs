@@ -1,6 +1,6 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
-use super::{Curve, Idea, Make, Verdict, noise::with_colors, size};
+use super::{Curve, Idea, Make, Verdict, level, noise::with_colors, size};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::{Film, TooLarge, rmse},
@@ -36,73 +36,88 @@ const POWER: Curve = Curve {
     back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
 };
 
+/// A picture turned in some way.
+type Turn = fn(&Film) -> Result<Film, TooLarge>;
+
+/// What may be turned: a word for programs, one for people, the way out, and how.
+const TURNS: [(&str, &str, &str, Turn); 3] = [
+    (
+        "mirrored",
+        "mirrored: left and right are exchanged",
+        "u = (up × w)/|up × w| points to the right; (w × up) points to the left, as in a left-handed world",
+        |film| {
+            Film::from_fn(film.width(), film.height(), |x, y| {
+                film.pixel(film.width() - 1 - x, y)
+            })
+        },
+    ),
+    (
+        "upside_down",
+        "upside down: top and bottom are exchanged",
+        "rows are counted from the top, and y_v = s (height/2 − py) falls as they grow",
+        |film| {
+            Film::from_fn(film.width(), film.height(), |x, y| {
+                film.pixel(x, film.height() - 1 - y)
+            })
+        },
+    ),
+    (
+        "turned_180",
+        "turned by 180 degrees",
+        "as behind a real pinhole: the view plane lies before the eye, at −d w, so the picture stands upright",
+        |film| {
+            Film::from_fn(film.width(), film.height(), |x, y| {
+                film.pixel(film.width() - 1 - x, film.height() - 1 - y)
+            })
+        },
+    ),
+];
+
+/// What may have happened to the light: a word for programs, one for people, the way out, and the curve.
+const CURVES: [(&str, &str, &str, Curve); 3] = [
+    (
+        "not_encoded",
+        "the colours are too dark: linear light was written where sRGB is expected",
+        "encode each channel before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
+        Curve {
+            to: srgb_to_linear,
+            back: linear_to_srgb,
+        },
+    ),
+    (
+        "encoded_twice",
+        "the colours are too bright: they were encoded as sRGB twice, or a scene's sRGB colours were not decoded",
+        "decode a scene's colours to linear light, average there, and encode once",
+        Curve {
+            to: linear_to_srgb,
+            back: srgb_to_linear,
+        },
+    ),
+    (
+        "gamma_22",
+        "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
+        "use the curve of sRGB: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
+        POWER,
+    ),
+];
+
 /// What can be seen of two pictures alone.
 pub fn films() -> Vec<Idea> {
-    let mut ideas = vec![
-        film(
-            "mirrored",
-            "the picture is mirrored: left and right are exchanged",
-            "u = (up × w)/|up × w| points to the right; (w × up) points to the left, as in a left-handed world",
-            |film| {
-                Film::from_fn(film.width(), film.height(), |x, y| {
-                    film.pixel(film.width() - 1 - x, y)
-                })
-            },
-        ),
-        film(
-            "upside_down",
-            "the picture is upside down: top and bottom are exchanged",
-            "rows are counted from the top, and y_v = s (height/2 − py) falls as they grow",
-            |film| {
-                Film::from_fn(film.width(), film.height(), |x, y| {
-                    film.pixel(x, film.height() - 1 - y)
-                })
-            },
-        ),
-        film(
-            "turned_180",
-            "the picture is turned by 180 degrees",
-            "as behind a real pinhole: the view plane lies before the eye, at −d w, so the picture stands upright",
-            |film| {
-                Film::from_fn(film.width(), film.height(), |x, y| {
-                    film.pixel(film.width() - 1 - x, film.height() - 1 - y)
-                })
-            },
-        ),
-        film(
-            "transposed",
-            "rows and columns are exchanged",
-            "a pixel's place in a row-by-row array is y · width + x",
-            |film| match film.width() == film.height() {
-                true => transposed(film),
-                false => Ok(film.clone()),
-            },
-        ),
-        light(
-            "not_encoded",
-            "the colours are too dark: linear light was written where sRGB is expected",
-            "encode each channel before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
-            Curve {
-                to: srgb_to_linear,
-                back: linear_to_srgb,
-            },
-        ),
-        light(
-            "encoded_twice",
-            "the colours are too bright: they were encoded as sRGB twice, or a scene's sRGB colours were not decoded",
-            "decode a scene's colours to linear light, average there, and encode once",
-            Curve {
-                to: linear_to_srgb,
-                back: srgb_to_linear,
-            },
-        ),
-        light(
-            "gamma_22",
-            "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
-            "use the curve of sRGB: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
-            POWER,
-        ),
-    ];
+    let turns = TURNS.map(|(mistake, how, help, turn)| {
+        film(mistake, &format!("the picture is {how}"), help, turn)
+    });
+    let curves = CURVES.map(|(mistake, message, help, curve)| light(mistake, message, help, curve));
+    let mut ideas = Vec::from(turns);
+    ideas.push(film(
+        "transposed",
+        "rows and columns are exchanged",
+        "a pixel's place in a row-by-row array is y · width + x",
+        |film| match film.width() == film.height() {
+            true => transposed(film),
+            false => Ok(film.clone()),
+        },
+    ));
+    ideas.extend(curves);
     let orders = [
         ([2, 1, 0], "blue, green, red"),
         ([0, 2, 1], "red, blue, green"),
@@ -123,6 +138,21 @@ pub fn films() -> Vec<Idea> {
         ));
     }
     ideas
+}
+
+/// A picture that is turned, and whose light is wrong, too: two mistakes, for pictures that none explains alone.
+pub fn pairs() -> Vec<Idea> {
+    let turned = |(mistake, how, help, turn): (&'static str, &str, &str, Turn)| {
+        CURVES.map(|(_, message, help_of_curve, curve)| {
+            film(
+                mistake,
+                &format!("the picture is {how}; and {message}"),
+                &format!("{help}; and {help_of_curve}"),
+                move |film| level::map(&turn(film)?, curve.to),
+            )
+        })
+    };
+    TURNS.into_iter().flat_map(turned).collect()
 }
 
 fn transposed(film: &Film) -> Result<Film, TooLarge> {

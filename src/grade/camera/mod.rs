@@ -1,10 +1,14 @@
 //! Mistakes of the camera.
 
 mod changes;
+mod clips;
 
 use glam::DVec3;
 
-pub use self::changes::{any, several, several_near, single};
+pub use self::{
+    changes::{any, several, several_near, single},
+    clips::changes as clips,
+};
 use super::{
     Idea, Make,
     level::{distance, with_distance},
@@ -47,43 +51,7 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
     let mut ideas = rolls(scene);
     ideas.extend(views(scene));
     ideas.extend(distances(scene));
-    ideas.extend(clips(scene));
-    ideas
-}
-
-fn clips(scene: &Scene) -> Vec<Idea> {
-    let (near, far) = (scene.camera.near, scene.camera.far);
-    let ignored = |mistake, message: &str, near, far| {
-        idea(
-            mistake,
-            message.to_owned(),
-            "what counts is the depth along the view direction, (p − eye) · (−w): more than near and less than far",
-            changed(scene, |scene| {
-                (scene.camera.near, scene.camera.far) = (near, far)
-            }),
-        )
-    };
-    let mut ideas = Vec::new();
-    if near > 0.0 {
-        ideas.push(ignored(
-            "near_ignored",
-            "the near plane was not minded",
-            0.0,
-            far,
-        ));
-    }
-    if far.is_some() {
-        ideas.push(ignored(
-            "far_ignored",
-            "the far plane was not minded",
-            near,
-            None,
-        ));
-    }
-    if near > 0.0 && far.is_some() {
-        let message = "the near and the far plane were not minded";
-        ideas.push(ignored("not_clipped", message, 0.0, None));
-    }
+    ideas.extend(clips::ideas(scene));
     ideas
 }
 

@@ -65,6 +65,28 @@ fn mistakes_of_the_whole_picture_are_named() {
 }
 
 #[test]
+fn a_picture_that_is_turned_and_whose_light_is_wrong_is_named() {
+    let folder = folder();
+    render(&folder, &["-o", "a.exr"]);
+    let light = open(&folder, "a.exr").to_rgb32f();
+    let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+        let byte = |light: f32| (255.0 * light).round() as u8;
+        Rgb(light.get_pixel(95 - x, y).0.map(byte))
+    });
+    save(&folder, "b.png", picture);
+    for other in ["a.scn", "a.png"] {
+        let found = json(&folder, &["b.png", other]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "mirrored", "{found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(
+            message.contains("; and the colours are too dark"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
 fn a_power_in_place_of_the_curve_is_named() {
     let folder = folder();
     render(&folder, &["-o", "a.exr"]);

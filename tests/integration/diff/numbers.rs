@@ -277,3 +277,42 @@ fn two_mistakes_at_once_are_no_other_one() {
         assert!(allowed.contains(&mistake.as_str()), "{sets:?}: {message}");
     }
 }
+
+#[test]
+fn planes_at_another_depth_are_named() {
+    let folder = folder();
+    for (set, right, expected, says) in [
+        (
+            "camera.far=9.7",
+            None,
+            "far",
+            "which the scene does not have: as if far were 9.7",
+        ),
+        (
+            "camera.far=9.7",
+            Some("camera.far=12"),
+            "far",
+            "as if far were 9.7 instead of 12",
+        ),
+        (
+            "camera.near=8.2",
+            None,
+            "near",
+            "as if near were 8.2 instead of 0",
+        ),
+        (
+            "camera.near=8.2",
+            Some("camera.near=5.5"),
+            "near",
+            "as if near were 8.2 instead of 5.5",
+        ),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        let right = right.map_or(Vec::new(), |set| vec!["--set", set]);
+        let found = json(&folder, &[&["b.png", "a.scn"], right.as_slice()].concat());
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], expected, "{set}: {found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.contains(says), "{set}: {message}");
+    }
+}
