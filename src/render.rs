@@ -44,7 +44,7 @@ const TILE: u32 = 64;
 const TILE_SAMPLES: u64 = 1 << 18;
 
 /// And no tile is made so small that it has fewer.
-const FEW_SAMPLES: u64 = 1 << 8;
+const FEW_SAMPLES: u64 = 1 << 10;
 
 /// So few samples are placed by the vectors that every processor has.
 const FEW: u64 = 8;

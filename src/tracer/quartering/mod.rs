@@ -7,10 +7,14 @@
 mod budget;
 #[cfg(test)]
 mod tests;
+mod trust;
 
 use std::ops::ControlFlow;
 
-use self::budget::{Budget, FEW};
+use self::{
+    budget::{Budget, FEW},
+    trust::Trust,
+};
 use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
@@ -53,11 +57,12 @@ pub enum Part<'a> {
     },
 }
 
-/// The candidates at each depth of the quartering, kept from tile to tile for their room.
+/// What is kept from area to area: the candidates at each depth of the quartering, for their room, and whether it was worth to look for them.
 #[derive(Debug, Default)]
 pub struct Room {
     crowds: Vec<Vec<Item>>,
     live: Vec<Vec<Live>>,
+    trust: Trust,
 }
 
 impl<'a> Quartering<'a> {
@@ -85,6 +90,26 @@ impl<'a> Quartering<'a> {
 
     /// The same, with what an open pixel shows of a board, where that is known.
     pub fn parts_and_checks(
+        &self,
+        area: Area,
+        room: &mut Room,
+        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if !room.trust.is_worth_a_look() {
+            return visit(Part::Plain { area, live: None }, None);
+        }
+        let mut plain = 0;
+        let flow = self.whole(area, room, &mut |part, checks| {
+            if let Part::Plain { area, live: None } = part {
+                plain += area.pixels();
+            }
+            visit(part, checks)
+        });
+        room.trust.learn(plain, area.pixels());
+        flow
+    }
+
+    fn whole(
         &self,
         area: Area,
         room: &mut Room,
