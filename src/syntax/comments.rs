@@ -77,6 +77,12 @@ pub fn walk(text: &str, start: Start) -> Walk {
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
         let next = bytes.get(at + 1).copied();
+        let foreign = match (byte, next) {
+            (b'#', _) | (b'-', Some(b'-')) if start == Start::Items && !nesting.quote_before => {
+                foreign::sign(text, at, &mut lets)
+            }
+            _ => None,
+        };
         let end = match (byte, next) {
             (b'/', Some(b'/')) => {
                 let end = end_of_line(bytes, at);
@@ -90,14 +96,10 @@ pub fn walk(text: &str, start: Start) -> Walk {
                 found.comments.push(at..end);
                 end
             }
-            (b'#', _) | (b'-', Some(b'-'))
-                if start == Start::Items
-                    && !nesting.quote_before
-                    && let Some(sign) = foreign::sign(text, at, &mut lets) =>
-            {
+            _ if foreign.is_some() => {
                 let end = end_of_line(bytes, at);
                 found.comments.push(at..end);
-                found.foreign.push((sign, end));
+                found.foreign.extend(foreign.map(|sign| (sign, end)));
                 end
             }
             (b' ' | b'\t' | b'\r', _) => at + 1,
