@@ -5,8 +5,7 @@ use glam::DVec3;
 use super::{
     Block, Given, Lowering,
     fixing::{examples, quoted},
-    mentions,
-    words::{axis_name, axis_vector},
+    words::{axis_name, axis_vector, mentions},
 };
 use crate::{
     color::Color,

@@ -268,3 +268,9 @@ fn axis(v: DVec3) -> Option<(char, f64)> {
         _ => None,
     }
 }
+
+/// Whether a word stands in a text.
+pub fn mentions(text: &str, word: &str) -> bool {
+    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+    text.split(other).any(|found| found == word)
+}
