@@ -89,7 +89,7 @@ impl<'a> Block<'a> {
         };
         let slope = self.board.fine.floor.slope[self.along];
         let [t, depth] = place(from);
-        let mut lines = Lines::new(&[t, depth], &step, last - first, slope);
+        let mut lines = Lines::new(&[t, depth], &step, &Double::from_f64(last - first), slope);
         lines.size = size;
         Run {
             lines,

@@ -39,6 +39,10 @@ const FINITE_TAIL: f64 = 1e-10;
 /// A sum along the boundary with no greater bound than this is good enough.
 const GOOD_FAR: f64 = 1e-8;
 
+/// The same of a crowd of squares; and what displaces the boundary of a polygon, which is 4 long at most, by no more cannot make it worse.
+const GOOD_CROWD: f64 = 4e-9;
+const COARSE: f64 = GOOD_CROWD / 4.0;
+
 /// Where roundings displace points by more than this, in pixels, edges and floor no longer fit each other.
 const MISFIT: f64 = 0.1;
 
@@ -230,10 +234,19 @@ impl Board {
                 return sum.within(polygon.iter().copied());
             }
         }
-        let mut sum = self.unchecked(polygon, known, cancel);
-        if sum.bound > enough && !self.is_crowded(polygon) {
-            let close = closely::sum(self, polygon);
-            sum = close.filter(|close| close.bound < sum.bound).unwrap_or(sum);
+        // Where corners as they are rounded leave too much of a crowd in doubt, they would take long for nothing.
+        let is_coarse = self.displacement > COARSE
+            && self.blurred(polygon.iter().copied()) > GOOD_CROWD
+            && self.is_crowded(polygon);
+        let close = is_coarse
+            .then(|| closely::of_crowd(self, polygon))
+            .flatten();
+        let mut sum = match close {
+            Some(close) if close.bound <= GOOD_CROWD => close,
+            close => better(self.unchecked(polygon, known, cancel), close),
+        };
+        if sum.bound > enough && !is_coarse && !self.is_crowded(polygon) {
+            sum = better(sum, closely::sum(self, polygon));
         }
         if self.fine.nudge > 0.0 {
             // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
@@ -449,6 +462,11 @@ impl Board {
         }
         kept
     }
+}
+
+/// The sum of which more is known.
+fn better(sum: Sum, other: Option<Sum>) -> Sum {
+    other.filter(|other| other.bound < sum.bound).unwrap_or(sum)
 }
 
 /// How many squares a region meets along each axis.

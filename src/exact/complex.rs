@@ -1,6 +1,6 @@
 //! Complex numbers and angles, as far as sums of waves need them.
 
-use crate::math::{Double, Real};
+use crate::math::{Double, Real, two_product};
 
 /// A real and an imaginary part.
 pub(super) type Complex = [f64; 2];
@@ -13,6 +13,13 @@ pub(super) fn turn(x: f64) -> f64 {
 /// The same of a double-double number.
 pub(super) fn turn_exactly(x: &Double) -> Double {
     Double::from_f64(turn(x.hi)).plus(&Double::from_f64(turn(x.lo)))
+}
+
+/// n times an angle that is given without whole turns, without whole turns: to within a rounding of itself, however small that is, as long as
+/// double-double numbers tell.
+pub(super) fn turned_times(n: f64, angle: &Double) -> f64 {
+    let Double { hi, lo } = two_product(n, angle.hi);
+    turn(hi) + (lo + n * angle.lo)
 }
 
 pub(super) fn times(a: Complex, b: Complex) -> Complex {

@@ -13,7 +13,7 @@
 
 use super::board::{Board, Corner, Sum, UNIT, measure};
 use super::complex::turn_exactly;
-use super::euler::{square_wave, waves, waves_at};
+use super::euler::{waves, waves_at};
 use super::horizon;
 use super::sides::Known;
 use crate::math::{Double, Real};
@@ -158,9 +158,10 @@ fn turned(place: &Double) -> f64 {
     turn_exactly(place).to_f64()
 }
 
-/// The last whole number before a place.
-fn floor(place: &Double) -> f64 {
-    place.floor().0.to_f64()
+/// The last whole number before a place, and s there.
+fn floor(place: &Double) -> (Double, f64) {
+    let (square, is_odd) = place.floor();
+    (square, if is_odd { -1.0 } else { 1.0 })
 }
 
 /// An edge from its near end to its far one. `c` counts the lines of the family that it crosses less, t those of the other.
@@ -182,10 +183,8 @@ pub(super) struct Edge {
     climb: f64,
     pub slope: f64,
     /// dt and dm for every line crossed, and the sense in which they are crossed.
-    pub stride: f64,
+    pub stride: Double,
     pub rise: f64,
-    /// The former more exactly.
-    fine_stride: Double,
     sense: f64,
 }
 
@@ -233,8 +232,7 @@ impl Edge {
             rho: across.hi / along.hi,
             climb: rise / along.hi,
             slope: board.floor.slope[t],
-            stride: along.hi / across.hi.abs(),
-            fine_stride: match across.is_negative() {
+            stride: match across.is_negative() {
                 true => per_line.negated(),
                 false => per_line,
             },
@@ -264,30 +262,29 @@ impl Edge {
     /// ρ ∫ s(c) dX from near to far.
     fn integral(&self, board: &Board, terms: usize) -> Sum {
         let series = self.series(board, terms);
-        let square = floor(&self.c);
-        let start = square_wave(square);
+        let (square, start) = floor(&self.c);
         let mut sum = Sum {
             value: -start * series.at(turned(&self.t), self.depth),
             bound: 0.0,
         };
         let lines = self.lines();
         if let Some((c, t, depth)) = self.end {
-            sum.value += square_wave(floor(&c)) * series.at(turned(&t), depth);
+            sum.value += floor(&c).1 * series.at(turned(&t), depth);
         }
         let ends = series.size(1, self.depth);
         if lines > 0.0 && self.rho != 0.0 {
-            let within = self.c.minus(&Double::from_f64(square));
+            let within = self.c.minus(&square);
             let first = match self.sense > 0.0 {
                 true => Double::from_f64(1.0).minus(&within),
                 false => within,
             };
-            let t = first.times(&self.fine_stride).plus(&self.t);
+            let t = first.times(&self.stride).plus(&self.t);
             let crossings = Crossings {
-                t: t.hi,
-                turned: [t, self.fine_stride].map(|x| turn_exactly(&x)),
+                turned: [t, self.stride].map(|x| turn_exactly(&x)),
                 depth: self.depth + first.hi * self.rise,
                 edge: self,
                 lines,
+                count: self.count(),
             };
             // s jumps by −2s where the first line is crossed, and by turns from there.
             let tail = board.tail(lines);
@@ -305,8 +302,20 @@ impl Edge {
 
     /// How many lines it crosses of the family that it crosses less.
     pub(super) fn lines(&self) -> f64 {
-        self.end
-            .map_or(f64::INFINITY, |(c, ..)| (floor(&c) - floor(&self.c)).abs())
+        self.end.map_or(f64::INFINITY, |_| self.count().hi)
+    }
+
+    /// The same exactly, if they end.
+    fn count(&self) -> Double {
+        let count = match self.end {
+            Some((c, ..)) => floor(&c).0.minus(&floor(&self.c).0),
+            None => Double::from_f64(0.0),
+        };
+        if count.is_negative() {
+            count.negated()
+        } else {
+            count
+        }
     }
 
     fn series(&self, board: &Board, terms: usize) -> Series {
@@ -390,12 +399,13 @@ impl Series {
 
 /// The lines of one family that an edge crosses: t and m at the first, and how many there are.
 pub(super) struct Crossings<'a> {
-    pub t: f64,
-    /// The former and its step from line to line more exactly, without whole turns, in half turns.
+    /// t and its step from line to line, without whole turns, in half turns.
     turned: [Double; 2],
     pub depth: f64,
     pub edge: &'a Edge,
     pub lines: f64,
+    /// The same exactly, if they end.
+    pub count: Double,
 }
 
 impl Crossings<'_> {
@@ -426,9 +436,9 @@ impl Crossings<'_> {
     }
 
     /// X where one line is crossed.
-    pub(super) fn line(&self, series: &Series, j: f64) -> f64 {
-        let edge = self.edge;
-        series.at(self.t + j * edge.stride, self.depth + j * edge.rise)
+    pub(super) fn line(&self, series: &Series, j: &Double) -> f64 {
+        let t = self.turned_at(j);
+        series.at(t.hi, self.depth + j.hi * self.edge.rise)
     }
 
     #[inline(always)]
@@ -446,7 +456,7 @@ impl Crossings<'_> {
             // A loop that the compiler makes vectors of, to the end of the last of them; what is too much is not added.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
-            let t = self.turned_at(j);
+            let t = self.turned_at(&Double::from_f64(j)).hi;
             for (i, value) in values[..filled].iter_mut().enumerate() {
                 *value = self.at::<TERMS, ROWS>(series, t, j, f64::from(i as u32));
             }
@@ -463,9 +473,14 @@ impl Crossings<'_> {
     }
 
     /// t at crossing j, without whole turns.
-    fn turned_at(&self, j: f64) -> f64 {
+    pub(super) fn turned_at(&self, j: &Double) -> Double {
         let [t, stride] = &self.turned;
-        turn_exactly(&t.plus(&stride.times(&Double::from_f64(j)))).hi
+        turn_exactly(&t.plus(&stride.times(j)))
+    }
+
+    /// t's step from line to line and a half turn, by which s turns; without whole turns.
+    pub(super) fn turning(&self) -> Double {
+        turn_exactly(&self.turned[1].plus(&Double::from_f64(1.0)))
     }
 
     /// X at crossing j + i, where t is that of crossing j.

@@ -11,7 +11,7 @@
 //! the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
 
 use super::board::{Sum, UNIT};
-use super::complex::{Complex, phase, square, times, turn};
+use super::complex::{Complex, phase, square, times, turned_times};
 use super::edge::{Crossings, Edge, Series};
 use super::exponential::integrals;
 use super::level;
@@ -52,7 +52,7 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
     }
     if is_level {
         // Where m hardly grows the modes of the ends do not fall off.
-        let sum = level::crossings(all, series, trivial);
+        let sum = level::crossings(all, series, trivial, tolerance);
         if sum.bound <= tolerance {
             return sum;
         }
@@ -76,12 +76,15 @@ pub(super) fn crossings(all: &Crossings, series: &Series, tolerance: f64) -> Sum
         return by_modes(all, series, tolerance);
     }
     let mut sum = all.one_by_one(series, direct);
-    let mut rests = [Some(direct), all.lines.is_finite().then_some(all.lines)];
-    let share = tolerance / rests.iter().flatten().count() as f64;
-    for (end, lines) in rests.iter_mut().enumerate() {
+    let ends = [
+        Some(Double::from_f64(direct)),
+        all.lines.is_finite().then_some(all.count),
+    ];
+    let share = tolerance / ends.iter().flatten().count() as f64;
+    for (end, lines) in ends.iter().enumerate() {
         let Some(lines) = lines else { continue };
-        let rest = rest(all, *lines, series, share);
-        let odd = (*lines % 2.0 != 0.0) != (end == 1);
+        let rest = rest(all, lines, series, share);
+        let odd = lines.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
     }
@@ -97,23 +100,25 @@ fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
     }
     let mut sum = all.one_by_one(series, direct);
     let factor = series.per_slope.value / rho;
-    let first = [all.t + direct * all.edge.stride, all.depth + direct * rise];
-    let step = [all.edge.stride, *rise];
-    let mut lines = Lines::new(
-        &first.map(Double::from_f64),
-        &step.map(Double::from_f64),
-        all.lines - direct,
-        all.edge.slope,
-    );
-    lines.stride_off = 2.0 * UNIT * all.edge.stride.abs();
+    let done = Double::from_f64(direct);
+    let first = [
+        all.turned_at(&done),
+        Double::from_f64(all.depth + direct * rise),
+    ];
+    let step = [all.edge.stride, Double::from_f64(*rise)];
+    let count = match all.lines.is_finite() {
+        true => all.count.minus(&done),
+        false => Double::from_f64(f64::INFINITY),
+    };
+    let lines = Lines::new(&first, &step, &count, all.edge.slope);
     let modes = lines.sum(tolerance / factor.abs());
-    let alternating = |lines: f64, x: f64| if lines % 2.0 == 0.0 { x } else { -x };
+    let alternating = |lines: &Double, x: f64| if lines.floor().1 { -x } else { x };
     // There the ends count half.
-    let mut rest = factor * modes.value + 0.5 * all.line(series, direct);
+    let mut rest = factor * modes.value + 0.5 * all.line(series, &done);
     if all.lines.is_finite() {
-        rest -= 0.5 * alternating(lines.lines, all.line(series, all.lines));
+        rest -= 0.5 * alternating(&count, all.line(series, &all.count));
     }
-    sum.value += alternating(direct, rest);
+    sum.value += alternating(&done, rest);
     sum.bound += factor.abs() * (modes.bound + series.per_slope.bound * modes.value.abs());
     sum
 }
@@ -150,9 +155,9 @@ fn start(all: &Crossings, series: &Series, tolerance: f64) -> f64 {
 }
 
 /// Σ (−1)^j X from crossing `direct` on, with j counted from there.
-fn rest(all: &Crossings, direct: f64, series: &Series, tolerance: f64) -> Sum {
+fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64) -> Sum {
     let g = all.edge.rise;
-    let depth = all.depth + direct * g;
+    let depth = all.depth + direct.hi * g;
     let everything: f64 = (1..=series.terms)
         .map(|k| absolute(series, k, depth, g))
         .sum();
@@ -191,18 +196,20 @@ fn rest(all: &Crossings, direct: f64, series: &Series, tolerance: f64) -> Sum {
     let threshold = 2.0 * first * waves * u3 / allowance;
     let threshold = threshold * threshold;
 
-    let stride = turn(all.edge.stride);
-    let stride = stride - 1.0_f64.copysign(stride);
-    let t = turn(all.t + direct * all.edge.stride);
-    let mut place = phase(t * PI);
-    let mut angle = phase(stride * PI);
+    let turning = all.turning();
+    let mut place = phase(all.turned_at(direct).hi * PI);
+    let mut angle = phase(turning.hi * PI);
     let (place_step, angle_step) = (square(place), square(angle));
     let mut value = 0.0;
     let mut n = 1.0;
     while n <= last {
-        let gap = 2.0 - 2.0 * angle[0];
+        let theta = turned_times(n, &turning) * PI;
+        // |1 − e^iθ|², of which a cosine would leave nothing where θ is small.
+        let gap = match theta.abs() < 0.2 {
+            true => 0.99 * theta * theta,
+            false => 2.0 - 2.0 * angle[0],
+        };
         if n <= FIRST_MODES || gap * n * n < threshold {
-            let theta = turn(n * stride) * PI;
             let v = lerch(theta, angle, w);
             let per_mode = 1.0 / n;
             let n3 = per_mode * per_mode * per_mode;

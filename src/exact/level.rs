@@ -9,9 +9,10 @@
 //! has more than another that begins where the edge ends; or a geometric sum, where m does not change.
 
 use super::board::{Sum, UNIT};
-use super::complex::{Complex, phase, square, times, turn};
+use super::complex::{Complex, phase, square, times, turned_times};
 use super::edge::{Crossings, Series};
 use super::horizon::lerch;
+use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
 /// What is neglected of the modes, in square pixels.
@@ -21,8 +22,8 @@ const STEADY: f64 = 3e6;
 /// The waves that have modes; of the later ones just the size is known.
 const WAVES: usize = 3;
 
-/// Σ (−1)^j X over all crossings, where |X| adds up to no more than `trivial`.
-pub(super) fn crossings(all: &Crossings, series: &Series, trivial: f64) -> Sum {
+/// Σ (−1)^j X over all crossings, where |X| adds up to no more than `trivial`; of which as much as `tolerance` may be neglected.
+pub(super) fn crossings(all: &Crossings, series: &Series, trivial: f64, tolerance: f64) -> Sum {
     let lines = all.lines;
     let size = |k: usize| lines * series.size(k, all.depth);
     let middle = all.depth + 0.5 * lines * all.edge.rise;
@@ -36,75 +37,95 @@ pub(super) fn crossings(all: &Crossings, series: &Series, trivial: f64) -> Sum {
         amplitudes[k - 1] = amplitude * series.factors[k];
         amplitude *= u / PI;
     }
+    let neglected = NEGLECTED.max(0.05 * tolerance);
     // Σ n^−3 over the odd n beyond Q is at most 1/4Q²; of the trivial bound a mode is at most 8/π² n^−3.
-    let last = ((trivial / NEGLECTED).sqrt().ceil() + 1.0).max(3.0);
+    let last = ((trivial / neglected).sqrt().ceil() + 1.0).max(3.0);
     let beyond = trivial / (4.0 * (last - 1.0) * (last - 1.0));
 
-    let stride = turn(all.edge.stride);
-    let stride = stride - 1.0_f64.copysign(stride);
-    let mut place = phase(turn(all.t) * PI);
-    let place_step = square(place);
-    let mut value = 0.0;
+    let turning = all.turning();
+    // Of the first crossing, and of the one after the last with the sign that it would have.
+    let ends = [Double::from_f64(0.0), all.count].map(|j| phase(all.turned_at(&j).hi * PI));
+    let steps = ends.map(square);
+    let mut places = match all.count.floor().1 {
+        true => [ends[0], ends[1].map(|x| -x)],
+        false => ends,
+    };
+    // By Abel Σ_j of a mode is at most 2/|1 − e^iθ| by its first term, and that π/|θ|. All modes that are left out for it together are not
+    // much more than is neglected anyhow: Σ n^−2 over the odd n is π²/8.
+    let abel = PI
+        * amplitudes
+            .iter()
+            .map(|amplitude| amplitude.abs())
+            .sum::<f64>();
+    let (mut value, mut skipped) = (0.0, 0.0);
     let mut n = 1.0;
     while n <= last {
-        let theta = turn(n * stride) * PI;
-        let sums = if is_steady {
-            [geometric(theta, lines); WAVES]
-        } else {
-            partial(theta, start / all.edge.rise, lines)
-        };
-        // i^−2, i^−3 and i^−4 are −1, i and 1.
-        let [first, second, third] = sums.map(|sum| times(place, sum));
+        let theta = turned_times(n, &turning) * PI;
         let per_mode = 1.0 / n;
-        let waves = -amplitudes[0] * first[1]
-            + per_mode * (amplitudes[1] * second[0] + per_mode * amplitudes[2] * third[1]);
-        value += per_mode * per_mode * per_mode * waves;
-        place = times(place, place_step);
+        let cube = per_mode * per_mode * per_mode;
+        let at_most = cube * abel;
+        if at_most <= neglected * per_mode * per_mode * theta.abs() {
+            skipped += at_most / theta.abs();
+        } else {
+            let sums = if is_steady {
+                [geometric(theta, lines, places); WAVES]
+            } else {
+                partial(theta, start / all.edge.rise, lines, places)
+            };
+            // i^−2, i^−3 and i^−4 are −1, i and 1.
+            let [first, second, third] = sums;
+            let waves = -amplitudes[0] * first[1]
+                + per_mode * (amplitudes[1] * second[0] + per_mode * amplitudes[2] * third[1]);
+            value += cube * waves;
+        }
+        places = [0, 1].map(|end| times(places[end], steps[end]));
         n += 2.0;
     }
     let later: f64 = (WAVES + 1..=series.terms).map(size).sum();
     // m^−s is off by s·gN/2m from its value in the middle.
     let unsteady = if is_steady { 4.0 / STEADY } else { 0.0 };
-    // A crossing is off by a few roundings of t, which X′, at most π X's bound, takes to X. The series of Lerch are good to
+    // The ends are off by a few roundings of a turn, n times that in the mode n, and θ by one of itself. The series of Lerch are good to
     // some 500 units in the last place of w/2 times their first term, and lack up to 0.04·s(s + 1)/w²; there are two.
-    let reach = all.t.abs() + lines * all.edge.stride.abs();
     let lerch = if is_steady {
         0.0
     } else {
         let w = start / all.edge.rise;
         1000.0 * UNIT * w / lines + 2.4 / (w * lines)
     };
-    let rounding = UNIT * (16.0 + 8.0 * PI * reach + last);
+    let rounding = UNIT * (64.0 + 8.0 * last);
     Sum {
         value,
-        bound: beyond + later + trivial * (unsteady + lerch + rounding),
+        bound: beyond + skipped + later + trivial * (unsteady + lerch + rounding),
     }
 }
 
-/// Σ e^(iθj) over j < N.
-fn geometric(theta: f64, lines: f64) -> Complex {
+/// Σ e^(iθj) over j < N by the place of the first, where that of the N-th would be e^(iθN) as much.
+fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
     let half = 0.5 * theta;
-    let ratio = match libm::sin(half) {
-        0.0 => lines,
-        sine => libm::sin(turn(half / PI * lines) * PI) / sine,
-    };
-    let middle = phase(turn(half / PI * (lines - 1.0)) * PI);
-    [ratio * middle[0], ratio * middle[1]]
+    let sine = libm::sin(half);
+    if (theta * lines).abs() < 1.0 {
+        let ratio = match sine {
+            0.0 => lines,
+            sine => libm::sin(half * lines) / sine,
+        };
+        let middle = phase(half * (lines - 1.0));
+        return times(place, middle.map(|x| ratio * x));
+    }
+    // 1 − e^(iθ) is −2i·sin(θ/2)·e^(iθ/2).
+    let difference = [place[0] - last[0], place[1] - last[1]];
+    let [x, y] = times(difference, phase(-half));
+    [-0.5 * y / sine, 0.5 * x / sine]
 }
 
-/// Σ e^(iθj) (1 + j/w)^(−s) over j < N, for s = 3, 4, 5.
-fn partial(theta: f64, w: f64, lines: f64) -> [Complex; WAVES] {
+/// Σ e^(iθj) (1 + j/w)^(−s) over j < N, for s = 3, 4, 5, by the same places.
+fn partial(theta: f64, w: f64, lines: f64, [place, last]: [Complex; 2]) -> [Complex; WAVES] {
     let angle = phase(theta);
     let (from, to) = (lerch(theta, angle, w), lerch(theta, angle, w + lines));
-    let end = phase(turn(theta / PI * lines) * PI);
     let mut power = w * w;
     std::array::from_fn(|s| {
         power *= w;
-        let rest = times(end, to[s]);
-        [
-            power * (from[s][0] - rest[0]),
-            power * (from[s][1] - rest[1]),
-        ]
+        let (sum, rest) = (times(place, from[s]), times(last, to[s]));
+        [power * (sum[0] - rest[0]), power * (sum[1] - rest[1])]
     })
 }
 
@@ -124,6 +145,11 @@ mod tests {
         sum
     }
 
+    /// Places from 0 on.
+    fn places(theta: f64, lines: f64) -> [Complex; 2] {
+        [phase(0.0), phase(theta * lines)]
+    }
+
     fn close(found: Complex, expected: Complex, most: f64) {
         let error = (found[0] - expected[0]).abs() + (found[1] - expected[1]).abs();
         assert!(error <= most, "{found:?}, not {expected:?}: {error:e}");
@@ -134,7 +160,7 @@ mod tests {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
             // The angles of one by one are off by up to 1000·3·2⁻⁵³.
             close(
-                geometric(theta, 1000.0),
+                geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),
                 1e-9,
             );
@@ -144,7 +170,7 @@ mod tests {
     #[test]
     fn what_a_series_has_before_another_begins() {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
-            let found = partial(theta, 5000.0, 3000.0);
+            let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {
                 // Of what lerch neglects, 0.04·s(s + 1)/w², 5e-8 is left; 500 roundings of w/2 are 3e-10.
                 close(found, one_by_one(theta, 5000.0, 3000.0, s), 1e-7);

@@ -16,7 +16,7 @@
 //! in divided differences of F. The first and the last crossing count half.
 
 use super::board::{Sum, UNIT};
-use super::complex::{Complex, phase, size, square, times, turn, turn_exactly};
+use super::complex::{Complex, phase, size, square, times, turn, turn_exactly, turned_times};
 use super::exponential::{divided_difference, third};
 use super::horizon::rest_of_pole;
 use super::resonance::Resonances;
@@ -66,6 +66,7 @@ pub(super) struct Lines {
     pub depth: f64,
     pub rise: f64,
     pub lines: f64,
+    is_odd: bool,
     /// ∂m/∂t on the floor.
     pub slope: f64,
     /// What late modes add up to, by the one-th of them, where more is known of that than of |U|.
@@ -82,9 +83,9 @@ struct End {
 
 impl Lines {
     /// So many lines, from where t and m are `first` on, which grow by `step` from line to line, and m by `slope` along t on the floor.
-    pub(super) fn new(first: &[Double; 2], step: &[Double; 2], lines: f64, slope: f64) -> Self {
+    pub(super) fn new(first: &[Double; 2], step: &[Double; 2], count: &Double, slope: f64) -> Self {
         let [[t, depth], [stride, rise]] = [first, step];
-        let last = t.plus(&stride.times(&Double::from_f64(lines)));
+        let last = t.plus(&stride.times(count));
         let turning = turn_exactly(stride).plus(&Double::from_f64(1.0));
         Self {
             t: turn_exactly(t).to_f64(),
@@ -93,7 +94,8 @@ impl Lines {
             stride: stride.to_f64(),
             depth: depth.to_f64(),
             rise: rise.to_f64(),
-            lines,
+            lines: count.hi,
+            is_odd: count.hi.is_finite() && count.floor().1,
             slope,
             size: f64::INFINITY,
             stride_off: 0.0,
@@ -248,14 +250,12 @@ impl Lines {
             let Double { hi, lo } = two_product(n, t);
             phase((turn(hi) + lo) * PI)
         });
-        let is_odd = self.lines % 2.0 != 0.0;
-        [first, if is_odd { last.map(|x| -x) } else { last }]
+        [first, if self.is_odd { last.map(|x| -x) } else { last }]
     }
 
     /// θ of the wave n.
     fn angle(&self, n: f64) -> f64 {
-        let Double { hi, lo } = two_product(n, self.turning.hi);
-        (turn(hi) + (lo + n * self.turning.lo)) * PI
+        turned_times(n, &self.turning) * PI
     }
 
     /// The real part of a mode's sum, each end at its place, and the size of what it is made of.
@@ -484,7 +484,7 @@ mod tests {
             let lines = Lines::new(
                 &[0.37, 0.9].map(Double::from_f64),
                 &[stride, rise].map(Double::from_f64),
-                40.0,
+                &Double::from_f64(40.0),
                 slope,
             );
             let (found, expected) = (lines.sum(1e-7), by_quadrature(&lines));
