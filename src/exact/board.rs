@@ -28,7 +28,7 @@ pub(super) const FAR: f64 = 18.0;
 
 /// Nothing is said of near squares beyond this m: there the horizon is a few roundings away. (The largest factor of L is
 /// about 1.)
-const DEEP: f64 = 1e13;
+pub(super) const DEEP: f64 = 1e13;
 
 /// An edge that crosses no more lines than this may be that of a pixel with so few squares that hardly anything is neglected there; one that
 /// crosses more, but not all, is neglected less than one that runs into the horizon. (A pixel may have a dozen such edges.)
@@ -239,7 +239,7 @@ impl Board {
             && self.blurred(polygon.iter().copied()) > GOOD_CROWD
             && self.is_crowded(polygon);
         let close = is_coarse
-            .then(|| closely::of_crowd(self, polygon))
+            .then(|| closely::of_crowd(self, polygon, cancel))
             .flatten();
         let mut sum = match close {
             Some(close) if close.bound <= GOOD_CROWD => close,

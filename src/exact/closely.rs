@@ -4,12 +4,13 @@
 //! line (`finely`). A narrow view needs that, whose pixels are so far away that neighbouring squares differ by less than a rounding of where
 //! they are.
 
-use std::array;
+use std::{array, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
 use super::{
-    board::{Board, Corner, Sum, normalized, size},
+    board::{Board, Corner, DEEP, Sum, normalized, size},
+    cells,
     cutter::split,
     displaced::displacements,
     edge, finely,
@@ -33,12 +34,29 @@ pub(super) fn sum(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
     sums.min_by(|one, other| one.bound.total_cmp(&other.bound))
 }
 
-/// The same of a crowd of squares, and of the horizon: lines one by one would be too many.
-pub(super) fn of_crowd(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
-    near_and_far(board, polygon)
+/// The same of a crowd of squares, and of the horizon. Where there are too many near lines as well, near squares are summed as rounded forms
+/// have them: those displace them less.
+pub(super) fn of_crowd(board: &Board, polygon: &[DVec2], cancel: &AtomicBool) -> Option<Sum> {
+    parts(board, polygon, |closer, near| {
+        let [p, q] = closer.floor.slope;
+        let by_squares = || Some(cells::sum(board, &board.visible(near), cancel));
+        finely::sum(closer, near).or_else(|| match FARTHER * (p.abs() + q.abs()) <= DEEP {
+            true => by_squares(),
+            false => None,
+        })
+    })
 }
 
 fn near_and_far(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
+    parts(board, polygon, finely::sum)
+}
+
+/// What is near, by a function of it, and what is far.
+fn parts(
+    board: &Board,
+    polygon: &[DVec2],
+    sum_near: impl Fn(&Board, &[DVec2]) -> Option<Sum>,
+) -> Option<Sum> {
     if board.fine.nudge > 0.0 {
         return None;
     }
@@ -56,7 +74,7 @@ fn near_and_far(board: &Board, polygon: &[DVec2]) -> Option<Sum> {
         sum.bound += board.blurred(corners.iter().map(|corner| corner.at));
     }
     if near.len() > 2 {
-        sum.add(finely::sum(&board, &near)?);
+        sum.add(sum_near(&board, &near)?);
     }
     Some(sum)
 }
@@ -135,8 +153,6 @@ fn corner(board: &Board, at: DVec2, [a, b, level]: [Double; 3]) -> Corner {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::AtomicBool;
-
     use proptest::prelude::*;
 
     use super::*;
@@ -201,7 +217,7 @@ mod tests {
             prop_assert!(finely::sum(&board, &PIXEL).is_none());
             for polygon in [&PIXEL[..], &PIXEL[1..]] {
                 let rounded = board.over(polygon, None, &AtomicBool::new(false));
-                let Some(close) = of_crowd(&board, polygon) else { continue };
+                let close = of_crowd(&board, polygon, &AtomicBool::new(false)).unwrap_or_default();
                 let off = (close.value - rounded.value).abs();
                 prop_assert!(close.bound > 0.0 && close.bound <= 4e-9, "{close:?}");
                 prop_assert!(off <= close.bound + rounded.bound, "{close:?}, not {rounded:?}");

@@ -175,6 +175,8 @@ pub(super) struct Edge {
     pub depth: f64,
     /// The far end's c, t and m, unless it is on the horizon.
     end: Option<(Double, Double, f64)>,
+    /// How many lines it crosses of the family that it crosses less, infinite for the horizon.
+    count: Double,
     /// t's change to the far end, infinite for the horizon.
     length: f64,
     /// dc/dt.
@@ -219,6 +221,10 @@ impl Edge {
         if along.hi == 0.0 {
             return None;
         }
+        let lines = match endless {
+            true => Double::from_f64(f64::INFINITY),
+            false => floor(&far.place(c)).0.minus(&floor(&near.place(c)).0),
+        };
         let rise = if endless { 1.0 } else { far.depth - near.depth };
         let per_line = along.over(&across);
         Some(Self {
@@ -228,6 +234,10 @@ impl Edge {
             t: near.place(t),
             depth: near.depth,
             end: (!endless).then(|| (far.place(c), far.place(t), far.depth)),
+            count: match lines.is_negative() {
+                true => lines.negated(),
+                false => lines,
+            },
             length: if endless { f64::INFINITY } else { along.hi },
             rho: across.hi / along.hi,
             climb: rise / along.hi,
@@ -284,7 +294,7 @@ impl Edge {
                 depth: self.depth + first.hi * self.rise,
                 edge: self,
                 lines,
-                count: self.count(),
+                count: self.count,
             };
             // s jumps by −2s where the first line is crossed, and by turns from there.
             let tail = board.tail(lines);
@@ -302,20 +312,7 @@ impl Edge {
 
     /// How many lines it crosses of the family that it crosses less.
     pub(super) fn lines(&self) -> f64 {
-        self.end.map_or(f64::INFINITY, |_| self.count().hi)
-    }
-
-    /// The same exactly, if they end.
-    fn count(&self) -> Double {
-        let count = match self.end {
-            Some((c, ..)) => floor(&c).0.minus(&floor(&self.c).0),
-            None => Double::from_f64(0.0),
-        };
-        if count.is_negative() {
-            count.negated()
-        } else {
-            count
-        }
+        self.count.hi
     }
 
     fn series(&self, board: &Board, terms: usize) -> Series {
@@ -404,7 +401,7 @@ pub(super) struct Crossings<'a> {
     pub depth: f64,
     pub edge: &'a Edge,
     pub lines: f64,
-    /// The same exactly, if they end.
+    /// The same exactly.
     pub count: Double,
 }
 

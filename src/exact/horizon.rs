@@ -108,7 +108,7 @@ fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
     let step = [all.edge.stride, Double::from_f64(*rise)];
     let count = match all.lines.is_finite() {
         true => all.count.minus(&done),
-        false => Double::from_f64(f64::INFINITY),
+        false => all.count,
     };
     let lines = Lines::new(&first, &step, &count, all.edge.slope);
     let modes = lines.sum(tolerance / factor.abs());

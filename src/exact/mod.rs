@@ -14,8 +14,8 @@
 //!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
 //!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
-//!    in double-double (`closely`), and near lines, which are few, one by one (`finely`); how long that may take is a matter of `care`.
-//!    Of squares too small to be seen it is told only how little they leave (`small`).
+//!    in double-double (`closely`), up to the horizon, and near lines, which are few, one by one (`finely`); how long that may take is a
+//!    matter of `care`. Of squares too small to be seen it is told only how little they leave (`small`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
