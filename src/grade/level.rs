@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::{DVec2, DVec3};
 
-use super::{Make, bias::Trend, exact, extent::View, sampled};
+use super::{Make, bias::Trend, exact, extent::View, order, sampled};
 use crate::{
     area::Area,
     film::{Film, TooLarge},
@@ -134,13 +134,9 @@ impl<'a> Level<'a> {
             }
             Make::Floor(scene, holds) => {
                 let other = self.picture(&self.sized(scene), control)?;
-                let floor = Floor::new(&self.scene);
-                let pixel = |x, y| match floor.point(x, y) {
-                    Some(point) if holds(point) => other.pixel(x, y),
-                    _ => self.exact.pixel(x, y),
-                };
-                Ok(Film::from_fn(self.a.width(), self.a.height(), pixel)?)
+                Ok(self.where_floor(*holds, &other, &self.exact)?)
             }
+            Make::Ordered(order) => order::picture(&self.scene, *order, control),
             Make::Is(film, _) => Ok(film.clone()),
             Make::Sample(offset) => sampled(&self.scene, *offset, control),
             Make::Squeezed => self.squeezed(control),
@@ -178,6 +174,21 @@ impl<'a> Level<'a> {
             Some(curve) => map(&made, curve.to)?,
             None => made,
         }))
+    }
+
+    /// One picture where pixels' centres see points (x, z) of the floor, in squares, for which something holds, and another one elsewhere.
+    pub fn where_floor(
+        &self,
+        holds: fn(DVec2) -> bool,
+        there: &Film,
+        elsewhere: &Film,
+    ) -> Result<Film, TooLarge> {
+        let floor = Floor::new(&self.scene);
+        let pixel = |x, y| match floor.point(x, y) {
+            Some(point) if holds(point) => there.pixel(x, y),
+            _ => elsewhere.pixel(x, y),
+        };
+        Film::from_fn(self.a.width(), self.a.height(), pixel)
     }
 
     /// The part of the picture that a changed shape changes, if any.

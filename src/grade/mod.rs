@@ -4,7 +4,7 @@
 //! best first; none, if none does. A mistake is a function: of the exact picture, or of the scene, whose exact picture is then made. It is
 //! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
 //!
-//! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of samples in `noise` and
+//! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
 //! not independent, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
 //! one, and `choice` which of several it is. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
@@ -22,6 +22,7 @@ mod fixed;
 mod level;
 mod noise;
 mod objects;
+mod order;
 mod search;
 mod shift;
 mod whole;
@@ -42,7 +43,7 @@ use crate::{
 
 pub use self::extent::Off;
 
-use self::{case::Case, choice::Explanation};
+use self::{case::Case, choice::Explanation, order::Order};
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
 const LEFT: f64 = 0.2;
@@ -107,6 +108,8 @@ enum Make {
     Curved(Box<Scene>, Curve),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
     Floor(Box<Scene>, fn(DVec2) -> bool),
+    /// That of a scene whose objects are drawn in an order, whatever is nearer.
+    Ordered(Order),
     /// This picture, of which one sample in each pixel has this variance.
     Is(Film, Film),
     /// One sample in each pixel, at this offset from its centre.
@@ -177,6 +180,7 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         .into_iter()
         .chain(camera::ideas(scene))
         .chain(board::ideas(scene))
+        .chain(order::ideas(scene))
         .chain(objects::ideas(case))
         .chain(objects::colors(case));
     let mut found = verdicts(case.named(ideas.collect())?);

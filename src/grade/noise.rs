@@ -48,6 +48,10 @@ const CHANCE: f64 = 1e-3;
 /// in a million.
 const STRAYS: usize = 8;
 
+/// Light that is rounded to a step of 1/255 has errors of the variance 1/255²/12, as n samples have of which one has 12·255² n times as much: of
+/// so many, if two colours are a tenth of the way from black to white apart, 0.1²/4, and of more if they are farther.
+const MANY: f64 = 2000.0;
+
 /// Noise that looks as if there were so many independent samples in a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
@@ -318,9 +322,14 @@ impl Noise {
             mistake: "noise",
             message: format!(
                 "sampling noise: the picture is wrong only where colours meet, as often too bright as too dark, as with about {} random \
-                 sample{} per pixel{}",
+                 sample{} per pixel{}{}",
                 short(samples),
                 if samples == 1.0 { "" } else { "s" },
+                if samples >= MANY {
+                    ", or as light that was rounded on the way leaves it"
+                } else {
+                    ""
+                },
                 if share > 0.0 {
                     ", and of one colour where no sample fell into a pixel"
                 } else {

@@ -76,11 +76,16 @@ fn near(scene: &Scene) -> Change {
                 .then(|| changed(scene, |scene| scene.camera.near = other))
         }),
         message: Box::new(move |_, other| {
-            format!(
-                "the near plane is at a wrong depth: as if near were {} instead of {}",
-                found(other.camera.near, near),
-                short(near)
-            )
+            let is = found(other.camera.near, near);
+            match near > 0.0 {
+                true => format!(
+                    "the near plane is at a wrong depth: as if near were {is} instead of {}",
+                    short(near)
+                ),
+                false => format!(
+                    "the picture begins at a near plane, which the scene does not have: as if near were {is}"
+                ),
+            }
         }),
         starts: depths(scene).map(|depth| vec![depth - near]).collect(),
         // Of a floor as far below, there.

@@ -130,6 +130,23 @@ fn views(scene: &Scene) -> Vec<Idea> {
             ));
         }
     }
+    let (ignored, message, default) = match scene.camera.view {
+        View::Lookat(_) => (
+            View::Lookat(DVec3::ZERO),
+            "lookat was not minded: the camera looks at (0, 0, 0)",
+            "lookat is the point in the middle of the picture, in metres: the direction is lookat − eye",
+        ),
+        View::Direction(_) => (
+            View::Direction(-DVec3::Z),
+            "the direction was not minded: the camera looks along (0, 0, -1)",
+            "the direction is that of the ray through the middle of the picture: w = −f/|f|",
+        ),
+    };
+    if ignored != scene.camera.view
+        && let Some(scene) = changes::seen(looking(ignored))
+    {
+        ideas.push(idea("view_ignored", message.to_owned(), default, scene));
+    }
     match scene.camera.view {
         View::Lookat(lookat) if lookat != DVec3::ZERO => ideas.push(idea(
             "lookat_as_direction",

@@ -21,6 +21,7 @@ const NEAR: f64 = 2.5;
 pub fn colors(case: &Case) -> Vec<Idea> {
     let scene: &Scene = &case.full.scene;
     let seen = Seen::new(case);
+    let background = Near::to(&scene.image.background.to_linear());
     let mut ideas = Vec::new();
     let mut all = scene.clone();
     let mut messages = Vec::new();
@@ -33,6 +34,10 @@ pub fn colors(case: &Case) -> Vec<Idea> {
         let Some(shown) = *shown.or_insert_with(|| seen.shown(wanted)) else {
             return;
         };
+        if background.holds(&shown.to_linear()) {
+            // Where nothing is seen nothing has a colour.
+            return;
+        }
         let shape = set(&mut all, shown);
         let message = format!("{what} has the colour {shown} instead of {wanted}");
         messages.push(message.clone());

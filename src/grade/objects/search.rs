@@ -255,6 +255,11 @@ impl<'a> Sought<'a> {
         let width = self.width();
         // What is that much larger has its outline farther out by as much.
         let octaves = width / self.radius / std::f64::consts::LN_2;
+        if self.explained(&ideas).is_none() {
+            for side in 0..3 {
+                ideas.extend(self.stretched(side, octaves)?);
+            }
+        }
         let size = libm::log2(step.factor);
         let make = |p: &[f64]| self.with(DVec3::ZERO, libm::exp2(p[0]));
         ideas.extend(self.fit(&[size], &[octaves], &make)?.and_then(|fit| {
@@ -304,6 +309,74 @@ impl<'a> Sought<'a> {
             short(self.middle.dot(axis))
         );
         Ok(make(&at).map(|make| (left, self.idea("object_place", message, make))))
+    }
+
+    /// The first of some ideas that explains the picture, nearly.
+    fn explained<'i>(&self, ideas: &'i [Found]) -> Option<&'i Found> {
+        let enough = LEFT * self.case.difference;
+        ideas.iter().find(|(left, _)| *left < enough)
+    }
+
+    /// With one size of a box that is another one, or one side of a triangle.
+    fn stretched(&self, side: usize, octaves: f64) -> Result<Option<Found>, RenderError> {
+        let lengths = |shape: &Shape| match shape {
+            Shape::Box(cuboid) => Some(cuboid.max - cuboid.min),
+            Shape::Triangle(triangle) => Some(triangle.sides),
+            Shape::Sphere(_) | Shape::Checkerboard(_) => None,
+        };
+        let Some(should) = lengths(&self.shape) else {
+            return Ok(None);
+        };
+        let shape = |p: &[f64]| {
+            let mut shape = self.shape;
+            let factor = libm::exp2(p[0]);
+            match &mut shape {
+                Shape::Box(cuboid) => {
+                    let more = should[side] * (factor - 1.0) / 2.0;
+                    cuboid.min[side] -= more;
+                    cuboid.max[side] += more;
+                }
+                Shape::Triangle(triangle) => triangle.sides[side] *= factor,
+                Shape::Sphere(_) | Shape::Checkerboard(_) => {}
+            }
+            let longest = lengths(&shape).map_or(0.0, DVec3::max_element);
+            // Sides of a triangle have to meet.
+            let is_one = match shape {
+                Shape::Triangle(triangle) => 2.0 * longest < triangle.sides.element_sum(),
+                _ => factor.is_finite() && factor > 0.0,
+            };
+            is_one.then_some(shape)
+        };
+        let make = |p: &[f64]| Some(with_shape(&self.case.full.scene, self.index, shape(p)?));
+        let Some(Fit { at, left }) = self.fit(&[0.0], &[octaves], &make)? else {
+            return Ok(None);
+        };
+        let (Some(made), Some(is)) = (make(&at), shape(&at).as_ref().and_then(lengths)) else {
+            return Ok(None);
+        };
+        let (what, help) = match self.shape {
+            Shape::Triangle(_) => (
+                ["side a", "side b", "side c"][side],
+                "sides are (a, b, c): a from the base's left end to the apex, b from its right end, c the base",
+            ),
+            _ => (
+                ["size along x", "size along y", "size along z"][side],
+                "size is (x, y, z): the lengths of the edges along the three axes, half of each on either side of the center",
+            ),
+        };
+        let message = format!(
+            "{} has a wrong size: as if its {what} were {} instead of {}",
+            self.name,
+            found(is[side], should[side]),
+            short(should[side])
+        );
+        let idea = Idea {
+            mistake: "object_size",
+            message,
+            help: help.to_owned(),
+            make: made,
+        };
+        Ok(Some((left, idea)))
     }
 
     /// Somewhere else: what looks displaced and larger may be nearer. From the better of two starts.

@@ -175,7 +175,7 @@ fn an_object_that_is_off_in_another_way_is_named() {
     for set in [
         "Sail.spin=25deg",
         "Sail.normal=(-0.5, 0.2, 1)",
-        "Crate.size=(1, 2, 1.5)",
+        "Crate.size=(1.2, 1.8, 1.5)",
     ] {
         let name = set.split('.').next().unwrap();
         render(&folder, &["-o", "b.png", "--set", set]);

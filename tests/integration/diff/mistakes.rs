@@ -3,6 +3,7 @@
 use std::fs;
 
 use image::{ImageBuffer, Rgb};
+use tempfile::TempDir;
 
 use super::{SCENE, diff, folder, json, mistake, open, pinhole, render, save};
 
@@ -352,4 +353,135 @@ fn mistakes_of_the_checkerboard_are_named() {
         );
         assert_eq!(mistake(&folder), expected);
     }
+}
+
+/// What a program shows that draws the objects of the scene one after the other, whatever is nearer: with 64 samples in each
+/// pixel, at the same places for all of them.
+fn painted(folder: &TempDir, objects: &[&str]) -> image::RgbImage {
+    const FINE: u32 = 8;
+    let header: Vec<_> = SCENE.lines().take(2).collect();
+    let navy = Rgb([0, 0, 128]);
+    let mut fine = image::RgbImage::from_pixel(96 * FINE, 64 * FINE, navy);
+    for object in objects {
+        let object = SCENE.lines().find(|line| line.starts_with(object)).unwrap();
+        let alone = format!(
+            "{}\nsampler {{ method jittered }}\n{object}\n",
+            header.join("\n")
+        );
+        let alone = alone.replace("width 96 height 64", "width 768 height 512");
+        fs::write(folder.path().join("alone.scn"), alone).unwrap();
+        let arguments = ["render", "alone.scn", "-o", "alone.png"];
+        assert!(pinhole(folder.path(), &arguments).status.success());
+        for (x, y, pixel) in open(folder, "alone.png").to_rgb8().enumerate_pixels() {
+            if *pixel != navy {
+                fine.put_pixel(x, y, *pixel);
+            }
+        }
+    }
+    let decode = |byte: u8| pinhole::color::srgb_to_linear(f64::from(byte) / 255.0);
+    ImageBuffer::from_fn(96, 64, |x, y| {
+        Rgb([0, 1, 2].map(|channel| {
+            let block = (0..FINE * FINE).map(|at| [FINE * x + at % FINE, FINE * y + at / FINE]);
+            let light: f64 = block
+                .map(|[x, y]| decode(fine.get_pixel(x, y)[channel]))
+                .sum();
+            let mean = light / f64::from(FINE * FINE);
+            (255.0 * pinhole::color::linear_to_srgb(mean)).round() as u8
+        }))
+    })
+}
+
+#[test]
+fn objects_drawn_in_the_order_of_the_file_are_named() {
+    let folder = folder();
+    let picture = painted(&folder, &["sphere", "triangle", "box", "checkerboard"]);
+    save(&folder, "b.png", picture);
+    let (camera, objects): (Vec<_>, Vec<_>) = SCENE.lines().partition(|line| {
+        ["image", "camera", "sampler"]
+            .iter()
+            .any(|block| line.starts_with(block))
+    });
+    for (is_reversed, words) in [
+        (false, "the last one in the file"),
+        (true, "the first one in the file"),
+    ] {
+        let mut lines = [camera.as_slice(), objects.as_slice()].concat();
+        if is_reversed {
+            lines[camera.len()..].reverse();
+        }
+        fs::write(folder.path().join("a.scn"), lines.join("\n")).unwrap();
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "depth_ignored", "{found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn an_object_that_the_scene_does_not_have_is_named() {
+    let folder = folder();
+    let extra = format!("{SCENE}sphere {{ center (1, 1.2, 1.6) radius 0.4 color crimson }}\n");
+    fs::write(folder.path().join("b.scn"), extra).unwrap();
+    for samples in [None, Some("64")] {
+        let mut arguments = vec!["render", "b.scn", "-o", "b.png"];
+        let set = samples.map(|samples| format!("sampler.per_pixel={samples}"));
+        if let Some(set) = &set {
+            arguments.extend(["--set", "sampler.method=multi_jittered", "--set", set]);
+        }
+        assert!(pinhole(folder.path(), &arguments).status.success());
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "object_extra", "{samples:?}: {found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.contains("#dc143c"), "{message}");
+    }
+}
+
+#[test]
+fn one_size_that_is_wrong_is_named() {
+    let folder = folder();
+    for (set, words) in [
+        (
+            "Crate.size=(0.5, 1.8, 2)",
+            "as if its size along y were 1.8 instead of 1.5",
+        ),
+        (
+            "Sail.sides=(2, 2.3, 1)",
+            "as if its side b were 2.3 instead of 2",
+        ),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "object_size", "{set}: {found:#}");
+        assert!(
+            first["message"].as_str().unwrap().contains(words),
+            "{found:#}"
+        );
+    }
+}
+
+#[test]
+fn a_power_that_bytes_were_taken_through_is_named() {
+    let folder = folder();
+    let mut picture = open(&folder, "a.png").to_rgb8();
+    for pixel in picture.pixels_mut() {
+        pixel.0 = pixel.0.map(|byte| {
+            let light = pinhole::color::srgb_to_linear(f64::from(byte) / 255.0);
+            (255.0 * libm::pow(light, 1.0 / 2.2)).round() as u8
+        });
+    }
+    save(&folder, "b.png", picture);
+    assert_eq!(mistake(&folder), "gamma_22");
+}
+
+#[test]
+fn a_view_that_is_not_minded_is_named() {
+    let folder = folder();
+    render(
+        &folder,
+        &["-o", "b.png", "--set", "camera.lookat=(0, 0, 0)"],
+    );
+    assert_eq!(mistake(&folder), "view_ignored");
 }

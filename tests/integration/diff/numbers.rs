@@ -298,7 +298,7 @@ fn planes_at_another_depth_are_named() {
             "camera.near=8.2",
             None,
             "near",
-            "as if near were 8.2 instead of 0",
+            "which the scene does not have: as if near were 8.2",
         ),
         (
             "camera.near=8.2",
