@@ -1,23 +1,20 @@
 //! An object that is off in some way that nobody thought of: the picture is right wherever it is not.
 
-use std::{cmp::Ordering, collections::HashMap};
-
 use glam::DVec3;
 
 use super::{
     ENOUGH, SEARCHED, called,
     colors::{Near, color},
     likeliest, moved,
+    palette::Palette,
     search::Blob,
 };
 use crate::{
     area::Area,
-    color::{Color, linear_to_srgb},
     film::{Film, Tolerance, compare, rmse},
     grade::{Case, LEFT, Off, Verdict, evidence::FEWEST, explained_share, noise},
-    numbers::short,
     render::RenderError,
-    scene::{Scene, Shape},
+    scene::Shape,
 };
 
 /// How much larger an object may be, or how much of its size beside its place. It is a choice: with more room the parts of neighbours have
@@ -26,7 +23,7 @@ const ROOM: f64 = 1.25;
 
 /// An object takes the blame if its part of the picture is less than this share of it: of what is wrong all over, half of the picture would
 /// have half by chance.
-const PART: f64 = 0.5;
+pub(super) const PART: f64 = 0.5;
 
 /// So many pixels have to be wrong there: as many as name a mistake if all agree.
 const WRONG: usize = FEWEST as usize;
@@ -35,23 +32,16 @@ const WRONG: usize = FEWEST as usize;
 /// around its object, and the corner of a larger one may hold some of the rest.
 const AS_MUCH: f64 = 0.9;
 
-/// An object takes the blame if its colour comes or goes in no less than this share of the pixels in which that does of which it does most: where it
-/// is not what it should be something else is seen or hidden, of which there may be more than of it in pixels that it shares.
-const OWN: f64 = 0.8;
-
-/// Of a scene with more colours any other is nearly a mixture of two.
-const MIXED: usize = 64;
-
 /// The object in whose part of the picture all of the difference is but noise; of several the one in whose part there is most of what noise
 /// would not make.
 pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
-    if let Some(verdict) = foreign(case) {
+    let palette = Palette::of(case);
+    if let Some(verdict) = palette.foreign(case) {
         return Ok(Some(verdict));
     }
-    let palette = Palette::of(case);
     let mut found = Vec::new();
     for (_, _, index, part) in parts(case) {
-        if !palette.is_of(case, index) {
+        if !palette.is_of(&case.full.scene.objects[index].shape) {
             continue;
         }
         if let Some(rest) = outside(case, part)? {
@@ -74,122 +64,6 @@ pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
         (false, false) => None,
     };
     Ok(chosen.map(|(index, part, rest)| blamed(case, index, part, &rest)))
-}
-
-/// What is seen of a colour that nothing in the scene has, though all else is right.
-fn foreign(case: &Case) -> Option<Verdict> {
-    let (a, exact) = (&case.full.a, &case.full.exact);
-    let palette = Palette::of(case);
-    // The colours of pixels that are wrong, and how many have each.
-    let mut colors: HashMap<[u64; 3], (u64, [f64; 3])> = HashMap::new();
-    for (p, _) in &palette.wrong {
-        let counted = colors.entry(p.map(f64::to_bits)).or_insert((0, *p));
-        counted.0 += 1;
-    }
-    let (pixels, light) = colors.into_values().max_by_key(|(pixels, _)| *pixels)?;
-    let near = Near::to(&light);
-    if pixels < FEWEST || palette.colors.len() > MIXED || palette.mixes(&light) {
-        return None;
-    }
-    let whole = Area::whole(a.width(), a.height());
-    let blob = Blob::of(a, whole, &near);
-    if blob.pixels as f64 >= PART * whole.pixels() as f64 {
-        return None;
-    }
-    let color = Color {
-        srgb: light.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0)),
-    };
-    // All that is left is in pixels that do not have it, beside none that does: little, or nothing but noise.
-    let mut made = Film::clone(exact);
-    let mut is_noise = true;
-    for (x, y) in whole.iter() {
-        // An edge may cover a little of a pixel that is next to one of which it covers a part.
-        let mut around = around(around(Area::pixel(x, y), a), a).iter();
-        let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
-        if around.any(|(x, y)| near.holds(&a.pixel(x, y))) {
-            made.put(Area::pixel(x, y), &[p]);
-        } else {
-            is_noise &= !(noise::is_flat(&case.variance.pixel(x, y)) && noise::is_off((&p, &q)));
-        }
-    }
-    let left = rmse(a, &made);
-    (is_noise || left < LEFT * case.difference).then(|| Verdict {
-        mistake: "object_extra",
-        message: format!(
-            "something of the colour {color}, which nothing in the scene has, is seen in {} pixels around ({}, {})",
-            blob.pixels,
-            short(blob.middle.x.round()),
-            short(blob.middle.y.round())
-        ),
-        help: "draw the objects of the scene and no other; each has the colour that it is given".to_owned(),
-        rmse: Some(left),
-        explains: Some(explained_share(left, case.difference)),
-        off: None,
-    })
-}
-
-/// The colours of a scene, and the pixels that are wrong: what they are, and what they should be.
-struct Palette {
-    colors: Vec<[f64; 3]>,
-    wrong: Vec<([f64; 3], [f64; 3])>,
-}
-
-impl Palette {
-    fn of(case: &Case) -> Self {
-        let scene: &Scene = &case.full.scene;
-        let mut colors = vec![scene.image.background.to_linear()];
-        for object in &scene.objects {
-            let mut shape = object.shape;
-            colors.extend(color(&mut shape).into_iter().map(|color| color.to_linear()));
-        }
-        colors.sort_by(|p, q| p.partial_cmp(q).unwrap_or(Ordering::Equal));
-        colors.dedup();
-        let pairs = case.full.a.pixels().iter().zip(case.full.exact.pixels());
-        let pairs = pairs.zip(case.variance.pixels());
-        // Where one colour should be seen there is no noise.
-        let is_wrong = |(pair, variance): &((&[f64; 3], &[f64; 3]), &[f64; 3])| {
-            noise::is_off(*pair) && (case.strays.pixels == 0 || noise::is_flat(variance))
-        };
-        let wrong = pairs.filter(is_wrong);
-        Self {
-            colors,
-            wrong: wrong.map(|((p, q), _)| (*p, *q)).collect(),
-        }
-    }
-
-    /// Whether light is that of one of the colours, or of two in one pixel.
-    fn mixes(&self, light: &[f64; 3]) -> bool {
-        let near = Near::to(light);
-        let light = DVec3::from(*light);
-        let pairs = self.colors.iter().enumerate();
-        let mut pairs = pairs.flat_map(|(at, one)| {
-            let others = self.colors[at..].iter();
-            others.map(move |other| (DVec3::from(*one), DVec3::from(*other)))
-        });
-        pairs.any(|(one, other)| {
-            let way = other - one;
-            let share = (light - one).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
-            near.holds(&(one + way * share.clamp(0.0, 1.0)).to_array())
-        })
-    }
-
-    /// Whether no other colour of the scene comes or goes in many more of the wrong pixels than an object's own.
-    fn is_of(&self, case: &Case, index: usize) -> bool {
-        let mut shape = case.full.scene.objects[index].shape;
-        let own = color(&mut shape)
-            .into_iter()
-            .map(|color| self.changed(&color.to_linear()));
-        let own = own.max().unwrap_or(0);
-        let most = self.colors.iter().map(|color| self.changed(color)).max();
-        (own as f64) >= OWN * most.unwrap_or(0) as f64
-    }
-
-    /// In how many of the wrong pixels a colour comes or goes.
-    fn changed(&self, light: &[f64; 3]) -> usize {
-        let near = Near::to(light);
-        let changes = |(p, q): &&([f64; 3], [f64; 3])| near.holds(p) != near.holds(q);
-        self.wrong.iter().filter(changes).count()
-    }
 }
 
 /// The share of what is wrong that is in a part, its pixels, the object and the part.
@@ -248,7 +122,7 @@ fn joined(case: &Case, mut part: Area) -> Area {
 }
 
 /// A part of a picture and the pixels next to it.
-fn around(part: Area, film: &Film) -> Area {
+pub(super) fn around(part: Area, film: &Film) -> Area {
     let [x, y] = [part.x, part.y].map(|at| at.saturating_sub(1));
     Area {
         x,

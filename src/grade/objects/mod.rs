@@ -2,6 +2,7 @@
 
 mod colors;
 mod confined;
+mod palette;
 mod search;
 mod slopes;
 
