@@ -29,8 +29,41 @@ pub(crate) fn available() -> usize {
     }
 }
 
-/// Does something on so many threads, or on as many as are available. They are started for it, but where it is already done on so many:
-/// what starts hundreds of renders has them done on the same threads.
+/// Threads to do something on.
+pub(crate) enum Threads {
+    /// Started for it.
+    Started(ThreadPool),
+    /// Those that do what it is a part of: what makes hundreds of pictures has them all made by the same threads.
+    These,
+}
+
+impl Threads {
+    /// So many, or as many as are available; those that this is already done on, if they are as many.
+    ///
+    /// # Errors
+    ///
+    /// If the system starts none.
+    pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, ThreadPoolBuildError> {
+        let wanted = threads.map_or_else(available, |threads| threads.get().min(MOST));
+        match rayon::current_thread_index() {
+            Some(_) if rayon::current_num_threads() == wanted => Ok(Self::These),
+            _ => {
+                let pool = ThreadPoolBuilder::new().num_threads(wanted).build()?;
+                Ok(Self::Started(pool))
+            }
+        }
+    }
+
+    /// Does it.
+    pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match self {
+            Self::Started(pool) => pool.install(work),
+            Self::These => work(),
+        }
+    }
+}
+
+/// Does something on so many threads, or on as many as are available.
 ///
 /// # Errors
 ///
@@ -39,24 +72,19 @@ pub(crate) fn install<R: Send>(
     threads: Option<NonZero<usize>>,
     work: impl FnOnce() -> R + Send,
 ) -> Result<R, ThreadPoolBuildError> {
-    let wanted = number(threads);
-    match rayon::current_thread_index() {
-        Some(_) if rayon::current_num_threads() == wanted => Ok(work()),
-        _ => Ok(pool(threads)?.install(work)),
+    Ok(Threads::new(threads)?.install(work))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_done_on_as_many_threads_starts_no_others() {
+        let [two, three] = [2, 3].map(NonZero::new);
+        let is_these = |threads| matches!(Threads::new(threads), Ok(Threads::These));
+        assert!(!is_these(two));
+        let inside = install(two, || [is_these(two), is_these(three)]);
+        assert!(matches!(inside, Ok([true, false])));
     }
-}
-
-/// So many threads, or as many as are available.
-///
-/// # Errors
-///
-/// If the system starts none.
-pub(crate) fn pool(threads: Option<NonZero<usize>>) -> Result<ThreadPool, ThreadPoolBuildError> {
-    ThreadPoolBuilder::new()
-        .num_threads(number(threads))
-        .build()
-}
-
-fn number(threads: Option<NonZero<usize>>) -> usize {
-    threads.map_or_else(available, |threads| threads.get().min(MOST))
 }

@@ -13,10 +13,9 @@ mod grid;
 mod search;
 mod tree;
 
-use rayon::ThreadPool;
-
 use self::{grid::Rectangle, search::Search, tree::Tree};
 use super::{camera::Direction, cover::Patch};
+use crate::threads::Threads;
 
 pub use self::descent::Descent;
 pub use self::grid::{Grid, Item, Nearness};
@@ -30,7 +29,7 @@ pub struct Hierarchy {
 
 impl Hierarchy {
     /// A hierarchy over some objects, built by some threads, or by this one alone.
-    pub fn new(grid: Grid, items: Vec<Item>, threads: Option<&ThreadPool>) -> Self {
+    pub fn new(grid: Grid, items: Vec<Item>, threads: Option<&Threads>) -> Self {
         let tree = match threads {
             Some(threads) => threads.install(|| Tree::of_many(items)),
             None => Tree::of(items),

@@ -12,7 +12,7 @@ pub(super) use self::level::Level;
 use std::cmp::Ordering;
 
 use glam::DVec2;
-use rayon::{ThreadPool, prelude::*};
+use rayon::prelude::*;
 
 use self::{
     colors::Colors,
@@ -30,7 +30,7 @@ use crate::{
     color::Color,
     math::{Big, Double, Doubt, Real},
     scene::{self, Scene},
-    threads,
+    threads::Threads,
 };
 
 /// The scene prepared for one picture: made once, then asked at any sample point from any thread.
@@ -500,8 +500,6 @@ impl World {
 }
 
 /// Threads to prepare so many objects; none if they are few, or if the system starts none.
-fn threads_for(objects: usize) -> Option<ThreadPool> {
-    (objects >= MANY)
-        .then(|| threads::pool(None).ok())
-        .flatten()
+fn threads_for(objects: usize) -> Option<Threads> {
+    (objects >= MANY).then(|| Threads::new(None).ok()).flatten()
 }
