@@ -43,7 +43,7 @@ const TILE: u32 = 64;
 /// A tile has about so many samples, where that takes fewer pixels.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// And no tile is made so small that it has fewer.
+/// And no tile is made so small that it has much fewer.
 const FEW_SAMPLES: u64 = 1 << 10;
 
 /// So few samples are placed by the vectors that every processor has.
@@ -251,6 +251,7 @@ fn render_exact_as<P: film::Pixel>(
                     exact.bounds[start..start + row.len()].copy_from_slice(row);
                 }
                 exact.certain += certain as u64;
+                drop(exact);
                 (control.progress)(tile.pixels());
             });
     })?;

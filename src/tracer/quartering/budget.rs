@@ -54,6 +54,11 @@ impl Budget {
         }
     }
 
+    /// Whether there is anything that costs too much.
+    pub fn is_limited(self) -> bool {
+        self.samples.is_finite()
+    }
+
     /// So many candidates of a part are worth looking at.
     pub fn most(self, area: Area) -> usize {
         let shared = match area.pixels() {

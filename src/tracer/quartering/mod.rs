@@ -48,7 +48,8 @@ pub enum Part<'a> {
         /// The objects that may be seen there, in file order.
         live: &'a [Live],
     },
-    /// More than one colour may be seen, and to trace the samples one by one costs less than to know more.
+    /// More than one colour may be seen, and to trace the samples one by one costs less than to know more; or it is not known what is seen, as
+    /// that had gained nothing where it was looked for before.
     Plain {
         /// Where it lies.
         area: Area,
@@ -95,7 +96,7 @@ impl<'a> Quartering<'a> {
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if !room.trust.is_worth_a_look() {
+        if self.budget.is_limited() && !room.trust.takes_a_look() {
             return visit(Part::Plain { area, live: None }, None);
         }
         let mut plain = 0;

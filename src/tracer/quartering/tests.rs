@@ -134,3 +134,44 @@ fn parts_are_of_all_kinds_but_for_exact_pictures() {
     assert!(flat > 0 && open > 0 && plain == [0, 0]);
     assert_eq!(count(&Quartering::for_samples(&world, 0.0)), [0, 0, 0, 16]);
 }
+
+#[test]
+fn areas_are_left_out_after_crowded_ones_and_looked_at_again() {
+    // Spheres smaller than pixels, of which a look gains nothing, in all columns up to the middle; beyond it there is nothing.
+    let crowd: String = (0..30_000)
+        .map(|index| {
+            let at = dvec3(
+                f64::from(index % 150) / 150.0 - 1.0,
+                f64::from(index / 150) / 100.0 - 1.0,
+                0.0,
+            ) * 2.5;
+            format!("sphere {{ center ({}, {}, -5) radius 0.004 }} ", at.x, at.y)
+        })
+        .collect();
+    let world = World::new(&read(&crowd));
+    let quartering = Quartering::for_samples(&world, 4.0);
+    let mut room = Room::default();
+    // How many of so many looks at an area find that it has one colour.
+    let mut flat = |x: u32, looks: usize| {
+        let area = Area {
+            x,
+            y: 24,
+            width: 16,
+            height: 16,
+        };
+        let mut flat = 0;
+        for _ in 0..looks {
+            let flow = quartering.parts(area, &mut room, &mut |part| {
+                flat += usize::from(matches!(part, Part::Flat { .. }));
+                ControlFlow::Continue(())
+            });
+            assert!(flow.is_continue());
+        }
+        flat
+    };
+    assert_eq!(flat(48, 10), 10);
+    // Ten of these are four looks, and six that are left out.
+    assert_eq!(flat(8, 10), 0);
+    assert_eq!(flat(48, 10), 6);
+    assert_eq!(flat(48, 10), 10);
+}
