@@ -16,7 +16,7 @@ use pinhole::{
     film::Film,
     math::Vectors,
     refine::coarse,
-    render::{Control, Way, render_in_a_way},
+    render::{Control, Way, render_exact, render_in_a_way},
     report::numerics::textbook::Textbook,
     sampling::{Points, Sampling},
     scene::{self, Count, Method, Scene},
@@ -50,6 +50,10 @@ fn main() {
     }
     if arguments.iter().any(|argument| argument == "--price") {
         price();
+        return;
+    }
+    if arguments.iter().any(|argument| argument == "--exact") {
+        exact();
         return;
     }
     println!(
@@ -90,6 +94,7 @@ fn main() {
     );
 
     price();
+    exact();
 
     let mut criterion = Criterion::default().configure_from_args();
     let scene = sized(&figure, 320, Method::MultiJittered, 64);
@@ -160,7 +165,7 @@ fn control(threads: Option<NonZero<usize>>) -> Control<'static> {
 }
 
 /// Renders a scene in a way, on one thread.
-fn picture(scene: &Scene, way: Way) -> impl Fn() {
+fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     let [width, height] = [scene.image.width, scene.image.height];
     let (world, sampling) = (
         World::new(scene),
@@ -226,6 +231,51 @@ fn textbook(scene: &Scene) -> impl Fn() {
             }
         }
         black_box(seen);
+    }
+}
+
+/// What the exact picture of figure 9.9 costs beside few samples a pixel one by one, in turns, for each way to end what is seen.
+fn exact() {
+    const FEW: [u64; 3] = [1, 2, 4];
+    println!("one thread; exact by the time of so many samples a pixel one by one, random");
+    println!("{:40} {:>10} {:>7} {:>7} {:>7}", "", "s", 1, 2, 4);
+    for ([width, height], far) in [
+        ([512, 512], Some(100.0)),
+        ([512, 512], Some(1000.0)),
+        ([512, 512], None),
+        ([1280, 720], None),
+    ] {
+        let mut scene = example("figure_9_9");
+        (scene.image.width, scene.image.height, scene.camera.far) = (width, height, far);
+        let world = World::new(&scene);
+        let certain = || {
+            let whole = Area::whole(width, height);
+            let exact = render_exact(&world, whole, &control(NonZero::new(1)));
+            black_box(exact.expect("there is memory for it"));
+        };
+        let sampled = FEW.map(|per_pixel| {
+            (scene.sampler.method, scene.sampler.count) =
+                (Method::Random, Count::PerPixel(per_pixel));
+            picture(&scene, Way::OneByOne)
+        });
+        let seconds = |work: &dyn Fn()| {
+            let start = Instant::now();
+            work();
+            start.elapsed().as_secs_f64()
+        };
+        let (mut least, mut of_samples) = (f64::MAX, [f64::MAX; FEW.len()]);
+        for _ in 0..10 {
+            least = least.min(seconds(&certain));
+            for (picture, least) in sampled.iter().zip(&mut of_samples) {
+                *least = least.min(seconds(picture));
+            }
+        }
+        let far = far.map_or("endless".to_owned(), |far| format!("far {far}"));
+        let [one, two, four] = of_samples.map(|seconds| least / seconds);
+        println!(
+            "{:40} {least:10.3} {one:7.2} {two:7.2} {four:7.2}",
+            format!("figure 9.9, {width} × {height}, {far}")
+        );
     }
 }
 

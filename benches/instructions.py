@@ -1,27 +1,47 @@
 #!/usr/bin/env python3
-"""Instructions of whole processes, counted by valgrind's callgrind: instructions.py BENCH [METHOD...]
+"""Instructions, counted by valgrind's callgrind: instructions.py BENCH [NAME...]
 
-BENCH is the built benchmark `culling` (`cargo bench --bench culling --no-run` prints where it is). It renders figure 9.9 at 160 x 90
-pixels with 64 samples each, in each way and by each method. Printed are the millions of instructions of the plain way, one
-by one, and the other ways' as ratios to it; start-up and the scene's preparation are counted with each."""
+BENCH is the built benchmark `culling` or `sweep` (`cargo bench --no-run` prints where they are). Printed are the millions of
+instructions of the plain way, one by one, and the other ways' as ratios to it.
 
+`culling` renders figure 9.9 at 160 x 90 pixels with 64 samples each by the methods that are named, or by all; start-up and the
+scene's preparation are counted with each. `sweep` renders the pictures that are named, as it prints their names, once and
+twice, and what the second time takes is counted."""
+
+import os
 import re
 import shutil
 import subprocess
 import sys
 
 METHODS = "regular random jittered n_rooks multi_jittered hammersley halton sobol scatter".split()
-WAYS = ["OneByOne", "Narrow", "Together", "Culled"]
 
 
-def count(bench, way, method):
-    picture = ["--bench", "--once", way, method, "160", "64", "1"]
+def count(command):
     tool = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
-    run = subprocess.run(tool + [bench] + picture, capture_output=True, text=True)
+    run = subprocess.run(tool + command, capture_output=True, text=True)
     found = re.search(r"Collected : (\d+)", run.stderr)
     if run.returncode != 0 or not found:
-        sys.exit(f"{way} {method}: {run.stderr}")
+        sys.exit(f"{command}: {run.stderr}")
     return int(found[1])
+
+
+def figure(bench, way, method):
+    return count([bench, "--bench", "--once", way, method, "160", "64", "1"])
+
+
+def picture(bench, way, name):
+    once, twice = (count([bench, "--bench", "--once", name, way, times]) for times in "12")
+    return twice - once
+
+
+def table(names, ways, counted):
+    width = max(map(len, names)) + 2
+    print(" " * width + "".join(f"{way:>12}" for way in ways))
+    for name in names:
+        plain, *others = (counted(way, name) for way in ways)
+        ratios = "".join(f"{other / plain:12.3f}" for other in others)
+        print(f"{name:{width}}{plain / 1e6:12.1f}{ratios}", flush=True)
 
 
 def main():
@@ -29,11 +49,14 @@ def main():
         sys.exit(__doc__)
     if not shutil.which("valgrind"):
         sys.exit("valgrind is not there: nothing is counted")
-    print(f"{'':16}" + "".join(f"{way:>12}" for way in WAYS))
-    for method in sys.argv[2:] or METHODS:
-        plain, *others = (count(sys.argv[1], way, method) for way in WAYS)
-        ratios = "".join(f"{other / plain:12.3f}" for other in others)
-        print(f"{method:16}{plain / 1e6:12.1f}{ratios}", flush=True)
+    bench, names = sys.argv[1], sys.argv[2:]
+    if os.path.basename(bench).startswith("sweep"):
+        if not names:
+            sys.exit(__doc__)
+        table(names, ["OneByOne", "Culled"], lambda way, name: picture(bench, way, name))
+    else:
+        ways = ["OneByOne", "Narrow", "Together", "Culled"]
+        table(names or METHODS, ways, lambda way, name: figure(bench, way, name))
 
 
 main()

@@ -2,7 +2,7 @@
 //! README.md beside this file.
 //!
 //! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
-//! of each phase once, and the memory that the world takes.
+//! of each phase once, and the memory that the world takes; with `--cube` the spheres are in a cube, not all over the picture.
 
 use std::{
     env, fs,
@@ -22,7 +22,10 @@ use pinhole::{
     tracer::{Precision, World},
 };
 
-use self::{clock::cpu_seconds, spheres::crowd};
+use self::{
+    clock::cpu_seconds,
+    spheres::{crowd, cube},
+};
 
 mod clock;
 mod spheres;
@@ -41,14 +44,20 @@ fn main() {
         let rest = arguments[at + 1..].iter();
         Some(rest.map_while(|count| count.parse().ok()).collect())
     };
+    let text = match arguments.iter().any(|argument| argument == "--cube") {
+        true => cube,
+        false => crowd,
+    };
     if let Some(counts) = numbers("--write") {
         counts
             .into_iter()
-            .for_each(|count| print!("{}", crowd(count)));
+            .for_each(|count| print!("{}", text(count)));
         return;
     }
     if let Some(counts) = numbers("--phases") {
-        counts.into_iter().for_each(phases);
+        counts
+            .into_iter()
+            .for_each(|count| phases(&read(text(count))));
         return;
     }
     // `cargo test` builds and runs benchmarks too; there is nothing to test here.
@@ -59,8 +68,8 @@ fn main() {
     growth(&mut Criterion::default().configure_from_args());
 }
 
-fn read(count: usize) -> Scene {
-    let sources = Sources::new(Source::from_text("spheres.scn", crowd(count)));
+fn read(text: String) -> Scene {
+    let sources = Sources::new(Source::from_text("spheres.scn", text));
     scene::read(&sources)
         .scene
         .expect("a scene without mistakes")
@@ -91,7 +100,7 @@ fn points(scene: &Scene) -> Vec<(u32, u32)> {
 fn ratios() {
     println!("the plain loop over all objects by the hierarchy, per ray");
     for count in PLAIN {
-        let scene = read(count);
+        let scene = read(crowd(count));
         let world = World::new(&scene);
         let points = points(&scene);
         let offset = DVec2::new(0.125, -0.25);
@@ -118,7 +127,7 @@ fn growth(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("many");
     group.sample_size(10);
     for count in ALL {
-        let scene = read(count);
+        let scene = read(crowd(count));
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(BenchmarkId::new("world", count), |bencher| {
             bencher.iter(|| black_box(World::new(&scene)));
@@ -134,17 +143,17 @@ fn growth(criterion: &mut Criterion) {
 }
 
 /// The CPU seconds of each phase, and the bytes of the world by object.
-fn phases(count: usize) {
+fn phases(scene: &Scene) {
     const RENDERS: u32 = 4;
-    let scene = read(count);
+    let count = scene.objects.len();
     let before = (cpu_seconds(), resident_bytes());
-    let world = World::new(&scene);
+    let world = World::new(scene);
     let after = (cpu_seconds(), resident_bytes());
-    (0..RENDERS).for_each(|_| picture(&world, &scene, Way::Culled));
+    (0..RENDERS).for_each(|_| picture(&world, scene, Way::Culled));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
     // Each sample by the hierarchy on its own.
-    picture(&world, &scene, Way::OneByOne);
+    picture(&world, scene, Way::OneByOne);
     let plain = cpu_seconds() - start;
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();

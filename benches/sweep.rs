@@ -28,15 +28,18 @@ enum Kind {
     Slivers,
     Triangles,
     Boxes,
+    /// Spheres, every tenth of them ten times as large.
+    Mixed,
     /// Boards, which have no end.
     Boards,
 }
 
-const KINDS: [Kind; 5] = [
+const KINDS: [Kind; 6] = [
     Kind::Spheres,
     Kind::Slivers,
     Kind::Triangles,
     Kind::Boxes,
+    Kind::Mixed,
     Kind::Boards,
 ];
 const COUNTS: [usize; 7] = [3, 30, 300, 3_000, 12_000, 20_000, 100_000];
@@ -46,8 +49,10 @@ const WIDTHS: [u32; 3] = [48, 192, 768];
 const SIZES: [f64; 3] = [0.003, 0.03, 0.3];
 const SAMPLES: [u64; 8] = [1, 2, 3, 4, 8, 9, 16, 64];
 
-/// A picture with more samples says nothing that one with fewer does not.
+/// A picture with more samples says little that one with fewer does not, and is made of few scenes.
 const MOST_SAMPLES: u64 = 1 << 20;
+const MOST_SAMPLES_OF_FEW: u64 = 1 << 25;
+const FEW: [usize; 2] = [30, 3_000];
 
 /// A way is timed for so many seconds at least, in turns with the other.
 const SECONDS: f64 = 0.02;
@@ -69,18 +74,26 @@ fn main() {
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
-    let wanted = |name: &str| {
-        let mut filters = arguments.iter().skip(1).filter(|it| !it.starts_with("--"));
-        filters.all(|filter| name.contains(filter.as_str()))
-    };
-    let mut all = Vec::new();
-    for kind in KINDS {
-        for count in COUNTS {
-            for size in SIZES {
-                sweep(kind, count, size, &wanted, &mut all);
-            }
+    // All pictures are made by the same thread, not each by one that is started for it.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.expect("there is a thread for it").install(|| {
+        match arguments.iter().position(|argument| argument == "--once") {
+            Some(at) => once(&arguments[at + 1..]),
+            None => compare(&arguments[1..]),
         }
-    }
+    });
+}
+
+/// Compares both ways in all pictures, or in those whose names contain all words that are given.
+fn compare(arguments: &[String]) {
+    let words = || arguments.iter().filter(|it| !it.starts_with("--"));
+    let wanted = |name: &str| words().all(|word| name.contains(word.as_str()));
+    let mut all = Vec::new();
+    for_each(&wanted, &mut |name, scene, world| {
+        let ratio = ratio(scene, world);
+        println!("{name:60} {ratio:6.2}");
+        all.push(Measured { name, ratio });
+    });
     all.sort_unstable_by(|a, b| a.ratio.total_cmp(&b.ratio));
     let below = |limit: f64| all.iter().filter(|measured| measured.ratio < limit).count();
     println!(
@@ -95,68 +108,95 @@ fn main() {
     }
 }
 
-/// Measures the pictures of one scene.
-fn sweep(
-    kind: Kind,
-    count: usize,
-    size: f64,
-    wanted: &impl Fn(&str) -> bool,
-    all: &mut Vec<Measured>,
-) {
-    let layers = count as f64 * size * size;
-    if layers > 300.0 || matches!(kind, Kind::Boards) && count > 30 {
-        // A ray would meet hundreds of objects; and boards are in every ray's way.
-        return;
-    }
-    let text = scene_text(kind, count, size);
-    let sources = Sources::new(Source::from_text("a.scn", text));
-    let scene = scene::read(&sources)
-        .scene
-        .expect("a scene without mistakes");
-    for width in WIDTHS {
-        let height = width * 9 / 16;
-        let pixels = u64::from(width) * u64::from(height);
-        let samples = SAMPLES
-            .into_iter()
-            .filter(|samples| samples * pixels <= MOST_SAMPLES);
-        let mut scene = scene.clone();
-        (scene.image.width, scene.image.height) = (width, height);
-        let named: Vec<_> = samples
-            .map(|samples| {
-                let name =
-                    format!("{count} {kind:?} of {size} at {width} × {height}, {samples} a pixel");
-                (name, samples)
-            })
-            .filter(|(name, _)| wanted(name))
-            .collect();
-        if named.is_empty() {
-            continue;
+/// Renders one picture in one way so many times, for those who measure processes.
+fn once(arguments: &[String]) {
+    let [name, way, times] = arguments else {
+        panic!("--once NAME WAY TIMES");
+    };
+    let way = match way.as_str() {
+        "OneByOne" => Way::OneByOne,
+        "Culled" => Way::Culled,
+        other => panic!("{other} is none of OneByOne and Culled"),
+    };
+    let times: u32 = times.parse().expect("a number");
+    let mut is_known = false;
+    for_each(&|known| known == name, &mut |_, scene, world| {
+        is_known = true;
+        for _ in 0..times {
+            picture(scene, world, way);
         }
-        let world = World::new(&scene);
-        for (name, samples) in named {
-            scene.sampler.method = Method::Hammersley;
-            scene.sampler.count = Count::PerPixel(samples);
-            let ratio = ratio(&scene, &world);
-            println!("{name:60} {ratio:6.2}");
-            all.push(Measured { name, ratio });
+    });
+    assert!(is_known, "there is no picture of this name: {name}");
+}
+
+/// Every scene of the sweep in every size whose name is wanted.
+fn for_each(wanted: &dyn Fn(&str) -> bool, visit: &mut dyn FnMut(String, &Scene, &World)) {
+    for kind in KINDS {
+        for count in COUNTS {
+            for size in SIZES {
+                pictures(kind, count, size, wanted, visit);
+            }
         }
     }
 }
 
+/// The pictures of one scene.
+fn pictures(
+    kind: Kind,
+    count: usize,
+    size: f64,
+    wanted: &dyn Fn(&str) -> bool,
+    visit: &mut dyn FnMut(String, &Scene, &World),
+) {
+    // Mixed, every tenth covers a hundred times as much.
+    let larger = if let Kind::Mixed = kind { 11.0 } else { 1.0 };
+    let layers = larger * count as f64 * size * size;
+    if layers > 300.0 || matches!(kind, Kind::Boards) && count > 30 {
+        // A ray would meet hundreds of objects; and boards are in every ray's way.
+        return;
+    }
+    let mut scene = None;
+    for width in WIDTHS {
+        let height = width * 9 / 16;
+        let pixels = u64::from(width) * u64::from(height);
+        let most = match FEW.contains(&count) && size == SIZES[1] {
+            true => MOST_SAMPLES_OF_FEW,
+            false => MOST_SAMPLES,
+        };
+        let samples = SAMPLES
+            .into_iter()
+            .filter(|samples| samples * pixels <= most);
+        let named = samples.map(|samples| {
+            let name =
+                format!("{count} {kind:?} of {size} at {width} × {height}, {samples} a pixel");
+            (name, samples)
+        });
+        let named: Vec<_> = named.filter(|(name, _)| wanted(name)).collect();
+        if named.is_empty() {
+            continue;
+        }
+        let scene = scene.get_or_insert_with(|| read(scene_text(kind, count, size)));
+        (scene.image.width, scene.image.height) = (width, height);
+        let world = World::new(scene);
+        for (name, samples) in named {
+            scene.sampler.method = Method::Hammersley;
+            scene.sampler.count = Count::PerPixel(samples);
+            visit(name, scene, &world);
+        }
+    }
+}
+
+fn read(text: String) -> Scene {
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    let reading = scene::read(&sources);
+    reading.scene.expect("a scene without mistakes")
+}
+
 /// How many times as fast culling is, by the least times of both, taken in turns on one thread.
 fn ratio(scene: &Scene, world: &World) -> f64 {
-    let [width, height] = [scene.image.width, scene.image.height];
-    let sampling = Sampling::new(&scene.sampler, width, height);
     let seconds = |way: Way| {
         let start = Instant::now();
-        let film: Result<Film, _> = render_in_a_way(
-            world,
-            &sampling,
-            Area::whole(width, height),
-            &control(),
-            way,
-        );
-        black_box(film.expect("there is memory for it"));
+        picture(scene, world, way);
         start.elapsed().as_secs_f64()
     };
     let [mut one, mut culled] = [Way::OneByOne, Way::Culled].map(seconds);
@@ -170,6 +210,14 @@ fn ratio(scene: &Scene, world: &World) -> f64 {
         culled = culled.min(seconds(Way::Culled));
     }
     one / culled
+}
+
+fn picture(scene: &Scene, world: &World, way: Way) {
+    let [width, height] = [scene.image.width, scene.image.height];
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    let whole = Area::whole(width, height);
+    let film: Result<Film, _> = render_in_a_way(world, &sampling, whole, &control(), way);
+    black_box(film.expect("there is memory for it"));
 }
 
 fn control() -> Control<'static> {
@@ -196,11 +244,14 @@ fn scene_text(kind: Kind, count: usize, size: f64) -> String {
         let color = index % 0xfff;
         let [a, b, c] = [(); 3].map(|()| random.between(-1.0, 1.0));
         let _ = match kind {
-            Kind::Spheres => writeln!(
-                text,
-                "sphere {{ center ({x}, {y}, -{depth})  radius {}  color #{color:03x} }}",
-                size / 2.0
-            ),
+            Kind::Spheres | Kind::Mixed => {
+                let is_large = matches!(kind, Kind::Mixed) && index % 10 == 0;
+                let radius = if is_large { 5.0 * size } else { size / 2.0 };
+                writeln!(
+                    text,
+                    "sphere {{ center ({x}, {y}, -{depth})  radius {radius}  color #{color:03x} }}",
+                )
+            }
             Kind::Triangles => writeln!(
                 text,
                 "triangle {{ centroid ({x}, {y}, -{depth})  normal ({a}, {b}, 1)  sides ({size}, {size}, {size})  color #{color:03x} }}",

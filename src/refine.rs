@@ -1,8 +1,8 @@
 //! A picture that comes in steps, for whoever is waiting for it.
 //!
-//! In: the prepared scene and where its samples lie. Out: pictures in coarse blocks, one after the other, and at last the picture
-//! itself. A block shows what is seen at its centre, so that nothing is shown that is not there. What a preview does with them, and
-//! when it gives up on a scene that has changed, is its own business.
+//! In: the prepared scene. Out: pictures in coarse blocks, one after the other. A block shows what is seen at its centre, so that nothing is
+//! shown that is not there. What a preview does with them, when it begins with the picture itself (`render`), and when it gives up on a scene
+//! that has changed, is its own business.
 
 use std::sync::{PoisonError, atomic::Ordering};
 
@@ -12,14 +12,13 @@ use rayon::prelude::*;
 use crate::{
     area::Area,
     film::Film,
-    render::{Control, RenderError, render},
-    sampling::Sampling,
+    render::{Control, RenderError},
     threads,
     tracer::World,
 };
 
 /// The sides of the blocks, in pixels, step by step: each step takes four times as long as the one before it, and all of them together less
-/// than a picture with a few samples per pixel.
+/// than a picture with one sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in blocks.
@@ -31,19 +30,20 @@ pub struct Coarse {
     pub film: Film,
 }
 
-/// Renders a part of the picture, which lies in it, and shows coarse pictures of it on the way; progress counts the samples of the last
-/// step alone. Cancelled, it ends within a row of blocks or a tile.
-pub fn render_in_steps(
+/// Shows a part of the picture, which lies in it, in blocks that become finer down to a side of 1 pixel or more. Cancelled, it ends
+/// within a row of blocks, and shows no more.
+pub fn coarse_to_fine(
     world: &World,
-    sampling: &Sampling,
     part: Area,
+    finest: u32,
     control: &Control,
     mut show: impl FnMut(Coarse),
-) -> Result<Film, RenderError> {
-    for side in SIDES {
+) -> Result<(), RenderError> {
+    let coarser = SIDES.into_iter().filter(|&side| side > finest);
+    for side in coarser.chain([finest]) {
         show(coarse(world, part, side, control)?);
     }
-    render(world, sampling, part, control)
+    Ok(())
 }
 
 /// A part of the picture in blocks of a side of 1 pixel or more, from the part's top left corner on.

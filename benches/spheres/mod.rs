@@ -104,6 +104,30 @@ pub fn crowd(count: usize) -> String {
     text
 }
 
+/// A scene of so many spheres in a cube that stands upright in the picture: together they would cover it one and a half times.
+#[allow(dead_code, reason = "each benchmark has its own scene")]
+pub fn cube(count: usize) -> String {
+    const COVERED: f64 = 1.5;
+    const SIDE: f64 = 16.0;
+    let radius = SIDE * (COVERED / count as f64 / std::f64::consts::PI).sqrt();
+    let mut random = Random(1);
+    let mut text = String::from(
+        "// Spheres in a cube.\nimage { width 1280  height 720 }\n\
+         camera { eye (0, 0, 0)  direction (0, 0, -1)  d 2.75 }\nsampler { method jittered  per_pixel 4 }\n\n",
+    );
+    for _ in 0..count {
+        let [x, y, z] = [(); 3].map(|()| random.between(-SIDE / 2.0, SIDE / 2.0));
+        let radius = random.between(0.6, 1.4) * radius;
+        let color = COLORS[(random.next() % 8) as usize];
+        let _ = writeln!(
+            text,
+            "sphere {{ center ({x:.5}, {y:.5}, {:.5})  radius {radius:.6}  color {color} }}",
+            z - 30.0
+        );
+    }
+    text
+}
+
 /// Vigna's splitmix64, so that the scene is the same everywhere.
 pub struct Random(pub u64);
 

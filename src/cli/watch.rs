@@ -154,10 +154,10 @@ fn make(
     Ok(Some(done))
 }
 
-/// A picture that takes longer is shown as a sketch first.
+/// A picture that takes longer is sketched first, ever finer.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene, and shows a coarse picture where people would wait.
+/// Renders the scene, and shows coarse pictures where people would wait.
 fn with_sketch(
     scene: &Scene,
     keep: Keep,
@@ -182,9 +182,10 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                if let Ok(sketch) = refine::coarse(world, whole, side, &control) {
+                // Cancelled, it has nothing more to show, and the picture's own end says so.
+                let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);
-                }
+                });
             }
         });
         let picture = picture(scene, &world, whole, Keep::Light, is_stale);
