@@ -1,4 +1,4 @@
-//! Objects that are drawn in a fixed order, whatever is nearer.
+//! Objects that are drawn in a wrong order, whatever is nearer.
 //!
 //! Of each object alone there is an exact picture, and one of how much of each pixel it covers. Laid one over the other (Porter and Duff,
 //! Compositing digital images, 1984) they are what such a program makes, but for pixels in which the edges of several objects meet.
@@ -10,7 +10,7 @@ use crate::{
     color::Color,
     film::Film,
     render::{Control, RenderError},
-    scene::{Object, Scene},
+    scene::{Object, Scene, Shape},
 };
 
 /// Which object of several is seen.
@@ -20,12 +20,14 @@ pub enum Order {
     Last,
     /// The first one.
     First,
+    /// The farthest one: the least distance is looked for by the wrong comparison. Objects are as far as their middles, and boards farther.
+    Farthest,
 }
 
 /// Of a scene with more objects this is not thought of: each takes two pictures.
 const MOST: usize = 48;
 
-/// Both of a scene with several objects.
+/// All of a scene with several objects.
 pub fn ideas(scene: &Scene) -> Vec<Idea> {
     if !(2..=MOST).contains(&scene.objects.len()) {
         return Vec::new();
@@ -47,6 +49,11 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
             "of several objects that a ray hits the first one in the file is seen, though another one may be nearer",
             "do not stop at the first object that is hit: ask all of them, and keep the least t > 0",
         ),
+        idea(
+            Order::Farthest,
+            "of several objects that a ray hits the farthest one is seen, not the nearest",
+            "keep a hit if its t is less than the least one so far, which starts at infinity",
+        ),
     ]
 }
 
@@ -56,8 +63,21 @@ pub fn picture(scene: &Scene, order: Order, control: &Control) -> Result<Film, R
     let background = scene.image.background.to_linear();
     let mut film = Film::from_fn(width, height, |_, _| background)?;
     let mut objects: Vec<&Object> = scene.objects.iter().collect();
-    if let Order::First = order {
-        objects.reverse();
+    match order {
+        Order::Last => {}
+        Order::First => objects.reverse(),
+        Order::Farthest => {
+            let squared_distance = |object: &Object| {
+                let middle = match object.shape {
+                    Shape::Sphere(sphere) => sphere.center,
+                    Shape::Triangle(triangle) => triangle.centroid,
+                    Shape::Box(cuboid) => cuboid.min.midpoint(cuboid.max),
+                    Shape::Checkerboard(_) => return f64::INFINITY,
+                };
+                middle.distance_squared(scene.camera.eye)
+            };
+            objects.sort_by(|one, other| squared_distance(one).total_cmp(&squared_distance(other)));
+        }
     }
     for object in objects {
         let alone = |scene: &Scene| {

@@ -392,23 +392,37 @@ fn painted(folder: &TempDir, objects: &[&str]) -> image::RgbImage {
 }
 
 #[test]
-fn objects_drawn_in_the_order_of_the_file_are_named() {
+fn objects_drawn_in_a_wrong_order_are_named() {
     let folder = folder();
-    let picture = painted(&folder, &["sphere", "triangle", "box", "checkerboard"]);
-    save(&folder, "b.png", picture);
     let (camera, objects): (Vec<_>, Vec<_>) = SCENE.lines().partition(|line| {
         ["image", "camera", "sampler"]
             .iter()
             .any(|block| line.starts_with(block))
     });
-    for (is_reversed, words) in [
-        (false, "the last one in the file"),
-        (true, "the first one in the file"),
+    let objects_of = |kinds: [&str; 4]| {
+        let object = |kind| *objects.iter().find(|line| line.starts_with(kind)).unwrap();
+        kinds.map(object)
+    };
+    // The last one drawn is seen. From the nearest to the farthest they are triangle, box, sphere and board.
+    for (drawn, in_the_file, words) in [
+        (
+            ["sphere", "triangle", "box", "checkerboard"],
+            ["sphere", "triangle", "box", "checkerboard"],
+            "the last one in the file",
+        ),
+        (
+            ["sphere", "triangle", "box", "checkerboard"],
+            ["checkerboard", "box", "triangle", "sphere"],
+            "the first one in the file",
+        ),
+        (
+            ["triangle", "box", "sphere", "checkerboard"],
+            ["box", "checkerboard", "sphere", "triangle"],
+            "the farthest one",
+        ),
     ] {
-        let mut lines = [camera.as_slice(), objects.as_slice()].concat();
-        if is_reversed {
-            lines[camera.len()..].reverse();
-        }
+        save(&folder, "b.png", painted(&folder, &drawn));
+        let lines = [camera.as_slice(), &objects_of(in_the_file)].concat();
         fs::write(folder.path().join("a.scn"), lines.join("\n")).unwrap();
         let found = json(&folder, &["b.png", "a.scn"]);
         let first = &found["likely"][0];
