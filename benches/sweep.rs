@@ -2,11 +2,10 @@
 //!
 //! Scenes of five kinds, with few and many objects, small and large, in pictures of few and many pixels with few and many samples.
 
+mod clock;
 mod spheres;
 
-use std::{
-    env, fmt::Write, hint::black_box, num::NonZero, sync::atomic::AtomicBool, time::Instant,
-};
+use std::{env, fmt::Write, hint::black_box, num::NonZero, sync::atomic::AtomicBool};
 
 use pinhole::{
     area::Area,
@@ -192,12 +191,12 @@ fn read(text: String) -> Scene {
     reading.scene.expect("a scene without mistakes")
 }
 
-/// How many times as fast culling is, by the least times of both, taken in turns on one thread.
+/// How many times as fast culling is, by the least CPU times of both, taken in turns on one thread.
 fn ratio(scene: &Scene, world: &World) -> f64 {
     let seconds = |way: Way| {
-        let start = Instant::now();
+        let start = clock::cpu_seconds();
         picture(scene, world, way);
-        start.elapsed().as_secs_f64()
+        clock::cpu_seconds() - start
     };
     let [mut one, mut culled] = [Way::OneByOne, Way::Culled].map(seconds);
     let times = (SECONDS / culled).ceil().clamp(1.0, 20.0) as usize;

@@ -1,15 +1,19 @@
 //! The processors' time, which other work on the machine changes less than it changes the time on the wall.
 
-use std::fs;
+#[cfg(unix)]
+use rustix::time::{ClockId, clock_gettime};
 
-/// User and system time of the process so far, in hundredths; 0 where there is no /proc.
+/// User and system time of all threads of the process so far.
+#[cfg(unix)]
 pub fn cpu_seconds() -> f64 {
-    let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // The process's name may hold spaces, and ends at the last parenthesis.
-    let fields = stat.rsplit(')').next().unwrap_or_default();
-    let ticks = fields.split_whitespace().skip(11).take(2);
-    ticks
-        .filter_map(|ticks| ticks.parse::<f64>().ok())
-        .sum::<f64>()
-        / 100.0
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// The time on the wall, from the first question on: this system is not asked for more.
+#[cfg(not(unix))]
+pub fn cpu_seconds() -> f64 {
+    static START: std::sync::LazyLock<std::time::Instant> =
+        std::sync::LazyLock::new(std::time::Instant::now);
+    START.elapsed().as_secs_f64()
 }

@@ -61,7 +61,8 @@ pub(super) fn sum(board: &Board) -> Option<Sum> {
     }
     let strips = Strips::new(&few)?;
     let sum = strips.beyond(&many, few.displacement());
-    (sum.bound < FARTHEST_OFF).then_some(sum)
+    // Of squares as large as numbers can be products are lost.
+    (sum.bound < FARTHEST_OFF && !sum.value.is_nan()).then_some(sum)
 }
 
 /// The corners of the spot, in the order of its boundary.

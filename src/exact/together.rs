@@ -68,9 +68,11 @@ pub(super) struct Sums {
 
 impl Sums {
     pub fn of(&self, pixel: usize) -> Sum {
+        let (value, bound) = (self.values[pixel], self.bounds[pixel]);
         Sum {
-            value: self.values[pixel],
-            bound: self.bounds[pixel],
+            value,
+            // Of squares as large as numbers can be products are lost.
+            bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The triangle: three edges, each a line in the view plane.
 
-use std::cmp::Ordering;
+use std::{array, cmp::Ordering};
 
 use glam::DVec3;
 
@@ -48,26 +48,32 @@ impl<T: Real> Triangle<T> {
         }
         let plane = inverse_depth(camera, &normal, &height);
 
-        // The edges' forms matter by their signs alone, so lengths may be scaled.
         let offsets = offsets::<T>(shape);
-        let vertices = offsets
-            .map(|offset| [0, 1, 2].map(|i| &from_eye[i] + &offset[i].scaled(camera.exponent)));
-        let greatest = vertices
-            .iter()
-            .flatten()
-            .map(Ball::size)
-            .fold(T::Radius::ZERO, Radius::max);
-        let exponent = -greatest.exponent();
+        let vertices = [0, 1, 2]
+            .map(|k| [0, 1, 2].map(|i| &from_eye[i] + &offsets[k][i].scaled(camera.exponent)));
+        let exponent = -exponent_of(&vertices);
         let vertices = vertices.map(|vertex| camera.turned(&vertex.map(|x| x.scaled(exponent))));
-        let edge = |a: &Ball3<T>, b: &Ball3<T>| {
-            let n = cross(a, b);
+
+        // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners themselves little would be left of a
+        // triangle far away beside its size: of what a and b have in common, c, a × b has c × (b − a) alone.
+        let [far, near] = [
+            exponent_of(array::from_ref(&from_eye)),
+            exponent_of(&offsets),
+        ];
+        let center = camera.turned(&from_eye.map(|x| x.scaled(-far)));
+        let offsets = offsets.map(|offset| camera.turned(&offset.map(|x| x.scaled(-near))));
+        let ratio = near + camera.exponent - far;
+        let edge = |a: usize, b: usize| {
+            let along = [0, 1, 2].map(|i| &offsets[b][i] - &offsets[a][i]);
+            let (common, own) = (cross(&center, &along), cross(&offsets[a], &offsets[b]));
+            let n =
+                [0, 1, 2].map(|i| common[i].scaled(-ratio.max(0)) + own[i].scaled(ratio.min(0)));
             // Seen from behind the triangle's turn is the other way round.
             let n = if side.is_lt() { n.map(|x| -x) } else { n };
             Form::new(camera, &n)
         };
-        let [left, right, apex] = &vertices;
         let triangle = Self {
-            edges: [edge(left, right), edge(right, apex), edge(apex, left)],
+            edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
             plane,
         };
         let corners = Corners {
@@ -129,6 +135,12 @@ impl Triangle<Double> {
             plane: self.plane.narrowed(window),
         }
     }
+}
+
+/// The exponent of the greatest coordinate.
+fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
+    let sizes = points.iter().flatten().map(Ball::size);
+    sizes.fold(T::Radius::ZERO, Radius::max).exponent()
 }
 
 /// The vertices of a triangle in the world: left base end, right base end, apex; each coordinate rounded once.

@@ -26,6 +26,8 @@ mod lsp;
 mod numerics;
 mod overrides;
 mod parts;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod processors;
 mod program;
 mod readme;
 mod refine;

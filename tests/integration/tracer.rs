@@ -1,18 +1,25 @@
 //! The tracer against the oracle, above all within the last bits of every boundary.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
 use pinhole::{
+    area::Area,
     color::Color,
     math::Angle,
+    render::{Control, render, render_exact},
     report::numerics::{
         oracle::{ALL_SIZES, Oracle},
         scenes::{self, SIZE},
     },
+    sampling::Sampling,
     scene::{Checkerboard, Lens, Scene, Shape, Triangle, View},
     source::{Source, Sources},
     tracer::{Precision, World},
 };
+
+use crate::exact::read;
 
 pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
@@ -592,5 +599,47 @@ fn needles_and_tiny_triangles_agree_with_the_oracle() {
             color: Color::BLACK,
         });
         assert!(agrees(&scene(camera, &[shape]), 20) > 10);
+    }
+}
+
+#[test]
+fn triangles_too_small_or_far_away_to_be_seen_are_not_seen() {
+    for (triangle, toward) in [
+        ("centroid (1e10, 1e100, -1e100) sides (1, 1, 1)", (0.1, 0.7)),
+        (
+            "centroid (0.1, 0.2, -1.7) sides (1e-95, 1e-95, 1e-95)",
+            (0.01, 0.0),
+        ),
+        (
+            "centroid (0.1, 0.2, -1.7) sides (2e-300, 2e-300, 1e-300)",
+            (0.01, 0.0),
+        ),
+        ("centroid (0.1, 0.2, -1e160) sides (2, 2, 1)", (0.01, 0.0)),
+    ] {
+        let (x, y) = toward;
+        let scene = read(&format!(
+            "image {{ width 300 height 200 background black }}
+             camera {{ eye (0.1, 0.2, 0.3) direction ({x}, {y}, -1) }}
+             sampler {{ per_pixel 1 }}
+             triangle {{ {triangle} normal (-0.3, 0.2, 1) color lime }}"
+        ));
+        let world = World::new(&scene);
+        let whole = Area::whole(300, 200);
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let sampling = Sampling::new(&scene.sampler, 300, 200);
+        for film in [
+            render(&world, &sampling, whole, &control).unwrap(),
+            render_exact(&world, whole, &control).unwrap().film,
+        ] {
+            let most = film
+                .pixels()
+                .iter()
+                .fold(0.0, |most: f64, pixel| most.max(pixel[1]));
+            assert!(most < 1e-12, "{triangle}: {most}");
+        }
     }
 }

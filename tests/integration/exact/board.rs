@@ -559,3 +559,27 @@ fn squares_without_number_in_wide_views() {
         }
     }
 }
+
+/// Squares as large as numbers: four of them are seen, however large they are.
+#[test]
+fn squares_of_the_greatest_numbers() {
+    let seen = |square: &str| {
+        exact(&read(&format!(
+            "image {{ width 16 height 12 }}
+             camera {{ eye (0.3, 2, 5) lookat (0, 1, 0) }}
+             checkerboard {{ square {square} }}"
+        )))
+    };
+    let large = seen("1e100");
+    for square in ["1e160", "1e300", "1e301", "1e305", "1.7e308"] {
+        let larger = seen(square);
+        let bound = large.bound() + larger.bound();
+        for (one, other) in large.film.pixels().iter().zip(larger.film.pixels()) {
+            for channel in 0..3 {
+                let off = (one[channel] - other[channel]).abs();
+                assert!(off <= bound, "{square}: {one:?} and {other:?}");
+            }
+        }
+        assert!(bound <= 1e-12, "{square}: {bound:e}");
+    }
+}
