@@ -2,8 +2,11 @@
 
 mod board;
 
-use std::{f64::consts::PI, fmt::Write, num::NonZero, sync::atomic::AtomicBool};
+use std::{
+    array, f64::consts::PI, fmt::Write, iter::successors, num::NonZero, sync::atomic::AtomicBool,
+};
 
+use dashu_int::IBig;
 use dashu_ratio::RBig;
 use glam::{DVec2, dvec3};
 use pinhole::{
@@ -424,102 +427,218 @@ fn squares_from_above() {
     is_share(moved, &board(1.0), 0.5 + 0.5 * (0.5 * 0.5) / 2.25);
 }
 
-/// The share of white squares in a pixel of a camera at height `h` over a board of squares of side 1 that looks along −z, in
-/// rational arithmetic: the pixel's edges are at the slopes given, x over depth and y over depth, below the horizon.
-fn white(h: &RBig, eye: [&RBig; 2], x: [RBig; 2], y: [RBig; 2]) -> RBig {
-    // At depth D below the eye's height h the slope is −h/D; so the depth of a slope y is h/y down, and z = e_z − h/y.
-    let (near, far) = (h / &y[1], h / &y[0]);
-    let floor = |v: RBig| v.floor();
-    let (ez, ex) = (eye[1].clone(), eye[0].clone());
-    let first = floor(&ez - &far);
-    let last = floor(&ez - &near);
-    let mut share = RBig::ZERO;
-    let mut row = first;
-    let one = RBig::ONE;
-    while row <= last {
-        // The row's slopes, within the pixel's.
-        let (low, high) = (RBig::from(row.clone()), RBig::from(row.clone()) + &one);
-        let slope = |z: &RBig, outside: &RBig| {
-            let depth = &ez - z;
-            if depth <= RBig::ZERO {
-                outside.clone()
-            } else {
-                h / depth
+/// A camera whose axes are rational, above a board of squares of side 1 at height 0.
+struct RationalView {
+    eye: [RBig; 3],
+    /// The picture's right, its top, and against the view direction.
+    axes: [[RBig; 3]; 3],
+    d: RBig,
+}
+
+/// aX + bY + c as [a, b, c], for points (X, Y) of the view plane.
+type Linear = [RBig; 3];
+type Polygon = Vec<[RBig; 2]>;
+
+impl RationalView {
+    /// The component of the ray through a point of the view plane, along an axis of the world.
+    fn ray(&self, axis: usize) -> Linear {
+        let [right, top, back] = [0, 1, 2].map(|of| self.axes[of][axis].clone());
+        [right, top, -(back * &self.d)]
+    }
+
+    /// N and L of N/L, where the ray through a point meets the board, along x or z: L is positive below the horizon.
+    fn place(&self, axis: usize) -> [Linear; 2] {
+        let below = self.ray(1).map(|factor| -factor);
+        let along = self.ray(axis);
+        let place = array::from_fn(|i| &self.eye[1] * &along[i] + &self.eye[axis] * &below[i]);
+        [place, below]
+    }
+
+    /// The share of white squares, those whose numbers have an even sum, in a pixel below the horizon.
+    fn white(&self, pixel: &Polygon) -> RBig {
+        let [across, along] = [self.place(0), self.place(2)];
+        let mut white = RBig::ZERO;
+        for row in numbers(&along, pixel) {
+            let in_row = between(&along, &row, pixel);
+            if in_row.is_empty() {
+                continue;
             }
-        };
-        let top = slope(&low, &y[1]).max(y[0].clone());
-        let bottom = slope(&high, &y[1]).min(y[1].clone());
-        if top < bottom {
-            // A column x = i is the line X = (i − e_x)·Y/h: over slopes from top to bottom a trapezoid of each column.
-            let edge = |i: &RBig| clamped(&((i - &ex) / h), &top, &bottom, &x);
-            let left = floor((&x[0] * h / &top).min(&x[0] * h / &bottom) + &ex);
-            let right = floor((&x[1] * h / &top).max(&x[1] * h / &bottom) + &ex);
-            let mut column = left;
-            while column <= right {
-                let (a, b) = (
-                    RBig::from(column.clone()),
-                    RBig::from(column.clone()) + &one,
-                );
-                let even = (&column + &row) % dashu_int::IBig::from(2) == dashu_int::IBig::ZERO;
-                if even {
-                    share += edge(&b) - edge(&a);
+            for column in numbers(&across, &in_row) {
+                if (&row + &column) % IBig::from(2) == IBig::ZERO {
+                    white += area(&between(&across, &column, &in_row));
                 }
-                column += dashu_int::IBig::ONE;
             }
         }
-        row += dashu_int::IBig::ONE;
+        white / area(pixel)
     }
-    share / ((&x[1] - &x[0]) * (&y[1] - &y[0]))
 }
 
-/// The integral over Y from `top` to `bottom` of k·Y cut to the range from x₀ to x₁.
-fn clamped(k: &RBig, top: &RBig, bottom: &RBig, x: &[RBig; 2]) -> RBig {
-    let mut cuts = vec![top.clone(), bottom.clone()];
-    if !k.is_zero() {
-        cuts.extend(x.iter().map(|x| x / k).filter(|y| y > top && y < bottom));
-    }
-    cuts.sort();
-    let two = RBig::from(2);
-    let piece = |pair: &[RBig]| {
-        let (from, to) = (&pair[0], &pair[1]);
-        let middle = k * (from + to) / &two;
-        (to - from) * middle.clamp(x[0].clone(), x[1].clone())
+fn value([a, b, c]: &Linear, [x, y]: &[RBig; 2]) -> RBig {
+    a * x + b * y + c
+}
+
+/// The whole numbers from which a polygon's places go on to the next.
+fn numbers([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
+    let places = polygon
+        .iter()
+        .map(|at| (value(place, at) / value(below, at)).floor());
+    let places: Vec<_> = places.collect();
+    let (first, last) = (places.iter().min().unwrap(), places.iter().max().unwrap());
+    successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
+}
+
+/// The part of a polygon with places from n to n + 1.
+fn between([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
+    let line = |n: IBig| -> Linear {
+        let n = RBig::from(n);
+        array::from_fn(|i| &place[i] - &n * &below[i])
     };
-    cuts.windows(2)
-        .map(piece)
-        .fold(RBig::ZERO, |sum, piece| sum + piece)
+    let beyond = line(n + IBig::ONE).map(|factor| -factor);
+    cut(&cut(polygon, &line(n.clone())), &beyond)
 }
 
+/// The part of a polygon where a form is not negative (Sutherland and Hodgman, 1974).
+fn cut(polygon: &Polygon, line: &Linear) -> Polygon {
+    let mut rest = Vec::new();
+    for (i, to) in polygon.iter().enumerate() {
+        let from = &polygon[(i + polygon.len() - 1) % polygon.len()];
+        let [before, here] = [from, to].map(|at| value(line, at));
+        if (before < RBig::ZERO) != (here < RBig::ZERO) {
+            let t = &before / (&before - &here);
+            rest.push(array::from_fn(|axis| {
+                &from[axis] + (&to[axis] - &from[axis]) * &t
+            }));
+        }
+        if here >= RBig::ZERO {
+            rest.push(to.clone());
+        }
+    }
+    rest
+}
+
+fn area(polygon: &Polygon) -> RBig {
+    let mut twice = RBig::ZERO;
+    for (i, [x, y]) in polygon.iter().enumerate() {
+        let [next_x, next_y] = &polygon[(i + 1) % polygon.len()];
+        twice += x * next_y - next_x * y;
+    }
+    let twice = if twice < RBig::ZERO { -twice } else { twice };
+    twice / RBig::from(2)
+}
+
+/// Level cameras, one that looks down to the right, by (48, −25, −36)/65, and the same rolled by the angle of cosine 3/5. The horizon
+/// is above the pixels that are asked for.
 #[test]
 fn rational_arithmetic_agrees() {
     let (width, height) = (64u32, 48u32);
     let rational = |x: f64| RBig::try_from(x).unwrap();
-    for (h, ex, ez, d) in [
-        (1.75, 0.3, 0.6, 1.5),
-        (0.2, -7.1, 1e6 + 0.1, 2.0),
-        (30.0, 0.0, 0.0, 1.0),
+    let over = |vector: [i32; 3], by: i32| vector.map(|x| RBig::from(x) / RBig::from(by));
+    let level = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|axis| over(axis, 1));
+    let back = over([-48, 25, 36], 65);
+    let aslant = [over([3, 0, 4], 5), over([4, 12, -3], 13), back.clone()];
+    let mixed = |a: i32, b: i32| -> [RBig; 3] {
+        let [a, b] = [a, b].map(|x| RBig::from(x) / RBig::from(5));
+        array::from_fn(|i| &aslant[0][i] * &a + &aslant[1][i] * &b)
+    };
+    let rolled = [mixed(3, 4), mixed(-4, 3), back];
+    let far_down = [
+        (3, 25),
+        (33, 25),
+        (63, 26),
+        (40, 28),
+        (31, 30),
+        (20, 40),
+        (0, 47),
+    ];
+    let anywhere = [
+        (32, 24),
+        (3, 40),
+        (60, 20),
+        (31, 47),
+        (63, 47),
+        (20, 18),
+        (40, 30),
+    ];
+    for (axes, direction, up, [ex, h, ez], d, pixels) in [
+        (
+            &level,
+            "(0, 0, -1)",
+            "(0, 1, 0)",
+            [0.3, 1.75, 0.6],
+            1.5,
+            &far_down,
+        ),
+        (
+            &level,
+            "(0, 0, -1)",
+            "(0, 1, 0)",
+            [-7.1, 0.2, 1e6 + 0.1],
+            2.0,
+            &far_down,
+        ),
+        (
+            &level,
+            "(0, 0, -1)",
+            "(0, 1, 0)",
+            [0.0, 30.0, 0.0],
+            1.0,
+            &far_down,
+        ),
+        (
+            &aslant,
+            "(48, -25, -36)",
+            "(0, 1, 0)",
+            [0.3, 1.75, 0.6],
+            3.0,
+            &anywhere,
+        ),
+        (
+            &aslant,
+            "(48, -25, -36)",
+            "(0, 1, 0)",
+            [1e6 + 0.1, 9.3, -0.7],
+            4.0,
+            &anywhere,
+        ),
+        (
+            &rolled,
+            "(48, -25, -36)",
+            "(-96, 180, -253)",
+            [0.3, 1.75, 0.6],
+            3.0,
+            &anywhere,
+        ),
+        (
+            &rolled,
+            "(48, -25, -36)",
+            "(-96, 180, -253)",
+            [-3.3, 11.0, 1e5],
+            5.0,
+            &anywhere,
+        ),
     ] {
-        let text = format!(
-            "image {{ width {width} height {height} }} camera {{ eye ({ex}, {h}, {ez}) direction (0, 0, -1) d {d} }} \
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }} camera {{ eye ({ex}, {h}, {ez}) direction {direction} up {up} d {d} }} \
              checkerboard {{ colors (white, black) }}"
-        );
-        let exact = exact(&read(&text));
-        // view_height is 2.
-        let pitch = rational(2.0) / (rational(f64::from(height)) * rational(d));
-        let slope =
-            |edge: u32, size: u32| (RBig::from(edge) - RBig::from(size) / RBig::from(2)) * &pitch;
-        for (x, y) in [
-            (3, 25),
-            (33, 25),
-            (63, 26),
-            (40, 28),
-            (31, 30),
-            (20, 40),
-            (0, 47),
-        ] {
-            let columns = [slope(x, width), slope(x + 1, width)];
-            let rows = [slope(y, height), slope(y + 1, height)];
-            let expected = white(&rational(h), [&rational(ex), &rational(ez)], columns, rows);
+        ));
+        let exact = exact(&scene);
+        let view = RationalView {
+            eye: [ex, h, ez].map(rational),
+            axes: axes.clone(),
+            d: rational(d),
+        };
+        // view_height is 2, and rows are counted from the top.
+        let pitch = RBig::from(2) / RBig::from(height);
+        let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
+        for &(x, y) in pixels {
+            let corner = |right: u32, down: u32| {
+                [
+                    (RBig::from(x + right) - &left) * &pitch,
+                    (&top - RBig::from(y + down)) * &pitch,
+                ]
+            };
+            let pixel = vec![corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            let expected = view.white(&pixel);
             let found = exact.film.pixel(x, y)[0];
             let difference = (rational(found) - expected).to_f64().value().abs();
             let bound = f64::from(exact.bounds[(y * width + x) as usize]);
