@@ -559,3 +559,37 @@ fn squares_without_number_in_wide_views() {
         }
     }
 }
+
+/// A plane so close in front of the view plane that a row of the board has about one square of it, and the board a billion rows.
+#[test]
+fn rows_of_a_square_each_in_wide_views() {
+    let text = |square: &str| {
+        format!(
+            "image {{ width 6 height 4 }}
+             camera {{ eye (1, 2, 3) direction (-0.3, 0, 1) d 2e-9 far 4e6 }}
+             sampler {{ method exact }}
+             checkerboard {{ square {square} }}"
+        )
+    };
+    for (square, pixel) in [("1e-1", [0, 2]), ("1e-3", [5, 2]), ("1e-5", [4, 3])] {
+        let bound = bound_at(&text(square), pixel);
+        assert!(bound <= 1e-9, "{square}: {bound:e}");
+    }
+}
+
+/// Squares too small to be seen in views so wide that even double-double numbers do not tell the forms from dependent ones.
+#[test]
+fn squares_too_small_to_be_seen_in_the_widest_views() {
+    for roll in [0, 20] {
+        for square in ["1e-15", "1e-40", "1e-120"] {
+            let scene = read(&format!(
+                "image {{ width 6 height 4 }}
+                 camera {{ eye (0.3, 2, 0.1) direction (3, -0.5, -1) roll {roll}deg d 1e-150 }}
+                 sampler {{ method exact }}
+                 checkerboard {{ square {square} }}"
+            ));
+            let bound = exact(&scene).bound();
+            assert!(bound <= 1e-9, "{roll} {square}: {bound:e}");
+        }
+    }
+}
