@@ -17,7 +17,7 @@ const AT_WORST: f64 = 2e-10;
 /// What may be of both sides together, where rows are so narrow that their late modes hardly differ.
 const NARROW_AT_WORST: f64 = 4e-10;
 /// No more rows than this, of a square each, are summed one by one for that.
-const PATIENCE: f64 = 200_000.0;
+const PATIENCE: f64 = 20_000.0;
 
 /// What lies between two lines of the board and between two sides, on each of which m is linear.
 ///
@@ -216,6 +216,7 @@ impl Bulk for Block<'_> {
     /// The part of it in which m changes little from row to row.
     fn smooth(&self) -> [f64; 2] {
         let [mut first, mut last] = [self.first, self.last];
+        let leeway = self.board.leeway;
         let factor = 2.0 * self.board.fine.floor.per_slope[1 - self.along].value;
         let [left, right] = self.sides;
         // Where m is smaller rows are summed one by one.
@@ -224,11 +225,11 @@ impl Bulk for Block<'_> {
         let most = (PATIENCE / (1.0 + 0.25 * length.min(MANY))).ceil();
         // Beyond m there are no more than √2/m|∇L| square pixels.
         let steepness = libm::hypot(self.board.below[0], self.board.below[1]);
-        let narrow = 1.5 / steepness * Lines::share_neglected() / NARROW_AT_WORST;
+        let narrow = 1.5 / steepness * Lines::share_neglected() / (NARROW_AT_WORST * leeway);
         for side in &self.sides {
             let Run { lines, sense, .. } = self.run(side, [self.first, self.last], f64::INFINITY);
             let start = lines
-                .start(AT_WORST / factor)
+                .start(AT_WORST * leeway / factor)
                 .min(narrow.max(GRADUAL * lines.rise));
             let missing = (start - lines.depth) / lines.rise;
             if missing > 0.0 {
@@ -240,7 +241,7 @@ impl Bulk for Block<'_> {
                 }
             }
         }
-        self.sooner([first, last], NARROW_AT_WORST / factor)
+        self.sooner([first, last], NARROW_AT_WORST * leeway / factor)
     }
 
     fn add(&self, ends: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
@@ -256,7 +257,8 @@ impl Bulk for Block<'_> {
         let mut bound = 8.0 * UNIT * perimeter;
         let runs = self.sides.each_ref().map(|side| self.run(side, ends, size));
         bound += runs.iter().map(|run| self.uncertainty(run)).sum::<f64>();
-        let tolerance = NEGLECTED / factor;
+        let tolerance = NEGLECTED * board.leeway / factor;
+        let most = MOST / board.leeway.sqrt();
         let [left, right] = &runs;
         let mut sum = 0.0;
         let mut add = |part: Sum, run: &Run| {
@@ -266,11 +268,16 @@ impl Bulk for Block<'_> {
         let step = in_step(left, right, board.fine.floor.slope[across]);
         if step < f64::INFINITY {
             add(
-                modes::sum(&[(-1.0, &left.lines), (1.0, &right.lines)], step, tolerance),
+                modes::sum(
+                    &[(-1.0, &left.lines), (1.0, &right.lines)],
+                    step,
+                    tolerance,
+                    most,
+                ),
                 left,
             );
         } else {
-            let [first, second] = [left, right].map(|run| run.lines.sum(tolerance));
+            let [first, second] = [left, right].map(|run| run.lines.sum(tolerance, most));
             add(
                 Sum {
                     value: -first.value,

@@ -54,6 +54,8 @@ const NEXT_TO_NOTHING: f64 = 1e9;
 
 /// Squares that are smaller than a pixel by this power of two may be too small to be seen.
 const TINY: i32 = 24;
+/// So little of a crowd of them is as good as nothing.
+const TINY_CROWD: f64 = 4e-10;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,6 +111,8 @@ pub(crate) struct Board {
     pub(super) tail: f64,
     /// How closely it is looked at where roundings leave something in doubt.
     pub(super) care: Care,
+    /// How many times as much as of a pixel may be neglected of its spot, which is a small part of one.
+    pub(super) leeway: f64,
 }
 
 /// A corner of a region: where it is in the picture, what floor it shows, and m there.
@@ -210,6 +214,7 @@ impl Board {
             },
             tail: 5e-10,
             care: Care::Usual,
+            leeway: 1.0,
         }
     }
 
@@ -225,24 +230,29 @@ impl Board {
         let enough = self.care.enough(polygon);
         let next_to_nothing = || Sum {
             value: 0.0,
-            bound: self.most(polygon),
+            bound: self.most(polygon).min(self.most_aslant(polygon)),
         };
         let [of_a, of_b] = self.fine.floor.powers;
         if of_a.max(of_b) >= TINY {
             let sum = next_to_nothing();
-            if sum.bound <= Care::Great.enough(polygon) {
+            let is_enough = sum.bound <= Care::Great.enough(polygon)
+                || sum.bound <= TINY_CROWD * self.leeway && self.is_crowded(polygon);
+            if is_enough {
                 return sum.within(polygon.iter().copied());
             }
         }
         // Where corners as they are rounded leave too much of a crowd in doubt, they would take long for nothing.
-        let is_coarse = self.displacement > COARSE
-            && self.blurred(polygon.iter().copied()) > GOOD_CROWD
-            && self.is_crowded(polygon);
+        let good_crowd = GOOD_CROWD * self.leeway;
+        let coarse = match self.displacement > COARSE && self.is_crowded(polygon) {
+            true => self.blurred(polygon.iter().copied()),
+            false => 0.0,
+        };
+        let is_coarse = coarse > good_crowd;
         let close = is_coarse
             .then(|| closely::of_crowd(self, polygon, cancel))
             .flatten();
         let mut sum = match close {
-            Some(close) if close.bound <= GOOD_CROWD => close,
+            Some(close) if close.bound <= coarse => close,
             close => better(self.unchecked(polygon, known, cancel), close),
         };
         if sum.bound > enough && !is_coarse && !self.is_crowded(polygon) {
@@ -304,8 +314,8 @@ impl Board {
     pub(super) fn tail(&self, lines: f64) -> f64 {
         match lines {
             ..=COUNTED => COUNTED_TAIL,
-            ..f64::INFINITY => FINITE_TAIL,
-            _ => self.tail,
+            ..f64::INFINITY => FINITE_TAIL * self.leeway,
+            _ => self.tail * self.leeway,
         }
     }
 

@@ -3,10 +3,19 @@
 //! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12).
 
 use super::complex::{Complex, over, phase, size, times};
-use std::f64::consts::FRAC_PI_2;
+use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
-/// Below this power series are good, from here on a continued fraction.
+/// Below this power series are good, from here on a continued fraction, and from there on an asymptotic series.
 const SMALL: f64 = 3.0;
+const LARGE: f64 = 64.0;
+
+/// The continued fraction takes very long, so it is asked for just at numbers so far apart, and Taylor's series about them, of so many terms, gives
+/// those in between: the first term that is left out is at most (¼/3)^16 = 5e-18.
+const STEP: f64 = 0.5;
+const TERMS: usize = 16;
+type Expansion = [Complex; TERMS];
+static EXPANSIONS: LazyLock<[Vec<Expansion>; 2]> =
+    LazyLock::new(|| [expansions::<3>(), expansions::<4>()]);
 
 /// F_3, F_4 and F_5.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
@@ -27,10 +36,10 @@ fn fourth(y: f64) -> Complex {
 
 fn of_order<const ORDER: u32>(y: f64, small: impl Fn(f64) -> Complex) -> Complex {
     let size = y.abs();
-    let integral = if size >= 64.0 {
+    let integral = if size >= LARGE {
         asymptotic::<ORDER>(size)
     } else if size >= SMALL {
-        continued_fraction::<ORDER>(size)
+        expanded(&EXPANSIONS[ORDER as usize - 3], size)
     } else {
         small(size)
     };
@@ -122,6 +131,41 @@ fn asymptotic<const ORDER: u32>(y: f64) -> Complex {
     sum
 }
 
+/// Between 3 and 64.
+fn expanded(expansions: &[Expansion], y: f64) -> Complex {
+    let middle = f64::from((y / STEP + 0.5) as u32);
+    let step = y - middle * STEP;
+    let terms = &expansions[(middle - SMALL / STEP) as usize];
+    terms.iter().rev().fold([0.0; 2], |sum, term| {
+        [sum[0] * step + term[0], sum[1] * step + term[1]]
+    })
+}
+
+/// Taylor's series from 3 to 64. That (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) is
+/// y·F_s′ = (s − 1 − iy)·F_s − 1, so that (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1, and 1 less where k is 0.
+fn expansions<const ORDER: u32>() -> Vec<Expansion> {
+    let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
+    let about = |middle: u32| {
+        let y = f64::from(middle) * STEP;
+        let mut terms = [[0.0; 2]; TERMS];
+        terms[0] = continued_fraction::<ORDER>(y);
+        for k in 1..TERMS {
+            let done = (k - 1) as f64;
+            let mut term = times([f64::from(ORDER) - 1.0 - done, -y], terms[k - 1]);
+            match k.checked_sub(2) {
+                Some(before) => {
+                    let [re, im] = terms[before];
+                    term = [term[0] + im, term[1] - re];
+                }
+                None => term[0] -= 1.0,
+            }
+            terms[k] = term.map(|part| part / (y * (done + 1.0)));
+        }
+        terms
+    };
+    middles.map(about).collect()
+}
+
 /// DLMF 8.19.17 contracted, as Lentz evaluates it: 1/(z+s − 1·s/(z+s+2 − 2·(s+1)/(z+s+4 − …))).
 fn continued_fraction<const ORDER: u32>(y: f64) -> Complex {
     const TINY: f64 = 1e-300;
@@ -188,6 +232,10 @@ mod tests {
         close(continued_fraction::<4>(64.0), asymptotic::<4>(64.0), 1e-14);
         close(continued_fraction::<3>(3.0), power_series(3.0), 1e-14);
         close(fourth(2.9999999999), fourth(3.0000000001), 1e-9);
+        for y in [3.0, 3.249, 3.251, 4.7, 11.3, 40.24, 63.99] {
+            close(third(y), continued_fraction::<3>(y), 1e-14);
+            close(fourth(y), continued_fraction::<4>(y), 1e-14);
+        }
     }
 
     #[test]

@@ -15,7 +15,7 @@ use super::complex::{Complex, phase, square, times, turned_times};
 use super::edge::{Crossings, Edge, Series};
 use super::exponential::integrals;
 use super::level;
-use super::modes::{GRADUAL, Lines};
+use super::modes::{GRADUAL, Lines, MOST as MOST_MODES};
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
@@ -111,7 +111,7 @@ fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
         false => all.count,
     };
     let lines = Lines::new(&first, &step, &count, all.edge.slope);
-    let modes = lines.sum(tolerance / factor.abs());
+    let modes = lines.sum(tolerance / factor.abs(), MOST_MODES);
     let alternating = |lines: &Double, x: f64| if lines.floor().1 { -x } else { x };
     // There the ends count half.
     let mut rest = factor * modes.value + 0.5 * all.line(series, &done);

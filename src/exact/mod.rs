@@ -20,6 +20,7 @@
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
 mod arc;
+mod aslant;
 mod block;
 mod board;
 mod bulk;
@@ -78,8 +79,9 @@ const ENOUGH: f64 = 1e-12;
 const ENOUGH_CROWDED: f64 = 9e-10;
 /// Quarters are cut further only where they are off by more than this together: that takes as long again for each of them.
 const TOLERABLE: f64 = 1e-7;
-/// Pieces of a spot are quartered no more often than this: what is left of it by so many quarters of quarters is next to nothing.
-const MOST_CUTS: usize = 21;
+/// Pieces of a spot are quartered until that has taken so many times as long as the whole may: quarters of quarters of the one that holds a
+/// difficult point take half as long each time, so that these may be as small as they like.
+const MOST_EFFORT: f64 = 12.0;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -275,9 +277,10 @@ impl<'a> Integrator<'a> {
         }
         let off = |piece: &Piece| piece.bound(spot);
         let mut pieces = vec![whole];
-        for cuts in 0..MOST_CUTS {
+        let mut effort = 0.0;
+        while effort < MOST_EFFORT {
             let bound: f64 = pieces.iter().map(off).sum();
-            let enough = if cuts == 0 { enough } else { TOLERABLE };
+            let enough = if effort == 0.0 { enough } else { TOLERABLE };
             if bound <= enough || cancel.load(Ordering::Relaxed) {
                 break;
             }
@@ -288,6 +291,7 @@ impl<'a> Integrator<'a> {
                 break;
             };
             let before = off(worst);
+            effort += 4.0 * (worst.spot.side / spot.side).min(1.0);
             let quarters = worst.spot.quarters().map(|quarter| with(care, quarter));
             let after: f64 = quarters.iter().map(off).sum();
             worst.is_final = after > 0.5 * before;

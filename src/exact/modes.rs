@@ -24,18 +24,20 @@ use crate::math::{Double, Real, two_product};
 use std::{array, f64::consts::PI};
 
 /// What is neglected of modes that are not in step, by what a mode's crossings add up to.
-pub(super) const NOT_IN_STEP: f64 = DOUBLINGS / (PI * PI * PI * IN_STEP);
+pub(super) const NOT_IN_STEP: f64 = DOUBLINGS / (PI * PI * PI * IN_STEP * FINER);
 /// Where m grows twofold within fewer crossings than this, the formula of Euler and Maclaurin needs more terms than it has
 /// here.
 pub(super) const GRADUAL: f64 = 4000.0;
 /// Where m changes by less than one part in so many, it is taken to be the same at all crossings: then the ends would cancel.
 const STEADY: f64 = 3e7;
-/// More modes than this take too long.
-pub(super) const MOST: f64 = 40_000.0;
+/// More modes than this take too long, of a whole pixel.
+pub(super) const MOST: f64 = 1_000_000.0;
 /// Up to here every mode is asked for, and beyond only those in step, ...
 const DENSE: f64 = 2048.0;
 /// ... of which there are about as many for each doubling of their number, if their angles are even; ...
 const IN_STEP: f64 = 500.0;
+/// ... or up to so many times as many, and as many times as far all of them, where too much would be neglected else; ...
+const FINER: f64 = 16.0;
 /// ... and so many doublings or more may be needed.
 const DOUBLINGS: f64 = 32.0;
 /// The last of all.
@@ -102,9 +104,9 @@ impl Lines {
         }
     }
 
-    /// Σ (4/π²n²) Im e^(iπnt)/i · Σ (−1)^j … U, of which as much as `tolerance` may be neglected.
-    pub(super) fn sum(&self, tolerance: f64) -> Sum {
-        sum(&[(1.0, self)], self.in_step(), tolerance)
+    /// Σ (4/π²n²) Im e^(iπnt)/i · Σ (−1)^j … U, of which as much as `tolerance` may be neglected, and what takes more modes than `most`.
+    pub(super) fn sum(&self, tolerance: f64, most: f64) -> Sum {
+        sum(&[(1.0, self)], self.in_step(), tolerance, most)
     }
 
     /// Whether of its late modes no more are in step than angles that are spread evenly have.
@@ -308,7 +310,7 @@ impl Lines {
 
 /// Σ over the sides, each with its sign, of what `Lines::sum` is of one. A mode's crossings may add up to `in_step`, by |θ| of the
 /// first side.
-pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64) -> Sum {
+pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f64) -> Sum {
     let Some(&(_, reference)) = sides.first() else {
         return Sum::default();
     };
@@ -319,12 +321,15 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64) -> Sum 
     let last = ((all / tolerance).sqrt().ceil() + 2.0)
         .min((flat / tolerance).ceil() + 2.0)
         .clamp(3.0, LAST);
-    let budget = (tolerance / DOUBLINGS).max(in_step / (PI * PI * PI * IN_STEP));
+    let wanted = tolerance / DOUBLINGS;
+    let coarse = in_step / (PI * PI * PI * IN_STEP);
+    let finer = (coarse / wanted).clamp(1.0, FINER);
+    let budget = wanted.max(coarse / finer);
     // One mode after the other as far as it goes, if what is beyond is less than what of so many would be neglected.
-    let most = last.min(MOST);
-    let (last, dense) = match beyond(most) <= budget * DOUBLINGS {
-        true => (most, most),
-        false => (last, DENSE),
+    let all_in_turn = last.min(most);
+    let (last, dense) = match beyond(all_in_turn) <= budget * DOUBLINGS {
+        true => (all_in_turn, all_in_turn),
+        false => (last, last.min(DENSE * finer)),
     };
     let little = LITTLE * tolerance.max(beyond(last));
     let (mut value, mut rounding, mut skipped) = (0.0, 0.0, 0.0);
@@ -358,8 +363,8 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64) -> Sum 
     if last > dense {
         let within = |from: f64| within(in_step, from, budget);
         let others = |from: f64| 4.0 / (PI * PI * PI) * in_step / (3.0 * from * within(from));
-        let mut waves = Resonances::new(&reference.turning, within(DENSE));
-        let (mut from, mut neglected, mut count) = (DENSE, others(DENSE), 0.0);
+        let mut waves = Resonances::new(&reference.turning, within(dense));
+        let (mut from, mut neglected, mut count) = (dense, others(dense), 0.0);
         while let Some(wave) = waves.next() {
             let n = wave as f64;
             if n > last {
@@ -372,11 +377,11 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64) -> Sum 
                 }
                 waves.narrow(within(from));
             }
-            if n <= DENSE {
+            if n <= dense {
                 continue;
             }
             count += 1.0;
-            if count > MOST {
+            if count > most {
                 reached = n;
                 break;
             }
@@ -487,7 +492,7 @@ mod tests {
                 &Double::from_f64(40.0),
                 slope,
             );
-            let (found, expected) = (lines.sum(1e-7), by_quadrature(&lines));
+            let (found, expected) = (lines.sum(1e-7, MOST), by_quadrature(&lines));
             let error = (found.value - expected).abs();
             // The quadrature's steps are aslant to kinks.
             assert!(error < 2e-5, "{} or {expected}", found.value);

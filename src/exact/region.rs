@@ -29,6 +29,10 @@ pub struct Shares {
     pub is_crowded: bool,
 }
 
+/// About so many pieces of a pixel may be looked at together: in one that is smaller than such a part of it as much may be neglected as in one of
+/// those.
+const PIECES: f64 = 4.0;
+
 /// Collects the regions of one spot.
 pub struct Regions<'a> {
     world: &'a World,
@@ -168,6 +172,8 @@ impl<'a> Regions<'a> {
             None => {
                 let mut checkered = Checkered::new(self.world, object, self.spot)?;
                 checkered.board.care = self.care;
+                let side = self.spot.side;
+                checkered.board.leeway = (PIECES * side * side).recip().max(1.0);
                 self.boards.push((object, checkered));
                 self.boards.len() - 1
             }

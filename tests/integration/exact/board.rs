@@ -583,3 +583,20 @@ fn squares_of_the_greatest_numbers() {
         assert!(bound <= 1e-12, "{square}: {bound:e}");
     }
 }
+
+/// A plane so close in front of the view plane that a row of the board has about one square of it, and the board a billion rows.
+#[test]
+fn rows_of_a_square_each_in_wide_views() {
+    let text = |square: &str| {
+        format!(
+            "image {{ width 6 height 4 }}
+             camera {{ eye (1, 2, 3) direction (-0.3, 0, 1) d 2e-9 far 4e6 }}
+             sampler {{ method exact }}
+             checkerboard {{ square {square} }}"
+        )
+    };
+    for (square, pixel) in [("1e-1", [0, 2]), ("1e-3", [5, 2]), ("1e-5", [4, 3])] {
+        let bound = bound_at(&text(square), pixel);
+        assert!(bound <= 1e-9, "{square}: {bound:e}");
+    }
+}
