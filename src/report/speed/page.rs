@@ -49,6 +49,7 @@ fn section(html: &mut String, measured: &Measurement, class: &str) -> io::Result
         *html += &format!("<ul class=\"notes\">\n{}</ul>\n", items.collect::<String>());
     }
     *html += &facts(measured);
+    *html += &whole(measured)?;
     *html += &charts(measured);
     *html += "<h3>The numbers</h3>\n";
     *html += &errors(measured);
@@ -137,6 +138,23 @@ fn facts(measured: &Measurement) -> String {
         .iter()
         .map(|(name, fact)| format!("<dt>{name}</dt><dd>{}</dd>\n", prose(fact)));
     format!("<dl class=\"facts\">\n{}</dl>\n", items.collect::<String>())
+}
+
+/// The exact picture as a whole.
+fn whole(measured: &Measurement) -> io::Result<String> {
+    let (uri, size) = picture::whole(measured)?;
+    let whole = measured.whole();
+    let scaled = match size == whole {
+        true => String::new(),
+        false => format!(
+            ", at {} × {} of its {} × {} pixels",
+            size.width, size.height, whole.width, whole.height
+        ),
+    };
+    Ok(format!(
+        "<figure class=\"whole\">{}<figcaption>What is rendered: the exact picture{scaled}.</figcaption></figure>\n",
+        image(&uri, "the exact picture as a whole")
+    ))
 }
 
 fn errors(measured: &Measurement) -> String {
