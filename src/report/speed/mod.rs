@@ -25,7 +25,7 @@ pub use self::{
     check::Checks,
     export::{to_csv, to_json},
     machine::Machine,
-    measure::{Computed, Measurement, Point, Series, Subject, measure},
+    measure::{Computed, Measurement, Point, Series, Subject, further, measure, measure_further},
     needed::{Check, Fastest, Needed},
     notes::{NOISY, notes},
     page::page,

@@ -180,10 +180,15 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
     })
 }
 
+/// Of how many combinations of method and samples the times are noisy.
+pub(super) fn noisy(measured: &Measurement) -> usize {
+    let points = measured.series.iter().flat_map(|series| &series.points);
+    points.filter(|point| point.spread() > NOISY).count()
+}
+
 fn noise(measured: &Measurement) -> Option<String> {
-    let configurations = || measured.series.iter().flat_map(|series| &series.points);
-    let noisy = configurations().filter(|point| point.spread() > NOISY);
-    let count = noisy.count();
+    let combinations = measured.series.iter().map(|series| series.points.len());
+    let count = noisy(measured);
     let worst = measured
         .series
         .iter()
@@ -194,7 +199,7 @@ fn noise(measured: &Measurement) -> Option<String> {
         format!(
             "The machine was noisy: of {} combinations of method and samples, {count} have times that spread by more than {} % of \
              their median, from the least to the greatest; the worst is {} with {} per pixel, {:.0} %.",
-            configurations().count(),
+            combinations.sum::<usize>(),
             NOISY * 100.0,
             method.name(),
             point.per_pixel,
