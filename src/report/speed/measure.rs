@@ -138,14 +138,15 @@ impl Point {
         root_mean_square(&self.rmse)
     }
 
-    /// How many samples are taken a second.
-    pub fn rays_per_second(&self) -> f64 {
+    /// How many samples are taken a second: whether they are traced, or known to show one colour without.
+    pub fn samples_per_second(&self) -> f64 {
         self.samples as f64 / self.seconds()
     }
 }
 
 impl Series {
-    /// The line through the logarithms of samples and error, if there are errors. Runs have seeds of their own, and their errors spread.
+    /// The line through the logarithms of samples and error, if there are errors. Runs have seeds of their own, and their errors spread. What was
+    /// tried has other numbers of samples in each method, and is left out of the line, but not of how far that may be off.
     pub fn fit(&self) -> Option<Fit> {
         let points: Vec<_> = self
             .points
@@ -157,7 +158,7 @@ impl Series {
             .iter()
             .map(|point| log_error(&point.rmse))
             .collect();
-        Fit::of_measured(&points, &errors)
+        Fit::of_measured(&points, &errors).map(|fit| fit.bent(&self.slopes()))
     }
 }
 

@@ -5,6 +5,7 @@
 //! [`Measurement`], plain data, of which `table` makes text for a terminal, `export` CSV and JSON, `chart` SVG and `page` HTML, which
 //! shows the crops of `picture`.
 
+mod account;
 mod chart;
 mod check;
 mod export;

@@ -12,6 +12,10 @@ use crate::scene::Method;
 /// Times of the same work that spread by more than this share of their median, from the least to the greatest, are called noisy.
 pub const NOISY: f64 = 0.2;
 
+/// What the factor of what an error takes means.
+pub(super) const FACTOR: &str = "one standard error, and how far the line may be off: between two points as much as it may sag, and of what is extrapolated \
+     as much as by the slope between any other two points, by −1/2 or by −3/4. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture.";
+
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
 
@@ -77,6 +81,13 @@ fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
         true => ", extrapolated",
     };
     let (time, wanted) = (seconds(needed.seconds), error(wanted));
+    if needed.is_unknown() {
+        return format!(
+            "which sampled method is the fastest is not known, as nothing is of how far off they are; {} should need {time} for an error of \
+             {wanted} ({samples} per pixel{found})",
+            method.name()
+        );
+    }
     match names.as_slice() {
         [one] => format!(
             "the fastest sampled method, {}, needs {time} for an error of {wanted} ({samples} per pixel{found})",
@@ -174,9 +185,9 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
         needs.into_iter().any(|needed| needed.is_extrapolated)
     };
     measured.series.iter().any(needs).then(|| {
-        "What is extrapolated follows the line through the last of what was measured. × and ÷ is one standard error of it, or how far the line \
-         through all points is from there, if that is more; where errors bend away further on, the truth is farther off."
-            .to_owned()
+        format!(
+            "What is extrapolated goes on with the slope between the last of what was measured. × and ÷: {FACTOR}"
+        )
     })
 }
 
