@@ -31,17 +31,17 @@ pub fn account(measurements: &[Measurement]) -> String {
          lie on a line by luck, so that the error is no less than what the spread of the runs gives it, each of which has a seed of its own: \
          √(Σ(x − x̄)²e²) / Σ(x − x̄)², e being the standard error of the logarithm of a point’s error, √(v/n)/2m by the mean m and the variance v \
          of the n runs’ squared errors. The greater one counts (as the Particle Data Group scales errors). But a curve that bends has no one slope, \
-         however well the mean one is known: so the ± is no less than the greatest difference between b and the slopes from each point of the chart, tried ones among them, \
-         to the last one with at most half its samples. JSON has all three. Nothing is said of the slope beyond these points.</li>\n\
+         however well the mean one is known: so the ± is no less than the greatest difference between b and the slope between any two points of the chart, tried ones among them, \
+         of which one has at least twice the samples of the other. JSON has all three. Nothing is said of the slope beyond these points.</li>\n\
          <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
          rounded up to a whole number of samples, for multi_jittered to one whose grid is near a square; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
          through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
          and time is left, answers are tried up to three times, the fastest methods first: in a single run, which is a further point, a tenth more samples are taken than is extrapolated; \
          and after that those between two points, where the line between them may be off by more than a hundredth. \
-         × and ÷ is the standard error of the two points’ errors, √((1 − s)²e<sub>1</sub>² + s²e<sub>2</sub>²) by the slope between them, at 1 − s of the first and s of the second in logarithms, \
+         × and ÷ is twice the standard error by those of the two points’ errors, |1 − s|·e<sub>1</sub> + s·e<sub>2</sub> by the slope between them, at 1 − s of the first and s of the second in logarithms (all tries have one seed, and are wrong together), \
          and with it, by the root of the sum of both squares, what the truth may be off from that line. Between two points that is what it may sag: 0.8·(x₂ − x)(x − x₁), 0.38 half-way between a count and four \
-         times as many. Beyond the last it is the greatest difference to what comes out if errors fall further on by any slope between other points, as above, or by −1/2 or −3/4: \
-         nobody has seen which. Of single runs nothing is known (?), nor of regular, whose grid falls into step with the lines of a picture, so that its \
+         times as many. Beyond the last it is the greatest difference to what comes out if errors fall further on by any slope between other points, as above, or by −1/2, which is that of independent samples, or, where samples are spread evenly, by −3/4: \
+         nothing that was measured tells which. Of single runs nothing is known (?), nor of regular, whose grid falls into step with the lines of a picture, so that its \
          errors fall by leaps.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within × and ÷ of the samples \
          and half of the spread of the times.</li>\n\

@@ -18,9 +18,14 @@ const SAG: f64 = 0.8;
 /// nothing is known of them.
 const LEAPING: Method = Method::Regular;
 
-/// How errors fall further on, whatever was seen before: an exponent of −1/2 is that of independent samples, and −3/4 that of a slanted edge in
-/// a pixel whose samples are spread evenly.
-const SLOPES: [f64; 2] = [-0.75, -0.5];
+/// So many standard errors count: 19 times of 20 no more than that is missed.
+const CERTAINTY: f64 = 2.0;
+
+/// How errors fall further on, whatever was seen before: an exponent of −1/2 is that of independent samples, ...
+const INDEPENDENT: f64 = -0.5;
+
+/// ... and this one that of a slanted edge in a pixel whose samples are spread evenly.
+const EVEN: f64 = -0.75;
 
 /// What an error takes of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,17 +88,21 @@ impl Series {
         points
     }
 
-    /// The slopes of the logarithms of error against samples within the curve: between each point and the one [`before`] it.
+    /// The slopes of the logarithms of error against samples within the curve: between any two points that are [apart](is_apart).
     pub(super) fn slopes(&self) -> Vec<f64> {
         let mut curve = self.curve();
         // An error of 0 has no logarithm.
         curve.retain(|point| point.error() > 0.0);
-        let slope = |point: &&Point| {
-            let before = before(&curve, point)?;
-            let samples = point.per_pixel as f64 / before.per_pixel as f64;
-            Some(libm::log(point.error() / before.error()) / libm::log(samples))
+        let to = |last: &&Point| {
+            let last = *last;
+            let others = curve.iter().filter(|point| is_apart(point, last));
+            let slope = |point: &&Point| {
+                let samples = last.per_pixel as f64 / point.per_pixel as f64;
+                libm::log(last.error() / point.error()) / libm::log(samples)
+            };
+            others.map(slope).collect::<Vec<_>>()
         };
-        curve.iter().filter_map(slope).collect()
+        curve.iter().flat_map(to).collect()
     }
 
     /// What an error takes; none if more samples do not help.
@@ -102,9 +111,9 @@ impl Series {
     /// the error, and beyond the last one through that and another with at most half its samples. Fewer samples than were measured are not
     /// asked for: they would not take less than the pixel's share of the rest.
     ///
-    /// With standard errors ε of the logarithms of both errors, the place x = (1 − s)·a + s·b on the line has that of
-    /// √((1 − s)²ε_a² + s²ε_b²) by its slope. Beyond the last point the truth may bend away: there it counts, too, how far off x is if the
-    /// errors fall with any other slope that was seen, or is one of `SLOPES`. Between two it may sag, most half-way, and more than all points
+    /// With standard errors ε of the logarithms of both errors, the place x = (1 − s)·a + s·b on the line has one of up to
+    /// |1 − s|·ε_a + s·ε_b by its slope: runs of one seed are wrong together, and all tries are. Beyond the last point the truth may bend away: there it counts, too, how far off x is if the
+    /// errors fall with any other slope that was seen, or that of theory. Between two it may sag, most half-way, and more than all points
     /// show where they are the counts that a method likes best: there `SAG` says how much counts. The answer is a count that suits the method.
     pub fn needed(&self, error: f64) -> Option<Needed> {
         let curve = self.curve();
@@ -124,7 +133,8 @@ impl Series {
             Some(next) => (curve[next - 1], curve[next]),
             None => {
                 let last = *curve.last()?;
-                (before(&curve, last)?, last)
+                let mut apart = curve.iter().rev().filter(|point| is_apart(point, last));
+                (*apart.next()?, last)
             }
         };
         let [x_a, x_b] = [a, b].map(|point| libm::log(point.per_pixel as f64));
@@ -143,8 +153,8 @@ impl Series {
         }
         let mut per_pixel = fitting(self.method, exact.ceil());
         let mut doubt = self.log_error(a).zip(self.log_error(b)).map(|(a, b)| {
-            let (a, b) = ((1.0 - share) * a, share * b);
-            (a * a + b * b).sqrt() / slope.abs()
+            let error = (1.0 - share).abs() * a + share * b;
+            CERTAINTY * error / slope.abs()
         });
         let mut sag = 0.0;
         let bend = if enough.is_some() {
@@ -170,9 +180,13 @@ impl Series {
     }
 
     /// How much farther or nearer than by this slope an error lies, as a part of that distance, by the slope that is the least like it of those
-    /// that were seen and of `SLOPES`.
+    /// that were seen and of those of theory.
     fn bend(&self, slope: f64) -> f64 {
-        let others = self.slopes().into_iter().chain(SLOPES);
+        let theory = match self.method {
+            Method::Random | Method::Scatter => [INDEPENDENT; 2],
+            _ => [INDEPENDENT, EVEN],
+        };
+        let others = self.slopes().into_iter().chain(theory);
         let off = others.map(|other| match other < 0.0 {
             true => (slope / other - 1.0).abs(),
             false => f64::INFINITY,
@@ -243,10 +257,9 @@ pub(super) fn fitting(method: Method, count: f64) -> f64 {
     .unwrap_or(count)
 }
 
-/// The last point with at most half the samples of this one: what lies nearer tells more of noise than of a slope.
-fn before<'a>(curve: &[&'a Point], point: &Point) -> Option<&'a Point> {
-    let is_apart = |other: &&&Point| other.per_pixel <= point.per_pixel / 2;
-    curve.iter().rev().find(is_apart).copied()
+/// Whether a point has at most half the samples of another: what lies nearer tells more of noise than of a slope.
+fn is_apart(point: &Point, last: &Point) -> bool {
+    point.per_pixel <= last.per_pixel / 2
 }
 
 impl Measurement {

@@ -13,8 +13,8 @@ use crate::scene::Method;
 pub const NOISY: f64 = 0.2;
 
 /// What the factor of what an error takes means.
-pub(super) const FACTOR: &str = "one standard error, and how far the line may be off: between two points as much as it may sag, and of what is extrapolated \
-     as much as by the slope between any other two points, by −1/2 or by −3/4. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture.";
+pub(super) const FACTOR: &str = "two standard errors, and how far the line may be off: between two points as much as it may sag, and of what is extrapolated \
+     as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture.";
 
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
@@ -73,7 +73,10 @@ fn all(measured: &Measurement, wanted: f64) -> String {
 }
 
 fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
-    let names: Vec<_> = methods.iter().map(|(method, _)| *method).collect();
+    let (unknown, known): (Vec<_>, Vec<_>) =
+        methods.iter().partition(|(_, needed)| needed.is_unknown());
+    let [names, unknown] =
+        [known, unknown].map(|them| them.iter().map(|(it, _)| *it).collect::<Vec<_>>());
     let (method, needed) = methods[0];
     let samples = plural(needed.per_pixel as u64, "sample");
     let found = match needed.is_extrapolated {
@@ -88,7 +91,7 @@ fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
             method.name()
         );
     }
-    match names.as_slice() {
+    let fastest = match names.as_slice() {
         [one] => format!(
             "the fastest sampled method, {}, needs {time} for an error of {wanted} ({samples} per pixel{found})",
             one.name()
@@ -97,6 +100,13 @@ fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
             "the fastest sampled methods, {}, cannot be told apart; {} needs {time} for an error of {wanted} ({samples} per pixel{found})",
             method_list(several),
             method.name()
+        ),
+    };
+    match unknown.is_empty() {
+        true => fastest,
+        false => format!(
+            "{fastest}; how long {} would take is not known",
+            method_list(&unknown)
         ),
     }
 }

@@ -77,7 +77,7 @@ fn charts(measured: &Measurement) -> String {
         "<figure>\n<div class=\"wide\">{}</div><figcaption>Error against the time of a render. Lower and further to the left is better. \
          The exact method's error lies below the chart: it is within {bound}.</figcaption>\n</figure>\n\
          <figure>\n<div class=\"wide\">{}</div><figcaption>Error against samples per pixel. The number beside a name is the slope of the \
-         straight line through all planned points; its ± covers the slopes from each point, tried or not, back to the last one with at most half its samples. −0.5 is that of \
+         straight line through all planned points; its ± covers the slopes between any two points of which one has at least twice the samples of the other. −0.5 is that of \
          independent samples, about −0.75 the best that a slanted edge allows.{tried}</figcaption>\n\
          </figure>\n",
         against_time(measured),
@@ -179,7 +179,7 @@ fn errors(measured: &Measurement) -> String {
     table(
         "Error: the root of the mean squared difference to the exact picture in linear light (white is 1), by samples per pixel; the \
          largest difference of any channel with the most samples; the slope of log error against log samples, whose ± covers its standard error and \
-         every slope of the chart from a point back to the last one with at most half its samples.",
+         the slope between any two points of the chart of which one has at least twice the samples of the other.",
         &names,
         rows,
         exact,
@@ -278,7 +278,7 @@ fn needs(measured: &Measurement) -> String {
         return String::new();
     }
     table(
-        "What an error takes: samples per pixel by the lines between the points, × and ÷ one standard error and how far the truth may be from these lines, and their time. A star marks what lies \
+        "What an error takes: samples per pixel by the lines between the points, × and ÷ two standard errors and how far the truth may be from these lines, and their time. A star marks what lies \
          beyond the measured range; where an answer was tried, the last column is what the last try left of the error.",
         &names,
         rows,

@@ -11,8 +11,8 @@ use super::{
 use crate::{numbers, scene::Method, suggest};
 
 /// What a slope's error means.
-pub(super) const SLOPE: &str = "of the line through the logarithms of samples and error; ± covers its standard error and every slope from a \
-     point back to the last one with at most half its samples, tried ones among them. More samples than these may have another one.";
+pub(super) const SLOPE: &str = "of the line through the logarithms of samples and error; ± covers its standard error and the slope between any \
+     two points, tried ones among them, of which one has at least twice the samples of the other. More samples than these may have another one.";
 
 /// What a rate means.
 pub(super) const RATE: &str = "all samples by the time that they take, traced or not: where pixels are certain to show one colour, none is.";
