@@ -30,6 +30,9 @@ pub fn short(x: f64) -> String {
 
 /// A bound with two significant digits that is no less.
 pub fn at_most(bound: f64) -> String {
+    if bound == 0.0 {
+        return "0".to_owned();
+    }
     let text = format!("{bound:.1e}");
     match text.parse() {
         Ok(read) if bound > read => format!("{:.1e}", bound * 1.05),

@@ -142,8 +142,11 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, certain: u64, what: &str) -> St
             numbers::grouped(others)
         ),
     };
-    let bound = numbers::at_most(exact.bound());
-    let mut text = format!("exact: every channel is within {bound} of its true mean; {rounding}\n");
+    let mean = match exact.bound() {
+        0.0 => "exactly its true mean".to_owned(),
+        bound => format!("within {} of its true mean", numbers::at_most(bound)),
+    };
+    let mut text = format!("exact: every channel is {mean}; {rounding}\n");
     let vague = |bound: &&f32| **bound > VAGUE;
     let count = exact.bounds.iter().filter(vague).count() as u64;
     if let Some(least) =

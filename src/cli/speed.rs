@@ -151,6 +151,10 @@ fn measure(
         let mut measured = counted(plan.total(), &control, |control| {
             speed::measure(&plan, control)
         })?;
+        let (runs, nanoseconds) = speed::further(&plan, &measured);
+        counted(nanoseconds, &control, |control| {
+            speed::measure_further(runs, &plan, control, &mut measured)
+        })?;
         let checks = Checks::new(&plan, &measured);
         counted(checks.total(), &control, |control| {
             checks.run(&mut measured, control)

@@ -614,3 +614,23 @@ fn a_bound_that_is_worth_a_word_gets_one() {
         "{told}"
     );
 }
+
+#[test]
+fn a_picture_of_one_colour_is_exactly_right() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("empty.scn"),
+        "image { width 4 height 4 } camera { eye (0, 1, 0) lookat (0, 1, -1) } sampler { method exact }",
+    )
+    .unwrap();
+    let output = command(folder.path(), &["render", "empty.scn"])
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.ends_with(
+            "\nexact: every channel is exactly its true mean; the 8-bit rounding of every pixel is certain\n"
+        ),
+        "{told}"
+    );
+}

@@ -7,7 +7,7 @@
 
 use super::{
     measure::{Measurement, Point, run},
-    needed::{Check, Needed},
+    needed::{Check, Needed, fitting},
     plan::Plan,
 };
 use crate::render::{Control, RenderError};
@@ -19,7 +19,7 @@ const FILLED: f64 = 0.9;
 const MARGIN: f64 = 1.1;
 
 /// Between two points the line is trusted where it may be off by this part at most.
-const CLOSE: f64 = 0.01;
+pub(super) const CLOSE: f64 = 0.01;
 
 /// A picture has no more samples than this.
 const MOST: f64 = (1_u64 << 53) as f64;
@@ -124,7 +124,7 @@ fn renders(measured: &Measurement) -> Vec<Render> {
             let needed = needed.filter(|needed| is_open(needed) && tries.count() < TRIES);
             let render = needed.and_then(|needed| {
                 let per_pixel = match needed.is_extrapolated {
-                    true => (MARGIN * needed.per_pixel).ceil(),
+                    true => fitting(series.method, (MARGIN * needed.per_pixel).ceil()),
                     false => needed.per_pixel,
                 };
                 let is_measured = |point: &&Point| point.per_pixel as f64 == per_pixel;

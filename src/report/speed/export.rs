@@ -9,14 +9,15 @@ use super::{
     fit::median,
     measure::{Measurement, Point, Series},
     needed::Check,
-    notes::{notes, spread, verdicts},
+    notes::{FACTOR, notes, spread, verdicts},
+    table::{RATE, SLOPE},
 };
 
-/// A row for each method and number of samples, after a row of names. Times are in seconds, errors in linear light. The exact
-/// method has a row without samples, and its bound as its errors.
+/// A row for each method and number of samples, after a row of names. Times are in seconds, errors in linear light. Rows of samples that were
+/// tried say for which error, and have no part in the slope. The exact method has a row without samples, and a bound in place of errors.
 pub fn to_csv(measured: &Measurement) -> String {
-    let mut text = "method,per_pixel,samples,runs,seconds_median,seconds_min,seconds_max,spread,rays_per_second,rmse,rmse_min,\
-                    rmse_max,largest_error,slope,slope_error\n"
+    let mut text = "method,per_pixel,samples,runs,seconds_median,seconds_min,seconds_max,spread,samples_per_second,rmse,rmse_min,\
+                    rmse_max,largest_error,slope,slope_error,bound,tried_for\n"
         .to_owned();
     for series in &measured.series {
         let fit = series.fit();
@@ -24,35 +25,42 @@ pub fn to_csv(measured: &Measurement) -> String {
         let slope_error = fit.and_then(|fit| fit.slope_error);
         let slope_error = slope_error.map_or(String::new(), |error| error.to_string());
         for point in &series.points {
-            let [fast, slow] = ends(&point.times);
-            let [good, bad] = ends(&point.rmse);
-            let _ = writeln!(
-                text,
-                "{},{},{},{},{},{fast},{slow},{},{},{},{good},{bad},{},{slope},{slope_error}",
-                series.method.name(),
-                point.per_pixel,
-                point.samples,
-                point.times.len(),
-                point.seconds(),
-                point.spread(),
-                point.rays_per_second(),
-                point.error(),
-                point.largest
-            );
+            let _ = writeln!(text, "{},{slope},{slope_error},,", columns(series, point));
+        }
+        for Check { wanted, point } in &series.checks {
+            let _ = writeln!(text, "{},,,,{wanted}", columns(series, point));
         }
     }
     if let Some(exact) = &measured.exact {
         let [fast, slow] = ends(&exact.times);
-        let bound = measured.reference.bound();
         let _ = writeln!(
             text,
-            "exact,,,{},{},{fast},{slow},{},,{bound},{bound},{bound},{bound},,",
+            "exact,,,{},{},{fast},{slow},{},,,,,,,,{},",
             exact.times.len(),
             median(&exact.times),
-            spread(&exact.times)
+            spread(&exact.times),
+            measured.reference.bound()
         );
     }
     text
+}
+
+/// The columns up to the largest error.
+fn columns(series: &Series, point: &Point) -> String {
+    let [fast, slow] = ends(&point.times);
+    let [good, bad] = ends(&point.rmse);
+    format!(
+        "{},{},{},{},{},{fast},{slow},{},{},{},{good},{bad},{}",
+        series.method.name(),
+        point.per_pixel,
+        point.samples,
+        point.times.len(),
+        point.seconds(),
+        point.spread(),
+        point.samples_per_second(),
+        point.error(),
+        point.largest
+    )
 }
 
 /// All that was measured. A number that is not finite is null.
@@ -85,6 +93,7 @@ pub fn to_json(measured: &Measurement) -> Value {
         "methods": measured.series.iter().map(|series| of_series(series, &measured.errors)).collect::<Vec<_>>(),
         "verdicts": verdicts(measured),
         "notes": notes(measured),
+        "about": {"slope_error": SLOPE, "factor": FACTOR, "samples_per_second": RATE},
     })
 }
 
@@ -95,6 +104,7 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
             "slope_error": fit.slope_error,
             "slope_error_residuals": fit.residual_error,
             "slope_error_runs": fit.measured_error,
+            "slope_error_bend": fit.bend,
             "points": fit.points,
         })
     });
@@ -131,7 +141,7 @@ fn of_point(point: &Point) -> Value {
         "per_pixel": point.per_pixel,
         "samples": point.samples,
         "time": times(&point.times),
-        "rays_per_second": point.rays_per_second(),
+        "samples_per_second": point.samples_per_second(),
         "rmse": point.error(),
         "rmse_runs": point.rmse,
         "largest_error": point.largest,

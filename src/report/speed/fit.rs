@@ -42,24 +42,29 @@ pub fn log_error(values: &[f64]) -> Option<f64> {
 ///
 /// With k points, x̄ and ȳ their means (of the logarithms) and S = Σ(x − x̄)², the slope is b = Σ(x − x̄)(y − ȳ) / S and its standard
 /// error √(Σr² / (k − 2) / S), r being the residuals: Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
-/// That takes the residuals for independent and alike; where the true curve bends, they are not, and the error says how much. But a few
-/// points may lie on a line by luck. So where standard errors e of the ln y are known, the slope has at least the error that they
-/// give it, √(Σ(x − x̄)²e²) / S: of the two the greater one counts. That is the rule by which the Particle Data Group scales the errors of means,
-/// up where points scatter more than their own errors say and never down (Review of Particle Physics 2024, section 5.2.2 of its introduction).
+/// That takes the residuals for independent and alike. But a few points may lie on a line by luck. So where standard errors e of the
+/// ln y are known, the slope has at least the error that they give it, √(Σ(x − x̄)²e²) / S: of the two the greater one counts. That is the rule by
+/// which the Particle Data Group scales the errors of means, up where points scatter more than their own errors say and never down (Review of
+/// Particle Physics 2024, section 5.2.2 of its introduction).
+///
+/// And where the true curve bends, its residuals are neither independent nor alike: the standard error tells how well the mean slope is known, while
+/// a reader takes it for that of the curve. So the error is no less than what the slopes within the curve are apart from the line's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// The exponent b of y ∝ x^b.
     pub slope: f64,
-    /// Its standard error, if there are more points than two: the greater one of the two below.
+    /// How far it may be off, if there are more points than two: the greatest one of the three below.
     pub slope_error: Option<f64>,
-    /// What the residuals say.
+    /// The standard error that the residuals give it.
     pub residual_error: Option<f64>,
-    /// What the errors of the points say, if they are known.
+    /// The standard error that those of the points give it, if they are known.
     pub measured_error: Option<f64>,
+    /// The greatest difference between it and the slopes within the curve, if they are known.
+    pub bend: Option<f64>,
     /// How many points it goes through.
     pub points: usize,
-    /// The means of the logarithms: the line goes through them.
-    center: (f64, f64),
+    /// x̄.
+    center: f64,
     /// S.
     spread: f64,
 }
@@ -103,8 +108,9 @@ impl Fit {
             slope_error: residual_error,
             residual_error,
             measured_error: None,
+            bend: None,
             points: logs.len(),
-            center,
+            center: center.0,
             spread,
         })
     }
@@ -113,7 +119,7 @@ impl Fit {
     pub fn of_measured(points: &[(f64, f64)], errors: &[Option<f64>]) -> Option<Self> {
         let fit = Self::of(points)?;
         let part = |(&(x, _), error): (&(f64, f64), &Option<f64>)| {
-            error.map(|error| square((libm::log(x) - fit.center.0) * error))
+            error.map(|error| square((libm::log(x) - fit.center) * error))
         };
         let variance: Option<f64> = points.iter().zip(errors).map(part).sum();
         let measured_error = variance.map(|variance| variance.sqrt() / fit.spread);
@@ -126,15 +132,15 @@ impl Fit {
         })
     }
 
-    /// The y of the line at x.
-    pub fn at(&self, x: f64) -> f64 {
-        libm::exp(self.center.1 + self.slope * (libm::log(x) - self.center.0))
-    }
-
-    /// The x at which the line has come down to y; none if it does not fall.
-    pub fn reaches(&self, y: f64) -> Option<f64> {
-        let x = libm::exp(self.center.0 + (libm::log(y) - self.center.1) / self.slope);
-        (self.slope < 0.0 && x.is_finite()).then_some(x)
+    /// The same line, where these are the slopes within the curve: if there is an error, it covers them.
+    pub fn bent(self, slopes: &[f64]) -> Self {
+        let apart = slopes.iter().map(|slope| (slope - self.slope).abs());
+        let bend = apart.reduce(f64::max);
+        Self {
+            slope_error: self.slope_error.map(|error| error.max(bend.unwrap_or(0.0))),
+            bend,
+            ..self
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! is the way from the scene in memory to the film in memory: preparing the objects and the samples, starting the threads, rendering.
 //! Neither reading the scene nor comparing nor encoding is.
 
-use std::{num::NonZero, sync::atomic::Ordering, time::Instant};
+use std::{num::NonZero, ops::Range, sync::atomic::Ordering, time::Instant};
 
 use super::{
     Machine,
@@ -48,7 +48,7 @@ pub struct Measurement {
     pub seed: u64,
     /// Samples per pixel, ascending.
     pub rungs: Vec<u64>,
-    /// How many runs were planned.
+    /// How many runs were planned, at first or because of noise.
     pub runs: u64,
     /// The errors that are asked for.
     pub errors: Vec<f64>,
@@ -138,14 +138,15 @@ impl Point {
         root_mean_square(&self.rmse)
     }
 
-    /// How many samples are taken a second.
-    pub fn rays_per_second(&self) -> f64 {
+    /// How many samples are taken a second: whether they are traced, or known to show one colour without.
+    pub fn samples_per_second(&self) -> f64 {
         self.samples as f64 / self.seconds()
     }
 }
 
 impl Series {
-    /// The line through the logarithms of samples and error, if there are errors. Runs have seeds of their own, and their errors spread.
+    /// The line through the logarithms of samples and error, if there are errors. Runs have seeds of their own, and their errors spread. What was
+    /// tried has other numbers of samples in each method, and is left out of the line, but not of how far that may be off.
     pub fn fit(&self) -> Option<Fit> {
         let points: Vec<_> = self
             .points
@@ -157,7 +158,7 @@ impl Series {
             .iter()
             .map(|point| log_error(&point.rmse))
             .collect();
-        Fit::of_measured(&points, &errors)
+        Fit::of_measured(&points, &errors).map(|fit| fit.bent(&self.slopes()))
     }
 }
 
@@ -173,6 +174,13 @@ impl Measurement {
         let complete = |point: &Point| point.times.len() as u64 == self.runs;
         let rungs = |series: &Series| series.points.len() == self.rungs.len();
         self.rounds() as u64 == self.runs && points().all(complete) && self.series.iter().all(rungs)
+    }
+
+    /// How long one run of everything took, in the median.
+    pub(super) fn round_seconds(&self) -> f64 {
+        let points = self.series.iter().flat_map(|series| &series.points);
+        let exact = self.exact.iter().map(|exact| median(&exact.times));
+        points.map(Point::seconds).chain(exact).sum()
     }
 
     /// How many runs were begun.
@@ -195,30 +203,7 @@ enum Task {
 /// estimated nanoseconds.
 pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderError> {
     let mut measured = empty(plan);
-    let mut tasks = Vec::new();
-    if measured.exact.is_some() {
-        tasks.push(Task::Exact);
-    }
-    for series in 0..plan.warm_up.len() {
-        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point)));
-    }
-    'rounds: for round in 0..plan.runs {
-        let round_started = Instant::now();
-        shuffle(&mut tasks, round);
-        for &task in &tasks {
-            match perform(task, round, plan, control, &mut measured) {
-                Err(RenderError::Cancelled) => {
-                    measured.interrupted = true;
-                    break 'rounds;
-                }
-                done => done?,
-            }
-        }
-        let next_ends = plan.started.elapsed() + round_started.elapsed();
-        if plan.is_limited && next_ends > plan.request.budget {
-            break;
-        }
-    }
+    rounds(0..plan.runs, plan, control, &mut measured)?;
     if measured.interrupted && !any_run(&measured) {
         warmed_up(plan, &mut measured);
     }
@@ -229,6 +214,60 @@ pub fn measure(plan: &Plan, control: &Control) -> Result<Measurement, RenderErro
     measured.exact = measured.exact.filter(|exact| !exact.times.is_empty());
     measured.seconds = plan.started.elapsed().as_secs_f64();
     Ok(measured)
+}
+
+/// The further runs that there should be after those that were planned: how many, and how many nanoseconds they will take.
+pub fn further(plan: &Plan, measured: &Measurement) -> (u64, u64) {
+    let runs = plan.further_runs(measured);
+    (runs, (runs as f64 * measured.round_seconds() * 1e9) as u64)
+}
+
+/// Makes so many further runs of all that was planned.
+pub fn measure_further(
+    runs: u64,
+    plan: &Plan,
+    control: &Control,
+    measured: &mut Measurement,
+) -> Result<(), RenderError> {
+    let made = measured.runs;
+    measured.runs += runs;
+    rounds(made..measured.runs, plan, control, measured)?;
+    measured.seconds = plan.started.elapsed().as_secs_f64();
+    Ok(())
+}
+
+/// Runs everything once for each of these numbers, unless the time is up before.
+fn rounds(
+    numbers: Range<u64>,
+    plan: &Plan,
+    control: &Control,
+    measured: &mut Measurement,
+) -> Result<(), RenderError> {
+    let mut tasks = Vec::new();
+    if measured.exact.is_some() {
+        tasks.push(Task::Exact);
+    }
+    for series in 0..measured.series.len() {
+        tasks.extend((0..plan.rungs.len()).map(|point| Task::Sampled(series, point)));
+    }
+    for round in numbers {
+        let started = Instant::now();
+        shuffle(&mut tasks, round);
+        for &task in &tasks {
+            match perform(task, round, plan, control, measured) {
+                Err(RenderError::Cancelled) => {
+                    measured.interrupted = true;
+                    return Ok(());
+                }
+                done => done?,
+            }
+        }
+        let next_ends = plan.started.elapsed() + started.elapsed();
+        if plan.is_limited && next_ends > plan.request.budget {
+            break;
+        }
+    }
+    Ok(())
 }
 
 fn empty(plan: &Plan) -> Measurement {
@@ -283,7 +322,10 @@ fn any_run(measured: &Measurement) -> bool {
 /// The warm-up in place of runs, of which there are none.
 fn warmed_up(plan: &Plan, measured: &mut Measurement) {
     measured.is_warm_up = true;
-    measured.rungs = vec![plan.warm];
+    measured.rungs = match plan.warm_up.is_empty() {
+        true => Vec::new(),
+        false => vec![plan.warm],
+    };
     for (series, warm) in measured.series.iter_mut().zip(&plan.warm_up) {
         let mut point = Point::new(plan.warm, plan.reference.bounds.len() as u64);
         warm.runs.iter().for_each(|&run| point.add(run));

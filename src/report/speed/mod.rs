@@ -5,6 +5,7 @@
 //! [`Measurement`], plain data, of which `table` makes text for a terminal, `export` CSV and JSON, `chart` SVG and `page` HTML, which
 //! shows the crops of `picture`.
 
+mod account;
 mod chart;
 mod check;
 mod export;
@@ -25,7 +26,7 @@ pub use self::{
     check::Checks,
     export::{to_csv, to_json},
     machine::Machine,
-    measure::{Computed, Measurement, Point, Series, Subject, measure},
+    measure::{Computed, Measurement, Point, Series, Subject, further, measure, measure_further},
     needed::{Check, Fastest, Needed},
     notes::{NOISY, notes},
     page::page,

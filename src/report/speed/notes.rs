@@ -12,6 +12,10 @@ use crate::scene::Method;
 /// Times of the same work that spread by more than this share of their median, from the least to the greatest, are called noisy.
 pub const NOISY: f64 = 0.2;
 
+/// What the factor of what an error takes means.
+pub(super) const FACTOR: &str = "two standard errors, and how far the line may be off: between two points as much as it may sag, and of what is extrapolated \
+     as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture.";
+
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
 
@@ -69,7 +73,10 @@ fn all(measured: &Measurement, wanted: f64) -> String {
 }
 
 fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
-    let names: Vec<_> = methods.iter().map(|(method, _)| *method).collect();
+    let (unknown, known): (Vec<_>, Vec<_>) =
+        methods.iter().partition(|(_, needed)| needed.is_unknown());
+    let [names, unknown] =
+        [known, unknown].map(|them| them.iter().map(|(it, _)| *it).collect::<Vec<_>>());
     let (method, needed) = methods[0];
     let samples = plural(needed.per_pixel as u64, "sample");
     let found = match needed.is_extrapolated {
@@ -77,7 +84,14 @@ fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
         true => ", extrapolated",
     };
     let (time, wanted) = (seconds(needed.seconds), error(wanted));
-    match names.as_slice() {
+    if needed.is_unknown() {
+        return format!(
+            "which sampled method is the fastest is not known, as nothing is of how far off they are; {} should need {time} for an error of \
+             {wanted} ({samples} per pixel{found})",
+            method.name()
+        );
+    }
+    let fastest = match names.as_slice() {
         [one] => format!(
             "the fastest sampled method, {}, needs {time} for an error of {wanted} ({samples} per pixel{found})",
             one.name()
@@ -86,6 +100,13 @@ fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
             "the fastest sampled methods, {}, cannot be told apart; {} needs {time} for an error of {wanted} ({samples} per pixel{found})",
             method_list(several),
             method.name()
+        ),
+    };
+    match unknown.is_empty() {
+        true => fastest,
+        false => format!(
+            "{fastest}; how long {} would take is not known",
+            method_list(&unknown)
         ),
     }
 }
@@ -174,16 +195,21 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
         needs.into_iter().any(|needed| needed.is_extrapolated)
     };
     measured.series.iter().any(needs).then(|| {
-        "What is extrapolated follows the line through the last of what was measured. × and ÷ is one standard error of it, or how far the line \
-         through all points is from there, if that is more; where errors bend away further on, the truth is farther off."
-            .to_owned()
+        format!(
+            "What is extrapolated goes on with the slope between the last of what was measured. × and ÷: {FACTOR}"
+        )
     })
 }
 
+/// Of how many combinations of method and samples the times are noisy.
+pub(super) fn noisy(measured: &Measurement) -> usize {
+    let points = measured.series.iter().flat_map(|series| &series.points);
+    points.filter(|point| point.spread() > NOISY).count()
+}
+
 fn noise(measured: &Measurement) -> Option<String> {
-    let configurations = || measured.series.iter().flat_map(|series| &series.points);
-    let noisy = configurations().filter(|point| point.spread() > NOISY);
-    let count = noisy.count();
+    let combinations = measured.series.iter().map(|series| series.points.len());
+    let count = noisy(measured);
     let worst = measured
         .series
         .iter()
@@ -194,7 +220,7 @@ fn noise(measured: &Measurement) -> Option<String> {
         format!(
             "The machine was noisy: of {} combinations of method and samples, {count} have times that spread by more than {} % of \
              their median, from the least to the greatest; the worst is {} with {} per pixel, {:.0} %.",
-            configurations().count(),
+            combinations.sum::<usize>(),
             NOISY * 100.0,
             method.name(),
             point.per_pixel,

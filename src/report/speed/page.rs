@@ -5,13 +5,14 @@
 use std::{fmt::Write, io};
 
 use super::{
+    account::account,
     chart::{against_samples, against_time, escaped},
     export::sha256,
     fit::median,
     measure::{Measurement, Point, Series},
-    notes::{NOISY, notes, spread, verdicts},
+    notes::{notes, spread, verdicts},
     picture,
-    table::{cells, count, error, factor, marked_slope, plural, seconds, tried},
+    table::{cells, count, doubt, error, marked_slope, plural, seconds, tried},
 };
 use crate::{numbers, scene::Method};
 
@@ -30,7 +31,7 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
         let class = if number == 0 { " class=\"first\"" } else { "" };
         section(&mut html, measured, class)?;
     }
-    html += &method(measurements);
+    html += &account(measurements);
     html += "</main>\n</body>\n</html>\n";
     Ok(html)
 }
@@ -49,6 +50,7 @@ fn section(html: &mut String, measured: &Measurement, class: &str) -> io::Result
         *html += &format!("<ul class=\"notes\">\n{}</ul>\n", items.collect::<String>());
     }
     *html += &facts(measured);
+    *html += &whole(measured)?;
     *html += &charts(measured);
     *html += "<h3>The numbers</h3>\n";
     *html += &errors(measured);
@@ -67,15 +69,16 @@ fn charts(measured: &Measurement) -> String {
         .any(|series| !series.checks.is_empty());
     let tried = match is_tried {
         true => {
-            " Points at other numbers of samples than the axis names are single runs that try what an error takes; the slope leaves them out."
+            " Points at other numbers of samples than the axis names are single runs that try what an error takes."
         }
         false => "",
     };
     format!(
         "<figure>\n<div class=\"wide\">{}</div><figcaption>Error against the time of a render. Lower and further to the left is better. \
          The exact method's error lies below the chart: it is within {bound}.</figcaption>\n</figure>\n\
-         <figure>\n<div class=\"wide\">{}</div><figcaption>Error against samples per pixel. The number beside a name is the slope with \
-         its standard error: −0.5 is that of independent samples, about −0.75 the best that a slanted edge allows.{tried}</figcaption>\n\
+         <figure>\n<div class=\"wide\">{}</div><figcaption>Error against samples per pixel. The number beside a name is the slope of the \
+         straight line through all planned points; its ± covers the slopes between any two points of which one has at least twice the samples of the other. −0.5 is that of \
+         independent samples, about −0.75 the best that a slanted edge allows.{tried}</figcaption>\n\
          </figure>\n",
         against_time(measured),
         against_samples(measured)
@@ -83,7 +86,7 @@ fn charts(measured: &Measurement) -> String {
 }
 
 /// Text in which no line's end breaks a number with an exponent.
-fn prose(text: &str) -> String {
+pub(super) fn prose(text: &str) -> String {
     let whole =
         |word: &str| match word.contains("e-") && word.starts_with(|c: char| c.is_ascii_digit()) {
             true => format!("<span class=\"number\">{word}</span>"),
@@ -139,6 +142,23 @@ fn facts(measured: &Measurement) -> String {
     format!("<dl class=\"facts\">\n{}</dl>\n", items.collect::<String>())
 }
 
+/// The exact picture as a whole.
+fn whole(measured: &Measurement) -> io::Result<String> {
+    let (uri, size) = picture::whole(measured)?;
+    let whole = measured.whole();
+    let scaled = match size == whole {
+        true => String::new(),
+        false => format!(
+            ", at {} × {} of its {} × {} pixels",
+            size.width, size.height, whole.width, whole.height
+        ),
+    };
+    Ok(format!(
+        "<figure class=\"whole\">{}<figcaption>What is rendered: the exact picture{scaled}.</figcaption></figure>\n",
+        image(&uri, "the exact picture as a whole")
+    ))
+}
+
 fn errors(measured: &Measurement) -> String {
     let rows = measured.series.iter().map(|series| {
         let mut row = cells(measured, series, |point| error(point.error()));
@@ -158,7 +178,8 @@ fn errors(measured: &Measurement) -> String {
     names.extend(["largest".to_owned(), "slope".to_owned()]);
     table(
         "Error: the root of the mean squared difference to the exact picture in linear light (white is 1), by samples per pixel; the \
-         largest difference of any channel with the most samples; the slope of log error against log samples.",
+         largest difference of any channel with the most samples; the slope of log error against log samples, whose ± covers its standard error and \
+         the slope between any two points of the chart of which one has at least twice the samples of the other.",
         &names,
         rows,
         exact,
@@ -175,7 +196,7 @@ fn times(measured: &Measurement) -> String {
     };
     let rows = measured.series.iter().map(|series| {
         let mut row = cells(measured, series, with_range);
-        let rate = series.points.last().map_or(0.0, Point::rays_per_second);
+        let rate = series.points.last().map_or(0.0, Point::samples_per_second);
         row.push(format!("{:.1}", rate / 1e6));
         (series.method.name(), row)
     });
@@ -185,10 +206,10 @@ fn times(measured: &Measurement) -> String {
         format!("<td class=\"any\" colspan=\"{rungs}\">{time}</td><td></td>")
     });
     let mut names = rung_names(measured);
-    names.push("million rays/s".to_owned());
+    names.push("million samples/s".to_owned());
     table(
         "Time: the median of the runs, ± half of the distance from the least to the greatest, by samples per pixel; the rate with \
-         the most samples. The exact method takes no samples.",
+         the most samples, traced or not: where pixels are certain to show one colour, none is. The exact method takes no samples.",
         &names,
         rows,
         exact,
@@ -216,8 +237,8 @@ fn needs(measured: &Measurement) -> String {
             false => text,
         };
         let none = || "–".to_owned();
-        let samples = needed.map(|needed| match needed.factor {
-            Some(doubt) => mark(format!("{} × ÷ {}", count(needed.per_pixel), factor(doubt))),
+        let samples = needed.map(|needed| match doubt(&needed) {
+            Some(doubt) => mark(format!("{} × ÷ {doubt}", count(needed.per_pixel))),
             None => mark(count(needed.per_pixel)),
         });
         let time = needed.map(|needed| mark(seconds(needed.seconds)));
@@ -257,7 +278,7 @@ fn needs(measured: &Measurement) -> String {
         return String::new();
     }
     table(
-        "What an error takes: samples per pixel by the lines between the points, × and ÷ one standard error and what these lines may sag, and their time. A star marks what lies \
+        "What an error takes: samples per pixel by the lines between the points, × and ÷ two standard errors and how far the truth may be from these lines, and their time. A star marks what lies \
          beyond the measured range; where an answer was tried, the last column is what the last try left of the error.",
         &names,
         rows,
@@ -375,49 +396,6 @@ fn scale() -> String {
 
 fn image(uri: &str, text: &str) -> String {
     format!("<img src=\"{uri}\" alt=\"{text}\"/>")
-}
-
-/// How the numbers came about.
-fn method(measurements: &[Measurement]) -> String {
-    let bounds = measurements
-        .iter()
-        .map(|measured| measured.reference.bound());
-    let bound = prose(&numbers::at_most(bounds.fold(0.0, f64::max)));
-    let noisy = NOISY * 100.0;
-    format!(
-        "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\
-         <li><b>Warm-up.</b> The exact picture is computed and every method renders twice, with few samples, before anything counts. What that took decides how \
-         many samples and runs fit into the time.</li>\n\
-         <li><b>Runs are interleaved.</b> A round runs every method with every number of samples once, in an order that is shuffled anew in \
-         each round by a fixed rule, so that what else the machine does falls on all alike. A run has a seed of its own: that of the scene \
-         plus the number of the round.</li>\n\
-         <li><b>What is timed</b> is the way from the scene in memory to the picture in memory: preparing objects and samples, starting the \
-         threads, rendering. Reading the scene, comparing pictures and writing PNG files are not. Rays per second are all samples divided by that time: most lie in pixels \
-         that are certain to show one colour, and need not be traced. The time is the median of the runs; \
-         combinations whose times spread by more than {noisy} % of it are called noisy above.</li>\n\
-         <li><b>The error</b> is the root of the mean squared difference to the exact picture, over all pixels and the three channels, in \
-         linear light; that of several runs is the root of the mean of their squares. The reference is not rendered with many samples but \
-         computed from the areas that the objects cover in a pixel, with a bound for each pixel that grows with every operation; the \
-         greatest bound here is {bound}. No error that is smaller means anything.</li>\n\
-         <li><b>The slope</b> b of error ∝ samples<sup>b</sup> is the least-squares line through the logarithms of samples and error, one \
-         point for each number of samples. With residuals r of k points and x = ln samples, its standard error is \
-         √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4). A few points may \
-         lie on a line by luck, so that the error is no less than what the spread of the runs gives it, each of which has a seed of its own: \
-         √(Σ(x − x̄)²e²) / Σ(x − x̄)², e being the standard error of the logarithm of a point’s error, √(v/n)/2m by the mean m and the variance v \
-         of the n runs’ squared errors. The greater one is given (as the Particle Data Group scales errors), and JSON has both.</li>\n\
-         <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
-         rounded up to a whole number of samples; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
-         through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
-         and time is left, answers are tried up to three times, the fastest methods first: in a single run, which is a further point, a tenth more samples are taken than is extrapolated; \
-         and after that those between two points, where the line between them may be off by more than a hundredth. \
-         The standard error is that of the two points’ errors, √((1 − s)²e<sub>1</sub>² + s²e<sub>2</sub>²) by the slope between them, at 1 − s of the first and s of the second in logarithms, \
-         and with it, by the root of both squares, what that line may sag between them: 0.2·(x₂ − x)(x − x₁), a tenth half-way between a count and four \
-         times as many; of what is extrapolated, at least \
-         the distance from where the least-squares line comes down to the same.</li>\n\
-         <li><b>The fastest method</b> is named together with all whose time may be the same, within the standard error of the samples \
-         and half of the spread of the times.</li>\n\
-         </ul>\n</section>\n"
-    )
 }
 
 fn capital(sentence: &str) -> String {

@@ -8,12 +8,15 @@ use png::{BitDepth, ColorType, Compression, Encoder};
 use super::measure::Measurement;
 use crate::{
     area::Area,
-    film::{Film, Recipe, write_png},
+    film::{self, Film, Recipe, write_png},
     scene::Method,
 };
 
 /// The largest crop: several stand beside each other on a page, and a sample's noise is to be seen.
 const CROP: (u32, u32) = (240, 135);
+
+/// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays small.
+const WHOLE: (u32, u32) = (640, 480);
 
 /// The colours of an error's logarithm: ColorBrewer's YlOrBr, whose lightness falls, so that it prints in grey and serves the colour-blind.
 const COLORS: [[f64; 3]; 6] = [
@@ -73,6 +76,31 @@ fn squares(film: &Film, reference: &Film, area: Area) -> f64 {
         })
         .map(|difference| difference * difference)
         .sum()
+}
+
+/// The whole exact picture as a PNG in a `data:` URI, and its size there: squares of as many pixels as it takes are averaged, in linear light.
+/// It carries the scene.
+pub fn whole(measured: &Measurement) -> io::Result<(String, Area)> {
+    let exact = &measured.reference.film;
+    let (width, height) = (exact.width(), exact.height());
+    let side = width.div_ceil(WHOLE.0).max(height.div_ceil(WHOLE.1));
+    let size = Area::whole(width.div_ceil(side), height.div_ceil(side));
+    let square = |x: u32, y: u32| {
+        let (x, y) = (x * side, y * side);
+        let area = Area {
+            x,
+            y,
+            width: side.min(width - x),
+            height: side.min(height - y),
+        };
+        film::mean(area.iter().map(|(x, y)| (1, exact.pixel(x, y))))
+    };
+    let film = Film::from_fn(size.width, size.height, square).map_err(io::Error::other)?;
+    let mut recipe = measured.subject.recipe.clone();
+    recipe.overrides.push("sampler.method=exact".to_owned());
+    let mut bytes = Vec::new();
+    write_png(&film, &recipe, &mut bytes)?;
+    Ok((data_uri(&bytes), size))
 }
 
 /// A crop of a film as a PNG in a `data:` URI. The picture carries the scene with the method, so that Pinhole can render it again.

@@ -2,14 +2,17 @@
 //!
 //! The exact picture is computed, and every method renders twice, and once with more samples where that takes but a part of the time. That warms
 //! the machine up and counts for nothing, unless nothing else gets measured; what it took decides how far the ladder of samples goes and how
-//! many runs there are, where the user leaves that open.
+//! many runs there are, where the user leaves that open. Where their times turn out to be noisy, there are more.
 
 use std::{
     num::NonZero,
     time::{Duration, Instant},
 };
 
-use super::measure::{Run, Subject, computed, run};
+use super::{
+    measure::{Measurement, Run, Subject, computed, run},
+    notes::noisy,
+};
 use crate::{
     render::{Control, Exact, RenderError},
     scene::{Method, Scene},
@@ -168,7 +171,7 @@ impl<'a> Plan<'a> {
         Ok(warm)
     }
 
-    /// How long the measuring will take, in nanoseconds: the whole of the progress.
+    /// How long the measuring will take at first, in nanoseconds: the whole of the progress.
     pub fn total(&self) -> u64 {
         (self.round_seconds(&self.rungs) * self.runs as f64 * 1e9) as u64
     }
@@ -178,14 +181,32 @@ impl<'a> Plan<'a> {
         self.request.budget.saturating_sub(self.started.elapsed())
     }
 
-    fn choose(&mut self) {
-        let share = match self.rungs.is_empty() {
+    /// So many seconds of those that are left may be planned.
+    fn planned(&self) -> f64 {
+        let share = match self.request.samples.is_empty() {
             true => PLANNED_CHOICE,
             false => PLANNED,
         };
-        let left = self.left().as_secs_f64() * share;
+        self.left().as_secs_f64() * share
+    }
+
+    /// How many runs there is time for besides those that were made, if there are fewer than wanted or their times are noisy: the warm-up, too,
+    /// may have been slower than the rest. None where somebody says how many there are.
+    pub(super) fn further_runs(&self, measured: &Measurement) -> u64 {
         let (wanted, most) = RUNS;
-        if self.rungs.is_empty() {
+        let runs = measured.rounds() as u64;
+        let is_open = self.is_limited && !measured.interrupted && measured.is_measured();
+        if !is_open || (runs >= wanted && noisy(measured) == 0) {
+            return 0;
+        }
+        let fit = (self.planned() / measured.round_seconds().max(1e-9)) as u64;
+        odd((runs + fit).min(most)).saturating_sub(runs)
+    }
+
+    fn choose(&mut self) {
+        let left = self.planned();
+        let (wanted, most) = RUNS;
+        if self.rungs.is_empty() && !self.warm_up.is_empty() {
             let runs = self.request.runs.unwrap_or(wanted) as f64;
             let ladder = |rungs| (0..rungs).map(|rung| 1 << (2 * rung)).collect::<Vec<_>>();
             let rungs = (FEWEST_RUNGS..=MOST_RUNGS)
@@ -198,11 +219,7 @@ impl<'a> Plan<'a> {
         self.is_limited = self.request.runs.is_none();
         if self.is_limited {
             let fit = (left / self.round_seconds(&self.rungs).max(1e-9)) as u64;
-            self.runs = match fit.clamp(1, most) {
-                few @ 1..=2 => few,
-                // Of an odd number of runs the median is one of them.
-                many => (many - 1) / 2 * 2 + 1,
-            };
+            self.runs = odd(fit.clamp(1, most));
         }
     }
 
@@ -219,6 +236,14 @@ impl<'a> Plan<'a> {
             false => 0.0,
         };
         sampled + exact
+    }
+}
+
+/// Of an odd number of runs the median is one of them: no more than these, unless they are few.
+fn odd(runs: u64) -> u64 {
+    match runs {
+        0..=2 => runs,
+        many => (many - 1) / 2 * 2 + 1,
     }
 }
 

@@ -5,9 +5,17 @@ use std::fmt::Write;
 use super::{
     fit::{Fit, median},
     measure::{Measurement, Point, Series},
+    needed::Needed,
     notes::{NOISY, has_empty_pixels, notes, spread, verdicts},
 };
 use crate::{numbers, scene::Method, suggest};
+
+/// What a slope's error means.
+pub(super) const SLOPE: &str = "of the line through the logarithms of samples and error; ± covers its standard error and the slope between any \
+     two points, tried ones among them, of which one has at least twice the samples of the other. More samples than these may have another one.";
+
+/// What a rate means.
+pub(super) const RATE: &str = "all samples by the time that they take, traced or not: where pixels are certain to show one colour, none is.";
 
 /// The tables of errors, of times and of what an error takes.
 pub fn table(measured: &Measurement) -> String {
@@ -27,9 +35,10 @@ pub fn table(measured: &Measurement) -> String {
     for note in notes(measured) {
         text += &wrapped(&format!("note: {note}"));
     }
-    text += &wrapped(
-        "million rays/s: all samples by the time that they take; of pixels that are certain to show one colour none needs to be traced.",
-    );
+    if !measured.series.is_empty() {
+        text += &wrapped(&format!("slope: {SLOPE}"));
+        text += &wrapped(&format!("million samples/s: {RATE}"));
+    }
     text
 }
 
@@ -56,7 +65,10 @@ fn errors(measured: &Measurement) -> String {
     for rung in &measured.rungs {
         let _ = write!(text, "{rung:>9}");
     }
-    text += "   largest  slope\n";
+    text += match measured.series.is_empty() {
+        true => "   largest\n",
+        false => "   largest  slope\n",
+    };
     for series in &measured.series {
         let _ = write!(text, "{:16}", series.method.name());
         for cell in cells(measured, series, |point| error(point.error())) {
@@ -78,7 +90,10 @@ fn times(measured: &Measurement) -> String {
     for rung in &measured.rungs {
         let _ = write!(text, "{rung:>9}");
     }
-    text += "    spread  million rays/s\n";
+    text += match measured.series.is_empty() {
+        true => "    spread\n",
+        false => "    spread  million samples/s\n",
+    };
     for series in &measured.series {
         let _ = write!(text, "{:16}", series.method.name());
         for cell in cells(measured, series, |point| seconds(point.seconds())) {
@@ -88,10 +103,10 @@ fn times(measured: &Measurement) -> String {
         let rate = series
             .points
             .last()
-            .map_or(0.0, |point| point.rays_per_second());
+            .map_or(0.0, |point| point.samples_per_second());
         let _ = writeln!(
             text,
-            "{:>10}{:>16.1}",
+            "{:>10}{:>19.1}",
             percent(widest.fold(0.0, f64::max), measured.rounds()),
             rate / 1e6
         );
@@ -129,11 +144,11 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
                 let tried = series.check(wanted).map_or(String::new(), |check| {
                     format!("  tried: {}", tried(&check.point))
                 });
-                let factor = needed.factor.map_or(String::new(), factor);
                 writeln!(
                     text,
-                    "{name:16}{:>9}{factor:>8}{:>9}{extrapolated}{tried}",
+                    "{name:16}{:>9}{:>8}{:>9}{extrapolated}{tried}",
                     count(needed.per_pixel),
+                    doubt(&needed).unwrap_or_default(),
                     seconds(needed.seconds),
                 )
             }
@@ -182,7 +197,7 @@ pub(super) fn marked_slope(series: &Series) -> String {
     format!("{}{mark}", slope(series.fit()))
 }
 
-/// A slope with its standard error.
+/// A slope, and how far it may be off.
 fn slope(fit: Option<Fit>) -> String {
     match fit {
         None => "-".to_owned(),
@@ -226,11 +241,12 @@ pub(super) fn seconds(seconds: f64) -> String {
     }
 }
 
-/// A standard error as a factor.
-pub(super) fn factor(factor: f64) -> String {
-    match factor < 100.0 {
-        true => significant(factor, 3),
-        false => format!("{factor:.0e}"),
+/// How far what an error takes may be off, as a factor; nothing of what was not computed from several points.
+pub(super) fn doubt(needed: &Needed) -> Option<String> {
+    match needed.factor {
+        Some(factor) if factor < 100.0 => Some(significant(factor, 3)),
+        Some(factor) => Some(format!("{factor:.0e}")),
+        None => needed.is_unknown().then(|| "?".to_owned()),
     }
 }
 

@@ -15,8 +15,6 @@ fn a_power_law_is_fitted_exactly() {
     assert!((fit.slope + 0.75).abs() < 1e-14, "{}", fit.slope);
     assert!(fit.slope_error.unwrap() < 1e-14);
     assert_eq!(fit.points, 4);
-    assert!((fit.at(16.0) - 0.0375).abs() < 1e-14);
-    assert!((fit.reaches(0.0375).unwrap() - 16.0).abs() < 1e-11);
 }
 
 #[test]
@@ -75,24 +73,25 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     let needed = straight.needed(0.1414214).unwrap();
     assert_eq!((needed.per_pixel, needed.is_extrapolated), (8.0, false));
     assert!((needed.seconds - 5.0 / 3.0).abs() < 1e-12, "{needed:?}");
-    // Half-way between two: √(¼ + ¼) · 0.01 by a slope of ½; and what the line may sag there, 0.2 of log 2 twice.
-    let (noise, sag) = (0.02 * 0.5f64.sqrt(), 0.2 * libm::log(2.0) * libm::log(2.0));
+    // Half-way between two: twice (½ + ½) · 0.01 by a slope of ½; and what the line may sag there, 0.8 of log 2 twice.
+    let (noise, sag) = (0.04, 0.8 * libm::log(2.0) * libm::log(2.0));
     let factor = libm::exp(libm::hypot(noise, sag));
     assert!((needed.factor.unwrap() - factor).abs() < 1e-6, "{needed:?}");
-    // As far beyond the last one: √(1 + 4) · 0.01 by ½; the time on the line from the first to the last.
+    // As far beyond the last one: twice (1 + 2) · 0.01 by ½, and with a slope of −3/4 it would be 4/3 of log 2 in place of twice that; the
+    // time on the line from the first to the last.
     let needed = straight.needed(0.0500001).unwrap();
     assert_eq!((needed.per_pixel, needed.is_extrapolated), (64.0, true));
     assert!((needed.seconds - 11.0).abs() < 1e-12, "{needed:?}");
-    let factor = libm::exp(0.02 * 5.0f64.sqrt());
+    let (noise, bend) = (0.12, 2.0 / 3.0 * libm::log(2.0));
+    let factor = libm::exp(libm::hypot(noise, bend));
     assert!((needed.factor.unwrap() - factor).abs() < 1e-5, "{needed:?}");
 
-    // A line that flattens is followed where it ends, and doubted as far as the straight one is away.
+    // A line that flattens is followed where it ends, and doubted as far as the steepest slope is away: 1 here, by which half would do.
     let mut bent = series(&[(1, 1.0, 0.4), (4, 1.0, 0.1), (16, 1.0, 0.05)]);
     let needed = bent.needed(0.0250001).unwrap();
     assert_eq!((needed.per_pixel, needed.seconds), (64.0, 1.75));
-    let straight = bent.fit().unwrap().reaches(0.0250001).unwrap();
-    assert!((needed.factor.unwrap() - 64.0 / straight).abs() < 1e-3);
-    assert!(straight < 50.0);
+    let factor = libm::exp(libm::hypot(0.12, libm::log(2.0)));
+    assert!((needed.factor.unwrap() - factor).abs() < 1e-5, "{needed:?}");
     // What was tried is a point as well.
     let tried = |per_pixel, error| Check {
         wanted: 0.0250001,
@@ -109,11 +108,83 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     let needed = bent.needed(0.0250001).unwrap();
     assert!(!needed.is_extrapolated && (64.0..100.0).contains(&needed.per_pixel));
     assert!(needed.factor.unwrap() > libm::exp(0.01) && needed.seconds == 2.0);
+    // A grid wants counts that are nearly squares: not 7 rows of one.
+    let mut grid = series(&[(1, 1.0, 0.4), (16, 1.0, 0.1)]);
+    grid.method = Method::MultiJittered;
+    for (error, count) in [(0.1513, 9.0), (0.13, 12.0), (0.11, 16.0), (0.4 / 6.2, 42.0)] {
+        assert_eq!(grid.needed(error).unwrap().per_pixel, count, "{error}");
+    }
     // Where more samples do not help nothing is promised.
     assert_eq!(series(&[(1, 1.0, 0.4), (4, 1.0, 0.4)]).needed(0.1), None);
     // No error at all is one that is small enough.
     let clean = series(&[(1, 1.0, 0.4), (4, 2.0, 0.0)]);
     assert_eq!(clean.needed(0.1).unwrap().per_pixel, 4.0);
+}
+
+#[test]
+fn two_points_know_nothing_of_a_bend() {
+    // The slope is −3/4, and may be −1/2 further on.
+    let two = series(&[(1, 1.0, 0.8), (16, 2.0, 0.1)]);
+    let needed = two.needed(0.0125).unwrap();
+    assert!(needed.is_extrapolated);
+    let more = libm::log(0.1 / 0.0125) * (2.0 - 4.0 / 3.0);
+    let factor = needed.factor.unwrap();
+    assert!(factor >= libm::exp(more), "{needed:?}");
+    assert!(factor < 1.05 * libm::exp(more), "{needed:?}");
+    // Of independent samples theory knows: −1/2, and not −3/4.
+    let mut random = series(&[(1, 1.0, 0.4), (16, 2.0, 0.1)]);
+    random.method = Method::Random;
+    let factor = random.needed(0.05).unwrap().factor.unwrap();
+    assert!(factor < 1.2, "{factor}");
+    // Nor do single runs know of noise: there is no factor, and no method is said to be the fastest by it.
+    let mut single = two;
+    for point in &mut single.points {
+        point.rmse.truncate(1);
+        point.times.truncate(1);
+    }
+    let needed = single.needed(0.0125).unwrap();
+    assert_eq!((needed.factor, needed.is_extrapolated), (None, true));
+    // Nor is it known of a grid, which falls into step with the picture, until it was tried close by.
+    let mut grid = series(&[(1, 1.0, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)]);
+    grid.method = Method::Regular;
+    assert_eq!(grid.needed(0.05).unwrap().factor, None);
+    assert_eq!(grid.needed(0.15).unwrap().factor, None);
+    assert!(grid.needed(0.1999).unwrap().factor.unwrap() < 1.05);
+    // A curve that once rose may do so again.
+    let rising = series(&[(1, 1.0, 0.1), (4, 1.0, 0.2), (16, 2.0, 0.1)]);
+    assert_eq!(rising.needed(0.05).unwrap().factor, None);
+}
+
+#[test]
+fn a_slopes_uncertainty_covers_all_slopes_of_its_curve() {
+    // Slopes of −1, −1/2 and −1/2 …
+    let mut bent = series(&[
+        (1, 1.0, 0.4),
+        (4, 1.0, 0.1),
+        (16, 1.0, 0.05),
+        (64, 1.0, 0.025),
+    ]);
+    let fit = bent.fit().unwrap();
+    let bend = 1.0 + fit.slope;
+    assert!((fit.bend.unwrap() - bend).abs() < 1e-12, "{fit:?}");
+    assert!(bend > fit.residual_error.unwrap() && bend > fit.measured_error.unwrap());
+    assert_eq!(fit.slope_error, fit.bend);
+    // … and, where more samples are tried, of none at all.
+    bent.checks.push(Check {
+        wanted: 0.01,
+        point: series(&[(256, 1.0, 0.025)]).points[0].clone(),
+    });
+    let tried = bent.fit().unwrap();
+    assert_eq!((tried.slope, tried.points), (fit.slope, fit.points));
+    assert!(
+        (tried.slope_error.unwrap() + fit.slope).abs() < 1e-12,
+        "{tried:?}"
+    );
+    // What lies close to another point shows its noise rather than a slope.
+    bent.checks[0].point.per_pixel = 65;
+    bent.checks[0].point.rmse = vec![0.03];
+    let close = bent.fit().unwrap();
+    assert!(close.slope_error.unwrap() < 0.4, "{close:?}");
 }
 
 #[test]
@@ -124,8 +195,7 @@ fn what_has_no_slope_has_no_fit() {
     assert_eq!(Fit::of(&[(1.0, 1.0), (2.0, 0.0)]), None);
     let two = Fit::of(&[(1.0, 1.0), (4.0, 0.5)]).unwrap();
     assert_eq!(two.slope_error, None);
-    let flat = Fit::of(&[(1.0, 1.0), (4.0, 1.0)]).unwrap();
-    assert_eq!(flat.reaches(0.5), None);
+    assert_eq!(two.bent(&[-0.4]).slope_error, None);
 }
 
 #[test]

@@ -1,0 +1,50 @@
+//! How the numbers of the page came about, for those who distrust them.
+
+use super::{measure::Measurement, notes::NOISY, page::prose};
+use crate::numbers;
+
+/// The section, as HTML.
+pub fn account(measurements: &[Measurement]) -> String {
+    let bounds = measurements
+        .iter()
+        .map(|measured| measured.reference.bound());
+    let bound = prose(&numbers::at_most(bounds.fold(0.0, f64::max)));
+    let noisy = NOISY * 100.0;
+    format!(
+        "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\
+         <li><b>Warm-up.</b> The exact picture is computed and every method renders twice, with few samples, before anything counts. What that took decides how \
+         many samples and runs fit into the time; where times turn out to be noisy and time is left, there are more runs.</li>\n\
+         <li><b>Runs are interleaved.</b> A round runs every method with every number of samples once, in an order that is shuffled anew in \
+         each round by a fixed rule, so that what else the machine does falls on all alike. A run has a seed of its own: that of the scene \
+         plus the number of the round.</li>\n\
+         <li><b>What is timed</b> is the way from the scene in memory to the picture in memory: preparing objects and samples, starting the \
+         threads, rendering. Reading the scene, comparing pictures and writing PNG files are not. Samples per second are all samples divided by that time: most lie in pixels \
+         that are certain to show one colour, and are not traced, so that fewer rays are. The time is the median of the runs; \
+         combinations whose times spread by more than {noisy} % of it are called noisy above.</li>\n\
+         <li><b>The error</b> is the root of the mean squared difference to the exact picture, over all pixels and the three channels, in \
+         linear light; that of several runs is the root of the mean of their squares. The reference is not rendered with many samples but \
+         computed from the areas that the objects cover in a pixel, with a bound for each pixel that grows with every operation; the \
+         greatest bound here is {bound}. No error that is smaller means anything.</li>\n\
+         <li><b>The slope</b> b of error ∝ samples<sup>b</sup> is the least-squares line through the logarithms of samples and error, one \
+         point for each number of samples. With residuals r of k points and x = ln samples, its standard error is \
+         √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4). A few points may \
+         lie on a line by luck, so that the error is no less than what the spread of the runs gives it, each of which has a seed of its own: \
+         √(Σ(x − x̄)²e²) / Σ(x − x̄)², e being the standard error of the logarithm of a point’s error, √(v/n)/2m by the mean m and the variance v \
+         of the n runs’ squared errors. The greater one counts (as the Particle Data Group scales errors). But a curve that bends has no one slope, \
+         however well the mean one is known: so the ± is no less than the greatest difference between b and the slope between any two points of the chart, tried ones among them, \
+         of which one has at least twice the samples of the other. JSON has all three. Nothing is said of the slope beyond these points.</li>\n\
+         <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
+         rounded up to a whole number of samples, for multi_jittered to one whose grid is near a square; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
+         through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
+         and time is left, answers are tried up to three times, the fastest methods first: in a single run, which is a further point, a tenth more samples are taken than is extrapolated; \
+         and after that those between two points, where the line between them may be off by more than a hundredth. \
+         × and ÷ is twice the standard error by those of the two points’ errors, |1 − s|·e<sub>1</sub> + s·e<sub>2</sub> by the slope between them, at 1 − s of the first and s of the second in logarithms (all tries have one seed, and are wrong together), \
+         and with it, by the root of the sum of both squares, what the truth may be off from that line. Between two points that is what it may sag: 0.8·(x₂ − x)(x − x₁), 0.38 half-way between a count and four \
+         times as many. Beyond the last it is the greatest difference to what comes out if errors fall further on by any slope between other points, as above, or by −1/2, which is that of independent samples, or, where samples are spread evenly, by −3/4: \
+         nothing that was measured tells which. Of single runs nothing is known (?), nor of regular, whose grid falls into step with the lines of a picture, so that its \
+         errors fall by leaps.</li>\n\
+         <li><b>The fastest method</b> is named together with all whose time may be the same, within × and ÷ of the samples \
+         and half of the spread of the times.</li>\n\
+         </ul>\n</section>\n"
+    )
+}

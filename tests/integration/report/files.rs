@@ -1,0 +1,227 @@
+//! The files of a report: charts, tables, and a page that stands alone.
+
+use std::{fs, path::Path, process::Command};
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use image::DynamicImage;
+use pinhole::scene::Method;
+use roxmltree::Node;
+use serde_json::Value;
+
+use super::{SCENE, folder, parsed, read, report, words};
+
+/// The picture within an element.
+fn picture(element: Node) -> DynamicImage {
+    let data = element.attribute("src").unwrap();
+    let png = data.strip_prefix("data:image/png;base64,").unwrap();
+    image::load_from_memory(&BASE64_STANDARD.decode(png).unwrap()).unwrap()
+}
+
+/// What `sha256sum` says of a file, where there is one.
+fn sha256sum(path: &Path) -> Option<String> {
+    let output = Command::new("sha256sum").arg(path).output().ok()?;
+    words(&output.stdout).split(' ').next().map(str::to_owned)
+}
+
+#[test]
+fn a_folder_gets_whole_files() {
+    let folder = folder();
+    let arguments = [
+        "a.scn",
+        "-o",
+        "new/speed",
+        "--samples",
+        "1,4,16",
+        "--runs",
+        "2",
+        "--methods",
+        "sobol,random,exact",
+        "--set",
+        "Ball.radius=1.2",
+    ];
+    let output = report(&folder, &arguments);
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    let mut names: Vec<_> = fs::read_dir(folder.path().join("new/speed"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let all = [
+        "error-against-samples.svg",
+        "error-against-time.svg",
+        "index.html",
+        "report.csv",
+        "report.json",
+    ];
+    assert_eq!(names, all);
+
+    let csv = read(&folder, "new/speed/report.csv");
+    let columns = csv.lines().next().unwrap().split(',').count();
+    assert_eq!(csv.lines().count(), 1 + 2 * 3 + 1);
+    assert!(csv.lines().all(|line| line.split(',').count() == columns));
+    // The exact method has a bound, which is no measured error.
+    let cells = |line: usize| {
+        csv.lines()
+            .nth(line)
+            .unwrap()
+            .split(',')
+            .collect::<Vec<_>>()
+    };
+    let (names, first, exact) = (cells(0), cells(1), cells(7));
+    let at = |name: &str| names.iter().position(|it| *it == name).unwrap();
+    assert_eq!((exact[0], exact[at("runs")]), ("exact", "2"));
+    for name in ["rmse", "rmse_min", "rmse_max", "largest_error", "slope"] {
+        assert_eq!(exact[at(name)], "", "{name}");
+        assert_ne!(first[at(name)], "", "{name}");
+    }
+    assert!(exact[at("bound")].parse::<f64>().unwrap() < 1e-8);
+    assert_eq!((first[at("bound")], first[at("tried_for")]), ("", ""));
+
+    let json: Value = serde_json::from_str(&read(&folder, "new/speed/report.json")).unwrap();
+    assert_eq!(json["overrides"], serde_json::json!(["Ball.radius=1.2"]));
+    if let Some(sum) = sha256sum(&folder.path().join("a.scn")) {
+        assert_eq!(json["sha256"], sum);
+    }
+
+    for name in ["error-against-samples.svg", "error-against-time.svg"] {
+        let svg = read(&folder, &format!("new/speed/{name}"));
+        let document = parsed(&svg);
+        assert!(
+            document
+                .root_element()
+                .has_tag_name(("http://www.w3.org/2000/svg", "svg"))
+        );
+        let text: Vec<_> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("text"))
+            .collect();
+        let labelled = |word: &str| {
+            text.iter().any(|node| {
+                node.text()
+                    .is_some_and(|text| text.trim().starts_with(word))
+            })
+        };
+        assert!(
+            labelled("sobol") && labelled("random") && labelled("1/256") || name.contains("time"),
+            "{name}"
+        );
+        assert_eq!(labelled("exact:"), name.contains("time"));
+    }
+
+    let page = read(&folder, "new/speed/index.html");
+    let document = parsed(&page);
+    let elements = |name: &'static str| {
+        document
+            .descendants()
+            .filter(move |node| node.tag_name().name() == name)
+    };
+    assert_eq!(elements("script").count(), 0);
+    assert_eq!(elements("table").count(), 3);
+    // The exact picture twice, as a whole and beside the others, and for each sampled method the picture and its errors.
+    assert_eq!(elements("img").count(), 6);
+    for image in elements("img") {
+        assert!(!image.attribute("alt").unwrap().is_empty());
+        let picture = picture(image);
+        assert_eq!((picture.width(), picture.height()), (48, 32));
+    }
+    // Nothing is fetched from elsewhere.
+    for node in document.descendants() {
+        for attribute in node
+            .attributes()
+            .filter(|attribute| ["src", "href"].contains(&attribute.name()))
+        {
+            assert!(attribute.value().starts_with("data:"));
+        }
+    }
+}
+
+#[test]
+fn a_large_picture_is_shown_whole_and_small() {
+    let folder = folder();
+    let arguments = [
+        "a.scn",
+        "-o",
+        "out",
+        "--methods",
+        "sobol",
+        "--samples",
+        "1",
+        "--runs",
+        "1",
+        "--set",
+        "image.width=1300",
+        "--set",
+        "image.height=700",
+    ];
+    assert!(report(&folder, &arguments).status.success());
+    let page = read(&folder, "out/index.html");
+    let document = parsed(&page);
+    let whole = document
+        .descendants()
+        .find(|node| node.attribute("alt") == Some("the exact picture as a whole"));
+    let picture = picture(whole.unwrap());
+    assert_eq!((picture.width(), picture.height()), (434, 234));
+    assert!(page.contains("at 434 × 234 of its 1300 × 700 pixels"));
+    assert!(page.len() < 500_000, "{}", page.len());
+}
+
+#[test]
+fn labels_of_a_chart_do_not_lie_upon_each_other() {
+    let folder = folder();
+    let output = report(
+        &folder,
+        &["a.scn", "-o", "out", "--samples", "1,4", "--runs", "1"],
+    );
+    assert!(output.status.success());
+    for name in ["samples", "time"] {
+        let svg = read(&folder, &format!("out/error-against-{name}.svg"));
+        let document = parsed(&svg);
+        let mut heights: Vec<i32> = document
+            .descendants()
+            .filter(|node| {
+                let text = node.text().unwrap_or_default().trim();
+                let first = text.split(' ').next().unwrap();
+                node.has_tag_name("text")
+                    && Method::SAMPLED.iter().any(|method| method.name() == first)
+            })
+            .map(|node| node.attribute("y").unwrap().parse().unwrap())
+            .collect();
+        assert_eq!(heights.len(), 9);
+        heights.sort_unstable();
+        assert!(
+            heights.windows(2).all(|pair| pair[1] - pair[0] >= 15),
+            "{heights:?}"
+        );
+        assert!(heights[0] > 0 && heights[8] < 540);
+    }
+}
+
+#[test]
+fn several_scenes_have_a_folder_each_and_one_page() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::write(folder.path().join("sub/a.scn"), SCENE).unwrap();
+    let arguments = [
+        "a.scn",
+        "sub/a.scn",
+        "-o",
+        "out",
+        "--samples",
+        "1",
+        "--runs",
+        "1",
+        "--methods",
+        "halton",
+    ];
+    assert!(report(&folder, &arguments).status.success());
+    for name in [
+        "out/a/report.csv",
+        "out/a-2/report.json",
+        "out/a-2/index.html",
+    ] {
+        read(&folder, name);
+    }
+    let page = read(&folder, "out/index.html");
+    assert!(page.contains(">a.scn</h2>") && page.contains(">sub/a.scn</h2>"));
+    parsed(&page);
+}
