@@ -96,7 +96,7 @@ fn a_browser_shows_the_whole_page() {
         assert_eq!(found["wide"], 0, "{what}");
         assert_eq!(
             (&found["images"], &found["broken"]),
-            (&19.into(), &0.into()),
+            (&20.into(), &0.into()),
             "{what}"
         );
         assert_eq!(found["cut"], Value::Array(Vec::new()), "{what}");
