@@ -48,26 +48,24 @@ impl<T: Real> Triangle<T> {
         }
         let plane = inverse_depth(camera, &normal, &height);
 
+        // The eye sees each corner at c + o, c being the centroid. Both may be of any size beside each other.
         let offsets = offsets::<T>(shape);
-        let vertices = [0, 1, 2]
-            .map(|k| [0, 1, 2].map(|i| &from_eye[i] + &offsets[k][i].scaled(camera.exponent)));
-        let exponent = -exponent_of(&vertices);
-        let vertices = vertices.map(|vertex| camera.turned(&vertex.map(|x| x.scaled(exponent))));
-
-        // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners themselves little would be left of a
-        // triangle far away beside its size: of what a and b have in common, c, a × b has c × (b − a) alone.
         let [far, near] = [
             exponent_of(array::from_ref(&from_eye)),
-            exponent_of(&offsets),
+            exponent_of(&offsets) + camera.exponent,
         ];
         let center = camera.turned(&from_eye.map(|x| x.scaled(-far)));
-        let offsets = offsets.map(|offset| camera.turned(&offset.map(|x| x.scaled(-near))));
-        let ratio = near + camera.exponent - far;
+        let offsets =
+            offsets.map(|offset| camera.turned(&offset.map(|x| x.scaled(camera.exponent - near))));
+        let exponent = -far.max(near);
+        let sum = |c: &Ball3<T>, o: &Ball3<T>| -> Ball3<T> {
+            array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
+        };
+        // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners themselves little would be left of a
+        // triangle far away beside its size: of a × b, a = c + o and b = c + p, that is c × (p − o) + o × p.
         let edge = |a: usize, b: usize| {
-            let along = [0, 1, 2].map(|i| &offsets[b][i] - &offsets[a][i]);
-            let (common, own) = (cross(&center, &along), cross(&offsets[a], &offsets[b]));
-            let n =
-                [0, 1, 2].map(|i| common[i].scaled(-ratio.max(0)) + own[i].scaled(ratio.min(0)));
+            let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
+            let n = sum(&cross(&center, &along), &cross(&offsets[a], &offsets[b]));
             // Seen from behind the triangle's turn is the other way round.
             let n = if side.is_lt() { n.map(|x| -x) } else { n };
             Form::new(camera, &n)
@@ -77,7 +75,7 @@ impl<T: Real> Triangle<T> {
             plane,
         };
         let corners = Corners {
-            points: vertices,
+            points: offsets.each_ref().map(|offset| sum(&center, offset)),
             exponent,
         };
         Some((triangle, corners))
