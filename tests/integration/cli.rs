@@ -595,9 +595,9 @@ fn ctrl_c_leaves_the_old_file() {
 #[test]
 fn a_bound_that_is_worth_a_word_gets_one() {
     let scene = "image { width 6 height 3 }
-                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-300 }
+                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) }
                  sampler { method exact }
-                 checkerboard { y 0 square 1e-15 }";
+                 checkerboard { y 0 square 5e-324 }";
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("wide.scn");
     fs::write(&path, scene).unwrap();

@@ -165,9 +165,8 @@ fn palettes_and_few_bits_are_read() {
 #[test]
 fn pixels_that_cannot_be_judged_are_counted() {
     let folder = tempfile::tempdir().unwrap();
-    let scene =
-        "image { width 6 height 3 } camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) d 1e-300 }
-                 sampler { method exact } checkerboard { y 0 square 1e-15 }";
+    let scene = "image { width 6 height 3 } camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) }
+                 sampler { method exact } checkerboard { y 0 square 5e-324 }";
     fs::write(folder.path().join("a.scn"), scene).unwrap();
     render(&folder, &["-o", "a.exr"]);
     let found = json(&folder, &["a.exr", "a.scn", "--tolerance", "0"]);

@@ -1,0 +1,232 @@
+//! Pixels of the board against rational arithmetic, which has no errors.
+
+use std::{array, iter::successors};
+
+use dashu_int::IBig;
+use dashu_ratio::RBig;
+
+use super::{exact, read};
+
+/// A camera whose axes are rational, above a board of squares of side 1 at height 0.
+struct RationalView {
+    eye: [RBig; 3],
+    /// The picture's right, its top, and against the view direction.
+    axes: [[RBig; 3]; 3],
+    d: RBig,
+}
+
+/// aX + bY + c as [a, b, c], for points (X, Y) of the view plane.
+type Linear = [RBig; 3];
+type Polygon = Vec<[RBig; 2]>;
+
+impl RationalView {
+    /// The component of the ray through a point of the view plane, along an axis of the world.
+    fn ray(&self, axis: usize) -> Linear {
+        let [right, top, back] = [0, 1, 2].map(|of| self.axes[of][axis].clone());
+        [right, top, -(back * &self.d)]
+    }
+
+    /// N and L of N/L, where the ray through a point meets the board, along x or z: L is positive below the horizon.
+    fn place(&self, axis: usize) -> [Linear; 2] {
+        let below = self.ray(1).map(|factor| -factor);
+        let along = self.ray(axis);
+        let place = array::from_fn(|i| &self.eye[1] * &along[i] + &self.eye[axis] * &below[i]);
+        [place, below]
+    }
+
+    /// The share of white squares, those whose numbers have an even sum, in a pixel below the horizon.
+    fn white(&self, pixel: &Polygon) -> RBig {
+        let [across, along] = [self.place(0), self.place(2)];
+        let mut white = RBig::ZERO;
+        for row in numbers(&along, pixel) {
+            let in_row = between(&along, &row, pixel);
+            if in_row.is_empty() {
+                continue;
+            }
+            for column in numbers(&across, &in_row) {
+                if (&row + &column) % IBig::from(2) == IBig::ZERO {
+                    white += area(&between(&across, &column, &in_row));
+                }
+            }
+        }
+        white / area(pixel)
+    }
+}
+
+fn value([a, b, c]: &Linear, [x, y]: &[RBig; 2]) -> RBig {
+    a * x + b * y + c
+}
+
+/// The whole numbers from which a polygon's places go on to the next.
+fn numbers([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
+    let places = polygon
+        .iter()
+        .map(|at| (value(place, at) / value(below, at)).floor());
+    let places: Vec<_> = places.collect();
+    let (first, last) = (places.iter().min().unwrap(), places.iter().max().unwrap());
+    successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
+}
+
+/// The part of a polygon with places from n to n + 1.
+fn between([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
+    let line = |n: IBig| -> Linear {
+        let n = RBig::from(n);
+        array::from_fn(|i| &place[i] - &n * &below[i])
+    };
+    let beyond = line(n + IBig::ONE).map(|factor| -factor);
+    cut(&cut(polygon, &line(n.clone())), &beyond)
+}
+
+/// The part of a polygon where a form is not negative (Sutherland and Hodgman, 1974).
+fn cut(polygon: &Polygon, line: &Linear) -> Polygon {
+    let mut rest = Vec::new();
+    for (i, to) in polygon.iter().enumerate() {
+        let from = &polygon[(i + polygon.len() - 1) % polygon.len()];
+        let [before, here] = [from, to].map(|at| value(line, at));
+        if (before < RBig::ZERO) != (here < RBig::ZERO) {
+            let t = &before / (&before - &here);
+            rest.push(array::from_fn(|axis| {
+                &from[axis] + (&to[axis] - &from[axis]) * &t
+            }));
+        }
+        if here >= RBig::ZERO {
+            rest.push(to.clone());
+        }
+    }
+    rest
+}
+
+fn area(polygon: &Polygon) -> RBig {
+    let mut twice = RBig::ZERO;
+    for (i, [x, y]) in polygon.iter().enumerate() {
+        let [next_x, next_y] = &polygon[(i + 1) % polygon.len()];
+        twice += x * next_y - next_x * y;
+    }
+    let twice = if twice < RBig::ZERO { -twice } else { twice };
+    twice / RBig::from(2)
+}
+
+/// Level cameras, one that looks down to the right, by (48, −25, −36)/65, and the same rolled by the angle of cosine 3/5. The horizon
+/// is above the pixels that are asked for.
+#[test]
+fn rational_arithmetic_agrees() {
+    let (width, height) = (64u32, 48u32);
+    let rational = |x: f64| RBig::try_from(x).unwrap();
+    let over = |vector: [i32; 3], by: i32| vector.map(|x| RBig::from(x) / RBig::from(by));
+    let level = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|axis| over(axis, 1));
+    let back = over([-48, 25, 36], 65);
+    let aslant = [over([3, 0, 4], 5), over([4, 12, -3], 13), back.clone()];
+    let mixed = |a: i32, b: i32| -> [RBig; 3] {
+        let [a, b] = [a, b].map(|x| RBig::from(x) / RBig::from(5));
+        array::from_fn(|i| &aslant[0][i] * &a + &aslant[1][i] * &b)
+    };
+    let rolled = [mixed(3, 4), mixed(-4, 3), back];
+    let far_down = [
+        (3, 25),
+        (33, 25),
+        (63, 26),
+        (40, 28),
+        (31, 30),
+        (20, 40),
+        (0, 47),
+    ];
+    let anywhere = [
+        (32, 24),
+        (3, 40),
+        (60, 20),
+        (31, 47),
+        (63, 47),
+        (20, 18),
+        (40, 30),
+    ];
+    for (axes, direction, up, [ex, h, ez], d, pixels) in [
+        (
+            &level,
+            "(0, 0, -1)",
+            "(0, 1, 0)",
+            [0.3, 1.75, 0.6],
+            1.5,
+            &far_down,
+        ),
+        (
+            &level,
+            "(0, 0, -1)",
+            "(0, 1, 0)",
+            [-7.1, 0.2, 1e6 + 0.1],
+            2.0,
+            &far_down,
+        ),
+        (
+            &level,
+            "(0, 0, -1)",
+            "(0, 1, 0)",
+            [0.0, 30.0, 0.0],
+            1.0,
+            &far_down,
+        ),
+        (
+            &aslant,
+            "(48, -25, -36)",
+            "(0, 1, 0)",
+            [0.3, 1.75, 0.6],
+            3.0,
+            &anywhere,
+        ),
+        (
+            &aslant,
+            "(48, -25, -36)",
+            "(0, 1, 0)",
+            [1e6 + 0.1, 9.3, -0.7],
+            4.0,
+            &anywhere,
+        ),
+        (
+            &rolled,
+            "(48, -25, -36)",
+            "(-96, 180, -253)",
+            [0.3, 1.75, 0.6],
+            3.0,
+            &anywhere,
+        ),
+        (
+            &rolled,
+            "(48, -25, -36)",
+            "(-96, 180, -253)",
+            [-3.3, 11.0, 1e5],
+            5.0,
+            &anywhere,
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width {width} height {height} }} camera {{ eye ({ex}, {h}, {ez}) direction {direction} up {up} d {d} }} \
+             checkerboard {{ colors (white, black) }}"
+        ));
+        let exact = exact(&scene);
+        let view = RationalView {
+            eye: [ex, h, ez].map(rational),
+            axes: axes.clone(),
+            d: rational(d),
+        };
+        // view_height is 2, and rows are counted from the top.
+        let pitch = RBig::from(2) / RBig::from(height);
+        let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
+        for &(x, y) in pixels {
+            let corner = |right: u32, down: u32| {
+                [
+                    (RBig::from(x + right) - &left) * &pitch,
+                    (&top - RBig::from(y + down)) * &pitch,
+                ]
+            };
+            let pixel = vec![corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            let expected = view.white(&pixel);
+            let found = exact.film.pixel(x, y)[0];
+            let difference = (rational(found) - expected).to_f64().value().abs();
+            let bound = f64::from(exact.bounds[(y * width + x) as usize]);
+            assert!(
+                difference <= bound + 2.0 * f64::EPSILON,
+                "{x}, {y}: {difference:e} of {bound:e}"
+            );
+            assert!(bound <= 1e-12, "{x}, {y}: bound {bound:e}");
+        }
+    }
+}
