@@ -50,7 +50,7 @@ impl Halton {
 }
 
 /// φ₃(i) in units of 2^−64, rounded up; i < 3^40. The mirrored digits are gathered as a whole number and divided once.
-fn radical_inverse_3(i: u64) -> u64 {
+pub fn radical_inverse_3(i: u64) -> u64 {
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {
         mirrored = 3 * mirrored + rest % 3;

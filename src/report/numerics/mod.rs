@@ -8,8 +8,8 @@
 //!
 //! Inputs are a function of the case and their number alone, so the same ones come out of any number of threads.
 //!
-//! Not here: sampling (M), whose stratification and slopes the tests of the samplers measure, and what the language rejects
-//! before it could become a picture (negative sizes, empty clip ranges, numbers that are not finite).
+//! Not here: what the tests of the samplers measure over many pixels at once (M5 and the slopes of errors), and what the language
+//! rejects before it could become a picture (S6, K1 and F3: negative sizes, empty clip ranges, numbers that are not finite).
 
 mod board;
 mod camera;
@@ -18,6 +18,7 @@ mod cuboid;
 mod film;
 mod inputs;
 pub mod oracle;
+mod samplers;
 pub mod scenes;
 mod sphere;
 mod table;
@@ -74,6 +75,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         triangle::CASES,
         camera::CASES,
         clip::CASES,
+        samplers::CASES,
         film::CASES,
     ]
     .into_iter()

@@ -58,6 +58,9 @@ pub struct Trial {
 /// Numbers are measured at one of so many inputs: a distance takes longer than a decision.
 const MEASURED: u64 = 16;
 
+/// One of so many boundaries is found by the oracle: to do so takes some six times as long as to ask beside it.
+const BY_THE_ORACLE: u64 = 8;
+
 impl Trial {
     /// Prepares a scene; the oracle computes with so many bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
@@ -80,8 +83,7 @@ impl Trial {
 
     /// Asks all three what is seen at a sample point.
     pub fn decide(&self, x: u32, y: u32, offset: DVec2, tally: &mut Tally) {
-        let truth = self.oracle.seen(&self.oracle.direction(x, y, offset));
-        let truth = truth.map(|seen| (seen.object, seen.odd));
+        let truth = self.truth(x, y, offset);
         let textbook = self.textbook.seen(x, y, offset);
         let textbook = textbook.map(|seen| (seen.object, seen.odd));
         let ours = self.ours(x, y, offset);
@@ -96,6 +98,11 @@ impl Trial {
         for (wrong, answer) in tally.wrong.iter_mut().zip(answers) {
             *wrong += u64::from(answer != truth);
         }
+    }
+
+    fn truth(&self, x: u32, y: u32, offset: DVec2) -> Answer {
+        let seen = self.oracle.seen(&self.oracle.direction(x, y, offset));
+        seen.map(|seen| (seen.object, seen.odd))
     }
 
     fn ours(&self, x: u32, y: u32, offset: DVec2) -> Answer {
@@ -160,7 +167,8 @@ impl Trial {
     }
 
     /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s on both sides of each, and
-    /// at distances from it that are spread evenly on a logarithmic scale.
+    /// at distances from it that are spread evenly on a logarithmic scale. Most of them are found by our own decisions, and some by the
+    /// oracle's, in case we should not see that there is one.
     pub fn boundaries(&self, random: &mut Random, count: u64, tally: &mut Tally) {
         let end = tally.inputs + count;
         // A picture without a boundary is asked anywhere.
@@ -168,22 +176,31 @@ impl Trial {
         while tally.inputs < end && patience > 0 {
             patience -= 1;
             let axis = random.below(2) as usize;
-            if let Some(boundary) = self.boundary(random, axis) {
+            let found = match random.below(BY_THE_ORACLE) {
+                0 => self.boundary(random, axis, |x, y, offset| self.truth(x, y, offset)),
+                _ => self.boundary(random, axis, |x, y, offset| self.ours(x, y, offset)),
+            };
+            if let Some(boundary) = found {
                 self.beside(random, boundary, end - tally.inputs, tally);
             }
         }
         self.anywhere(random, end - tally.inputs, tally);
     }
 
-    /// A place where the colour changes along a row (axis 0) or column (axis 1): a pixel, and the last offset before.
-    fn boundary(&self, random: &mut Random, axis: usize) -> Option<(usize, [u32; 2], DVec2)> {
+    /// A place where what is seen changes along a row (axis 0) or column (axis 1): a pixel, and the last offset before.
+    fn boundary(
+        &self,
+        random: &mut Random,
+        axis: usize,
+        seen: impl Fn(u32, u32, DVec2) -> Answer,
+    ) -> Option<(usize, [u32; 2], DVec2)> {
         let size = [self.scene.image.width, self.scene.image.height];
         let mut pixel = size.map(|size| random.below(size.into()) as u32);
         let mut offset = random.offset();
         let color = |pixel: [u32; 2], at: f64| {
             let mut offset = offset;
             offset[axis] = at;
-            self.ours(pixel[0], pixel[1], offset)
+            seen(pixel[0], pixel[1], offset)
         };
         let mut ends = [0, 0].map(|_: u32| random.below(size[axis].into()) as u32);
         ends.sort_unstable();
@@ -252,7 +269,8 @@ impl Trial {
         let end = tally.inputs + count;
         while tally.inputs < end {
             let axis = random.below(2) as usize;
-            let Some((axis, [x, y], offset)) = self.boundary(random, axis) else {
+            let ours = |x, y, offset| self.ours(x, y, offset);
+            let Some((axis, [x, y], offset)) = self.boundary(random, axis, ours) else {
                 continue;
             };
             for step in [0.0, 1.0, -1.0, 1e3, -1e3] {
@@ -263,7 +281,7 @@ impl Trial {
                 }
                 let (other_x, other) = (self.scene.image.width - 1 - x, dvec2(-near.x, near.y));
                 let textbook = |x, offset| self.textbook.seen(x, y, offset).map(|s| s.object);
-                let ours = |x, offset| self.ours(x, y, offset).map(|(object, _)| object);
+                let ours = |x, offset| ours(x, y, offset).map(|(object, _)| object);
                 let differs = |a: Option<usize>, b: Option<usize>| {
                     u64::from(a.map(|object| mirror[object]) != b)
                 };
