@@ -84,11 +84,11 @@ impl<T: Real> Triangle<T> {
     /// The crossing, if the ray meets the closed triangle in front of the eye.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        let mut doubt = false;
+        let (mut doubt, mut is_inside) = (false, false);
         for edge in &self.edges {
             match edge.at(r).sign() {
                 Ok(Ordering::Less) => return Ok(None),
-                Ok(_) => {}
+                Ok(sign) => is_inside |= sign.is_gt(),
                 Err(Doubt) => doubt = true,
             }
         }
@@ -96,8 +96,9 @@ impl<T: Real> Triangle<T> {
             return Err(Doubt);
         }
         let inverse_depth = self.plane.at(r);
-        // With all three determinants zero the ray lies in the plane; else the sum of them, and so the depth, is positive.
-        if inverse_depth.sign()? != Ordering::Greater {
+        // With all three determinants zero the ray lies in the plane, or, in the last precision, the triangle is too small or too nearly edge-on
+        // to be told from nothing; else the sum of them, and so the depth, is positive.
+        if !is_inside || inverse_depth.sign()? != Ordering::Greater {
             return Ok(None);
         }
         Ok(Some(Crossing {

@@ -11,6 +11,7 @@ mod diff;
 mod editor;
 mod exact;
 mod explain;
+mod extremes;
 mod figure;
 mod film;
 mod fixes;

@@ -1,0 +1,223 @@
+//! Scenes of numbers of all sizes, as text: whatever can be said is rendered, and no channel is anything but a number from 0 to 1.
+//!
+//! The tests ask thousands; `PINHOLE_SCENES=10000000 cargo test --release extremes` asks ten million.
+
+use std::{fmt::Write, num::NonZero, sync::atomic::AtomicBool};
+
+use pinhole::{
+    area::Area,
+    film::Film,
+    render::{Control, Way, render_exact, render_in_a_way},
+    sampling::Sampling,
+    scene::{self, Scene},
+    source::{Source, Sources},
+    tracer::World,
+};
+
+use crate::tracer::Random;
+
+/// How many scenes are made unless the environment says otherwise. Two fifths of them have no mistake.
+const SCENES: u64 = 3000;
+
+/// Samples a pixel, at random.
+const SAMPLES: u64 = 64;
+
+/// How far a mean of the samples may be from what it estimates: farther at one of 10^13 (Hoeffding's inequality for numbers from 0 to 1).
+const FAR: f64 = 0.49;
+
+/// Numbers for a scene, of which most are ordinary or few.
+struct Numbers {
+    random: Random,
+    /// How many of a hundred numbers may be of any size.
+    wild: u64,
+    /// Lengths that several things of the scene have.
+    shared: [f64; 3],
+}
+
+impl Numbers {
+    fn new(seed: u64) -> Self {
+        let mut random = Random(seed);
+        let wild = [0, 5, 30, 100][random.bits() as usize % 4];
+        let mut numbers = Self {
+            random,
+            wild,
+            shared: [1.0; 3],
+        };
+        numbers.shared = [0; 3].map(|_| numbers.number());
+        numbers
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        self.random.bits() % n
+    }
+
+    fn number(&mut self) -> f64 {
+        let sign = [1.0, -1.0][self.below(2) as usize];
+        if self.below(100) >= self.wild {
+            return match self.below(4) {
+                0 => self.below(5) as f64 - 2.0,
+                1 => (self.below(65) as f64 - 32.0) / 8.0,
+                _ => self.random.within(-5.0, 5.0),
+            };
+        }
+        sign * match self.below(10) {
+            0 => 5e-324,
+            1 => f64::MIN_POSITIVE,
+            2 => f64::MAX,
+            3 => 0.0,
+            4 => self.shared[self.random.bits() as usize % 3].next_up(),
+            5 => self.shared[self.random.bits() as usize % 3],
+            6 | 7 => libm::exp10(self.random.within(-20.0, 20.0)),
+            _ => libm::exp10(self.random.within(-323.0, 308.0)),
+        }
+    }
+
+    fn length(&mut self) -> f64 {
+        self.number().abs()
+    }
+
+    fn vector(&mut self) -> String {
+        let [x, y, z] = [0; 3].map(|_| self.number());
+        format!("({x:?}, {y:?}, {z:?})")
+    }
+
+    fn color(&mut self) -> &'static str {
+        ["black", "white", "red", "olive", "#012345"][self.below(5) as usize]
+    }
+
+    /// Up to five objects, a camera, and a picture of few pixels.
+    fn scene(&mut self) -> String {
+        let [width, height] = [0; 2].map(|_: u32| 1 + self.below(3));
+        let mut text = format!(
+            "image {{ width {width} height {height} background {} }}\n",
+            self.color()
+        );
+        write!(text, "camera {{ eye {} ", self.vector()).unwrap();
+        let view = ["direction", "lookat"][self.below(2) as usize];
+        write!(text, "{view} {} ", self.vector()).unwrap();
+        let maybe = |numbers: &mut Self| numbers.below(3) == 0;
+        if maybe(self) {
+            write!(text, "up {} ", self.vector()).unwrap();
+        }
+        if maybe(self) {
+            write!(text, "roll {:?}deg ", 90.0 * self.number()).unwrap();
+        }
+        match self.below(3) {
+            0 => write!(text, "d {:?} ", self.length()).unwrap(),
+            1 => write!(text, "fov {:?}deg ", 45.0 * self.length()).unwrap(),
+            _ => {}
+        }
+        if maybe(self) {
+            write!(text, "near {:?} ", self.length()).unwrap();
+        }
+        if maybe(self) {
+            write!(text, "far {:?} ", self.length()).unwrap();
+        }
+        writeln!(
+            text,
+            "}}\nsampler {{ method random per_pixel {SAMPLES} seed {} }}",
+            self.below(1000)
+        )
+        .unwrap();
+        for _ in 0..self.below(6) {
+            self.object(&mut text);
+        }
+        text
+    }
+
+    fn object(&mut self, text: &mut String) {
+        let color = self.color();
+        let line = match self.below(4) {
+            0 => format!(
+                "sphere {{ center {} radius {:?} color {color} }}",
+                self.vector(),
+                self.length()
+            ),
+            1 => {
+                let [a, b] = [0; 2].map(|_: u32| self.length());
+                // No longer than the other two together, and often just as long.
+                let c = match self.below(3) {
+                    0 => a + b,
+                    1 => (a - b).abs(),
+                    _ => a.max(b),
+                };
+                format!(
+                    "triangle {{ centroid {} normal {} sides ({a:?}, {b:?}, {c:?}) spin {:?}deg color {color} }}",
+                    self.vector(),
+                    self.vector(),
+                    90.0 * self.number()
+                )
+            }
+            2 => format!(
+                "box {{ center {} size ({:?}, {:?}, {:?}) color {color} }}",
+                self.vector(),
+                self.length(),
+                self.length(),
+                self.length()
+            ),
+            _ => format!(
+                "checkerboard {{ y {:?} square {:?} colors ({color}, {}) }}",
+                self.number(),
+                self.length(),
+                self.color()
+            ),
+        };
+        writeln!(text, "{line}").unwrap();
+    }
+}
+
+fn assert_light(film: &Film, text: &str) {
+    for light in film.pixels() {
+        let is_light = light.iter().all(|channel| (0.0..=1.0).contains(channel));
+        assert!(is_light, "{light:?} of\n{text}");
+    }
+}
+
+/// Renders a scene culled, one by one and exactly. Whether the samples' squares are those that the exact picture sums up is decided but by
+/// hundreds of bits where squares and places are numbers of all sizes, and not asked then.
+fn render(scene: &Scene, text: &str, is_decided: bool) {
+    let control = Control {
+        threads: NonZero::new(1),
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let [width, height] = [scene.image.width, scene.image.height];
+    let whole = Area::whole(width, height);
+    let world = World::new(scene);
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    let sampled = |way| render_in_a_way(&world, &sampling, whole, &control, way).unwrap();
+    let culled: Film = sampled(Way::Culled);
+    assert_light(&culled, text);
+    let plain = sampled(Way::OneByOne);
+    assert_eq!(culled.pixels(), plain.pixels(), "{text}");
+    let exact = render_exact(&world, whole, &control).unwrap();
+    assert_light(&exact.film, text);
+    let pixels = exact.film.pixels().iter().zip(culled.pixels());
+    for ((exact, sampled), &bound) in pixels.zip(&exact.bounds) {
+        assert!(bound >= 0.0, "a bound of {bound} of\n{text}");
+        for (exact, sampled) in exact.iter().zip(sampled) {
+            assert!(
+                !is_decided || (exact - sampled).abs() <= FAR + f64::from(bound),
+                "{exact}, sampled {sampled}, of\n{text}"
+            );
+        }
+    }
+}
+
+#[test]
+fn whatever_the_numbers_every_channel_is_light() {
+    let asked = std::env::var("PINHOLE_SCENES").ok();
+    let count = asked.map_or(SCENES, |count| count.parse().unwrap());
+    let mut rendered = 0;
+    for seed in 0..count {
+        let mut numbers = Numbers::new(seed);
+        let text = numbers.scene();
+        let is_decided = numbers.wild == 0 || !text.contains("checkerboard");
+        let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
+        if let Some(scene) = scene::read(&sources).scene {
+            rendered += 1;
+            render(&scene, &text, is_decided);
+        }
+    }
+    assert!(rendered >= count / 3, "{rendered} of {count}");
+}
