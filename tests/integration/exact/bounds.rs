@@ -1,0 +1,164 @@
+//! What is known of a pixel: how close it is to its true mean, and which of its bytes are certain.
+
+use pinhole::color::linear_to_srgb;
+
+use super::*;
+
+/// How many pixels of 16 bits a channel would be certain.
+fn certified_words(exact: &Exact) -> usize {
+    let word = |light: f64| -> f64 { (65_535.0 * linear_to_srgb(light)).round() };
+    let pixels = exact.film.pixels().iter().zip(&exact.bounds);
+    let is_certain = |light: &[f64; 3], bound: f64| {
+        let is_one = |channel: &f64| word(channel - bound) == word(channel + bound);
+        light.iter().all(is_one)
+    };
+    pixels
+        .filter(|&(light, &bound)| is_certain(light, bound.into()))
+        .count()
+}
+
+#[test]
+fn bounds_keep_their_promise() {
+    for (far, limit) in [(Some(100.0), 1e-12), (Some(1e3), 1e-9), (None, 1e-9)] {
+        let mut scene = example("figure_9_9.scn", 256, 256);
+        scene.camera.far = far;
+        let exact = exact(&scene);
+        assert!(exact.bound() <= limit, "far {far:?}: {:e}", exact.bound());
+        let certified = film::certified(&exact.film, &exact.bounds);
+        let share = certified as f64 / exact.bounds.len() as f64;
+        assert!(share >= 0.99999, "{share}");
+        let share = certified_words(&exact) as f64 / exact.bounds.len() as f64;
+        assert!(share >= 0.999, "of 16 bits: {share}");
+    }
+    // Along a diagonal of the board, level and rolled.
+    for (direction, roll) in [
+        ((1.0, -1.0), 0.0),
+        ((-1.0, -1.0), 30.0),
+        ((1.0, -3.0), 0.0),
+        ((1.0, 0.0), 90.0),
+    ] {
+        let mut scene = example("figure_9_9.scn", 64, 64);
+        scene.camera.view = View::Direction(dvec3(direction.0, 0.0, direction.1));
+        scene.camera.roll.degrees = roll;
+        scene.camera.lens = Lens::Distance(2.0);
+        let exact = exact(&scene);
+        assert!(exact.bound() <= 1e-9, "{direction:?}: {:e}", exact.bound());
+    }
+}
+
+/// So many spheres that pierce each other in one pixel, most of what bounds them hidden.
+#[test]
+fn a_heap_in_one_pixel() {
+    let mut text = String::from(
+        "image { width 3 height 3 }
+         camera { eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }
+         sampler { method exact }\n",
+    );
+    let mut random = Random(7);
+    for color in ["olive", "teal", "orange", "red", "blue"].repeat(8) {
+        let [at, more]: [DVec2; 2] = [random.offset(), random.offset()];
+        let (x, y, z) = (40.0 * at.x, 40.0 * at.y, 40.0 * more.x);
+        let radius = 20.0 * (0.6 + more.y);
+        let _ = writeln!(
+            text,
+            "sphere {{ center ({x}, {y}, {z}) radius {radius} color {color} }}"
+        );
+    }
+    let seen = exact(&read(&text));
+    assert!(seen.bound() <= 1e-12, "{:e}", seen.bound());
+}
+
+#[test]
+fn bytes_are_those_of_the_means() {
+    for name in examples() {
+        let scene = example(&name, 70, 52);
+        let area: Area = "3,1,66,50".parse().unwrap();
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let bytes = render_exact_bytes(&World::new(&scene), area, &control).unwrap();
+        let means = part(&scene, area);
+        assert_eq!(bytes.bounds, means.bounds, "{name}");
+        let certain = film::certified(&means.film, &means.bounds);
+        assert_eq!(bytes.certain, certain, "{name}");
+        assert!(certain <= area.pixels());
+        let encoder = film::Encoder::new();
+        for (bytes, light) in bytes.film.pixels().iter().zip(means.film.pixels()) {
+            assert_eq!(*bytes, encoder.pixel(*light), "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_is_uniform_is_its_colour() {
+    let scene = example("figure_9_9.scn", 96, 96);
+    let world = World::new(&scene);
+    let exact = exact(&scene);
+    let colors: Vec<_> = world
+        .palette()
+        .iter()
+        .map(|color| Color::to_linear(*color))
+        .collect();
+    let mut uniform = 0;
+    let mut random = Random(3);
+    for (x, y) in Area::whole(96, 96).iter() {
+        if exact.bounds[(y * 96 + x) as usize] == 0.0 {
+            uniform += 1;
+            for _ in 0..8 {
+                let offset: DVec2 = random.offset();
+                assert_eq!(
+                    colors[world.slot_at(x, y, offset)],
+                    exact.film.pixel(x, y),
+                    "{x}, {y}"
+                );
+            }
+        }
+    }
+    assert!(uniform > 5000, "{uniform}");
+}
+
+#[test]
+fn ten_thousand_objects() {
+    let mut random = Random(11);
+    let mut scene = random_scene(&mut random, true);
+    (scene.image.width, scene.image.height) = (96, 64);
+    scene.camera.near = 0.0;
+    scene.camera.far = None;
+    let shape = scene.objects[1].shape;
+    let Shape::Sphere(ball) = shape else {
+        panic!("{shape:?}")
+    };
+    let object = scene.objects[1].clone();
+    for _ in 0..10_000 {
+        let mut object = object.clone();
+        object.shape = Shape::Sphere(scene::Sphere {
+            center: random.vector(3.0),
+            radius: random.within(0.005, 0.03),
+            ..ball
+        });
+        scene.objects.push(object);
+    }
+    let exact = exact(&scene);
+    assert!(exact.bound() <= 1e-9, "{:e}", exact.bound());
+}
+
+/// Outlines of spheres that all but coincide are told apart, as closely as roundings allow.
+#[test]
+fn outlines_that_nearly_coincide() {
+    for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
+        for center in ["(0, 0.3, 0)", &format!("({gap}, 0.3, 0)")] {
+            let scene = read(&format!(
+                "image {{ width 24 height 16 }}
+                 camera {{ eye (0, 1.5, 6) lookat (0, 0.5, 0) }}
+                 sampler {{ method exact }}
+                 sphere {{ center (0, 0.3, 0) radius 1 color red }}
+                 sphere {{ center {center} radius 1 + {gap} color blue }}"
+            ));
+            let bound = exact(&scene).bound();
+            assert!(bound <= 1e-12, "{gap} {center}: {bound:e}");
+            adds_up(&scene, gap);
+        }
+    }
+}
