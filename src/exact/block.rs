@@ -68,7 +68,7 @@ impl<'a> Block<'a> {
     }
 
     /// The lines that a side crosses between two of them.
-    fn run(&self, [start, end]: &Side, [first, last]: [f64; 2], size: f64) -> Run {
+    fn run(&self, [start, end]: &Side, [first, last]: [f64; 2]) -> Run {
         let rows = end[0].minus(&start[0]);
         let [climb, rise] = [1, 2].map(|i| end[i].minus(&start[i]).over(&rows));
         let is_falling = rise.is_negative();
@@ -89,10 +89,8 @@ impl<'a> Block<'a> {
         };
         let slope = self.board.fine.floor.slope[self.along];
         let [t, depth] = place(from);
-        let mut lines = Lines::new(&[t, depth], &step, &Double::from_f64(last - first), slope);
-        lines.size = size;
         Run {
-            lines,
+            lines: Lines::new(&[t, depth], &step, &Double::from_f64(last - first), slope),
             from,
             first: t,
             sense: if is_falling { -1.0 } else { 1.0 },
@@ -105,10 +103,7 @@ impl<'a> Block<'a> {
     fn sooner(&self, [first, last]: [f64; 2], tolerance: f64) -> [f64; 2] {
         let across = 1 - self.along;
         let allows = |ends: [f64; 2]| {
-            let [left, right] = self
-                .sides
-                .each_ref()
-                .map(|side| self.run(side, ends, f64::INFINITY));
+            let [left, right] = self.sides.each_ref().map(|side| self.run(side, ends));
             let is_gradual = |run: &Run| run.lines.depth >= GRADUAL * run.lines.rise;
             let step = in_step(&left, &right, self.board.fine.floor.slope[across]);
             is_gradual(&left)
@@ -217,7 +212,9 @@ impl Bulk for Block<'_> {
     fn smooth(&self) -> [f64; 2] {
         let [mut first, mut last] = [self.first, self.last];
         let leeway = self.board.leeway;
-        let factor = 2.0 * self.board.fine.floor.per_slope[1 - self.along].value;
+        let [of_p, of_q] =
+            [self.along, 1 - self.along].map(|axis| self.board.fine.floor.per_slope[axis].value);
+        let factor = 2.0 * of_q;
         let [left, right] = self.sides;
         // Where m is smaller rows are summed one by one.
         let near = usize::from(left[0][2].hi > left[1][2].hi);
@@ -225,9 +222,10 @@ impl Bulk for Block<'_> {
         let most = (PATIENCE / (1.0 + 0.25 * length.min(MANY))).ceil();
         // Beyond m there are no more than √2/m|∇L| square pixels.
         let steepness = libm::hypot(self.board.below[0], self.board.below[1]);
-        let narrow = 1.5 / steepness * Lines::share_neglected() / (NARROW_AT_WORST * leeway);
+        let share = Lines::share_neglected() * of_q / of_p;
+        let narrow = 1.5 / steepness * share / (NARROW_AT_WORST * leeway);
         for side in &self.sides {
-            let Run { lines, sense, .. } = self.run(side, [self.first, self.last], f64::INFINITY);
+            let Run { lines, sense, .. } = self.run(side, [self.first, self.last]);
             let start = lines
                 .start(AT_WORST * leeway / factor)
                 .min(narrow.max(GRADUAL * lines.rise));
@@ -247,25 +245,31 @@ impl Bulk for Block<'_> {
     fn add(&self, ends: [f64; 2], piece: &[DVec2], tally: &mut Tally) {
         let board = self.board;
         let across = 1 - self.along;
-        let per_slope = board.fine.floor.per_slope[across];
-        let factor = 2.0 * per_slope.value;
+        let per_slope = board.fine.floor.per_slope;
+        let (of_p, factor) = (per_slope[self.along], 2.0 * per_slope[across].value);
         let (area, perimeter) = measure(piece.iter().copied());
-        // A mode n of a row is, from side to side, ∫ m⁻³·e^(iπnt) dm: no more than half of m⁻² differs by between them, which by
-        // 2K/|q| is twice the row's area.
-        let size = 1.1 * area.abs() / factor;
         // The sides are those between points that are a few roundings off.
         let mut bound = 8.0 * UNIT * perimeter;
-        let runs = self.sides.each_ref().map(|side| self.run(side, ends, size));
-        bound += runs.iter().map(|run| self.uncertainty(run)).sum::<f64>();
+        let mut runs = self.sides.each_ref().map(|side| self.run(side, ends));
         let tolerance = NEGLECTED * board.leeway / factor;
         let most = MOST / board.leeway.sqrt();
+        let [left, right] = &runs;
+        let step = in_step(left, right, board.fine.floor.slope[across]);
+        // What a mode has of a line c between the sides is e^(iπnt)·pY_p, from the one to the other p·∫ m⁻³·e^(iπnt) dt: at most |p|/K times
+        // the row's area by dc, and over all lines, the ends by half, that of all of it but for what the trapezoidal rule is off; and what
+        // the sides have each for itself.
+        let rows = (area.abs() + bound) * (1.0 + of_p.bound) / of_p.value;
+        let size = rows + left.lines.at_its_ends() + right.lines.at_its_ends();
+        if step < f64::INFINITY {
+            runs[0].lines.size = size;
+        }
+        bound += runs.iter().map(|run| self.uncertainty(run)).sum::<f64>();
         let [left, right] = &runs;
         let mut sum = 0.0;
         let mut add = |part: Sum, run: &Run| {
             sum += square_wave(run.from) * part.value;
             bound += factor * part.bound;
         };
-        let step = in_step(left, right, board.fine.floor.slope[across]);
         if step < f64::INFINITY {
             add(
                 modes::sum(

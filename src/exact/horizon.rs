@@ -19,6 +19,8 @@ use super::modes::{GRADUAL, Lines, MOST as MOST_MODES};
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
+/// Modes of a sum that leave so much of a pixel in doubt are not worth their time.
+pub(super) const NOTHING_KNOWN: f64 = 1.0;
 /// Below so many crossings one by one is as good as by modes.
 const SHORT: f64 = 20_000.0;
 /// The same where m hardly grows; and so many are summed one by one where modes would need waves of high orders.
@@ -188,8 +190,14 @@ fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64) -> Su
     };
     // |V_3| ≤ w^−3 + w^−2/2, and Σ n^−3 over the odd n > Q is at most 1/4(Q)², for odd Q + 1 … .
     let largest = first * waves * (0.5 * u2 + u3);
-    let last = ((largest / tolerance).sqrt().ceil() + 1.0).max(3.0);
+    let last = ((largest / tolerance).sqrt().ceil() + 1.0).clamp(3.0, MOST_MODES);
     let beyond = largest / (4.0 * (last - 1.0) * (last - 1.0));
+    if beyond.is_nan() || beyond >= NOTHING_KNOWN {
+        return Sum {
+            value: 0.0,
+            bound: everything,
+        };
+    }
     // By Abel |V_3| ≤ 2w^−3/|1 − e^iθ|: a late mode n is skipped where this is below an allowance that falls as n^−2.
     let allowance = 0.25 * tolerance * 2.0 * (FIRST_MODES - 1.0);
     let skipped = allowance / (2.0 * (FIRST_MODES - 1.0));

@@ -11,7 +11,8 @@
 use super::board::{Sum, UNIT};
 use super::complex::{Complex, phase, square, times, turned_times};
 use super::edge::{Crossings, Series};
-use super::horizon::lerch;
+use super::horizon::{NOTHING_KNOWN, lerch};
+use super::modes::MOST;
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
@@ -39,8 +40,14 @@ pub(super) fn crossings(all: &Crossings, series: &Series, trivial: f64, toleranc
     }
     let neglected = NEGLECTED.max(0.05 * tolerance);
     // Σ n^−3 over the odd n beyond Q is at most 1/4Q²; of the trivial bound a mode is at most 8/π² n^−3.
-    let last = ((trivial / neglected).sqrt().ceil() + 1.0).max(3.0);
+    let last = ((trivial / neglected).sqrt().ceil() + 1.0).clamp(3.0, MOST);
     let beyond = trivial / (4.0 * (last - 1.0) * (last - 1.0));
+    if beyond.is_nan() || beyond >= NOTHING_KNOWN {
+        return Sum {
+            value: 0.0,
+            bound: trivial,
+        };
+    }
 
     let turning = all.turning();
     // Of the first crossing, and of the one after the last with the sign that it would have.

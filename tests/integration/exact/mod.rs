@@ -2,6 +2,7 @@
 
 mod board;
 mod bounds;
+mod diagonals;
 mod rational;
 mod shapes;
 mod twice;

@@ -1,0 +1,69 @@
+//! Views along a diagonal of the board, where all modes of its rows are in step: so little cancels that bounds are used to the last.
+
+use super::*;
+
+/// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the widest views along x = z with the eye over that line, of
+/// which both sides are the same, up to what the eye's coordinates are off and the view's depth; and two whose millions of pieces were added up
+/// with 40 digits, for d = 0.
+const KNOWN: [(&str, [u32; 2], f64, f64); 4] = [
+    (
+        "image { width 2 height 2 } camera { eye (0.3, 1, 0.3) direction (1, 0, -1) d 1e-40 }
+         checkerboard { square 1 colors (black, white) }",
+        [0, 1],
+        0.0,
+        1e-30,
+    ),
+    (
+        "image { width 2 height 2 } camera { eye (-0.4804996875, 1, 0.3554996875) direction (-1, 0, -1) d 1e-300 }
+         checkerboard { square 0.0625 colors (white, black) }",
+        [1, 1],
+        0.0,
+        1e-14,
+    ),
+    (
+        "image { width 4 height 2 }
+         camera { eye (-0.055864375, 13.0, -0.16288562496875) direction (1, 0, 1) d 1e-40 far 4.066243e-37 }
+         checkerboard { square 0.03125 colors (white, black) }",
+        [0, 1],
+        0.996_802_944_621_547_9,
+        1e-15,
+    ),
+    (
+        "image { width 16 height 2 }
+         camera { eye (-0.051105874999999995, 0.5, 0.948894124875) direction (1, 0, -1) d 1e-300 far 3.081378e-297 }
+         checkerboard { square 0.125 colors (white, black) }",
+        [0, 1],
+        0.999_837_733_934_641_5,
+        1e-15,
+    ),
+];
+
+#[test]
+fn what_is_known_otherwise_is_within_the_bound() {
+    for (text, [x, y], truth, off) in KNOWN {
+        let exact = exact(&read(&format!("{text} sampler {{ method exact }}")));
+        let bound = exact.bounds[(y * exact.film.width() + x) as usize];
+        let error = (exact.film.pixel(x, y)[0] - truth).abs();
+        assert!(
+            error <= f64::from(bound) + off,
+            "{error:e} > {bound:e} of {text}"
+        );
+        assert!(bound <= 1e-8, "{bound:e} of {text}");
+    }
+}
+
+/// Places and times so many that modes of lines do not end: something is known in the end, or nothing, but soon.
+#[test]
+fn the_longest_lenses_end() {
+    for text in [
+        "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }
+         checkerboard { square 136 colors (white, black) }",
+        "camera { eye (5e-324, -1.333179750293108e17, 0) lookat (1.7976931348623157e308, -9.697327195529915e-14, 1.7976931348623157e308)
+           up (7.287757695933216e92, -231448480128.88724, 5e-324) d 7.287757695933215e92
+           near 1.1380496007412987e-202 far 1.7976931348623157e308 }
+         checkerboard { y -241717738976317.66 square 2.2868347391406466e96 colors (red, olive) }",
+    ] {
+        let exact = exact(&read(&format!("image {{ width 2 height 2 }} sampler {{ method exact }} {text}")));
+        assert!(exact.film.pixels().iter().flatten().all(|light| (0.0..=1.0).contains(light)));
+    }
+}
