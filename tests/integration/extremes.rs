@@ -1,6 +1,6 @@
 //! Scenes of numbers of all sizes, as text: whatever can be said is rendered, and no channel is anything but a number from 0 to 1.
 //!
-//! The tests ask thousands; `PINHOLE_SCENES=10000000 cargo test --release extremes` asks ten million.
+//! The tests ask thousands; `PINHOLE_SCENES=10000000 cargo test extremes` asks ten million, for some hours.
 
 use std::{fmt::Write, num::NonZero, sync::atomic::AtomicBool};
 
