@@ -56,6 +56,10 @@ const NEXT_TO_NOTHING: f64 = 1e9;
 const TINY: i32 = 24;
 /// So little of a crowd of them is as good as nothing.
 const TINY_CROWD: f64 = 4e-10;
+/// Of one that does not even out nobody knows more than this in reasonable time.
+const TINY_MEAN: f64 = 1e-7;
+/// Where squares are smaller than a pixel by this power of two, and forms hardly independent, they cannot be looked at in any other way.
+const COUNTLESS: i32 = 44;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -228,16 +232,26 @@ impl Board {
         cancel: &AtomicBool,
     ) -> Sum {
         let enough = self.care.enough(polygon);
-        let next_to_nothing = || Sum {
-            value: 0.0,
-            bound: self.most(polygon).min(self.most_aslant(polygon)),
+        let next_to_nothing = || {
+            let nothing = Sum {
+                value: 0.0,
+                bound: self.most(polygon).min(self.most_aslant(polygon)),
+            };
+            match nothing.bound <= TINY_CROWD {
+                true => nothing,
+                false => better(nothing, self.along_diagonal(polygon)),
+            }
         };
         let [of_a, of_b] = self.fine.floor.powers;
         if of_a.max(of_b) >= TINY {
             let sum = next_to_nothing();
-            let is_enough = sum.bound <= Care::Great.enough(polygon)
-                || sum.bound <= TINY_CROWD * self.leeway && self.is_crowded(polygon);
-            if is_enough {
+            let is_nowhere = of_a.max(of_b) >= COUNTLESS && self.fine.nudge > 0.0;
+            let is_good = |crowd: f64| sum.bound <= crowd * self.leeway && self.is_crowded(polygon);
+            let is_enough = match sum.value {
+                0.0 => sum.bound <= Care::Great.enough(polygon) || is_good(TINY_CROWD),
+                _ => is_good(TINY_MEAN),
+            };
+            if is_enough || is_nowhere {
                 return sum.within(polygon.iter().copied());
             }
         }

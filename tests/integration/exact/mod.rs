@@ -1,6 +1,7 @@
 //! The computed picture against closed forms, against itself in other ways, against samples and against rational arithmetic.
 
 mod board;
+mod diagonal;
 mod rational;
 
 use std::{f64::consts::PI, fmt::Write, num::NonZero, sync::atomic::AtomicBool};
