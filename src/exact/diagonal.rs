@@ -44,8 +44,9 @@ const NODES: [[f64; 2]; 3] = [
 const QUADRATURE: f64 = 1e-14;
 
 impl Board {
-    /// The integral over a polygon, positive where squares are however it is oriented; `None` if nothing is left in the mean.
-    pub(super) fn along_diagonal(&self, polygon: &[DVec2]) -> Option<Sum> {
+    /// The integral over a polygon, positive where squares are however it is oriented; `None` if nothing is left in the mean, or its phase
+    /// changes by more than so much by 1/L.
+    pub(super) fn along_diagonal(&self, polygon: &[DVec2], most: f64) -> Option<Sum> {
         let lines = self.aslant(polygon)?;
         let ([p, q], rest) = lines.diagonal()?;
         let area = measure(polygon.iter().copied()).0;
@@ -54,7 +55,7 @@ impl Board {
         if !is_worth_it {
             return None;
         }
-        let mean = Phase::new(self, &lines, [p, q]).over(polygon)?;
+        let mean = Phase::new(self, &lines, [p, q]).over(polygon, most)?;
         let sign = area.signum() * if lines.slope.is_negative() { -1.0 } else { 1.0 };
         Some(Sum {
             value: sign * mean.value / (p * q),
@@ -129,7 +130,7 @@ impl Phase {
     }
 
     /// ∬ Λ(φ) over a polygon in its sense, as far as it is not beyond the horizon.
-    fn over(&self, polygon: &[DVec2]) -> Option<Sum> {
+    fn over(&self, polygon: &[DVec2], most: f64) -> Option<Sum> {
         let ends: Vec<End> = polygon.iter().map(|&at| self.end(at)).collect();
         let range = |of: fn(&End) -> f64| {
             let values = ends.iter().map(of);
@@ -146,7 +147,10 @@ impl Phase {
             .sqrt()
             .clamp(1.0, MOST_TURNS);
         let cut = (turning / turns).max(NEXT_TO_IT * self.steepness);
-        let is_known = self.off.is_finite() && self.off_level < 1e-3 * cut && cut.is_finite();
+        let is_known = turning <= most
+            && self.off.is_finite()
+            && self.off_level < 1e-3 * cut
+            && cut.is_finite();
         if !is_known {
             return None;
         }
@@ -370,7 +374,7 @@ mod tests {
                 off_level: 0.0,
                 greatest: 0.0,
             };
-            let found = phase.over(&PIXEL).expect("it");
+            let found = phase.over(&PIXEL, f64::INFINITY).expect("it");
             let expected = by_parts(|at| {
                 let level = at.dot(tilt.into()) + level;
                 (level > 0.0).then(|| base + (slope * at.dot(along) + turning) / level)
@@ -378,7 +382,7 @@ mod tests {
             prop_assert!(found.bound < 1e-9, "{found:?}");
             prop_assert!((found.value - expected).abs() < 2e-3, "{found:?}, not {expected}");
             let mirrored: Vec<DVec2> = PIXEL.into_iter().rev().collect();
-            let back = phase.over(&mirrored).expect("it");
+            let back = phase.over(&mirrored, f64::INFINITY).expect("it");
             prop_assert!((found.value + back.value).abs() <= found.bound + back.bound);
         }
     }
@@ -413,7 +417,7 @@ mod tests {
             let b = form(signed(slope * count, 1), across * p / q + turned, place[1]);
             let seen = Board::new(if exchanged { [b, a] } else { [a, b] }, below);
             for polygon in [&PIXEL[..], &PIXEL[1..]] {
-                let Some(found) = seen.along_diagonal(polygon) else { continue };
+                let Some(found) = seen.along_diagonal(polygon, f64::INFINITY) else { continue };
                 let sum = cells::sum(&seen, &seen.visible(polygon), &WANTED);
                 let off = (found.value - sum.value).abs();
                 prop_assert!(off <= found.bound + sum.bound, "{found:?}, not {sum:?}");
