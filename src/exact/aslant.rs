@@ -9,8 +9,12 @@
 //! That integral over two squares is a function of c of the period 2, of the mean 0 and of the total variation 8 at most, which c goes on by 2ρ from.
 //! Over q such pairs together it is at most 8 where |ρ − p/q| < 1/q², p/q in its lowest terms (the inequality of Denjoy and Koksma); and any
 //! number of pairs is made of such q's of ρ's continued fraction, of each no more than the next partial quotient, and of as often as it has
-//! room of the last (Ostrowski). If p or q is even, 2q squares of the slope p/q add up to nothing at all; a slope that is off by δ changes
-//! that by 24q²δ, or, if p is 0, by 4 where b crosses a line.
+//! room of the last (Ostrowski).
+//!
+//! Over 2q squares of the slope p/q it is 0 if p or q is even, and else 2/p at most (`diagonal`). A slope that is off by δ, if b is left as
+//! it is in the middle, changes s(b) where a whole number is between both b's: along qδ of q squares, on either side, as b there goes by p
+//! units, and one in q²δ is as much of each; so it changes the integral by 4q²δ. If p is 0, it changes by 2 where b crosses a line, which it
+//! does 2δ times in two squares, and once more. And any part of 2q squares has q at most, where all add up to 0.
 
 use glam::DVec2;
 
@@ -20,18 +24,33 @@ use crate::math::{Double, Real};
 /// Slopes are not told from fractions of greater denominators.
 const GREATEST: f64 = 1e15;
 
+/// What lines of the picture that are parallel to the horizon show of a board.
+pub(super) struct Aslant {
+    /// The axis of which there are more squares on them.
+    pub more: usize,
+    /// ±ρ, how far the other one goes by one of these squares, and by how much that may be off.
+    pub slope: Double,
+    off: f64,
+    /// How long such a square is at most, in pixels, by the polygon's height across the lines.
+    weight: f64,
+    area: f64,
+}
+
 impl Board {
     /// A bound on the integral over a convex polygon, in square pixels; infinite where nothing is known.
     pub(super) fn most_aslant(&self, polygon: &[DVec2]) -> f64 {
+        let lines = self.aslant(polygon);
+        lines.map_or(f64::INFINITY, |lines| lines.most())
+    }
+
+    /// `None` where they are nowhere.
+    pub(super) fn aslant(&self, polygon: &[DVec2]) -> Option<Aslant> {
         let [of_a, of_b] = self.fine.floor.powers;
-        let [a, b, l] = self.fine.forms.each_ref();
+        let [a, b, l] = self.fine.given.each_ref();
         let [rad_a, rad_b, rad_l] = self.fine.rads;
-        // Whichever form it is that has been changed on purpose.
-        let nudge = self.fine.nudge * UNIT;
-        let rad_l = rad_l + nudge;
         let minor = |n: &[Double; 3], rad: f64, power: i32| {
             let n = n.each_ref().map(|c| c.scaled(-power));
-            let rad = libm::ldexp(rad, -power) + nudge;
+            let rad = libm::ldexp(rad, -power);
             let value = n[0].times(&l[1]).minus(&n[1].times(&l[0]));
             let [x, y] = [n[0].hi.abs(), n[1].hi.abs()];
             let [u, v] = [l[0].hi.abs(), l[1].hi.abs()];
@@ -41,20 +60,17 @@ impl Board {
         };
         let minors = [minor(a, rad_a, of_a), minor(b, rad_b, of_b)];
         let size = |i: usize, power: i32| libm::ldexp(minors[i].0.hi.abs(), power - of_a);
-        // Lines are counted by the axis along which there are more.
-        let (more, fewer, power) = match size(0, of_a) >= size(1, of_b) {
-            true => (&minors[0], &minors[1], of_b - of_a),
-            false => (&minors[1], &minors[0], of_a - of_b),
-        };
-        let gradient = more.0.hi.abs() - more.1;
-        let slope = fewer.0.over(&more.0).scaled(power);
-        let slope = if slope.is_negative() {
-            slope.negated()
-        } else {
-            slope
-        };
-        let off = libm::ldexp(fewer.1, power) / gradient
-            + slope.hi * (more.1 / gradient + 8.0 * Double::UNIT);
+        let more = usize::from(size(0, of_a) < size(1, of_b));
+        let powers = [of_a, of_b];
+        let (many, few, power) = (
+            &minors[more],
+            &minors[1 - more],
+            powers[1 - more] - powers[more],
+        );
+        let gradient = many.0.hi.abs() - many.1;
+        let slope = few.0.over(&many.0).scaled(power);
+        let off = libm::ldexp(few.1, power) / gradient
+            + slope.hi.abs() * (many.1 / gradient + 8.0 * Double::UNIT);
         let steepness = libm::hypot(l[0].hi, l[1].hi);
         let up = DVec2::new(l[0].hi, l[1].hi) / steepness;
         let heights = polygon.iter().map(|at| at.dot(up));
@@ -63,16 +79,45 @@ impl Board {
         });
         let levels = polygon.iter().map(|&at| form(&self.below, at));
         let level = levels.fold(0.0, f64::max) + rad_l + 16.0 * UNIT;
-        let counted = if power == of_b - of_a { of_a } else { of_b };
-        let square = libm::ldexp(level * steepness / gradient, -counted);
-        let (area, _) = measure(polygon.iter().copied());
+        let square = libm::ldexp(level * steepness / gradient, -powers[more]);
         // A dozen roundings, and those of the area.
         let slack = 1.0 + 2.0 * UNIT * (16 + polygon.len()) as f64;
-        let most = most_of(&slope, off, (high - low) * square, area.abs() + 8.0 * UNIT) * slack;
-        match most >= 0.0 && gradient > 0.0 {
-            true => most,
-            false => f64::INFINITY,
-        }
+        let weight = (high - low) * square * slack;
+        let (area, _) = measure(polygon.iter().copied());
+        (weight >= 0.0 && gradient > 0.0).then_some(Aslant {
+            more,
+            slope,
+            off,
+            weight,
+            area: (area.abs() + 8.0 * UNIT) * slack,
+        })
+    }
+}
+
+impl Aslant {
+    fn most(&self) -> f64 {
+        most_of(&size_of(&self.slope), self.off, self.weight, self.area)
+    }
+
+    /// The fraction p/q of odd numbers along which most evens out, and what does not but for the triangle wave: as `diagonal` has it.
+    pub(super) fn diagonal(&self) -> Option<([f64; 2], f64)> {
+        let left = |convergent: Convergent| {
+            let [_, q] = convergent.fraction;
+            let apart = convergent.apart + self.off;
+            let ends = (1.0 + 6.0 * q * apart) * self.weight;
+            (convergent.fraction, q * (3.0 * apart * self.area + ends))
+        };
+        let fractions = Convergents::of(&size_of(&self.slope)).filter(Convergent::is_odd);
+        fractions
+            .map(left)
+            .min_by(|(_, one), (_, other)| one.total_cmp(other))
+    }
+}
+
+fn size_of(x: &Double) -> Double {
+    match x.is_negative() {
+        true => x.negated(),
+        false => *x,
     }
 }
 
@@ -80,39 +125,89 @@ impl Board {
 /// all; 0 ≤ ρ ≤ 1, known but for `off`.
 fn most_of(slope: &Double, off: f64, weight: f64, length: f64) -> f64 {
     let mut best = length;
-    // Of the fractions p/q: two in turn, and what is left of ρ's continued fraction.
-    let (mut before, mut fraction) = ([1.0, 0.0], [0.0, 1.0]);
-    let mut quotients = 0.0;
-    loop {
-        let [p, q] = fraction;
-        let [of_p, of_q] = fraction.map(Double::from_f64);
-        // (ρq − p), of which the next quotient is what it takes to make good for the last one.
-        let gap = |[p, q]: [f64; 2]| {
-            let [p, q] = [p, q].map(Double::from_f64);
-            slope.times(&q).minus(&p).hi.abs()
+    // Of what is too little for a last block, and a pair of squares that is cut.
+    let mut rest = 2.0_f64;
+    for convergent in Convergents::of(slope) {
+        let [p, q] = convergent.fraction;
+        let apart = convergent.apart + off;
+        let is_near = apart * q * q < 1.0;
+        if !is_near {
+            break;
+        }
+        let mean = if convergent.is_odd() { 2.0 / p } else { 0.0 };
+        let block = (4.0 * q * q * apart + mean).min(8.0);
+        let once = if p == 0.0 { 2.0 } else { 0.0 };
+        let ends = match convergent.is_odd() {
+            true => rest,
+            false => rest.min(q + 4.0 * q * q * apart),
         };
-        let is_known = slope.hi.is_finite() && off.is_finite();
-        let apart = slope.times(&of_q).minus(&of_p).hi.abs() / q + off + 4.0 * Double::UNIT;
-        if !(is_known && q <= GREATEST) {
-            return best;
+        best = best.min(weight * (ends + once) + block / (2.0 * q) * length);
+        rest += once + convergent.quotient * block;
+    }
+    best
+}
+
+/// The continued fraction of ρ: its fractions from 0/1 on.
+struct Convergents {
+    slope: Double,
+    before: [f64; 2],
+    fraction: [f64; 2],
+}
+
+struct Convergent {
+    /// p and q.
+    fraction: [f64; 2],
+    /// |ρ − p/q| at most.
+    apart: f64,
+    /// The next partial quotient.
+    quotient: f64,
+}
+
+impl Convergent {
+    /// Whether p and q are.
+    fn is_odd(&self) -> bool {
+        self.fraction.iter().all(|x| x % 2.0 != 0.0)
+    }
+}
+
+impl Convergents {
+    fn of(slope: &Double) -> Self {
+        Self {
+            slope: *slope,
+            before: [1.0, 0.0],
+            fraction: [0.0, 1.0],
         }
-        if apart * q * q < 1.0 {
-            let mut rate = 4.0 / q;
-            let is_even = p % 2.0 == 0.0 || q % 2.0 == 0.0;
-            if is_even {
-                rate = rate.min(12.0 * q * apart);
-            }
-            best = best.min(weight * (10.0 + 8.0 * quotients) + rate * length);
-        } else {
-            return best;
+    }
+
+    /// |ρq − p|.
+    fn gap(&self, [p, q]: [f64; 2]) -> f64 {
+        let [p, q] = [p, q].map(Double::from_f64);
+        self.slope.times(&q).minus(&p).hi.abs()
+    }
+}
+
+impl Iterator for Convergents {
+    type Item = Convergent;
+
+    fn next(&mut self) -> Option<Convergent> {
+        let fraction = self.fraction;
+        // Neither is a number where the slope is not.
+        let is_known = self.slope.hi.is_finite() && fraction[1] <= GREATEST;
+        if !is_known {
+            return None;
         }
-        let quotient = (gap(before) / gap(fraction)).floor();
-        let next = [0, 1].map(|i| before[i] + quotient * fraction[i]);
-        if !(quotient >= 1.0 && next[1] <= GREATEST) {
-            return best;
-        }
-        quotients += quotient;
-        (before, fraction) = (fraction, next);
+        // How often the gap makes good for the one before; without end if there is none.
+        let quotient = (self.gap(self.before) / self.gap(fraction)).floor();
+        self.fraction = match quotient >= 1.0 {
+            true => [0, 1].map(|i| self.before[i] + quotient * fraction[i]),
+            false => [f64::NAN; 2],
+        };
+        self.before = fraction;
+        Some(Convergent {
+            fraction,
+            apart: self.gap(fraction) / fraction[1] + 4.0 * Double::UNIT,
+            quotient,
+        })
     }
 }
 

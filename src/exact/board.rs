@@ -56,6 +56,11 @@ const NEXT_TO_NOTHING: f64 = 1e9;
 const TINY: i32 = 24;
 /// So little of a crowd of them is as good as nothing.
 const TINY_CROWD: f64 = 4e-10;
+/// Of one that is seen along a diagonal nothing else knows more than this in reasonable time, if its phase changes by less than that, ...
+const TINY_MEAN: f64 = 1e-7;
+const STILL: f64 = 1e-2;
+/// ... or forms are hardly independent. If squares are smaller than a pixel by this power of two there, they cannot be looked at at all.
+const COUNTLESS: i32 = 44;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -233,13 +238,10 @@ impl Board {
             bound: self.most(polygon).min(self.most_aslant(polygon)),
         };
         let [of_a, of_b] = self.fine.floor.powers;
-        if of_a.max(of_b) >= TINY {
-            let sum = next_to_nothing();
-            let is_enough = sum.bound <= Care::Great.enough(polygon)
-                || sum.bound <= TINY_CROWD * self.leeway && self.is_crowded(polygon);
-            if is_enough {
-                return sum.within(polygon.iter().copied());
-            }
+        if of_a.max(of_b) >= TINY
+            && let Some(sum) = self.of_tiny(polygon, next_to_nothing())
+        {
+            return sum.within(polygon.iter().copied());
         }
         // Where corners as they are rounded leave too much of a crowd in doubt, they would take long for nothing.
         let good_crowd = GOOD_CROWD * self.leeway;
@@ -263,12 +265,31 @@ impl Board {
             sum.bound += self.fine.nudge * self.blurred(polygon.iter().copied());
         }
         if sum.bound > enough {
-            let other = next_to_nothing();
+            let mut other = next_to_nothing();
+            if sum.bound.min(other.bound) > good_crowd {
+                other = better(other, self.along_diagonal(polygon, f64::INFINITY));
+            }
             // Neither may be a number.
             let is_better = sum.value.is_finite() && sum.bound <= other.bound;
             sum = if is_better { sum } else { other };
         }
         sum.within(polygon.iter().copied())
+    }
+
+    /// What is known of squares too small to be seen at once, of which so little may be left; `None` if they should be looked at.
+    fn of_tiny(&self, polygon: &[DVec2], nothing: Sum) -> Option<Sum> {
+        let is_good =
+            |sum: &Sum, crowd: f64| sum.bound <= crowd * self.leeway && self.is_crowded(polygon);
+        if nothing.bound <= Care::Great.enough(polygon) || is_good(&nothing, TINY_CROWD) {
+            return Some(nothing);
+        }
+        let is_flat = self.fine.nudge > 0.0;
+        let most = if is_flat { f64::INFINITY } else { STILL };
+        let sum = better(nothing, self.along_diagonal(polygon, most));
+        let is_mean = sum.value != 0.0 && is_good(&sum, TINY_MEAN);
+        let [of_a, of_b] = self.fine.floor.powers;
+        let is_nowhere = is_flat && of_a.max(of_b) >= COUNTLESS;
+        (is_mean || is_nowhere).then_some(sum)
     }
 
     fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {

@@ -14,6 +14,8 @@ const NUDGE: f64 = UNIT / (1 << 23) as f64;
 #[derive(Clone, Debug)]
 pub(super) struct Fine {
     pub forms: [[Double; 3]; 3],
+    /// The forms as they were given.
+    pub given: [[Double; 3]; 3],
     /// How far the values of each may be from the true ones.
     pub rads: [f64; 3],
     pub floor: Floor,
@@ -51,6 +53,7 @@ impl Fine {
     /// Of forms that rounded ones are as good as.
     pub fn rounded(forms: [[Double; 3]; 3], rads: [f64; 3], floor: Floor) -> Self {
         Self {
+            given: forms,
             forms,
             rads,
             floor,
@@ -69,6 +72,7 @@ impl Fine {
         rads: [f64; 3],
         [of_a, of_b]: [i32; 2],
     ) -> (Self, Inverse) {
+        let given = forms;
         let scales = [of_a, of_b, 0];
         let inverse_of = |forms: &[[Double; 3]; 3]| {
             let forms = array::from_fn(|i| forms[i].map(|c| c.scaled(-scales[i])));
@@ -88,6 +92,7 @@ impl Fine {
         }
         let fine = Self {
             forms,
+            given,
             rads,
             floor: Floor::new(&inverse, [of_a, of_b]),
             nudge,

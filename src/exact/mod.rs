@@ -15,7 +15,8 @@
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
 //!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
 //!    in double-double (`closely`), up to the horizon, and near lines, which are few, one by one (`finely`); how long that may take is a
-//!    matter of `care`. Of squares too small to be seen it is told only how little they leave (`small`).
+//!    matter of `care`. Of squares too small to be seen it is told only how little they leave (`small`, `aslant`), and along a diagonal
+//!    what they do in the mean (`diagonal`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
@@ -29,6 +30,7 @@ mod cells;
 mod closely;
 mod complex;
 mod cutter;
+mod diagonal;
 mod displaced;
 mod edge;
 mod euler;

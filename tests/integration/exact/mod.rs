@@ -2,7 +2,7 @@
 
 mod board;
 mod bounds;
-mod diagonals;
+mod diagonal;
 mod rational;
 mod shapes;
 mod twice;
