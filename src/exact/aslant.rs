@@ -77,12 +77,15 @@ impl Board {
         let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| {
             (low.min(y), high.max(y))
         });
+        // The lines' direction may be off, by as much as |∇L| may relative to it; a polygon is √2 across at most.
+        let tilt = 3.0 * rad_l / steepness + 4.0 * UNIT;
+        let height = high - low + 1.5 * tilt;
         let levels = polygon.iter().map(|&at| form(&self.below, at));
         let level = levels.fold(0.0, f64::max) + rad_l + 16.0 * UNIT;
         let square = libm::ldexp(level * steepness / gradient, -powers[more]);
         // A dozen roundings, and those of the area.
-        let slack = 1.0 + 2.0 * UNIT * (16 + polygon.len()) as f64;
-        let weight = (high - low) * square * slack;
+        let slack = 1.0 + tilt + 2.0 * UNIT * (16 + polygon.len()) as f64;
+        let weight = height * square * slack;
         let (area, _) = measure(polygon.iter().copied());
         (weight >= 0.0 && gradient > 0.0).then_some(Aslant {
             more,
