@@ -13,6 +13,8 @@ const LINES: f64 = 48.0;
 /// A sliver so small, in square pixels, is neglected rather than halved once more: the slivers of n pieces are n³ times
 /// smaller each.
 const NEGLECTED: f64 = 2e-13;
+/// Halves of an arc have slivers of less than this of its own: a quarter for a parabola, 0.37 for half an ellipse, less for a hyperbola.
+const LEFT: f64 = 0.75;
 
 impl Board {
     /// The integral of s(a)·s(b) over the region between an arc and its chord, in square pixels.
@@ -55,14 +57,17 @@ impl Board {
             return self.cut_at_lines(arc, [a, b], chords);
         }
         let area = arc.area();
-        let is_large = area > NEGLECTED;
-        if !is_large {
-            chords.sum.bound += if area.is_nan() { 1.0 } else { area };
-            chords.points.push(arc.end);
+        let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
+        // Not so where numbers that are too large or too small have left no arc of them.
+        let is_halved = halves[0].area() + halves[1].area() < LEFT * area;
+        if area > NEGLECTED && is_halved {
+            for half in &halves {
+                self.cut(half, chords);
+            }
             return;
         }
-        self.cut(&arc.between(0.0, 0.5), chords);
-        self.cut(&arc.between(0.5, 1.0), chords);
+        chords.sum.bound += if area.is_nan() { 1.0 } else { area };
+        chords.points.push(arc.end);
     }
 
     fn cut_at_lines(&self, arc: &Arc, lines: [(f64, f64); 2], chords: &mut Chords) {

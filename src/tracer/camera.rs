@@ -197,7 +197,7 @@ impl<T: Real> Camera<T> {
             window: Window {
                 x: extent(reach.x),
                 y: extent(reach.y),
-                z: T::from_big(&z).magnitude(),
+                z: T::from_big(&z).magnitude() + T::TINY,
             },
             pitch: T::from_big(&pitch),
             z: T::from_big(&z),

@@ -110,7 +110,8 @@ impl Range {
 
     /// The greatest (or least) of some numbers, one of each range.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
-        ranges.reduce(|a, b| Self {
+        // Not so NaN, of which the greater would be the other.
+        ranges.map(Self::or_all).reduce(|a, b| Self {
             low: which(a.low, b.low),
             high: which(a.high, b.high),
         })

@@ -52,6 +52,8 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let hull = match (&object, shape) {
             (Self::EdgeOn, _) => return (object, None),
+            // All but flat to the eye, where slopes are no numbers of an X.
+            _ if fast.window.z < LEAST => Hull::Unbounded,
             (Self::Sphere(sphere), _) => of_sphere(sphere, fast.window.z),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), fast.window.z),
             _ => match &corners {

@@ -29,7 +29,9 @@ impl<T: Real> Form<T> {
             v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        let rad = (inherited + rounding(&factors, window)) * UP;
+        // In the widest views of all Z is below the normal numbers, and rounded.
+        let lost = v[2].size() * T::TINY;
+        let rad = (inherited + lost + rounding(&factors, window)) * UP;
         Self { factors, rad }
     }
 

@@ -124,7 +124,7 @@ impl World {
 
     /// The inverse depths of the near and the far plane over a patch, where there are any.
     pub(super) fn clips_over(&self, patch: &Patch) -> [Option<Range>; 2] {
-        [&self.fast.near, &self.fast.far].map(|clip| Some(clip.as_ref()?.over(patch)))
+        [&self.fast.near, &self.fast.far].map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
     }
 
     fn live_among(&self, patch: &Patch, among: impl Iterator<Item = usize>, out: &mut Vec<Live>) {
@@ -219,17 +219,11 @@ impl World {
             if a.minus(b).over(patch).low > 0.0 {
                 return true;
             }
-            let planes = |index: usize, at: usize| {
-                let object = Double::object(self, index);
-                match object.surfaces(Crossings::First).get(at) {
-                    Some(Surface::Plane(form)) => Some((*form).clone()),
-                    _ => None,
-                }
-            };
-            // Only planes that are equal in `f64` can be equal in double-double, for which it takes time to prepare them.
+            // Only planes that are equal in `f64` can be equal in the last precision, for which it takes time to prepare them.
             front < back
                 && a.equals(b)
-                && matches!((planes(front, i), planes(back, j)), (Some(a), Some(b)) if a.equals(&b))
+                && self.is_one_plane::<Double>([front, back], [i, j])
+                && self.is_one_plane::<Big>([front, back], [i, j])
         };
         let (a, b) = (f64::object(self, front), f64::object(self, back));
         let (planes_a, planes_b) = (a.surfaces(Crossings::First), b.surfaces(Crossings::First));
@@ -243,6 +237,16 @@ impl World {
         match b.is_seen_from_inside() {
             true => pairs.all(|covered| covered),
             false => pairs.any(|covered| covered),
+        }
+    }
+
+    /// Whether two objects' surfaces lie in one plane, as far as a precision tells.
+    fn is_one_plane<T: Level>(&self, objects: [usize; 2], at: [usize; 2]) -> bool {
+        let objects = objects.map(|index| T::object(self, index));
+        let [one, other] = [0, 1].map(|i| objects[i].surfaces(Crossings::First));
+        match (one.get(at[0]), other.get(at[1])) {
+            (Some(Surface::Plane(a)), Some(Surface::Plane(b))) => a.equals(b),
+            _ => false,
         }
     }
 

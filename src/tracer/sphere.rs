@@ -137,7 +137,7 @@ impl<T: Real> Sphere<T> {
     /// Where the ray leaves the sphere: of the two forms of the root the one that does not cancel.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
-            rad: r.square.magnitude() * (ROUNDINGS * T::UNIT),
+            rad: r.square.magnitude() * (ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
         // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of it is the sharper one.
@@ -227,7 +227,7 @@ impl Sphere<f64> {
         let z = patch.center.z;
         let square = Range {
             low: x.1 * x.1 + y.1 * y.1 + z * z,
-            high: x.0 * x.0 + y.0 * y.0 + z * z,
+            high: x.0 * x.0 + y.0 * y.0 + z * z + f64::MIN_POSITIVE,
         };
         let q = (q.low.max(0.0).sqrt(), q.high.max(0.0).sqrt());
         let power = self.power.size();
@@ -436,6 +436,7 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    let tiny = T::TINY * 8.0;
+    // No coordinate of the centre is greater than 2, and Z may be off by as much as that.
+    let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

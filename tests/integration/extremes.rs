@@ -221,3 +221,41 @@ fn whatever_the_numbers_every_channel_is_light() {
     }
     assert!(rendered >= count / 3, "{rendered} of {count}");
 }
+
+/// Planes that are one in hundreds of bits but not in more; a view so wide that Z is no normal number, before a near plane; a board that an
+/// arc with a weight out of the range of numbers cuts.
+#[test]
+fn numbers_at_the_ends_of_their_range() {
+    for text in [
+        "image { width 1 height 3 background olive }
+         camera {
+             eye (-5e-324, 3.3381639243931894e66, -9361.924398029163)
+             lookat (4050288887262.404, 0, 0) d 2978899169125.1675
+         }
+         sampler { method random per_pixel 64 seed 624 }
+         checkerboard { y 2.2250738585072014e-308 square 1.2181708731575115e-44 colors (white, #012345) }
+         checkerboard { y 9361.924398029163 square 1.0476640477433287e257 colors (#012345, red) }",
+        "image { width 1 height 1 background #012345 }
+         camera {
+             eye (-1.0000000000000004, 5e-324, -5e-324)
+             lookat (2.2250738585072014e-308, 1.7976931348623157e308, -2.2250738585072014e-308)
+             d 5e-324 near 2.2250738585072014e-308
+         }
+         sampler { method random per_pixel 64 seed 325 }
+         box {
+             center (-2.2250738585072014e-308, 1.1569846590502684e-11, -1.4928749380437587e-266)
+             size (2.4134299687027053e17, 9.581610938194515e253, 2.0669146701027507e-246) color red
+         }",
+        "image { width 1 height 2 background #012345 }
+         camera {
+             eye (-5e-324, 6.017102002826018e-16, 1e-323)
+             direction (-1.7976931348623157e308, 9.780116474456474e135, -5e-324) d 5e-324
+         }
+         sampler { method random per_pixel 64 seed 24 }
+         checkerboard { y 0 square 2.225073858507201e-308 colors (red, olive) }
+         sphere { center (3.3788900381063465e18, -9.5e152, -1.7976931348623157e308) radius 1.7976931348623157e308 color #012345 }",
+    ] {
+        let sources = Sources::new(Source::from_text("a.scn", text));
+        render(&scene::read(&sources).scene.unwrap(), text, false);
+    }
+}
