@@ -150,10 +150,14 @@ impl<T: Real> Place<T> {
     }
 
     /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r = 0 that bounds it then.
+    ///
+    /// For one outside that line comes as well. No ray on it meets the sphere; but of the conic's two branches, in front of the eye and
+    /// behind it, which lie on either side of it, no precision tells the one from the other where the sphere is a plane but for its 1e-200th part.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Curve> {
         let (c, square) = sphere.parts();
+        let ahead = || self.line_of(&self.along(&c));
         if sphere.is_at_eye() {
-            return vec![self.line_of(&self.along(&c))];
+            return vec![ahead()];
         }
         let r = self.directions();
         let cross = [(1, 2), (2, 0), (0, 1)]
@@ -161,7 +165,9 @@ impl<T: Real> Place<T> {
         let inside = sum(r.each_ref().map(|x| product(x, x)));
         let outside = sum(cross.each_ref().map(|x| product(x, x)));
         let q = [0, 1, 2, 3, 4, 5].map(|i| &square * &inside[i] - &outside[i]);
-        vec![conic(&q)]
+        let mut curves = vec![conic(&q)];
+        curves.extend(sphere.is_outside().then(ahead));
+        curves
     }
 
     /// Where two surfaces cross, if it is on a curve: rays that meet both at the same depth.

@@ -269,11 +269,6 @@ impl Sphere<f64> {
         (q, Local::new(b, 2.0 * self.rad_b))
     }
 
-    /// Whether the eye is outside, well away from the surface.
-    pub fn is_outside(&self) -> bool {
-        self.side == Ordering::Greater
-    }
-
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
     /// that is not outside.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
@@ -357,6 +352,11 @@ impl<T: Real> Sphere<T> {
     /// Whether the eye lies on the surface, and sees the sphere only where c·r > 0.
     pub fn is_at_eye(&self) -> bool {
         self.side == Ordering::Equal
+    }
+
+    /// Whether the eye is outside, well away from the surface.
+    pub fn is_outside(&self) -> bool {
+        self.side == Ordering::Greater
     }
 }
 

@@ -204,6 +204,11 @@ fn render(scene: &Scene, text: &str, is_decided: bool) {
     }
 }
 
+fn read(text: &str) -> Scene {
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    scene::read(&sources).scene.unwrap()
+}
+
 #[test]
 fn whatever_the_numbers_every_channel_is_light() {
     let asked = std::env::var("PINHOLE_SCENES").ok();
@@ -255,7 +260,35 @@ fn numbers_at_the_ends_of_their_range() {
          checkerboard { y 0 square 2.225073858507201e-308 colors (red, olive) }
          sphere { center (3.3788900381063465e18, -9.5e152, -1.7976931348623157e308) radius 1.7976931348623157e308 color #012345 }",
     ] {
-        let sources = Sources::new(Source::from_text("a.scn", text));
-        render(&scene::read(&sources).scene.unwrap(), text, false);
+        render(&read(text), text, false);
+    }
+}
+
+/// Its conic's two branches, in front of the eye and behind it, are one line in any precision.
+#[test]
+fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
+    for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
+        let text = format!(
+            "image {{ width 1 height 1 background black }}
+             camera {{ eye (1.25, -0.25, 3.5) direction (1, 0, 0) }}
+             sphere {{ center (1.25, {radius}, 3.5) radius {radius} color white }}"
+        );
+        let control = Control {
+            threads: NonZero::new(1),
+            progress: &|_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let world = World::new(&read(&text));
+        let exact = render_exact(&world, Area::whole(1, 1), &control).unwrap();
+        let bound = f64::from(exact.bounds[0]);
+        // The horizon is √(2h/R) above the middle, with the eye h from the surface; the view plane is as far as it is high.
+        let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
+        for channel in exact.film.pixels()[0] {
+            assert!(
+                (channel - 0.5).abs() <= 2.0 * above + bound,
+                "{radius}: {channel}"
+            );
+        }
+        assert!(bound < 1e-12, "{bound} of a radius of {radius}");
     }
 }
