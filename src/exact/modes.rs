@@ -73,8 +73,6 @@ pub(super) struct Lines {
     pub slope: f64,
     /// What the crossings of a mode add up to at most together with those of the other side, where more is known of that than of |U|.
     pub size: f64,
-    /// How far τ may be from the true one.
-    pub stride_off: f64,
 }
 
 /// One end of a sum: m there and w, which is infinite where m does not change.
@@ -100,7 +98,6 @@ impl Lines {
             is_odd: count.hi.is_finite() && count.floor().1,
             slope,
             size: f64::INFINITY,
-            stride_off: 0.0,
         }
     }
 
@@ -186,23 +183,6 @@ impl Lines {
         let ends = self.ends().iter().flatten().count() as f64;
         let steps = self.rise / (self.nearest() * self.nearest());
         0.5 * 0.04 * 6.0 * ends * steps * steps
-    }
-
-    /// What the uncertainty of τ does up to the mode `last`.
-    ///
-    /// If τ is off by ε, the wave n is at crossing j off by πnjε. Of |U| there are two bounds: with
-    /// 2.125·|p − c|/πnm³ the modes add up to 2.125/2 of Σ jm⁻³, and with that by m² to (4/π)·Σ 1/n of Σ jm⁻², which grows
-    /// like a logarithm where m does.
-    fn displaced(&self, last: f64) -> f64 {
-        let nearest = self.nearest();
-        let growth = self.last_depth().max(self.depth) / nearest;
-        let waves = 4.0 / PI * (1.0 + 0.5 * libm::log(last)) * (1.0 + libm::log(growth));
-        let by_size = 1.1 * self.cubes() * self.crossings();
-        let by_squares = waves * self.largest(nearest) * self.crossings() * self.squares();
-        match self.stride_off {
-            0.0 => 0.0,
-            off => off * by_size.min(by_squares),
-        }
     }
 
     /// What bounds |U|, by m⁻², from some depth on: F is at most ½, and 2/|y|.
@@ -405,16 +385,9 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f
         skipped += neglected;
     }
     let beyond = beyond(reached);
-    let (curvature, displaced) = (
-        total(Lines::curvature),
-        sides
-            .iter()
-            .map(|(_, side)| side.displaced(reached))
-            .sum::<f64>(),
-    );
     Sum {
         value,
-        bound: beyond + skipped + curvature + rounding + displaced,
+        bound: beyond + skipped + total(Lines::curvature) + rounding,
     }
 }
 

@@ -172,12 +172,19 @@ impl<T: Real> Cuboid<T> {
 
     /// The inverse depths of the faces where rays meet the box first.
     pub fn firsts(&self) -> impl Iterator<Item = &Form<T>> {
-        let faces = if self.fronts.is_empty() {
-            &self.backs
-        } else {
-            &self.fronts
-        };
-        faces.iter().map(|face| &face.inverse_depth)
+        self.first_faces().iter().map(|face| &face.inverse_depth)
+    }
+
+    /// The index of one of these faces.
+    pub fn first_index(&self, at: usize) -> u8 {
+        self.first_faces()[at].index
+    }
+
+    fn first_faces(&self) -> &[Face<T>] {
+        match self.fronts.is_empty() {
+            true => &self.backs,
+            false => &self.fronts,
+        }
     }
 
     /// The inverse depths of the faces where rays from outside leave it.

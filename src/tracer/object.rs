@@ -115,6 +115,15 @@ impl<T: Real> Object<T> {
         matches!(self, Self::Cuboid(cuboid) if cuboid.seconds().next().is_none())
     }
 
+    /// The part that one of the surfaces of its first crossings is, if that is flat.
+    pub fn first_part(&self, at: usize) -> Part {
+        match self {
+            Self::Cuboid(cuboid) => Part::Plane(cuboid.first_index(at)),
+            Self::Sphere(_) => Part::Entry,
+            Self::EdgeOn | Self::Triangle(_) | Self::Checkerboard(_) => Part::Plane(0),
+        }
+    }
+
     /// What bounds the rays that meet it.
     pub fn outline(&self, place: &Place<T>) -> Vec<Curve> {
         let line = |form: &Form<T>| place.line(form);

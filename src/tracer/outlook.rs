@@ -219,11 +219,11 @@ impl World {
             if a.minus(b).over(patch).low > 0.0 {
                 return true;
             }
-            // Only planes that are equal in `f64` can be equal in the last precision, for which it takes time to prepare them.
-            front < back
-                && a.equals(b)
-                && self.is_one_plane::<Double>([front, back], [i, j])
-                && self.is_one_plane::<Big>([front, back], [i, j])
+            // Only planes that are equal in `f64` can be one.
+            front < back && a.equals(b) && {
+                let part = |object, at| (object, f64::object(self, object).first_part(at));
+                self.is_one_plane(part(front, i), part(back, j))
+            }
         };
         let (a, b) = (f64::object(self, front), f64::object(self, back));
         let (planes_a, planes_b) = (a.surfaces(Crossings::First), b.surfaces(Crossings::First));
@@ -237,16 +237,6 @@ impl World {
         match b.is_seen_from_inside() {
             true => pairs.all(|covered| covered),
             false => pairs.any(|covered| covered),
-        }
-    }
-
-    /// Whether two objects' surfaces lie in one plane, as far as a precision tells.
-    fn is_one_plane<T: Level>(&self, objects: [usize; 2], at: [usize; 2]) -> bool {
-        let objects = objects.map(|index| T::object(self, index));
-        let [one, other] = [0, 1].map(|i| objects[i].surfaces(Crossings::First));
-        match (one.get(at[0]), other.get(at[1])) {
-            (Some(Surface::Plane(a)), Some(Surface::Plane(b))) => a.equals(b),
-            _ => false,
         }
     }
 

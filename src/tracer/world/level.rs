@@ -10,6 +10,7 @@ use crate::{
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
+        crossing::Part,
         form::Form,
         object::Object,
         sphere::Sphere,
@@ -93,6 +94,21 @@ impl Numbers {
         match &object.shape {
             Shape::Sphere(sphere) => Self::Sphere(sphere.center, sphere.radius),
             other => Self::Other(Box::new(*other)),
+        }
+    }
+
+    /// The axis that a flat part lies across, and where.
+    pub(super) fn across_axis(&self, part: Part) -> Option<(usize, f64)> {
+        match (self, part) {
+            (Self::Other(shape), Part::Plane(index)) => match **shape {
+                Shape::Box(scene::Cuboid { min, max, .. }) => {
+                    let (axis, is_upper) = (usize::from(index / 2), index % 2 == 1);
+                    Some((axis, if is_upper { max[axis] } else { min[axis] }))
+                }
+                Shape::Checkerboard(scene::Checkerboard { y, .. }) => Some((1, y)),
+                Shape::Sphere(_) | Shape::Triangle(_) => None,
+            },
+            _ => None,
         }
     }
 

@@ -459,15 +459,9 @@ impl World {
         if order.is_ok() {
             return order;
         }
-        let clips = [&self.double.near, &self.double.far];
-        let object = Double::object(self, index);
-        let plane = object.plane(crossing.part);
-        let same = |clip: &&Option<Form<Double>>| match (plane, clip) {
-            (Some(plane), Some(clip)) => plane.equals(clip),
-            _ => false,
-        };
         // A surface that lies in one of the two planes and is in doubt about the other would need them to be equal.
-        if clips.iter().any(same) {
+        let at = (index, crossing.part);
+        if self.is_in_clip::<Double>(at) && self.is_in_clip::<Big>(at) {
             return Ok(Ordering::Equal);
         }
         order
@@ -480,14 +474,42 @@ impl World {
             (Numbers::Sphere(center, radius), Numbers::Sphere(other_center, other_radius)) => {
                 a == b && center == other_center && radius == other_radius
             }
+            _ => self.is_one_plane((i, a), (j, b)),
+        }
+    }
+
+    /// Whether two flat parts of objects lie in one plane: by their coordinates across an axis, or by their forms to the last bit.
+    pub(super) fn is_one_plane(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
+        match (
+            self.numbers[i].across_axis(a),
+            self.numbers[j].across_axis(b),
+        ) {
+            (Some(a), Some(b)) => a == b,
+            // Planes that are hundreds of bits apart need to be asked for more; to prepare them for it takes time.
             _ => {
-                let (first, second) = (Double::object(self, i), Double::object(self, j));
-                match (first.plane(a), second.plane(b)) {
-                    (Some(a), Some(b)) => a.equals(b),
-                    _ => false,
-                }
+                self.is_one_form::<Double>((i, a), (j, b))
+                    && self.is_one_form::<Big>((i, a), (j, b))
             }
         }
+    }
+
+    fn is_one_form<T: Level>(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
+        let (first, second) = (T::object(self, i), T::object(self, j));
+        match (first.plane(a), second.plane(b)) {
+            (Some(a), Some(b)) => a.equals(b),
+            _ => false,
+        }
+    }
+
+    /// Whether a flat part of an object lies in the near or in the far plane.
+    #[cold]
+    fn is_in_clip<T: Level>(&self, (index, part): (usize, Part)) -> bool {
+        let frame = T::frame(self);
+        let object = T::object(self, index);
+        let clips = [&frame.near, &frame.far];
+        object
+            .plane(part)
+            .is_some_and(|plane| clips.into_iter().flatten().any(|clip| plane.equals(clip)))
     }
 
     #[inline]
