@@ -265,23 +265,17 @@ impl fmt::Display for Inspection {
             }
         }
         writeln!(f)?;
-        let total = grouped(self.total);
-        match self.per_pixel {
-            Some(count) => {
+        let (method, total, seed) = (self.method.name(), grouped(self.total), self.seed);
+        match (self.method, self.per_pixel) {
+            (Method::Exact, _) => writeln!(f, "sampler   {method}: no samples")?,
+            (_, Some(count)) => {
                 let count = grouped(count);
                 writeln!(
                     f,
-                    "sampler   {}, {count} per pixel, {total} in all, seed {}",
-                    self.method.name(),
-                    self.seed
+                    "sampler   {method}, {count} per pixel, {total} in all, seed {seed}"
                 )?;
             }
-            None => writeln!(
-                f,
-                "sampler   {}, {total} in all, seed {}",
-                self.method.name(),
-                self.seed
-            )?,
+            (_, None) => writeln!(f, "sampler   {method}, {total} in all, seed {seed}")?,
         }
         writeln!(f)?;
         writeln!(f, "objects")?;

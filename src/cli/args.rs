@@ -172,7 +172,7 @@ Examples:
   pinhole report figure.scn --set image.width=640 --set image.height=360 --methods sobol,halton,exact
   pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
-  pinhole report --numerics --inputs 1000000     the full count, which takes minutes";
+  pinhole report --numerics --inputs 1000000     the full count: half an hour of a processor";
 
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
@@ -232,7 +232,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<Area>,
     /// How many threads to use [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
 }
 
@@ -263,7 +263,7 @@ pub struct WatchArgs {
     #[command(flatten)]
     pub overrides: Overrides,
     /// How many threads to use [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
 }
 
@@ -313,14 +313,14 @@ pub struct ReportArgs {
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
     /// Runs of each method with each number of samples [default: up to 9, as the time goes]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub runs: Option<u64>,
     /// Tell the samples and the time that this error takes, in linear light, such as 1/256 or 0.001; may be given
     /// any number of times
     #[arg(long = "error", value_name = "E", default_value = "1/256", allow_negative_numbers = true, value_parser = error)]
     pub errors: Vec<f64>,
     /// About how long a scene may take, where --samples and --runs leave a choice
-    #[arg(long, value_name = "SECONDS", default_value_t = 45, value_parser = value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "SECONDS", default_value_t = 45, allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub budget: u64,
     #[command(flatten)]
     pub overrides: Overrides,
@@ -329,12 +329,12 @@ pub struct ReportArgs {
     #[arg(long, conflicts_with_all = ["scenes", "output", "methods", "samples", "runs", "errors", "budget", "sets"])]
     pub numerics: bool,
     /// How many inputs to ask of each case [default: 10000]
-    #[arg(long, value_name = "N", requires = "numerics", value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
+    #[arg(long, value_name = "N", requires = "numerics", conflicts_with = "scenes", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000_000_000))]
     pub inputs: Option<u64>,
     #[command(flatten)]
     pub format: FormatArgs,
     /// How many threads to use [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
 }
 
@@ -369,7 +369,7 @@ pub struct DiffArgs {
     #[command(flatten)]
     pub overrides: Overrides,
     /// How many threads to use [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
     #[command(flatten)]
     pub format: FormatArgs,

@@ -37,20 +37,6 @@ pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     })
 }
 
-/// Does `work`, whose length nobody knows beforehand, and shows on a terminal that it goes on.
-#[cfg(feature = "report")]
-pub fn waiting<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
-    if !output::is_watched() {
-        return work();
-    }
-    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    spinner.set_message(what);
-    spinner.enable_steady_tick(INTERVAL);
-    let result = work();
-    spinner.finish_and_clear();
-    result
-}
-
 /// Shows a bar until the other end of the channel is gone.
 fn show(total: u64, done: &AtomicU64, wait: &mpsc::Receiver<()>) {
     let goes_on = |time| wait.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);

@@ -144,8 +144,8 @@ fn measure(
         progress: &|_| {},
         cancel,
     };
-    let plan = progress::waiting("warming up", || {
-        Plan::new(subject, scene, request, &control)
+    let plan = counted(request.preparations(scene), &control, |control| {
+        Plan::new(subject, scene, request, control)
     });
     let measured = plan.and_then(|plan| {
         let mut measured = counted(plan.total(), &control, |control| {

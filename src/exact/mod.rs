@@ -85,6 +85,10 @@ const TOLERABLE: f64 = 1e-7;
 /// difficult point take half as long each time, so that these may be as small as they like.
 const MOST_EFFORT: f64 = 12.0;
 
+/// Not so where no more than this part of what is off could be mended: the rest is known no better in quarters, and smaller and smaller
+/// pieces beside it would take no end.
+const WORTHWHILE: f64 = 1.0 / 64.0;
+
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
@@ -286,9 +290,11 @@ impl<'a> Integrator<'a> {
             if bound <= enough || cancel.load(Ordering::Relaxed) {
                 break;
             }
-            let uncertain = pieces
-                .iter_mut()
-                .filter(|piece| !piece.is_final && off(piece) > 0.0);
+            let uncertain = || pieces.iter().filter(|piece| !piece.is_final);
+            if uncertain().map(off).sum::<f64>() <= WORTHWHILE * bound {
+                break;
+            }
+            let uncertain = pieces.iter_mut().filter(|piece| !piece.is_final);
             let Some(worst) = uncertain.max_by(|one, other| off(one).total_cmp(&off(other))) else {
                 break;
             };

@@ -4,7 +4,7 @@ use super::{
     fit::median,
     measure::{Measurement, Point, Series},
     needed::{Fastest, Needed},
-    table::{error, method_list, plural, seconds},
+    table::{error, method_list, plural, seconds, time},
 };
 use crate::numbers::at_most;
 use crate::scene::Method;
@@ -83,7 +83,7 @@ fn of_methods(methods: &[(Method, Needed)], wanted: f64) -> String {
         false => "",
         true => ", extrapolated",
     };
-    let (time, wanted) = (seconds(needed.seconds), error(wanted));
+    let (time, wanted) = (time(&needed), error(wanted));
     if needed.is_unknown() {
         return format!(
             "which sampled method is the fastest is not known, as nothing is of how far off they are; {} should need {time} for an error of \

@@ -12,7 +12,7 @@ use super::{
     measure::{Measurement, Point, Series},
     notes::{notes, spread, verdicts},
     picture,
-    table::{cells, count, doubt, error, marked_slope, plural, seconds, tried},
+    table::{cells, count, doubt, error, marked_slope, plural, seconds, time, tried},
 };
 use crate::{numbers, scene::Method};
 
@@ -241,7 +241,7 @@ fn needs(measured: &Measurement) -> String {
             Some(doubt) => mark(format!("{} × ÷ {doubt}", count(needed.per_pixel))),
             None => mark(count(needed.per_pixel)),
         });
-        let time = needed.map(|needed| mark(seconds(needed.seconds)));
+        let time = needed.map(|needed| mark(time(&needed)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];
         if is_tried {
             let tried = series.check(wanted).map(|check| tried(&check.point));

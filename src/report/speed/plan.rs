@@ -62,6 +62,13 @@ pub struct Request {
     pub threads: Option<NonZero<usize>>,
 }
 
+impl Request {
+    /// The progress of [`Plan::new`] in all: the pixels of the exact picture, and as many for the warm-up of each sampled method.
+    pub fn preparations(&self, scene: &Scene) -> u64 {
+        pixels(scene) * (1 + sampled(self).count() as u64)
+    }
+}
+
 /// A report that is decided on.
 #[derive(Debug)]
 pub struct Plan<'a> {
@@ -103,7 +110,8 @@ impl Warm {
 }
 
 impl<'a> Plan<'a> {
-    /// Warms up, and decides. Cancelled after the exact picture, it has warmed up as many methods as it came to.
+    /// Computes the exact picture, warms up, and decides; progress is that of [`Request::preparations`]. Cancelled after the exact picture,
+    /// it has warmed up as many methods as it came to.
     pub fn new(
         subject: &'a Subject,
         scene: &'a Scene,
@@ -111,12 +119,15 @@ impl<'a> Plan<'a> {
         control: &Control,
     ) -> Result<Self, RenderError> {
         let started = Instant::now();
-        let silent = Control {
+        let control = &Control {
             threads: request.threads,
-            progress: &|_| {},
-            cancel: control.cancel,
+            ..*control
         };
-        let (reference, exact_seconds) = computed(scene, &silent)?;
+        let silent = Control {
+            progress: &|_| {},
+            ..*control
+        };
+        let (reference, exact_seconds) = computed(scene, control)?;
         let warm = match request.samples.iter().min() {
             Some(&least) => least.min(WARM),
             None => WARM,
@@ -139,6 +150,7 @@ impl<'a> Plan<'a> {
                 Err(RenderError::Cancelled) => break,
                 warmed => plan.warm_up.push(warmed?),
             }
+            (control.progress)(pixels(scene));
         }
         plan.choose();
         Ok(plan)
@@ -248,6 +260,10 @@ fn odd(runs: u64) -> u64 {
 }
 
 /// The methods that take samples, each once, in the order of the language's table.
+fn pixels(scene: &Scene) -> u64 {
+    u64::from(scene.image.width) * u64::from(scene.image.height)
+}
+
 fn sampled(request: &Request) -> impl Iterator<Item = Method> {
     let asked = |method: &Method| request.methods.contains(method);
     Method::SAMPLED.into_iter().filter(asked)

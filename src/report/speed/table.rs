@@ -149,7 +149,7 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
                     "{name:16}{:>9}{:>8}{:>9}{extrapolated}{tried}",
                     count(needed.per_pixel),
                     doubt(&needed).unwrap_or_default(),
-                    seconds(needed.seconds),
+                    time(&needed),
                 )
             }
         };
@@ -232,12 +232,27 @@ pub(super) fn error(error: f64) -> String {
 
 /// A time in seconds or milliseconds, with three digits.
 pub(super) fn seconds(seconds: f64) -> String {
+    in_unit(seconds, 3)
+}
+
+fn in_unit(seconds: f64, digits: i32) -> String {
     if seconds < 0.9995 {
-        format!("{} ms", significant(seconds * 1e3, 3))
+        format!("{} ms", significant(seconds * 1e3, digits))
     } else if seconds < 1e5 {
-        format!("{} s", significant(seconds, 3))
+        format!("{} s", significant(seconds, digits))
     } else {
         format!("{seconds:.1e} s")
+    }
+}
+
+/// The time that an error takes; of one that is extrapolated no more than the first digit is worth reading.
+pub(super) fn time(needed: &Needed) -> String {
+    match needed.is_extrapolated {
+        true => {
+            let unit = libm::exp10(libm::floor(libm::log10(needed.seconds.max(1e-300))));
+            format!("~{}", in_unit((needed.seconds / unit).round() * unit, 1))
+        }
+        false => seconds(needed.seconds),
     }
 }
 
