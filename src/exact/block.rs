@@ -101,11 +101,10 @@ impl<'a> Block<'a> {
 
     /// More of it than from one line to another, if the sides' modes together allow that.
     fn sooner(&self, [first, last]: [f64; 2], tolerance: f64) -> [f64; 2] {
-        let across = 1 - self.along;
         let allows = |ends: [f64; 2]| {
             let [left, right] = self.sides.each_ref().map(|side| self.run(side, ends));
             let is_gradual = |run: &Run| run.lines.depth >= GRADUAL * run.lines.rise;
-            let step = in_step(&left, &right, self.board.fine.floor.slope[across]);
+            let step = self.in_step(&left, &right);
             is_gradual(&left)
                 && is_gradual(&right)
                 && step * NOT_IN_STEP <= tolerance
@@ -125,6 +124,50 @@ impl<'a> Block<'a> {
         [first, last]
     }
 
+    /// What the crossings of a mode add up to for both sides together, if that is less than for each.
+    fn in_step(&self, left: &Run, right: &Run) -> f64 {
+        if left.sense != right.sense {
+            return f64::INFINITY;
+        }
+        let start = right.first.minus(&left.first).hi;
+        let growth = right.stride.minus(&left.stride).hi;
+        // In the widest of views nothing may be left of the differences but what their terms are off: as much at the first line, and at both ends
+        // for what it grows by.
+        let (mut off, mut off_by_line) = (0.0, 0.0);
+        for run in [left, right] {
+            let Lines {
+                depth, rise, lines, ..
+            } = run.lines;
+            let moved = self.moved(run);
+            off += moved * depth;
+            off_by_line += moved * (2.0 * depth + rise * lines) / lines;
+        }
+        let growth = match start.abs() > off {
+            true => growth * start.signum(),
+            false => growth.abs(),
+        };
+        let apart = [start.abs() + off, growth + off_by_line];
+        let q = self.board.fine.floor.slope[1 - self.along];
+        let step = modes::between(&left.lines, &right.lines, apart, q);
+        if step < left.lines.in_step() + right.lines.in_step() {
+            step
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// How far a value of a form may be off: five operations make it of its terms, and five more t and what τ adds to it.
+    fn off(&self, axis: usize) -> f64 {
+        let form = self.board.fine.forms[axis].map(|c| c.hi);
+        self.board.fine.rads[axis] + 16.0 * Double::UNIT * size(&form)
+    }
+
+    /// D: how far t may be off at some c, by m.
+    fn moved(&self, run: &Run) -> f64 {
+        let [of_t, of_c, of_l] = [self.along, 1 - self.along, 2].map(|axis| self.off(axis));
+        of_t + run.stride.hi.abs() * of_c + run.origin[0].abs() * of_l
+    }
+
     /// How far the roundings of a side's points and of the board's slopes may put off its modes.
     ///
     /// Values that are off by E_c, E_t and E_L of the forms put off t at some c by up to D·m, D = E_t + |τ|E_c + |t*|E_L, and m by
@@ -141,20 +184,16 @@ impl<'a> Block<'a> {
     fn uncertainty(&self, run: &Run) -> f64 {
         let board = self.board;
         let across = 1 - self.along;
-        // Five operations make a value of a form of its terms, and five more t and what τ adds to it.
-        let off = |axis: usize| {
-            let form = board.fine.forms[axis].map(|c| c.hi);
-            board.fine.rads[axis] + 16.0 * Double::UNIT * size(&form)
-        };
-        let (of_t, of_c, of_l) = (off(self.along), off(across), off(2));
+        let off = |axis| self.off(axis);
+        let (of_c, of_l) = (off(across), off(2));
         let Run {
             lines,
             stride,
-            origin: [t_0, m_0],
+            origin: [_, m_0],
             ..
         } = run;
         let Lines { depth, rise, .. } = lines;
-        let moved = of_t + stride.hi.abs() * of_c + t_0.abs() * of_l;
+        let moved = self.moved(run);
         let deeper = rise.abs() * of_c + m_0.abs() * of_l + 4.0 * UNIT;
         let flat = board.fine.floor.flat(self.along);
         let furthest = depth + rise * lines.lines;
@@ -175,21 +214,6 @@ impl<'a> Block<'a> {
         let Sum { value, bound } = board.fine.floor.per_slope[across];
         let relative = 0.5 * largest * (bound + 4.0 * UNIT) + 2.1 * deeper + 0.5 * of_climb;
         2.0 * value * (relative * squares + modes * largest * moved * inverses + of_flat)
-    }
-}
-
-/// What the crossings of a mode add up to for both sides together, if that is less than for each.
-fn in_step(left: &Run, right: &Run, q: f64) -> f64 {
-    if left.sense != right.sense {
-        return f64::INFINITY;
-    }
-    let start = right.first.minus(&left.first).hi;
-    let growth = right.stride.minus(&left.stride).hi;
-    let step = modes::between(&left.lines, &right.lines, [start, growth], q);
-    if step < left.lines.in_step() + right.lines.in_step() {
-        step
-    } else {
-        f64::INFINITY
     }
 }
 
@@ -254,7 +278,7 @@ impl Bulk for Block<'_> {
         let tolerance = NEGLECTED * board.leeway / factor;
         let most = MOST / board.leeway.sqrt();
         let [left, right] = &runs;
-        let step = in_step(left, right, board.fine.floor.slope[across]);
+        let step = self.in_step(left, right);
         // What a mode has of a line c between the sides is e^(iπnt)·pY_p, from the one to the other p·∫ m⁻³·e^(iπnt) dt: at most |p|/K times
         // the row's area by dc, and over all lines, the ends by half, that of all of it but for what the trapezoidal rule is off; and what
         // the sides have each for itself.

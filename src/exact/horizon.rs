@@ -121,6 +121,10 @@ fn by_modes(all: &Crossings, series: &Series, tolerance: f64) -> Sum {
         rest -= 0.5 * alternating(&count, all.line(series, &all.count));
     }
     sum.value += alternating(&done, rest);
+    let ends: f64 = (1..=series.terms)
+        .map(|k| series.size(k, all.depth + direct * rise))
+        .sum();
+    sum.bound += 16.0 * UNIT * ends;
     sum.bound += factor.abs() * (modes.bound + series.per_slope.bound * modes.value.abs());
     sum
 }

@@ -408,8 +408,7 @@ fn within(in_step: f64, from: f64, budget: f64) -> f64 {
 pub(super) fn between(first: &Lines, second: &Lines, [start, growth]: [f64; 2], q: f64) -> f64 {
     let [low, high] = [first.rise.min(second.rise), first.rise.max(second.rise)];
     let depth = first.depth.min(second.depth);
-    let rows = start.abs() / (depth * depth * depth)
-        + (growth * start.signum()).max(0.0) / (2.0 * low * depth * depth);
+    let rows = start / (depth * depth * depth) + growth.max(0.0) / (2.0 * low * depth * depth);
     0.5 * PI * (q / first.stride).abs() * (7.0 + 5.0 * high / low) * rows
 }
 

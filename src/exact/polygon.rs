@@ -25,17 +25,28 @@ pub const PIXEL: [DVec2; 4] = [
 /// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it.
 const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 
+/// The vertices of a polygon are at most so many times as high over a line as their mean, by their number: it is as wide as the pixel.
+const WIDE: f64 = 1.5;
+
 /// How far the roundings of a vertex may move it.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some lines.
 pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     let mut polygons = vec![PIXEL.to_vec()];
-    for curve in curves {
-        let Curve::Line(line) = curve else { continue };
+    let lines = || {
+        curves.iter().filter_map(|curve| match curve {
+            Curve::Line(line) => Some(line),
+            Curve::Conic(_) => None,
+        })
+    };
+    let mut worst = 0.0_f64;
+    for line in lines() {
+        let rad = line.rad + ROUNDING;
+        worst = worst.max(rad);
         // The true line is within 2 rad of the computed one, the greater of whose slopes is at least 1/2, over a length of
         // at most √2; and on both sides of it vertices are rounded.
-        regions.doubt(3.0 * (line.rad + ROUNDING));
+        regions.doubt(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.is_cancelled() {
                 return regions.finish();
@@ -48,7 +59,11 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
             return regions.finish();
         }
         let area = measure(polygon.iter().copied()).0.abs();
-        if area < SPECK {
+        let inside = middle(polygon);
+        // Next to a line the point may lie on the wrong side of it: then all of the polygon may.
+        let is_low = || area <= WIDE * polygon.len() as f64 * worst;
+        let is_beside = || lines().any(|line| height(line, &inside).abs() <= line.rad + ROUNDING);
+        if area < SPECK || (is_low() && is_beside()) {
             regions.doubt(area);
         }
         if area > 0.0 {
@@ -56,7 +71,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
                 polygon,
                 arcs: &[],
                 area,
-                inside: middle(polygon),
+                inside,
             });
         }
     }
@@ -65,8 +80,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
 
 /// The parts of a convex polygon on both sides of a line.
 fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
-    let [a, b, c] = line.factors;
-    let heights: Vec<f64> = polygon.iter().map(|p| a * p.x + b * p.y + c).collect();
+    let heights: Vec<f64> = polygon.iter().map(|p| height(line, p)).collect();
     if heights.iter().all(|&h| h >= 0.0) || heights.iter().all(|&h| h <= 0.0) {
         return vec![polygon];
     }
@@ -86,6 +100,11 @@ fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
         part
     };
     vec![side(1.0), side(-1.0)]
+}
+
+fn height(line: &Line, p: &DVec2) -> f64 {
+    let [a, b, c] = line.factors;
+    a * p.x + b * p.y + c
 }
 
 fn middle(polygon: &[DVec2]) -> DVec2 {

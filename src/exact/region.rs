@@ -1,6 +1,9 @@
 //! The regions of a spot, and what is seen in each.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    mem,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use glam::DVec2;
 
@@ -147,21 +150,27 @@ impl<'a> Regions<'a> {
     }
 
     /// The shares of all that was added.
-    pub fn finish(self) -> Shares {
-        let mut shares = self.shares;
+    pub fn finish(mut self) -> Shares {
+        let mut shares = mem::take(&mut self.shares);
         // What the regions leave out of the spot, or count twice, may have any colour.
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
-        if !(shares.bound.is_finite() && total > 0.0) {
-            // Out of the range of numbers: nothing is known of the spot.
-            let background = self.world.palette().len() - 1;
-            shares.by_slot = vec![(background, 1.0)];
+        if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
+            // Out of the range of numbers: nothing is known of the spot but what is in its middle.
+            let seen = self.world.object_at(self.spot, DVec2::ZERO, self.live);
+            let background = self.world.background();
+            let [first, second] = seen.map_or([background; 2], |object| self.world.slots(object));
+            shares.by_slot.clear();
+            shares.add(first, 0.5);
+            shares.add(second, 0.5);
             shares.bound = 1.0;
         }
         if let [_, _, ..] = shares.by_slot.as_slice() {
             // Sums and products of a few numbers below 1.
             shares.bound += 8.0 * f64::UNIT;
         }
+        // No channel is off by more than all.
+        shares.bound = shares.bound.min(1.0);
         shares
     }
 

@@ -123,7 +123,10 @@ fn along(board: &Board, odd: bool, side: Side, [column, row]: [u32; 2]) -> Optio
         return None;
     }
     let edge = Edge::along(board, &near, &far, side.by_b)?;
-    Some(by_color(edge.alone(board), odd))
+    let mut sum = edge.alone(board);
+    // The other pixel that has it knows of its own roundings alone.
+    sum.bound += board.blurred([near.at, far.at].into_iter());
+    Some(by_color(sum, odd))
 }
 
 /// From a sum that is positive for the square [0, 1)² to one for the first colour, and back.

@@ -3,7 +3,7 @@
 //! In the coordinates of that [`Spot`] every form of a surface is prepared anew, in high precision, so that what is left is good
 //! to the last bit of an `f64` however far the spot is from the picture's centre.
 
-use crate::math::{Ball, Ball3, Double, Radius, Real};
+use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
 use super::{camera::Camera, cover::Range, form::Form, outlook::Spot, sphere::Sphere};
 
@@ -142,11 +142,13 @@ impl<T: Real> Place<T> {
 
     fn local(&self, form: &Form<T>) -> ([T; 3], T::Radius) {
         let [a, b, c] = form.factors();
-        let [x, y, _] = &self.center;
+        let [x, y, z] = &self.center;
         let middle = a.times(&x.mid).plus(&b.times(&y.mid)).plus(c);
+        let half = self.pitch.size() * 0.5;
+        let sizes = [x.size() + half, y.size() + half, z.size()].map(|size| size * UP);
         let slopes = [a, b].map(|factor| factor.times(&self.pitch.mid));
         let [a, b] = slopes;
-        ([a, b, middle], form.rad())
+        ([a, b, middle], form.rad_within(sizes))
     }
 
     /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r = 0 that bounds it then.

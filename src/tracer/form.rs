@@ -13,6 +13,9 @@ pub struct Form<T: Real> {
     factors: [T; 3],
     /// How far a computed value may be from the true one.
     rad: T::Radius,
+    /// The same by |X|, |Y| and |Z|, in the last precision: nobody is asked after it, and in the middle of the widest views its values are next
+    /// to nothing beside all others.
+    rads: Option<Box<[T::Radius; 3]>>,
 }
 
 /// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum; half as many again to
@@ -32,7 +35,12 @@ impl<T: Real> Form<T> {
         // In the widest views of all Z is below the normal numbers, and rounded.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
-        Self { factors, rad }
+        let by_component = |x: &Ball<T>| (x.rad + x.size() * (ROUNDINGS * T::UNIT)) * UP;
+        Self {
+            factors,
+            rad,
+            rads: T::LAST.then(|| Box::new(v.each_ref().map(by_component))),
+        }
     }
 
     /// The value at a direction.
@@ -41,7 +49,10 @@ impl<T: Real> Form<T> {
         let [a, b, c] = &self.factors;
         Ball {
             mid: a.times(&r.x).plus(&b.times(&r.y)).plus(c),
-            rad: self.rad,
+            rad: match T::LAST {
+                true => self.rad_within([&r.x, &r.y, &r.z].map(Real::magnitude)),
+                false => self.rad,
+            },
         }
     }
 
@@ -55,6 +66,15 @@ impl<T: Real> Form<T> {
         self.rad
     }
 
+    /// How far its values may be from the true ones where |X|, |Y| and |Z| are no greater than these.
+    pub fn rad_within(&self, sizes: [T::Radius; 3]) -> T::Radius {
+        let Some(rads) = &self.rads else {
+            return self.rad;
+        };
+        let [x, y, z] = [0, 1, 2].map(|i| rads[i] * sizes[i]);
+        (x + y + z) * UP
+    }
+
     /// The difference of two forms.
     pub fn minus(&self, other: &Self) -> Self {
         let sizes = [0, 1, 2].map(|i| self.factors[i].magnitude() + other.factors[i].magnitude());
@@ -63,6 +83,14 @@ impl<T: Real> Form<T> {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
             // X and Y are at most 1.
             rad: (self.rad + other.rad + sum * (ROUNDINGS * T::UNIT)) * UP,
+            // Each has as many roundings of its own factors as their difference has.
+            rads: match (&self.rads, &other.rads) {
+                (Some(own), Some(others)) => {
+                    let both = |i: usize| (own[i] + others[i]) * (2.0 * UP);
+                    Some(Box::new([0, 1, 2].map(both)))
+                }
+                _ => None,
+            },
         }
     }
 
@@ -80,6 +108,7 @@ impl Form<Double> {
         Form {
             rad: (self.rad + rounding(&factors, window)) * UP,
             factors,
+            rads: None,
         }
     }
 }

@@ -94,15 +94,31 @@ impl<T: Real> Sphere<T> {
         let l = cz.times(&r.x).minus(&cx.times(&r.z));
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
+        let (rad_q, rad_b) = match T::LAST {
+            // After it nobody is asked: in the middle of the widest views this ray's own are next to nothing.
+            true => self.radii_of(r),
+            false => (self.rad_q, self.rad_b),
+        };
         let q = Ball {
             mid: self.square.times(&r.square).minus(&cross),
-            rad: self.rad_q,
+            rad: rad_q,
         };
         let b = Ball {
             mid: cx.times(&r.x).plus(&cy.times(&r.y)).plus(&cz.times(&r.z)),
-            rad: self.rad_b,
+            rad: rad_b,
         };
         (q, b)
+    }
+
+    fn radii_of(&self, r: &Direction<T>) -> (T::Radius, T::Radius) {
+        let [x, y, z] = [&r.x, &r.y, &r.z].map(Real::magnitude);
+        radii::<T>(
+            self.center.each_ref().map(Real::magnitude),
+            self.rad_c,
+            self.square.magnitude(),
+            self.rad_square,
+            &Window { x, y, z },
+        )
     }
 
     /// The nearest crossing in front of the eye. A ray that only touches the sphere misses it.

@@ -4,6 +4,7 @@
 
 use std::{fmt::Write, num::NonZero, sync::atomic::AtomicBool};
 
+use glam::DVec2;
 use pinhole::{
     area::Area,
     film::Film,
@@ -290,5 +291,33 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
             );
         }
         assert!(bound < 1e-12, "{bound} of a radius of {radius}");
+    }
+}
+
+/// There a ray's direction is next to nothing beside all others', and so are the numbers that its surfaces are compared by.
+#[test]
+fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
+    let spheres = "sphere { center (1, 1.2, 2) radius 9 color red }
+                   sphere { center (1, 1.2, 2) radius 0.8 color white }";
+    let boxes = "box { center (1, 1.2, 2) size (9, 9, 9) color red }
+                 box { center (1, 1.2, 2) size (0.8, 0.9, 0.8) color white }";
+    let planes = "checkerboard { y 0 square 1e9 colors (red, red) }
+                  triangle { centroid (1, 1.2, 2) normal (0, 1, 0) sides (90, 90, 90) color white }";
+    for view in [
+        "direction (0, -1, 0) up (0, 0, -1)",
+        "direction (0.3, -1, 0.2)",
+    ] {
+        for d in ["1e-30", "1e-80", "1e-100", "1e-150", "1e-300"] {
+            for objects in [spheres, boxes, planes] {
+                let text = format!(
+                    "image {{ width 1 height 1 background black }}
+                     camera {{ eye (1, 1.4, 2) {view} d {d} far 100 }}
+                     {objects}"
+                );
+                let world = World::new(&read(&text));
+                let seen = world.slot_at(0, 0, DVec2::ZERO);
+                assert_eq!(world.palette()[seen].to_linear(), [1.0; 3], "{text}");
+            }
+        }
     }
 }

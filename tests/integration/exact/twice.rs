@@ -72,6 +72,30 @@ fn four_quarters_are_the_pixel_of_extreme_cameras() {
     }
 }
 
+/// What two sides of a block of rows are apart is less there than the roundings of where they are.
+#[test]
+fn four_quarters_are_the_pixel_where_sides_cannot_be_told_apart() {
+    for (camera, square) in [
+        ("eye (0.1, 1, 0.25) direction (1, 0, -1) d 1e-45", "1"),
+        (
+            "eye (0.37, 1, 0.37) direction (1, 0, 1.0001) roll 7.357826e-11deg d 1e-60",
+            "0.3",
+        ),
+        (
+            "eye (0.3388904040609444, 1, 0.1) direction (1, 0, -1) roll 5.249779e-09deg
+             d 5.22e-34 far 1.202902e-29",
+            "0.3",
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width 1 height 1 }} camera {{ {camera} }}
+             checkerboard {{ square {square} colors (white, black) }}"
+        ));
+        assert!(exact(&scene).bound() < 1e-9, "{camera}");
+        adds_up(&scene, camera);
+    }
+}
+
 #[test]
 fn a_quarter_turn_sweeps_the_other_way() {
     let mut scenes: Vec<_> = examples()
