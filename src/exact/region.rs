@@ -99,8 +99,7 @@ impl<'a> Regions<'a> {
 
     /// Adds a region in which no boundary lies.
     pub fn add(&mut self, region: &Region) {
-        let seen = self.world.object_at(self.spot, region.inside, self.live);
-        let Some(object) = seen else {
+        let Some(object) = self.seen(region) else {
             let background = self.world.palette().len() - 1;
             return self.shares.add(background, region.area);
         };
@@ -144,6 +143,26 @@ impl<'a> Regions<'a> {
         self.shares.is_crowded |= checkered.board.is_crowded(region.polygon);
     }
 
+    /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
+    /// each other than it tells; elsewhere in the region more may be known.
+    fn seen(&mut self, region: &Region) -> Option<usize> {
+        let at = |point| self.world.object_at(self.spot, point, self.live);
+        let (seen, is_sure) = at(region.inside);
+        // A point between two of a polygon lies in it, but not if an arc takes off from that.
+        if is_sure || region.arcs.iter().any(|(bulge, _)| *bulge < 0.0) {
+            return seen;
+        }
+        let between = |vertex: &DVec2| at(region.inside.midpoint(*vertex));
+        let others: Vec<_> = region.polygon.iter().map(between).collect();
+        if let Some((sure, _)) = others.iter().find(|(_, is_sure)| *is_sure) {
+            return *sure;
+        }
+        if others.iter().any(|(other, _)| *other != seen) {
+            self.doubt(region.area);
+        }
+        seen
+    }
+
     /// Says that so much of the pixel's area may be with a wrong region, or with none.
     pub fn doubt(&mut self, area: f64) {
         self.shares.bound += area;
@@ -157,7 +176,7 @@ impl<'a> Regions<'a> {
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
             // Out of the range of numbers: nothing is known of the spot but what is in its middle.
-            let seen = self.world.object_at(self.spot, DVec2::ZERO, self.live);
+            let (seen, _) = self.world.object_at(self.spot, DVec2::ZERO, self.live);
             let background = self.world.background();
             let [first, second] = seen.map_or([background; 2], |object| self.world.slots(object));
             shares.by_slot.clear();

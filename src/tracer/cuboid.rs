@@ -245,8 +245,8 @@ impl Cuboid<Double> {
     }
 }
 
-/// The least or the greatest inverse depth of some faces. The middle of the least ball need not be the least number, but it
-/// is within the greatest radius of it. In whose plane the crossing lies is said only where it is certain: just outside of an
+/// The least or the greatest inverse depth of some faces. Where two are not clearly apart, the middle of the least ball need not be the least
+/// number, but it is within the greatest radius of it. In whose plane the crossing lies is said only where it is certain: just outside of an
 /// edge, a ray meets the one plane a little before it meets the box in the other.
 #[inline]
 fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Option<Crossing<T>> {
@@ -272,13 +272,12 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
                         part,
                     };
                 }
-                so_far.inverse_depth.rad = if difference.magnitude() >= T::Radius::ZERO {
-                    rad
-                } else {
-                    T::Radius::INFINITE
-                };
                 if !is_clear {
                     so_far.part = Part::Edge;
+                    so_far.inverse_depth.rad = match difference.magnitude() >= T::Radius::ZERO {
+                        true => rad,
+                        false => T::Radius::INFINITE,
+                    };
                 }
             }
         }

@@ -315,8 +315,9 @@ impl World {
         }
     }
 
-    /// The object that is seen at a point of a spot, of some that may be.
-    pub fn object_at(&self, spot: Spot, at: DVec2, live: &[Live]) -> Option<usize> {
+    /// The object that is seen at a point of a spot, of some that may be; and whether the last precision was not asked, in which what it does
+    /// not tell apart counts as equal.
+    pub fn object_at(&self, spot: Spot, at: DVec2, live: &[Live]) -> (Option<usize>, bool) {
         let offset = spot.offset(at);
         let point = self.fast.camera.sample_point(spot.x, spot.y, offset);
         let among = || live.iter().map(|live| live.object);
@@ -325,12 +326,14 @@ impl World {
             let r = Double::frame(self).camera.direction(&point);
             self.nearest(&r, among())
         });
+        let is_sure = seen.is_ok();
         let seen = seen.or_else(|Doubt| {
             let r = Big::frame(self).camera.direction(&point);
             self.nearest(&r, among())
         });
         // The last precision is never in doubt.
-        seen.unwrap_or_default().map(|(object, _)| object)
+        let object = seen.unwrap_or_default().map(|(object, _)| object);
+        (object, is_sure)
     }
 
     /// An object's squares in a spot, if it is a checkerboard.

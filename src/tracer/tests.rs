@@ -276,14 +276,14 @@ fn what_is_seen_in_a_part_is_live_there() {
             for (x, y) in part.iter() {
                 let spot = Spot::pixel(x, y);
                 let at = dvec2(random.within(-0.5, 0.5), random.within(-0.5, 0.5));
-                let expected = world.object_at(spot, at, &everything);
+                let (expected, _) = world.object_at(spot, at, &everything);
                 assert_eq!(
-                    world.object_at(spot, at, &some),
+                    world.object_at(spot, at, &some).0,
                     expected,
                     "seed {seed}: {part:?}"
                 );
                 assert_eq!(
-                    world.object_at(spot, at, &straight),
+                    world.object_at(spot, at, &straight).0,
                     expected,
                     "seed {seed}: {part:?}"
                 );

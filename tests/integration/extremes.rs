@@ -265,6 +265,43 @@ fn numbers_at_the_ends_of_their_range() {
     }
 }
 
+/// A face of a box some 1e-157 m from the eye that looks along it; the eye as close inside of a sphere that is a plane, before a far plane.
+#[test]
+fn surfaces_next_to_the_eye_hide_none_that_are_farther() {
+    for text in [
+        "image { width 1 height 3 background black }
+         camera {
+             eye (-1.375, 2.2792403242184486e-157, 0) direction (5.728277404885035e18, 2, -1.0828772186899993)
+             fov 90.14124049522594deg
+         }
+         sampler { method random per_pixel 64 seed 431 }
+         checkerboard { y 1.625 square 4 colors (red, black) }
+         box { center (-2.20258731564851, 1, -1) size (2.5229940151210704, 2, 2) color black }",
+        "image { width 1 height 1 background red }
+         camera {
+             eye (-1.4400948323844044e-123, 5e-324, -5.891752382539124e49)
+             lookat (5e-324, 1.7976931348623157e308, -1.4400948323844046e-123) far 1.7976931348623155e308
+         }
+         sampler { method random per_pixel 64 seed 15 }
+         sphere { center (-1.7976931348623157e308, 0, 5e-324) radius 1.7976931348623157e308 color black }",
+        "image { width 3 height 2 background red }
+         camera {
+             eye (2.033051027204003, 3.0322417127975214, 2.2250738585072014e-308)
+             lookat (-1.981158728347209, -2.8181625723516945, -1)
+             d 2.2250738585072014e-308 far 5.366531308989971e-12
+         }
+         sampler { method random per_pixel 64 seed 529 }
+         box {
+             center (5.716374985185332e-5, 3.25, -2.1128630514894749e-7)
+             size (3.3250148901145167, 2, 0.50616931698793) color olive
+         }
+         sphere { center (2.2746313737473036, 0, -0.375) radius 0.8301405841253926 color white }
+         box { center (0, -2, 1) size (2.25, 3.3238474424977014, 2) color #012345 }",
+    ] {
+        render(&read(text), text, true);
+    }
+}
+
 /// Its conic's two branches, in front of the eye and behind it, are one line in any precision.
 #[test]
 fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
