@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    film::{Film, rmse},
+    film::{Film, Tolerance, compare, rmse},
     render::{self, RenderError},
     tracer::World,
 };
@@ -36,31 +36,43 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
     let cut = |film: &Film| Film::from_fn(width, band.height, |x, y| film.pixel(x, band.y + y));
     let (a_there, exact_there) = (cut(a)?, cut(exact)?);
     let enough = LEFT * rmse(&a_there, &exact_there);
+    // Bytes that are cut off instead of rounded are off by up to a step beside.
+    let tolerance = Tolerance {
+        steps: evidence::APART,
+        bounds: None,
+    };
+    let is_near = |a: &Film, made: &Film, enough: f64| {
+        rmse(a, made) < enough || compare(a, made, tolerance).is_ok_and(|found| found.is_equal())
+    };
     let world = World::new(&case.full.scene);
     let mut found = Vec::new();
     for samples in GRIDS {
         let sampling = level::grid(&case.full.scene, samples);
         // Some rows tell which grid it may be.
         let there = render::render(&world, &sampling, band, &case.control)?;
-        if rmse(&a_there, &there) >= enough {
+        if !is_near(&a_there, &there, enough) {
             continue;
         }
         let whole = Area::whole(width, height);
         let made = render::render(&world, &sampling, whole, &case.control)?;
-        let left = rmse(a, &made);
-        if left < LEFT * case.difference {
-            found.push((left, samples, made));
+        if is_near(a, &made, LEFT * case.difference) {
+            found.push((rmse(a, &made), samples, made));
         }
     }
     found.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let Some((_, samples, made)) = found.first() else {
+    let Some((left, samples, made)) = found.first() else {
         return Ok(None);
     };
+    let is_told = evidence::is_enough(a, exact, made);
+    if !is_told && *left >= LEFT * case.difference {
+        // Within a step of it is within a step of much.
+        return Ok(None);
+    }
     let mut others = found[1..].iter();
     let is_the_one = others.all(|(_, _, other)| evidence::is_enough(a, other, made));
     Ok(Some(Grid {
         samples: is_the_one.then_some(*samples),
-        is_told: evidence::is_enough(a, exact, made),
+        is_told,
     }))
 }
 
