@@ -58,6 +58,12 @@ pub fn found(is: f64, should: f64) -> String {
     beside(to_unit(is, unit), &[should])
 }
 
+/// The same of a coordinate or an angle, which may be any number where nothing is meant: three digits of the larger of the two.
+pub fn found_near(is: f64, should: f64) -> String {
+    let unit = f64::min(digit(is.abs().max(should.abs()), 2), digit(is - should, 0));
+    beside(to_unit(is, unit), &[should])
+}
+
 /// The same of a point or a vector, whose coordinates have three digits of the size of `scale`.
 pub fn found_vector(is: DVec3, should: DVec3, scale: f64) -> String {
     let unit = f64::min(digit(scale, 2), digit((is - should).length(), 0));
@@ -127,6 +133,16 @@ mod tests {
             (1.00000001, 1.0, "1.00000001"),
         ] {
             assert_eq!(found(is, should), text);
+        }
+        for (is, should, text) in [
+            (-3.09e-6, 0.8, "0"),
+            (0.001_234, 0.8, "0.001"),
+            (2.0561, 0.0, "2.06"),
+            (3e-6, 0.0, "3e-6"),
+            (-1.602, -1.6, "-1.602"),
+            (5.0, 5.0, "5"),
+        ] {
+            assert_eq!(found_near(is, should), text);
         }
         let should = DVec3::new(3.0, 3.5, 8.0);
         let is = DVec3::new(3.00298, 3.50203, 8.00001);

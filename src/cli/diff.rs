@@ -341,12 +341,12 @@ impl Report {
         let largest = found.map(|found| {
             let largest = found.largest;
             json!({
-                "error": largest.steps,
+                "error": plain(largest.steps),
                 "x": largest.x,
                 "y": largest.y,
                 "channel": CHANNELS[largest.channel],
-                "a": largest.a,
-                "b": largest.b,
+                "a": plain(largest.a),
+                "b": plain(largest.b),
             })
         });
         let likely = self.grade.likely.iter().map(|verdict| {
@@ -399,6 +399,11 @@ fn round(steps: f64) -> String {
         true => short(significant(steps)),
         false => short((100.0 * steps).round() / 100.0),
     }
+}
+
+/// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
+fn plain(steps: f64) -> f64 {
+    (1e9 * steps).round() / 1e9
 }
 
 /// Three significant digits.

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Idea, Make, camera::direction, level::axes, objects::moved, search::Change};
 use crate::{
-    numbers::{found, short},
+    numbers::{found, found_near, short},
     scene::{Checkerboard, Scene, Shape, View},
 };
 
@@ -128,7 +128,7 @@ fn height(scene: &Scene, first: Checkerboard) -> Change {
             let other = boards(other).next().map_or(first.y, |(_, board)| board.y);
             format!(
                 "the checkerboard is at a wrong height: as if its y were {} instead of {}",
-                found(other, first.y),
+                found_near(other, first.y),
                 short(first.y)
             )
         }),
@@ -178,8 +178,9 @@ fn origin(scene: &Scene, first: Checkerboard) -> Change {
             // All else was moved the other way.
             let by = other.camera.eye - scene.camera.eye;
             let by = least(-DVec2::new(by.x, by.z) / side) * side;
-            // No more than a few hundredths of a square are told.
-            let [x, z] = by.to_array().map(|x| match x.abs() < 5e-3 * side {
+            // What is found of one coordinate is known as well as of the other.
+            let far = by.abs().max_element();
+            let [x, z] = by.to_array().map(|x| match x.abs() < 0.05 * far {
                 true => "0".to_owned(),
                 false => found(x, 0.0),
             });

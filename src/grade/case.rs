@@ -51,6 +51,8 @@ pub struct Case<'a> {
     pub view: View,
     /// A mistake was passed over of which too few pixels tell.
     pub is_thin: Cell<bool>,
+    /// Noise would make the difference, though too few pixels tell of it to say so.
+    pub may_be_noise: Cell<bool>,
     pub control: Control<'a>,
 }
 
@@ -96,6 +98,7 @@ impl<'a> Case<'a> {
             slopes: OnceCell::new(),
             view: View::of(scene),
             is_thin: Cell::new(false),
+            may_be_noise: Cell::new(false),
             control,
         })
     }

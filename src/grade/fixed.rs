@@ -10,40 +10,80 @@ use super::{
 };
 use crate::{
     area::Area,
-    film::{Film, rmse},
+    film::{Film, Tolerance, compare, rmse},
     render::{self, RenderError},
     tracer::World,
 };
 
-/// How many samples a pixel has, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up.
-pub fn grid(case: &Case) -> Result<Option<u64>, RenderError> {
-    let [width, height] = size(&case.full.a);
-    // Some rows tell which grid it may be.
+/// The same samples in each pixel.
+pub struct Grid {
+    /// How many they are; none if several numbers of them make the picture.
+    pub samples: Option<u64>,
+    /// Whether enough pixels tell of it.
+    pub is_told: bool,
+}
+
+/// The samples of a pixel, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up, and
+/// grids of as many rows and columns there make the same.
+pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
+    if case.strays.pixels > 0 {
+        // Where one colour is seen all samples see it.
+        return Ok(None);
+    }
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    let [width, height] = size(a);
     let band = case.worst_rows(ROWS);
+    let cut = |film: &Film| Film::from_fn(width, band.height, |x, y| film.pixel(x, band.y + y));
+    let (a_there, exact_there) = (cut(a)?, cut(exact)?);
+    let enough = LEFT * rmse(&a_there, &exact_there);
+    // Bytes that are cut off instead of rounded are off by up to a step beside.
+    let tolerance = Tolerance {
+        steps: evidence::APART,
+        bounds: None,
+    };
+    let is_near = |a: &Film, made: &Film, enough: f64| {
+        rmse(a, made) < enough || compare(a, made, tolerance).is_ok_and(|found| found.is_equal())
+    };
     let world = World::new(&case.full.scene);
+    let mut found = Vec::new();
     for samples in GRIDS {
         let sampling = level::grid(&case.full.scene, samples);
-        for part in [band, Area::whole(width, height)] {
-            let made = render::render(&world, &sampling, part, &case.control)?;
-            let cut =
-                |film: &Film| Film::from_fn(width, part.height, |x, y| film.pixel(x, part.y + y));
-            let (a, exact) = (cut(&case.full.a)?, cut(&case.full.exact)?);
-            if rmse(&a, &made) >= LEFT * rmse(&a, &exact) {
-                break;
-            }
-            if part.height == height {
-                return Ok(evidence::is_enough(&a, &exact, &made).then_some(samples));
-            }
+        // Some rows tell which grid it may be.
+        let there = render::render(&world, &sampling, band, &case.control)?;
+        if !is_near(&a_there, &there, enough) {
+            continue;
+        }
+        let whole = Area::whole(width, height);
+        let made = render::render(&world, &sampling, whole, &case.control)?;
+        if is_near(a, &made, LEFT * case.difference) {
+            found.push((rmse(a, &made), samples, made));
         }
     }
-    Ok(None)
+    found.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let Some((left, samples, made)) = found.first() else {
+        return Ok(None);
+    };
+    let is_told = evidence::is_enough(a, exact, made);
+    if !is_told && *left >= LEFT * case.difference {
+        // Within a step of it is within a step of much.
+        return Ok(None);
+    }
+    let mut others = found[1..].iter();
+    let is_the_one = others.all(|(_, _, other)| evidence::is_enough(a, other, made));
+    Ok(Some(Grid {
+        samples: is_the_one.then_some(*samples),
+        is_told,
+    }))
 }
 
 /// As few rows as have some edges that are not parallel to them.
 const ROWS: u32 = 8;
 
-/// Usual numbers of samples: squares, and the small ones. A grid of more is off by less than a sixty-fourth of a pixel.
-const GRIDS: [u64; 12] = [2, 3, 4, 5, 6, 8, 9, 16, 25, 32, 36, 64];
+/// Usual numbers of samples: all small ones, squares, and round ones. A grid of more is off by less than a thirty-second of a pixel.
+const GRIDS: [u64; 32] = [
+    2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20, 24, 25, 30, 32, 36, 49, 50, 64, 81,
+    100, 121, 144, 169, 196, 256,
+];
 
 /// The share of pixels that are black or of the background's colour as no sample fell into them, and the noise of the rest.
 pub fn empty(case: &Case) -> Result<Option<(f64, Noise)>, RenderError> {

@@ -6,7 +6,7 @@
 //!
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
-//! not independent, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
+//! not independent, `truncated` bytes that are not rounded, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
 //! one, and `choice` which of several it is. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
@@ -25,6 +25,7 @@ mod objects;
 mod order;
 mod search;
 mod shift;
+mod truncated;
 mod whole;
 
 use std::sync::atomic::Ordering;
@@ -79,7 +80,7 @@ pub struct Verdict {
 pub struct Grade {
     /// The mistakes that explain the difference, best first; none, if none does.
     pub likely: Vec<Verdict>,
-    /// Whether a mistake would explain it that too few pixels tell of.
+    /// Whether a mistake, or noise, would explain it that too few pixels tell of.
     pub is_thin: bool,
 }
 
@@ -134,22 +135,37 @@ pub fn scene(
 ) -> Result<Grade, RenderError> {
     if size(a) != size(exact) {
         return Ok(Grade {
-            likely: whole::sizes(a, exact),
+            likely: whole::sizes(a, exact, whole::OF_SCENE),
             is_thin: false,
         });
     }
+    let one_color = whole::one_color(a, exact, Some(scene));
     // Hundreds of pictures may be made, all by the same threads.
     threads::install(control.threads, || {
         let case = Case::new(a, scene, exact, control)?;
-        let likely = match samples(&case)? {
-            Some(verdict) => vec![verdict],
-            None => mistakes(&case)?,
+        let likely = match one_color {
+            Some(verdict) => with_nothing_in_sight(&case, verdict)?,
+            None => match samples(&case)? {
+                Some(verdict) => vec![verdict],
+                None => mistakes(&case)?,
+            },
         };
         Ok(Grade {
-            is_thin: likely.is_empty() && case.is_thin.get(),
+            is_thin: likely.is_empty() && (case.is_thin.get() || case.may_be_noise.get()),
             likely,
         })
     })?
+}
+
+/// What is said of a picture of one colour. If it is the background's the camera may look past everything, as any that does makes the same
+/// picture, which is why none is named first.
+fn with_nothing_in_sight(case: &Case, verdict: Verdict) -> Result<Vec<Verdict>, RenderError> {
+    let mut likely = vec![verdict];
+    let background = case.full.scene.image.background.to_linear();
+    if !noise::is_off((&case.full.a.pixel(0, 0), &background)) {
+        likely.extend(verdicts(case.named(camera::ideas(&case.full.scene))?));
+    }
+    Ok(likely)
 }
 
 /// What is said of a picture in which nothing but its samples is wrong.
@@ -160,14 +176,24 @@ fn samples(case: &Case) -> Result<Option<Verdict>, RenderError> {
     if let Some(first) = found.into_iter().next() {
         return Ok(Some(first.verdict));
     }
-    if let Some(noise) = noise::judge(a, exact, &case.variance)
+    let truncated = truncated::verdict(case)?;
+    if truncated.is_some() {
+        return Ok(truncated);
+    }
+    if let Some(noise) = noise::possible(a, exact, &case.variance)
         && !case.is_biased(a, exact, &case.variance, noise)?
         && !objects::is_in_one_part(case)
     {
-        return Ok(Some(noise.verdict(case.difference)));
+        if noise.is_told() {
+            return Ok(Some(noise.verdict(case.difference)));
+        }
+        case.may_be_noise.set(true);
     }
-    if let Some(samples) = fixed::grid(case)? {
-        return Ok(Some(noise::verdict_of_grid(case.difference, samples)));
+    if let Some(grid) = fixed::grid(case)? {
+        if grid.is_told {
+            return Ok(Some(noise::verdict_of_grid(case.difference, grid.samples)));
+        }
+        case.may_be_noise.set(true);
     }
     let empty = fixed::empty(case)?;
     Ok(empty.map(|(share, noise)| noise.verdict_with_empty(case.difference, share)))
@@ -223,8 +249,9 @@ fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     if case.is_all(&found)? {
         return Ok(verdicts(found));
     }
-    // A camera that is off in several ways is seen all over the picture.
+    // A camera that is off in several ways is seen all over the picture. What noise may have done is nobody's fault.
     if found.is_empty()
+        && !case.may_be_noise.get()
         && let Some(verdict) = objects::confined(case)?
     {
         return Ok(vec![verdict]);
@@ -241,7 +268,7 @@ fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let starts: Vec<_> = single.starts.into_iter().chain(several.starts).collect();
     let any = camera::any(case, &starts)?;
     found = case.best_of(found, any.into_iter().collect())?;
-    match found.is_empty() {
+    match found.is_empty() && !case.may_be_noise.get() {
         true => Ok(objects::reaching_out(case)?.into_iter().collect()),
         false => Ok(verdicts(found)),
     }
@@ -255,7 +282,13 @@ fn verdicts(found: Vec<Explanation>) -> Vec<Verdict> {
 pub fn pictures(a: &Film, b: &Film) -> Grade {
     if size(a) != size(b) {
         return Grade {
-            likely: whole::sizes(a, b),
+            likely: whole::sizes(a, b, whole::OF_PICTURES),
+            is_thin: false,
+        };
+    }
+    if let Some(verdict) = whole::one_color(a, b, None) {
+        return Grade {
+            likely: vec![verdict],
             is_thin: false,
         };
     }

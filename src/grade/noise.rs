@@ -56,6 +56,8 @@ const MANY: f64 = 2000.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
     pub samples: f64,
+    /// How many pixels it is seen in.
+    pixels: u64,
 }
 
 /// The variance of one sample in each pixel and channel.
@@ -103,9 +105,19 @@ pub fn judge(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
 
 /// The same of two pictures that a curve made of means, for which noise is judged. What is right within a step is right in the pictures.
 pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> Option<Noise> {
+    possible_through(shown, means, variance).filter(Noise::is_told)
+}
+
+/// Whether nothing about a picture says that it differs from its exact one in more than noise, though so few pixels may differ that they do
+/// not say that it is noise, either.
+pub fn possible(a: &Film, exact: &Film, variance: &Film) -> Option<Noise> {
+    possible_through([a, exact], [a, exact], variance)
+}
+
+fn possible_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> Option<Noise> {
     let [a, exact] = means;
     let (mut mixed, mut off) = (0u64, 0u64);
-    let (mut variances, mut squares) = (0.0, 0.0);
+    let mut size = Size::default();
     let mut sums = [[0.0f64; 3]; 3];
     let mut spread = Spread::default();
     let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
@@ -121,10 +133,9 @@ pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> O
         mixed += 1;
         off += u64::from(is_off(pair));
         spread.add(p, q, variance, pair);
+        size.add(p, q, variance);
         for i in 0..3 {
-            let error = p[i] - q[i];
-            variances += variance[i].max(0.0);
-            squares += error * error;
+            let error = beyond_rounding([p[i], q[i]], [pair.0[i], pair.1[i]]);
             sums[i][0] += error;
             sums[i][1] += error.abs();
             sums[i][2] += error * error;
@@ -133,15 +144,15 @@ pub fn judge_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> O
     let is_even = |[sum, absolute, squares]: [f64; 3]| {
         sum.abs() <= SIGMAS * squares.sqrt() || sum.abs() <= BIAS * absolute
     };
-    let samples = variances / squares;
-    // A single sample already has the whole variance; more than that is no noise.
-    // So few errors as pass for even whatever their signs show nothing.
-    let is_noise = off as f64 > SIGMAS * SIGMAS
-        && spread.is_everywhere(mixed)
+    let samples = size.samples();
+    let is_noise = spread.is_everywhere(mixed)
         && sums.into_iter().all(is_even)
-        && samples > 0.75
+        && size.is_of_a_sample()
         && samples.is_finite();
-    is_noise.then_some(Noise { samples })
+    is_noise.then_some(Noise {
+        samples,
+        pixels: off,
+    })
 }
 
 /// Whether all pixels of one colour have it.
@@ -239,9 +250,52 @@ fn steps(p: f64, q: f64) -> f64 {
     }
 }
 
+/// An error, less half a step, and 0 if it may be rounding: that is the same wherever the same is seen, as along an edge that is parallel to
+/// the picture's, and so adds up.
+fn beyond_rounding([p, q]: [f64; 2], shown: [f64; 2]) -> f64 {
+    let steps = steps(shown[0], shown[1]);
+    match steps > FLAT {
+        true => (p - q) * (1.0 - 0.5 / steps),
+        false => 0.0,
+    }
+}
+
+/// How large errors are, beside those of one sample.
+#[derive(Default)]
+pub struct Size {
+    variances: f64,
+    squares: f64,
+    /// The sum of the squares of each pixel's squares: about their variance.
+    fourths: f64,
+}
+
+impl Size {
+    /// Counts a pixel and what it should be.
+    pub fn add(&mut self, p: &[f64; 3], q: &[f64; 3], variance: &[f64; 3]) {
+        let square: f64 = (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum();
+        self.variances += variance.iter().map(|one| one.max(0.0)).sum::<f64>();
+        self.squares += square;
+        self.fourths += square * square;
+    }
+
+    fn samples(&self) -> f64 {
+        self.variances / self.squares
+    }
+
+    /// The most samples that are so far off.
+    pub fn most_samples(&self) -> f64 {
+        self.variances / (self.squares - SIGMAS * self.fourths.sqrt()).max(0.0)
+    }
+
+    /// A single sample already has the whole variance; more than that is no noise, but for what chance adds to it.
+    fn is_of_a_sample(&self) -> bool {
+        self.samples() > 0.75 || self.most_samples() >= 1.0
+    }
+}
+
 /// Whether errors are all over, as those of samples are, or large and in a few places.
 #[derive(Default)]
-struct Spread {
+pub struct Spread {
     /// The largest exponent of a chance, for each sample.
     least_likely: f64,
     /// Pixels with a notable variance, and those among them that are right.
@@ -252,7 +306,8 @@ struct Spread {
 }
 
 impl Spread {
-    fn add(
+    /// Counts a pixel of several colours, what it should be, and both as they are shown.
+    pub fn add(
         &mut self,
         p: &[f64; 3],
         q: &[f64; 3],
@@ -260,12 +315,8 @@ impl Spread {
         pair: (&[f64; 3], &[f64; 3]),
     ) {
         for i in 0..3 {
-            let steps = steps(pair.0[i], pair.1[i]);
-            if steps > FLAT {
-                // Half a step of it is rounding.
-                let error = (p[i] - q[i]).abs() * (1.0 - 0.5 / steps);
-                self.least_likely = self.least_likely.max(exponent(variance[i], error));
-            }
+            let error = beyond_rounding([p[i], q[i]], [pair.0[i], pair.1[i]]).abs();
+            self.least_likely = self.least_likely.max(exponent(variance[i], error));
         }
         if is_wide(variance) {
             self.wide += 1;
@@ -277,14 +328,19 @@ impl Spread {
         }
     }
 
-    /// The least likely of all errors bounds the number of samples, and that the share of pixels that are right. Those of the same mean, as
-    /// along an edge that is parallel to the picture's, may all be right or none.
+    /// The least likely of all errors bounds the number of samples, and that the share of pixels that are right.
     fn is_everywhere(&self, mixed: u64) -> bool {
         let means = 3.0 * mixed as f64;
         let samples = libm::log(2.0 * means / CHANCE) / self.least_likely;
+        samples >= 1.0 && self.may_be_right(samples)
+    }
+
+    /// Whether as many pixels are right as may be of so many samples. Those of the same mean, as along an edge that is parallel to the
+    /// picture's, may all be right or none.
+    pub fn may_be_right(&self, samples: f64) -> bool {
         let right = (RIGHT * (samples + 1.0)).min(1.0) * self.wide as f64;
         let squares: f64 = self.alike.values().map(|&n| n as f64 * n as f64).sum();
-        samples >= 1.0 && self.right as f64 <= right + SIGMAS * squares.sqrt()
+        self.right as f64 <= right + SIGMAS * squares.sqrt()
     }
 }
 
@@ -297,6 +353,11 @@ fn exponent(variance: f64, error: f64) -> f64 {
 }
 
 impl Noise {
+    /// Whether enough pixels show it: so few errors as pass for even whatever their signs are show nothing.
+    pub fn is_told(&self) -> bool {
+        self.pixels as f64 > SIGMAS * SIGMAS
+    }
+
     /// Whether it is of so few samples that a pixel seldom is right. Noise of more looks like small errors of any other kind.
     pub fn is_coarse(&self) -> bool {
         RIGHT * self.samples < 1.0
@@ -312,7 +373,8 @@ impl Noise {
         // So many fall into a pixel on an average if each does where it will (Poisson): e^−n have none.
         let samples = match share > 0.0 {
             true => -libm::log(share),
-            false => self.samples,
+            // More than chance makes of one is chance.
+            false => self.samples.max(1.0),
         };
         let samples = match samples {
             few if few < 10.0 => ((2.0 * few).round() / 2.0).max(0.5),
@@ -346,8 +408,9 @@ impl Noise {
     }
 }
 
-/// What is said of the same samples in each pixel.
-pub fn verdict_of_grid(difference: f64, samples: u64) -> Verdict {
+/// What is said of the same samples in each pixel, so many if that is known.
+pub fn verdict_of_grid(difference: f64, samples: Option<u64>) -> Verdict {
+    let samples = samples.map_or("a few".to_owned(), |samples| samples.to_string());
     Verdict {
         mistake: "noise",
         message: format!(

@@ -1,6 +1,12 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
-use super::{Curve, Idea, Make, Verdict, level, noise::with_colors, size};
+use super::{
+    Curve, Idea, Make, Verdict,
+    evidence::FEWEST,
+    level,
+    noise::{is_off, with_colors},
+    objects, size,
+};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::{Film, TooLarge, rmse},
@@ -207,8 +213,60 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
     ideas
 }
 
+/// What is said of a picture of one colour, if the right one has several: all else that explains it is a guess.
+pub fn one_color(a: &Film, right: &Film, scene: Option<&Scene>) -> Option<Verdict> {
+    let first = a.pixels().first()?;
+    let is_one = |film: &Film, light: &[f64; 3]| film.pixels().iter().all(|p| !is_off((p, light)));
+    let wrong = right.pixels().iter().filter(|p| is_off((first, p))).count();
+    if !is_one(a, first) || is_one(right, right.pixels().first()?) || (wrong as u64) < FEWEST {
+        return None;
+    }
+    let color = Color {
+        srgb: first.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0)),
+    };
+    let is_shown = |other: Color| !is_off((&other.to_linear(), first));
+    let owner = scene.and_then(|scene| {
+        let mut colors = scene.objects.iter().map(|object| {
+            let mut shape = object.shape;
+            objects::color(&mut shape)
+                .into_iter()
+                .any(|own| is_shown(*own))
+        });
+        colors.position(|is_own| is_own)
+    });
+    let (what, help) = match (scene, owner) {
+        (Some(scene), _) if is_shown(scene.image.background) => (
+            format!("the background's {color}: nothing was drawn, or no ray hits anything"),
+            "does the camera look along −w, and is a hit one with t > 0? `pinhole probe SCENE X Y` shows what a ray should hit",
+        ),
+        (Some(scene), Some(index)) => (
+            format!(
+                "{color}: {} hides all else, or the eye is in it",
+                objects::called(scene, index)
+            ),
+            "keep the least t > 0 of all hits of a ray; `pinhole probe SCENE X Y` shows what a ray should hit",
+        ),
+        _ => (
+            format!("{color}: nothing was drawn"),
+            "are the colours that rays find stored in the picture, and is it that one that is written?",
+        ),
+    };
+    Some(Verdict {
+        mistake: "one_color",
+        message: format!("the whole picture is one colour, {what}"),
+        help: help.to_owned(),
+        rmse: Some(rmse(a, right)),
+        explains: None,
+        off: None,
+    })
+}
+
+/// The way out where a picture has another resolution than a scene, and than another picture.
+pub const OF_SCENE: &str = "render it in the size that the scene says, or set the scene's: `--set image.width=…` and `--set image.height=…`";
+pub const OF_PICTURES: &str = "pictures can be compared that have the same size: render one of them again in that of the other";
+
 /// What can be said of pictures of different sizes.
-pub fn sizes(a: &Film, b: &Film) -> Vec<Verdict> {
+pub fn sizes(a: &Film, b: &Film, way_out: &str) -> Vec<Verdict> {
     let ([width, height], [b_width, b_height]) = (size(a), size(b));
     let verdict = |mistake, message: String, help: &str| Verdict {
         mistake,
@@ -254,7 +312,7 @@ pub fn sizes(a: &Film, b: &Film) -> Vec<Verdict> {
             format!(
                 "the same shape in another resolution: {width} × {height} pixels where {b_width} × {b_height} are wanted"
             ),
-            "render it in the size that the scene says, or set the scene's: `--set image.width=…` and `--set image.height=…`",
+            way_out,
         )];
     }
     Vec::new()

@@ -12,7 +12,7 @@ use crate::{
         search::Change,
     },
     math::{Angle, trig},
-    numbers::{self, found, found_vector, short, short_vector},
+    numbers::{self, found, found_near, found_vector, short, short_vector},
     render::RenderError,
     scene::{Scene, View},
 };
@@ -290,14 +290,19 @@ fn distance_change(scene: &Scene) -> Change {
         message: Box::new(|scene, other| {
             let fov = |scene: &Scene| {
                 let half = trig::atan(scene.camera.view_height / (2.0 * distance(scene)));
-                short((2000.0 * in_degrees(half)).round() / 1000.0)
+                2.0 * in_degrees(half)
+            };
+            let rounded = |degrees: f64| short((1000.0 * degrees).round() / 1000.0);
+            let (is, should) = (fov(other), fov(scene));
+            let shown = match rounded(is) == rounded(should) {
+                true => found(is, should),
+                false => rounded(is),
             };
             format!(
-                "the view plane is at the wrong distance: as if d were {} instead of {} (a field of view of {} degrees instead of {})",
+                "the view plane is at the wrong distance: as if d were {} instead of {} (a field of view of {shown} degrees instead of {})",
                 found(distance(other), distance(scene)),
                 short(distance(scene)),
-                fov(other),
-                fov(scene)
+                rounded(should)
             )
         }),
         starts: (-8..=8).map(|k| vec![f64::from(k) / 4.0]).collect(),
@@ -310,7 +315,7 @@ fn roll_change(scene: &Scene) -> Change {
         message: Box::new(|scene, other| {
             format!(
                 "the camera is rolled wrongly: as if roll were {} degrees instead of {}",
-                found(in_degrees(other.camera.roll), in_degrees(scene.camera.roll)),
+                found_near(in_degrees(other.camera.roll), in_degrees(scene.camera.roll)),
                 short(in_degrees(scene.camera.roll))
             )
         }),
@@ -322,7 +327,7 @@ fn roll_change(scene: &Scene) -> Change {
 fn one_coordinate(what: &str, letter: &str, should: f64, is: f64) -> String {
     format!(
         "{what} is in a wrong place: as if its {letter} were {} instead of {}",
-        found(is, should),
+        found_near(is, should),
         short(should)
     )
 }
@@ -377,7 +382,7 @@ fn message(scene: &Scene, other: &Scene) -> String {
     }
     let [roll, other_roll] = [scene, other].map(|scene| in_degrees(scene.camera.roll));
     if roll != other_roll {
-        let (is, should) = (numbers::found(other_roll, roll), short(roll));
+        let (is, should) = (found_near(other_roll, roll), short(roll));
         found.push(format!("roll were {is} degrees instead of {should}"));
     }
     let [d, other_d] = [scene, other].map(distance);

@@ -112,7 +112,7 @@ fn listed(messages: &[String]) -> String {
 }
 
 /// What a shape has one of, in its place in the shape; none of a checkerboard, which has two.
-pub(super) fn color(shape: &mut Shape) -> Vec<&mut Color> {
+pub fn color(shape: &mut Shape) -> Vec<&mut Color> {
     match shape {
         Shape::Sphere(sphere) => vec![&mut sphere.color],
         Shape::Triangle(triangle) => vec![&mut triangle.color],

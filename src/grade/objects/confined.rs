@@ -12,7 +12,12 @@ use super::{
 use crate::{
     area::Area,
     film::{Film, Tolerance, compare, rmse},
-    grade::{Case, LEFT, Off, Verdict, evidence::FEWEST, explained_share, noise},
+    grade::{
+        Case, LEFT, Off, Verdict,
+        evidence::FEWEST,
+        explained_share,
+        noise::{self, Size, Spread},
+    },
     render::RenderError,
     scene::Shape,
 };
@@ -166,29 +171,33 @@ fn blamed(case: &Case, index: usize, part: Area, rest: &Rest) -> Verdict {
 /// of both.
 const TELLING: u64 = 3;
 
-/// Whether all pixels that are off are in one object's part of the picture, and most of those that noise would change are not: samples
-/// that leave nearly all edges right do not leave only those of one object wrong.
+/// Whether all pixels that are off are in one object's part of the picture, and more of those elsewhere are right than samples leave right that
+/// are so far off there.
 pub fn is_in_one_part(case: &Case) -> bool {
-    let (a, exact) = (&case.full.a, &case.full.exact);
-    let whole = Area::whole(a.width(), a.height());
-    let (mut off, mut mixed) = (Vec::new(), Vec::new());
-    for (x, y) in whole.iter() {
-        if noise::is_off((&a.pixel(x, y), &exact.pixel(x, y))) {
-            off.push(Area::pixel(x, y));
-        } else if noise::is_wide(&case.variance.pixel(x, y)) {
-            mixed.push(Area::pixel(x, y));
-        }
-    }
     let mut objects = case.full.scene.objects.iter();
     objects.any(|object| {
         let part = case.view.extent(&moved(&object.shape, DVec3::ZERO, ROOM));
         part.is_some_and(|part| {
-            !matches!(object.shape, Shape::Checkerboard(_))
-                && !off.is_empty()
-                && off.iter().all(|pixel| pixel.lies_in(part))
-                && mixed.iter().filter(|pixel| !pixel.lies_in(part)).count() > off.len()
+            !matches!(object.shape, Shape::Checkerboard(_)) && is_in_part_alone(case, part)
         })
     })
+}
+
+fn is_in_part_alone(case: &Case, part: Area) -> bool {
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    let (mut inside, mut outside) = (Size::default(), Spread::default());
+    for (x, y) in Area::whole(a.width(), a.height()).iter() {
+        let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
+        let variance = case.variance.pixel(x, y);
+        if Area::pixel(x, y).lies_in(part) {
+            inside.add(&p, &q, &variance);
+        } else if noise::is_off((&p, &q)) {
+            return false;
+        } else {
+            outside.add(&p, &q, &variance, (&p, &q));
+        }
+    }
+    !outside.may_be_right(inside.most_samples())
 }
 
 /// The share of what is wrong that is in a part: of pixels of one colour, in which there is no noise, if any are wrong.

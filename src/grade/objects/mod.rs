@@ -9,7 +9,7 @@ mod slopes;
 use glam::DVec3;
 
 pub use self::{
-    colors::{Near, colors},
+    colors::{Near, color, colors},
     confined::{confined, is_in_one_part, reaching_out},
     search::search,
     slopes::{Slope, slopes},
@@ -34,7 +34,7 @@ const SLOPES: usize = TRIED;
 const ENOUGH: u64 = 6;
 
 /// What an object is called.
-fn called(scene: &Scene, index: usize) -> String {
+pub fn called(scene: &Scene, index: usize) -> String {
     let object = &scene.objects[index];
     let kind = object.shape.kind();
     if let Some(name) = &object.name {

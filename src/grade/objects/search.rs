@@ -19,7 +19,7 @@ use crate::{
         fit::{Fit, fit},
         level::axes,
     },
-    numbers::{found, found_vector, short, short_vector},
+    numbers::{found, found_near, found_vector, short, short_vector},
     render::RenderError,
     scene::{Scene, Shape},
 };
@@ -305,7 +305,7 @@ impl<'a> Sought<'a> {
         let message = format!(
             "{} is in a wrong place: as if the {letter} of its middle were {} instead of {}",
             self.name,
-            found(there.dot(axis), self.middle.dot(axis)),
+            found_near(there.dot(axis), self.middle.dot(axis)),
             short(self.middle.dot(axis))
         );
         Ok(make(&at).map(|make| (left, self.idea("object_place", message, make))))

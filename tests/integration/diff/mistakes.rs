@@ -197,7 +197,6 @@ fn mistakes_that_another_scene_makes_are_named() {
         ("camera.eye=(3, 3.8, 8)", "eye"),
         ("camera.lookat=(0.9, 0.8, 0)", "lookat"),
         ("camera.lookat=(0.2, 0, 0)", "lookat"),
-        ("camera.direction=(0.2, 0.8, 0)", "lookat_as_direction"),
         ("camera.direction=(2.8, 2.7, 8)", "looks_back"),
         ("Ball.color=red", "color"),
         ("image.background=black", "color"),
@@ -213,6 +212,14 @@ fn mistakes_that_another_scene_makes_are_named() {
         render(&folder, &["-o", "b.png", "--set", set]);
         assert_eq!(mistake(&folder), expected, "{set}");
     }
+    // It sees the background alone, as many another camera would.
+    let set = "camera.direction=(0.2, 0.8, 0)";
+    render(&folder, &["-o", "b.png", "--set", set]);
+    let found = json(&folder, &["b.png", "a.scn"]);
+    let names = found["likely"].as_array().unwrap().iter();
+    let names: Vec<_> = names.map(|one| one["mistake"].as_str().unwrap()).collect();
+    assert_eq!(names[0], "one_color");
+    assert!(names.contains(&"lookat_as_direction"), "{names:?}");
     for (set, expected) in [
         ("Sail.normal=(-0.3, 0, 1)", "whose x has the wrong sign"),
         ("Sail.normal=(1, 0, 0.3)", "whose x and z are exchanged"),
@@ -498,4 +505,44 @@ fn a_view_that_is_not_minded_is_named() {
         &["-o", "b.png", "--set", "camera.lookat=(0, 0, 0)"],
     );
     assert_eq!(mistake(&folder), "view_ignored");
+}
+
+#[test]
+fn bytes_that_are_cut_off_are_named() {
+    let folder = folder();
+    let encode = |c: f64| match c <= 0.003_130_8 {
+        true => 12.92 * c,
+        false => 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055,
+    };
+    let noisy = [
+        "--set",
+        "sampler.method=random",
+        "--set",
+        "sampler.per_pixel=16",
+    ];
+    for (sets, white, words) in [
+        (
+            &[][..],
+            255.0,
+            "as int(255 c) does: they are too dark by up to a step",
+        ),
+        (&[], 256.0, "as int(256 c) and int(255.999 c) do"),
+        (&[], 255.999, "as int(256 c) and int(255.999 c) do"),
+        (&noisy, 255.0, "; all else is sampling noise"),
+    ] {
+        render(&folder, &[&["-o", "a.exr"], sets].concat());
+        let light = open(&folder, "a.exr").to_rgb32f();
+        let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+            Rgb(light.get_pixel(x, y).0.map(|light| {
+                let byte = white * encode(f64::from(light));
+                byte.floor().clamp(0.0, 255.0) as u8
+            }))
+        });
+        save(&folder, "b.png", picture);
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "truncated", "{white}: {found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.contains(words), "{white}: {message}");
+    }
 }

@@ -4,6 +4,7 @@ mod faint;
 mod mistakes;
 mod numbers;
 mod pictures;
+mod right;
 mod samples;
 
 use std::{fs, path::Path, process::Output};

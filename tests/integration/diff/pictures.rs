@@ -388,3 +388,76 @@ fn files_that_are_no_pictures_are_trouble() {
     );
     assert_eq!(diff(&folder, &["a.png", "a.png", "--tolerance", "-1"]).0, 2);
 }
+
+#[test]
+fn pictures_of_two_sizes_have_no_scene_to_set() {
+    let folder = folder();
+    let size = ["--set", "image.width=48", "--set", "image.height=32"];
+    render(&folder, &[&["-o", "b.png"], &size[..]].concat());
+    let help = |other: &str| {
+        let found = json(&folder, &["b.png", other]);
+        assert_eq!(found["likely"][0]["mistake"], "resolution");
+        found["likely"][0]["help"].as_str().unwrap().to_owned()
+    };
+    assert!(help("a.scn").contains("the size that the scene says"));
+    assert!(!help("a.png").contains("scene") && !help("a.png").contains("--set"));
+}
+
+#[test]
+fn a_picture_of_one_colour_is_no_matter_of_the_camera() {
+    let folder = folder();
+    let ball = Rgb([128u8, 128, 0]);
+    let cases = [
+        (Rgb([0, 0, 0]), "one colour, #000000: nothing was drawn"),
+        (
+            Rgb([0, 0, 128]),
+            "one colour, the background's #000080: nothing was drawn, or no ray hits anything",
+        ),
+        (
+            ball,
+            "one colour, #808000: the sphere `Ball` hides all else, or the eye is in it",
+        ),
+    ];
+    for (color, words) in cases {
+        save(&folder, "b.png", ImageBuffer::from_pixel(96, 64, color));
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "one_color");
+        assert_eq!(first["message"], format!("the whole picture is {words}"));
+        // A camera that looks past everything shows the background.
+        let is_alone = found["likely"].as_array().unwrap().len() == 1;
+        assert_eq!(is_alone, color != Rgb([0, 0, 128]), "{found:#}");
+        let found = json(&folder, &["b.png", "a.png"]);
+        assert_eq!(found["likely"][0]["mistake"], "one_color", "{found:#}");
+    }
+    // Where the scene has one colour, too, something was drawn, of another one.
+    let inside = ["--set", "camera.eye=(-1.6, 1, 0.1)"];
+    save(
+        &folder,
+        "b.png",
+        ImageBuffer::from_pixel(96, 64, Rgb([0u8; 3])),
+    );
+    let found = json(&folder, &[&["b.png", "a.scn"], &inside[..]].concat());
+    assert_ne!(found["likely"][0]["mistake"], "one_color", "{found:#}");
+}
+
+#[test]
+fn a_byte_is_written_as_a_whole_number() {
+    let folder = folder();
+    save(
+        &folder,
+        "b.png",
+        ImageBuffer::from_pixel(96, 64, Rgb([255u8; 3])),
+    );
+    save(
+        &folder,
+        "c.png",
+        ImageBuffer::from_pixel(96, 64, Rgb([254u8, 3, 7])),
+    );
+    let found = json(&folder, &["b.png", "c.png"]);
+    let largest = &found["largest"];
+    assert_eq!(
+        (&largest["a"], &largest["b"], &largest["error"]),
+        (&255.0.into(), &3.0.into(), &252.0.into())
+    );
+}
