@@ -5,7 +5,7 @@ use glam::{DVec3, dvec3};
 use super::{
     Case, Claim,
     inputs::Random,
-    oracle::{ALL_SIZES, Oracle, USUAL_SIZES},
+    oracle::{ALL_SIZES, ALL_VIEWS, Oracle, USUAL_SIZES},
     scenes::{along, board, camera, cuboid, scene, sphere, triangle},
     textbook,
     trial::{Tally, Trial},
@@ -149,7 +149,7 @@ fn lenses(random: &mut Random, count: u64, tally: &mut Tally) {
     if wide {
         shapes.push(cuboid(dvec3(-4.0, 0.5, 1.0), dvec3(-3.0, 4.5, 2.0)));
     }
-    Trial::new(scene(camera, &shapes), ALL_SIZES).boundaries(random, count, tally);
+    Trial::new(scene(camera, &shapes), ALL_VIEWS).boundaries(random, count, tally);
 }
 
 fn rolls(random: &mut Random, count: u64, tally: &mut Tally) {

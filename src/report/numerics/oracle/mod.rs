@@ -18,6 +18,9 @@ use crate::scene::{Lens, Scene, Shape, View};
 /// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
 pub const ALL_SIZES: usize = 1400;
 
+/// Enough bits for views so wide or narrow that a step of one pixel and the distance of the view plane differ by some 2^1000 in size.
+pub const ALL_VIEWS: usize = 3000;
+
 /// Enough bits for scenes whose numbers differ by some 2^100 in size.
 pub const USUAL_SIZES: usize = 512;
 
