@@ -25,8 +25,9 @@ pub const PIXEL: [DVec2; 4] = [
 /// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it.
 const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// The vertices of a polygon are at most so many times as high over a line as their mean, by their number: it is as wide as the pixel.
-const WIDE: f64 = 1.5;
+/// A polygon whose vertices have a mean value h of a line's form has no more area than this, by their number and |h|: one of n has a value of at most
+/// nh, at most 2nh from the line, whose greater slope is at least 1/2, and it is no longer than √2.
+const WIDE: f64 = 3.0;
 
 /// How far the roundings of a vertex may move it.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
