@@ -124,8 +124,9 @@ fn along(board: &Board, odd: bool, side: Side, [column, row]: [u32; 2]) -> Optio
     }
     let edge = Edge::along(board, &near, &far, side.by_b)?;
     let mut sum = edge.alone(board);
-    // The other pixel that has it knows of its own roundings alone.
-    sum.bound += board.blurred([near.at, far.at].into_iter());
+    // The other pixel that has it knows of its own roundings alone. Displaced, the side sweeps once what two points do there and back.
+    let ends = [near.at, far.at].into_iter();
+    sum.bound += (0.5 * board.displaced(ends.clone())).min(board.blurred(ends));
     Some(by_color(sum, odd))
 }
 
