@@ -24,7 +24,7 @@ use crate::math::{Double, Real, two_product};
 use std::{array, f64::consts::PI};
 
 /// What is neglected of modes that are not in step, by what a mode's crossings add up to.
-pub(super) const NOT_IN_STEP: f64 = DOUBLINGS / (PI * PI * PI * IN_STEP * FINER);
+pub(super) const NOT_IN_STEP: f64 = DOUBLINGS / (PI * PI * PI * IN_STEP * FINE);
 /// Where m grows twofold within fewer crossings than this, the formula of Euler and Maclaurin needs more terms than it has
 /// here.
 pub(super) const GRADUAL: f64 = 4000.0;
@@ -36,10 +36,14 @@ pub(super) const MOST: f64 = 1_000_000.0;
 const DENSE: f64 = 2048.0;
 /// ... of which there are about as many for each doubling of their number, if their angles are even; ...
 const IN_STEP: f64 = 500.0;
-/// ... or up to so many times as many, and as many times as far all of them, where too much would be neglected else; ...
-const FINER: f64 = 16.0;
+/// ... or up to so many times as many, and as many times as far all of them, where too much would be neglected else, ...
+const FINEST: f64 = 256.0;
+/// ... of which so many take less time than lines one by one; ...
+const FINE: f64 = 16.0;
 /// ... and so many doublings or more may be needed.
 const DOUBLINGS: f64 = 32.0;
+/// To ask for one takes so much less time than to compute it.
+const ASKED: f64 = 8.0;
 /// The last of all.
 const LAST: f64 = 1e15;
 /// Σ |U| times this, by (Q − 1)², bounds all modes beyond Q: |F′(y)| ≤ 2.125/y², from integrating by parts twice, and Σ n⁻³ over
@@ -51,8 +55,8 @@ const FLAT: f64 = 4.0 / (PI * PI) * 0.5;
 /// most ½m⁻² and varies by at most as much again and that of ∫ m⁻³·|yF′| dm, |yF′| ≤ 17/16, and half an end is left out.
 const ABEL: f64 = (1.0 + 2.0 * (0.5 + 17.0 / 32.0) + 1.0) * PI;
 
-/// A mode that is smaller than this part of what is neglected anyhow is neglected, too.
-const LITTLE: f64 = 1e-4;
+/// Small modes are neglected, too, which add up to no more than this part of the tolerance.
+const LITTLE: f64 = 0.25;
 
 /// The lines that a side crosses.
 ///
@@ -313,23 +317,28 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f
         .clamp(3.0, LAST);
     let wanted = tolerance / DOUBLINGS;
     let coarse = in_step / (PI * PI * PI * IN_STEP);
-    let finer = (coarse / wanted).clamp(1.0, FINER);
+    let finer = (coarse / wanted).clamp(1.0, FINEST);
     let budget = wanted.max(coarse / finer);
     // One mode after the other as far as it goes, if what is beyond is less than what of so many would be neglected.
     let all_in_turn = last.min(most);
     let (last, dense) = match beyond(all_in_turn) <= budget * DOUBLINGS {
         true => (all_in_turn, all_in_turn),
-        false => (last, last.min(DENSE * finer)),
+        false => (last, last.min(DENSE * finer).min(most)),
     };
-    let little = LITTLE * tolerance.max(beyond(last));
+    // Those of which 4/π²n² times S/|θ|, S being `in_step`, is at most λ are neglected. If angles are spread evenly, with πQ²λ = 4S/π² these
+    // add up to 4S/π³Q = √(4Sλ/π³), and Q others are left, of which there should be no more than half as many as `most`. If not, no more than
+    // four times as much is neglected.
+    let may_go = (LITTLE * tolerance).max(32.0 / (PI * PI * PI) * in_step / most);
+    let little = PI * PI * PI / 64.0 * may_go * may_go / in_step;
     let (mut value, mut rounding, mut skipped) = (0.0, 0.0, 0.0);
+    // Whether it has been added, and is not neglected.
     let mut add = |n: f64, places: &dyn Fn(usize) -> [Complex; 2]| {
         let theta = reference.angle(n).abs();
         let weight = 4.0 / (PI * PI * n * n);
         let at_most = weight * in_step;
-        if at_most <= little * theta {
+        if at_most <= little * theta && skipped + at_most / theta <= may_go {
             skipped += at_most / theta;
-            return;
+            return false;
         }
         for (i, (sign, side)) in sides.iter().enumerate() {
             let (sum, terms) = side.mode(n, places(i));
@@ -337,6 +346,7 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f
             // F is good to some 100 roundings, to which θ, off by a few, adds as many, and each place of the mode n to 4n.
             rounding += weight * terms * (256.0 + 8.0 * n) * UNIT;
         }
+        true
     };
     let mut places: Vec<[Complex; 2]> = sides.iter().map(|(_, side)| side.places(1.0)).collect();
     let steps: Vec<[Complex; 2]> = places.iter().map(|places| places.map(square)).collect();
@@ -354,7 +364,8 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f
         let within = |from: f64| within(in_step, from, budget);
         let others = |from: f64| 4.0 / (PI * PI * PI) * in_step / (3.0 * from * within(from));
         let mut waves = Resonances::new(&reference.turning, within(dense));
-        let (mut from, mut neglected, mut count) = (dense, others(dense), 0.0);
+        let (mut from, mut neglected) = (dense, others(dense));
+        let (mut asked, mut added) = (0.0, 0.0);
         while let Some(wave) = waves.next() {
             let n = wave as f64;
             if n > last {
@@ -370,12 +381,14 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f
             if n <= dense {
                 continue;
             }
-            count += 1.0;
-            if count > most {
+            asked += 1.0;
+            if asked > ASKED * most || added > most {
                 reached = n;
                 break;
             }
-            add(n, &|i| sides[i].1.places(n));
+            if add(n, &|i| sides[i].1.places(n)) {
+                added += 1.0;
+            }
         }
         reached = reached.min(waves.reached());
         while reached > 2.0 * from {

@@ -10,7 +10,7 @@ use crate::math::Double;
 /// No wave is of a higher number.
 const LAST: u64 = 1 << 52;
 /// Where the angles all but repeat, only even waves may be in step for very long.
-const PATIENCE: u32 = 1 << 19;
+const PATIENCE: u32 = 1 << 22;
 
 /// The odd waves that are in step, in order.
 pub(super) struct Resonances {

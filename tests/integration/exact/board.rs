@@ -184,7 +184,35 @@ fn columns_far_off_in_wide_views() {
     }
 }
 
-/// The same anywhere on the horizon of views of any width beyond 179 degrees.
+/// Blocks of rows before a far plane, of which no line is in step with the next one: of a million modes and more hardly any matter.
+#[test]
+fn wide_views_of_rows_out_of_step() {
+    for (eye, direction, rest, square) in [
+        (
+            "(3.67781, 0.4274597778298454, 4.73775)",
+            "(-0.69039717130416323, -1.4522932231249908, 0.72343053975845528)",
+            "roll 114.989deg d 7.4402685803163599e-10 far 67.84454308348414",
+            0.00046218548648654239,
+        ),
+        (
+            "(3.62649, 2.3878766417696382, -3.4582)",
+            "(0.45471697234418118, 0.29139485980872415, 0.8906359947038639)",
+            "roll -75.3042deg d 3.1554404151444887e-12 far 67739.063243978497",
+            0.0045885699584194573,
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width 6 height 4 }}
+             camera {{ eye {eye} direction {direction} {rest} }}
+             sampler {{ method exact }}
+             checkerboard {{ square {square} }}"
+        ));
+        let bound = exact(&scene).bound();
+        assert!(bound <= 1e-9, "{eye}: {bound:e}");
+    }
+}
+
+/// The horizon anywhere in views of any width beyond 179 degrees.
 #[test]
 fn wide_views_at_random() {
     let mut random = Random(23);
