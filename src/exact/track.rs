@@ -9,6 +9,9 @@ use crate::{
 
 use super::arc::Arc;
 
+/// In f64 the area of an arc is good enough if it is off by no more than this for each part of its width.
+const GOOD: f64 = 32.0 * f64::UNIT;
+
 /// A curve followed from left to right.
 #[derive(Clone, Debug)]
 pub enum Track {
@@ -103,29 +106,49 @@ impl Graph {
         }
     }
 
-    /// Half the gradient of the quadratic form at one of its points.
-    fn gradient(&self, x: f64, y: f64, side: f64) -> DVec2 {
-        let [a, b, _, d, ..] = self.factors.map(|factor| factor.hi);
-        DVec2::new(a * x + b * y + d, side * self.root(x))
+    /// The same of the place and the root, in double-double.
+    fn closely(&self, x: f64, side: f64) -> End<Double> {
+        let [a, b, c, d, e, f] = &self.factors;
+        let [p, q, r] = &self.delta;
+        let at = Double::from_f64(x);
+        let quadratic = |square: &Double, half: &Double, one: &Double| {
+            square
+                .times(&at)
+                .plus(&half.plus(half))
+                .times(&at)
+                .plus(one)
+        };
+        let delta = quadratic(p, q, r);
+        let root = match delta.is_negative() {
+            true => Double::from_f64(0.0),
+            false => delta.sqrt(),
+        };
+        let root = if side < 0.0 { root.negated() } else { root };
+        let minus = b.times(&at).plus(e).negated();
+        let y = match minus.hi * side >= 0.0 {
+            true => minus.plus(&root).over(c),
+            false => quadratic(a, d, f).over(&minus.minus(&root)),
+        };
+        End { at: [at, y], root }
     }
 
-    /// The quadratic part at a vector.
-    fn quadratic(&self, v: DVec2) -> f64 {
-        let [a, b, c, ..] = self.factors.map(|factor| factor.hi);
-        a * v.x * v.x + 2.0 * b * v.x * v.y + c * v.y * v.y
-    }
-
-    /// The arc from one of its points to another, if the two tangents meet between them.
-    fn arc(&self, start: DVec2, end: DVec2, side: f64) -> Option<Arc> {
-        let chord = end - start;
-        let (here, there) = (
-            self.gradient(start.x, start.y, side),
-            self.gradient(end.x, end.y, side),
-        );
-        // (control − start) is along the tangent at the start, and (control − end) along that at the end.
-        let along = DVec2::new(-here.y, here.x);
-        let control = along * (there.dot(chord) / there.dot(along));
-        let w2 = self.quadratic(chord) / (4.0 * self.quadratic(control));
+    /// The arc from one of its points to another, if the two tangents meet between them; and by how much the area between it and its chord may
+    /// be off.
+    fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
+        let [start, end] = ends;
+        let factors = self.factors.map(|factor| factor.hi);
+        let rounded = ends.map(|at| End {
+            at: [at.x, at.y],
+            root: side * self.root(at.x),
+        });
+        let mut tangents = Tangents::new(&factors, &rounded);
+        // Of a conic that is next to nothing but a line hardly more than roundings is left of the gradient.
+        let is_good = tangents.off <= GOOD * (end.x - start.x);
+        if !is_good {
+            let ends = ends.map(|at| self.closely(at.x, side));
+            tangents = Tangents::new(&self.factors, &ends);
+        }
+        let Tangents { control, w2, off } = tangents;
         let arc = Arc {
             start,
             control: start + control,
@@ -134,8 +157,82 @@ impl Graph {
         };
         // Arcs that turn by more than a right angle or so are better cut.
         const TURN: f64 = 0.5;
-        (control.x >= 0.0 && control.x <= chord.x && arc.weight > TURN && arc.weight < 1.0 / TURN)
-            .then_some(arc)
+        let turns_little = arc.weight > TURN && arc.weight < 1.0 / TURN;
+        (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
+    }
+}
+
+/// A point of a conic, and the root there with its sign, which is half the gradient by y.
+struct End<T> {
+    at: [T; 2],
+    root: T,
+}
+
+/// Where the tangents at two points of a conic meet.
+struct Tangents {
+    /// From the first point on.
+    control: DVec2,
+    /// The square of the arc's weight.
+    w2: f64,
+    /// By how much the area between arc and chord may be off.
+    off: f64,
+}
+
+impl Tangents {
+    /// Of the conic that has such factors.
+    ///
+    /// Its gradient is off by a few roundings of its terms, κ times as many of itself, and so are both tangents' directions by as much of a
+    /// radian. A triangle's area by an angle at its base is half the square of the other leg. The conic's quadratic part Q is off by as
+    /// many of its own terms, and by what the vectors are, which are off by roundings of coordinates and by what the directions are; the
+    /// weight's square is the quotient of two of it, and what lies between arc and chord grows no faster than the weight. The root is that of
+    /// another conic as near as this one is known itself, which moves points and tangents together.
+    fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[End<T>; 2]) -> Self {
+        let [a, b, c, d, ..] = factors;
+        let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
+        let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
+        let gradients = ends.each_ref().map(|End { at: [x, y], root }| {
+            let by_x = a.times(x).plus(&b.times(y)).plus(d);
+            [by_x, root.clone()]
+        });
+        let kappa = [0, 1].map(|i| {
+            let [x, y] = ends[i].at.each_ref().map(Real::magnitude);
+            let terms = a.magnitude() * x + b.magnitude() * y + d.magnitude();
+            1.0 + terms / length(&gradients[i])
+        });
+        let kappa = kappa[0].max(kappa[1]);
+        // Q, and what it is off by, of itself, where the vector is off by so much.
+        let quadratic = |v: &[T; 2], off: f64| {
+            let half = [
+                product(&[a.clone(), b.clone()], v),
+                product(&[b.clone(), c.clone()], v),
+            ];
+            let value = product(v, &half).to_f64();
+            let [x, y] = v.each_ref().map(Real::magnitude);
+            let [a, b, c] = [a, b, c].map(Real::magnitude);
+            let terms = [a * x + b * y, b * x + c * y];
+            let by_vector = length(&half) + 4.0 * T::UNIT * (terms[0] + terms[1]);
+            let all = x * terms[0] + y * terms[1] + 2.0 * by_vector * off;
+            (value, all / value.abs())
+        };
+        let [[x, y], [far_x, far_y]] = ends.each_ref().map(|end| &end.at);
+        let chord = [far_x.minus(x), far_y.minus(y)];
+        let [here, there] = &gradients;
+        // From the start the control is along the tangent there, and from the end along the other one.
+        let along = [here[1].negated(), here[0].clone()];
+        let way = product(there, &chord).over(&product(there, &along));
+        let control = along.map(|x| x.times(&way));
+        let (of_chord, chord_off) = quadratic(&chord, 1.0);
+        let (of_control, control_off) = quadratic(&control, kappa * length(&control));
+        let other = [0, 1].map(|i| chord[i].minus(&control[i]));
+        let legs = length(&control) * length(&control) + length(&other) * length(&other);
+        let [[control_x, control_y], [chord_x, chord_y]] =
+            [&control, &chord].map(|v| v.each_ref().map(Real::to_f64));
+        let triangle = 0.5 * (control_x * chord_y - control_y * chord_x).abs();
+        Self {
+            control: DVec2::new(control_x, control_y),
+            w2: of_chord / (4.0 * of_control),
+            off: 4.0 * T::UNIT * (kappa * legs + triangle * (chord_off + control_off)),
+        }
     }
 }
 
@@ -178,10 +275,11 @@ impl Track {
         };
         let (start, end) = (DVec2::new(left, y[0]), DVec2::new(right, y[2]));
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
-        if let Some(arc) = graph.arc(start, end, *side) {
+        if let Some((arc, off)) = graph.arc([start, end], *side) {
             let bulge = 1f64.copysign((end - start).perp_dot(arc.control - start));
             return Some(Piece {
                 arc: Some((bulge, arc)),
+                slack: off / (right - left),
                 ..straight
             });
         }
