@@ -116,11 +116,11 @@ struct Piece {
     is_final: bool,
 }
 
-/// A spot with more objects than this, and more curves than the third root of that, is quartered if these are not in all of its quarters,
-/// down to spots of such a side.
+/// A spot with more objects than this, and more curves than the third root of that, is quartered if these are not in all of its quarters, or
+/// all but a few of them in one, down to spots of such a side.
 const SEVERAL: usize = 4;
 const MANY_CURVES: u64 = 16 * 16 * 16;
-const SMALLEST: f64 = 1.0 / 4096.0;
+const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
 /// Of more curves than the third root of that it cannot be told in spots larger than this whether they go their own ways.
 const VERY_MANY_CURVES: u64 = 48 * 48 * 48;
 const LARGE: f64 = 1.0 / 16.0;
@@ -216,8 +216,10 @@ impl<'a> Integrator<'a> {
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Pixel {
-        let shares = self.shares(Spot::pixel(x, y), live, scratch, cancel);
-        self.mean(&shares.by_slot, shares.bound)
+        let Shares { by_slot, bound, .. } = self.shares(Spot::pixel(x, y), live, scratch, cancel);
+        // Of one colour it is that; else a mean of some, which parts of it may be known better than.
+        let rounding = if by_slot.len() > 1 { 4.0 * UNIT } else { 0.0 };
+        self.mean(&by_slot, bound + rounding)
     }
 
     /// Whether an object that is all that may be seen fills what it is seen in, in two colours.
@@ -319,7 +321,7 @@ impl<'a> Integrator<'a> {
 
     /// The quarters of a spot with what may be seen in each, if they take less time than all of it at once: n curves cross in some n² places,
     /// at each of which all of them are looked at. Where curves go their own ways, half of them pass through a quarter; what is hidden there
-    /// has none.
+    /// has none. A heap in one of the quarters is no less in there, but in the quarters of a quarter of that.
     fn with_fewer_curves(
         &self,
         spot: Spot,
@@ -338,15 +340,18 @@ impl<'a> Integrator<'a> {
         if whole <= MANY_CURVES {
             return None;
         }
-        let mut together = 0_u64;
+        let (mut together, mut most) = (0_u64, 0_u64);
         let quarters = spot.quarters().map(|quarter| {
             let mut seen = Vec::new();
             self.world.live_in(quarter, live, &mut seen);
-            together = together.saturating_add(time(quarter, &seen));
+            let one = time(quarter, &seen);
+            together = together.saturating_add(one);
+            most = most.max(one);
             (quarter, seen)
         });
         let is_large = spot.side > LARGE && whole > VERY_MANY_CURVES;
-        (is_large || together <= whole / 4 * 3).then_some(quarters)
+        let is_heap = together - most <= whole / 4;
+        (is_large || is_heap || together <= whole / 4 * 3).then_some(quarters)
     }
 
     fn shares_at_once(

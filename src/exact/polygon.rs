@@ -22,7 +22,8 @@ pub const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, 0.5),
 ];
 
-/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it.
+/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it. Nor is it cut: of roundings that are all
+/// there is of it each line makes two more.
 const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// A polygon whose vertices have a mean value h of a line's form has no more area than this, by their number and |h|: one of n has a value of at most
@@ -52,14 +53,17 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
             if regions.is_cancelled() {
                 return regions.finish();
             }
-            polygons.extend(cut(polygon, line));
+            match area(&polygon) < SPECK {
+                true => polygons.push(polygon),
+                false => polygons.extend(cut(polygon, line)),
+            }
         }
     }
     for polygon in &polygons {
         if regions.is_cancelled() {
             return regions.finish();
         }
-        let area = measure(polygon.iter().copied()).0.abs();
+        let area = area(polygon);
         let inside = middle(polygon);
         // Next to a line the point may lie on the wrong side of it: then all of the polygon may.
         let is_low = || area <= WIDE * polygon.len() as f64 * worst;
@@ -106,6 +110,10 @@ fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
 fn height(line: &Line, p: &DVec2) -> f64 {
     let [a, b, c] = line.factors;
     a * p.x + b * p.y + c
+}
+
+fn area(polygon: &[DVec2]) -> f64 {
+    measure(polygon.iter().copied()).0.abs()
 }
 
 fn middle(polygon: &[DVec2]) -> DVec2 {

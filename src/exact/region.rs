@@ -229,6 +229,10 @@ impl Checkered {
 impl Shares {
     /// Adds those of a part that is so much of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
+        if !self.by_slot.is_empty() {
+            // Products and sums that are 1 together.
+            self.bound += f64::UNIT;
+        }
         for &(slot, share) in &part.by_slot {
             self.add(slot, area * share);
         }

@@ -162,3 +162,52 @@ fn outlines_that_nearly_coincide() {
         }
     }
 }
+
+/// A heap of boxes that is seen in a small part of one pixel, far away or in a wide view, is cut where it is, not all of the pixel.
+#[test]
+fn heaps_in_a_small_part_of_a_pixel() {
+    for (distance, count) in [(1e3, 40), (1e5, 40), (1e5, 100)] {
+        let boxes: String = (0..count)
+            .map(|i| {
+                let [row, column] = [i / 10, i % 10].map(f64::from);
+                let x = 0.31 * distance + 1.5 * row;
+                let z = 1.5 * column - distance;
+                let height = 1.0 + 0.1 * ((7.0 * row + 3.0 * column) % 5.0);
+                let color = ["red", "lime", "blue"][(i % 3) as usize];
+                format!(
+                    "box {{ min ({x}, 0, {z}) max ({}, {height}, {}) color {color} }}\n",
+                    x + 1.0,
+                    z + 1.0
+                )
+            })
+            .collect();
+        let scene = read(&format!(
+            "image {{ width 6 height 4 background white }}
+             camera {{ eye (0, 1.7, 0) direction (0.3, -0.01, -1) d 2 }}
+             {boxes}"
+        ));
+        let bound = exact(&scene).bound();
+        assert!(bound <= 1e-12, "{count} at {distance}: {bound:e}");
+    }
+    // Six boxes cut by a near plane, in the pixels next to the middle of a wide view: pieces that are nothing but roundings are not cut on.
+    let boxes: String = [
+        ("(-0.9, -0.5, -2.8)", "(-0.8, 0.5, -2.7)", "aqua"),
+        ("(-0.9, 0, -2.9)", "(-0.8, 0.5, -2.8)", "lime"),
+        ("(-0.8, -0.5, -3)", "(-0.7, 0.1, -2.9)", "red"),
+        ("(-0.9, 0, -3)", "(-0.8, 0.1, -2.9)", "blue"),
+        ("(-1, 0, -2.8)", "(-0.9, 0.5, -2.7)", "magenta"),
+        ("(-1, 0, -3)", "(-0.9, 0.1, -2.9)", "red"),
+    ]
+    .map(|(min, max, color)| format!("box {{ min {min} max {max} color {color} }}\n"))
+    .concat();
+    let scene = read(&format!(
+        "image {{ width 3 height 2 }}
+         camera {{
+           eye (0, 1, 0) direction (0, -0.5, -1) up (-0.9007722890570433, 1, -0.9632900419652703)
+           view_height 2 fov 179.99deg near 0.17672630528511746
+         }}
+         {boxes}"
+    ));
+    let bound = exact(&scene).bound();
+    assert!(bound <= 1e-12, "{bound:e}");
+}
