@@ -29,6 +29,18 @@ fn a_level_camera_along_z_has_the_worlds_axes() {
     assert_eq!(axes(&camera), [DVec3::X, DVec3::Y, DVec3::Z]);
 }
 
+/// Along (1, 1, 1), u and v have in x the ratio that the sine and the cosine of 60 degrees have: equal products take each other away, and not all
+/// but a rounding of each other.
+#[test]
+fn a_roll_that_ends_in_a_plane_of_the_axes_is_in_it() {
+    for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
+        let mut camera = along(dvec3(x, 1.0, 1.0), DVec3::Y);
+        camera.roll = Angle::from_degrees(degrees);
+        let basis = Basis::new(&camera, &scene(camera, &[]).image);
+        assert!(basis.u[0].is_zero(), "{x} {degrees}: {:?}", basis.u);
+    }
+}
+
 #[test]
 fn straight_up_and_down_read_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
