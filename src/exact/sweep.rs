@@ -4,7 +4,7 @@
 //! might cross within a slab, the slab is cut, where they cross if that can be seen, else in the middle. What cannot be told
 //! apart when slabs have become too narrow counts as doubtful area.
 
-use std::cmp::Ordering;
+use std::{cmp::Ordering, collections::BinaryHeap};
 
 use glam::DVec2;
 
@@ -25,7 +25,7 @@ const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
 /// So much area may be doubtful in a slab.
 const CRUMB: f64 = 1.0 / (1u64 << 54) as f64;
 
-/// Slabs are not cut when they are narrower than this, nor when there are so many.
+/// Slabs are not cut when they are narrower than this, nor when there are so many, those that may yet be cut among them.
 const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
 const MANY: usize = 4096;
 
@@ -62,22 +62,45 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         regions,
         slabs: 0,
     };
-    // From right to left on a stack, so that slabs come from left to right.
-    let mut stack: Vec<_> = cuts
-        .windows(2)
-        .rev()
-        .map(|pair| (pair[0], pair[1]))
-        .collect();
-    while let Some((left, right)) = stack.pop() {
+    // The widest first: where there are too many, narrow ones are left.
+    let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| Slab(pair[0], pair[1])).collect();
+    while let Some(Slab(left, right)) = slabs.pop() {
         if sweep.regions.is_cancelled() {
             break;
         }
-        if let Some(at) = sweep.slab(left, right) {
-            stack.extend([(at, right), (left, at)]);
+        let is_last = right - left < NARROW || sweep.slabs + slabs.len() >= MANY;
+        if let Some(at) = sweep.slab(left, right, is_last) {
+            slabs.extend([Slab(left, at), Slab(at, right)]);
         }
     }
     sweep.regions.finish()
 }
+
+/// What is between two x, in order by how wide it is, and from left to right.
+struct Slab(f64, f64);
+
+impl Ord for Slab {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let width = |Self(left, right): &Self| right - left;
+        width(self)
+            .total_cmp(&width(other))
+            .then(other.0.total_cmp(&self.0))
+    }
+}
+
+impl PartialOrd for Slab {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Slab {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Slab {}
 
 struct Sweep<'a> {
     tracks: Vec<Track>,
@@ -86,10 +109,9 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Adds the regions of a slab, or says where it has to be cut.
-    fn slab(&mut self, left: f64, right: f64) -> Option<f64> {
+    /// Adds the regions of a slab, or says where it has to be cut; but not of the last ones.
+    fn slab(&mut self, left: f64, right: f64, is_last: bool) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
-        let is_last = width < NARROW || self.slabs >= MANY;
         let mut doubtful = 0.0;
         let mut pieces: Vec<(&Track, Piece)> = Vec::with_capacity(self.tracks.len());
         for track in &self.tracks {

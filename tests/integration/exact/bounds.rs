@@ -211,3 +211,38 @@ fn heaps_in_a_small_part_of_a_pixel() {
     let bound = exact(&scene).bound();
     assert!(bound <= 1e-12, "{bound:e}");
 }
+
+/// Curves that go beside each other for long: of as many slabs as there may be the narrow ones are left in doubt, and not those that come last.
+#[test]
+fn curves_beside_each_other() {
+    for text in [
+        "image { width 3 height 2 }
+         camera { eye (0, 1, 0) direction (0.63, -0.1, 0.39) roll 45deg d 0.15 }
+         sphere { center (0, 1, -6e6) radius 6000001 color navy }
+         checkerboard { y 0 }
+         triangle { centroid (3.4, 1e-12, 2.2) normal (0, -1, 0) color olive }",
+        "image { width 1 height 1 background blue }
+         camera {
+           eye (0.46423707751978815, 0.01, -1.7155281016245234)
+           direction (-0.5670807891629539, -0.6050437145195939, -0.15161214354303753)
+           roll 45deg d 3.335412630144437 near 3.970146834830003
+         }
+         box A {
+           min (-3.203781816520416, -5.949855179823845, -4.027622223195476)
+           max (-2.3644350116690855, -2.871548678609776, -1.678847305965552)
+           color lime
+         }
+         box B {
+           min (-3.2037818165204426, -5.949855179823845, -4.027622223195476)
+           max (-2.3644350116690855, -2.8715486786097677, -1.6788473059655382)
+           color red
+         }
+         sphere {
+           center (-2.784108414094764, -4.410701929216811, -2.8532347645804976)
+           radius 1.98098571335329 color maroon
+         }",
+    ] {
+        let bound = exact(&read(text)).bound();
+        assert!(bound <= 1e-7, "{bound:e}\n{text}");
+    }
+}
