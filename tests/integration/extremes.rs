@@ -358,3 +358,32 @@ fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
         }
     }
 }
+
+/// A pixel in doubt of which every quarter holds smaller and smaller pieces that are known no better ends nevertheless.
+#[test]
+fn what_quarters_do_not_mend_is_left_in_doubt() {
+    let text = "image { width 2 height 3 background olive }
+        camera {
+          eye (0.4329846651823165, 8.082295773346728e-42, 3.663700849918921e-17)
+          lookat (0, -1.0000000000000002, 4.573506416522241e212)
+          d 5e-324
+        }
+        sphere {
+          center (7.800537973684832e238, -1.0000000000000002, 2611905.4745264417)
+          radius 7.315898598278973e-10
+          color black
+        }
+        triangle {
+          centroid (4.664825139693755e-7, 0, 5e-324)
+          normal (-60642909.83607577, -2.226370637041624, 2.2250738585072014e-308)
+          sides (1.7976931348623157e308, 5e-324, 1.7976931348623157e308)
+          spin 1.5950348447970576e-5deg
+          color white
+        }
+        sphere {
+          center (-2.130586840912591e-18, 2.2250738585072014e-308, 1.2555945330501196e-45)
+          radius 5e-324
+          color white
+        }";
+    render(&read(text), text, true);
+}
