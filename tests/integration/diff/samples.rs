@@ -192,6 +192,29 @@ fn a_pixel_or_two_tell_of_no_mistake() {
 }
 
 #[test]
+fn one_sample_in_each_pixel_excuses_no_wrong_colour() {
+    let folder = folder();
+    let one = [
+        "--set",
+        "sampler.method=regular",
+        "--set",
+        "sampler.per_pixel=1",
+    ];
+    for (set, words) in [
+        ("Ball.color=#808030", "`Ball` has the colour #808030"),
+        ("Ball.color=#8c8000", "`Ball` has the colour #8c8000"),
+        ("Sail.color=#0078a0", "`Sail` has the colour #0078a0"),
+    ] {
+        render(
+            &folder,
+            &[&["-o", "b.png", "--set", set], &one[..]].concat(),
+        );
+        let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+        assert!(text.contains(words), "{set}: {text}");
+    }
+}
+
+#[test]
 fn a_wrong_object_is_no_noise() {
     let folder = folder();
     let small = ["--set", "Ball.radius=0.4"];
