@@ -350,6 +350,12 @@ impl Spread {
     }
 }
 
+/// Whether a pixel may be the mean of so many samples, as unlikely as one in a great many pictures.
+pub fn may_be(is: &[f64; 3], should: &[f64; 3], variance: &[f64; 3], samples: f64) -> bool {
+    let exponents = (0..3).map(|i| exponent(variance[i], (is[i] - should[i]).abs()));
+    samples * exponents.fold(0.0, f64::max) <= -libm::log(CHANCE * CHANCE)
+}
+
 /// The mean of n samples between 0 and 1 of a variance v is off by t to one side with a probability of at most exp(−n x), for this x:
 /// v ((1 + u) ln(1 + u) − u), where u = t/v (Bennett, Probability inequalities for the sum of independent random variables, 1962).
 fn exponent(variance: f64, error: f64) -> f64 {
