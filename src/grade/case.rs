@@ -266,11 +266,15 @@ impl<'a> Case<'a> {
         outside(&self.differences) > LEFT * LEFT && strays > 0.5
     }
 
-    /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes.
+    /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes: no pixel
+    /// of one colour, for one.
     pub fn is_elsewhere(&self, shape: &Shape) -> bool {
-        let part = self.view.extent(shape);
-        let inside = part.map_or(0.0, |part| self.differences.share(part));
-        (1.0 - inside).sqrt() > HOPE && part.is_none_or(|part| self.excess(part) <= SIGMAS)
+        let Some(part) = self.view.extent(shape) else {
+            return true;
+        };
+        (1.0 - self.differences.share(part)).sqrt() > HOPE
+            && self.excess(part) <= SIGMAS
+            && self.strays.share(part) == 0.0
     }
 
     /// At most so many of something that takes a part of the picture each, or a small one: fewer of a scene with a great many objects.

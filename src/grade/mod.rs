@@ -210,7 +210,7 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         .chain(board::ideas(scene))
         .chain(order::ideas(scene))
         .chain(objects::ideas(case))
-        .chain(objects::colors(case));
+        .chain(objects::colors(case)?);
     let mut found = verdicts(case.named(ideas.collect())?);
     if let [first, others @ ..] = found.as_slice()
         && first.mistake != "colors"

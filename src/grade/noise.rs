@@ -83,8 +83,8 @@ pub fn squared(scene: &Scene) -> Scene {
     })
 }
 
-/// A scene with all its colours changed.
-pub fn with_colors(scene: &Scene, change: impl Fn(Color) -> Color) -> Scene {
+/// A scene with all its colours changed: the background's first, and then those of its objects in their order.
+pub fn with_colors(scene: &Scene, mut change: impl FnMut(Color) -> Color) -> Scene {
     let mut scene = scene.clone();
     scene.image.background = change(scene.image.background);
     for object in &mut scene.objects {
@@ -92,7 +92,7 @@ pub fn with_colors(scene: &Scene, change: impl Fn(Color) -> Color) -> Scene {
             Shape::Sphere(sphere) => sphere.color = change(sphere.color),
             Shape::Triangle(triangle) => triangle.color = change(triangle.color),
             Shape::Box(cuboid) => cuboid.color = change(cuboid.color),
-            Shape::Checkerboard(board) => board.colors = board.colors.map(&change),
+            Shape::Checkerboard(board) => board.colors = board.colors.map(&mut change),
         }
     }
     scene

@@ -3,6 +3,7 @@
 mod faint;
 mod mistakes;
 mod numbers;
+mod objects;
 mod pictures;
 mod right;
 mod samples;
