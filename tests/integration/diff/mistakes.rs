@@ -245,12 +245,13 @@ fn mistakes_that_another_scene_makes_are_named() {
 }
 
 #[test]
-fn planes_that_are_not_minded_are_named() {
+fn fields_that_are_not_minded_are_named() {
     let folder = folder();
     for (sets, expected) in [
         (&["camera.near=8"][..], "near_ignored"),
         (&["camera.far=9.5"], "far_ignored"),
         (&["camera.near=8", "camera.far=9.5"], "not_clipped"),
+        (&["camera.view_height=2.7"], "view_height_ignored"),
     ] {
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", *set]).collect();
         let found = json(&folder, &[&["a.png", "a.scn"], sets.as_slice()].concat());
