@@ -95,6 +95,9 @@ struct Idea {
 /// What a mistake makes of the exact picture.
 type Change = dyn Fn(&Film) -> Result<Film, TooLarge>;
 
+/// A picture turned in some way.
+type Turn = fn(&Film) -> Result<Film, TooLarge>;
+
 /// From the right picture to the one that a mistake makes.
 enum Make {
     /// From the exact picture.
@@ -105,6 +108,8 @@ enum Make {
     Object(Box<Scene>, Box<[Option<Shape>; 2]>),
     /// The exact picture, its light taken through a curve.
     Light(Curve),
+    /// The exact picture turned, and its light taken through a curve.
+    Turned(Turn, Curve),
     /// That of a scene, its light taken through a curve.
     Curved(Box<Scene>, Curve),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
@@ -313,6 +318,7 @@ fn best(a: &Film, b: &Film, ideas: Vec<Idea>) -> Grade {
         let made = match &idea.make {
             Make::Film(make) => make(b),
             Make::Light(curve) => level::map(b, curve.to),
+            Make::Turned(turn, curve) => level::turned(b, *turn, *curve),
             _ => return None,
         };
         let made = made.ok()?;

@@ -1,9 +1,8 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
 use super::{
-    Curve, Idea, Make, Verdict,
+    Curve, Idea, Make, Turn, Verdict,
     evidence::FEWEST,
-    level,
     noise::{is_off, with_colors},
     objects, size,
 };
@@ -41,9 +40,6 @@ const POWER: Curve = Curve {
     to: |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2)),
     back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
 };
-
-/// A picture turned in some way.
-type Turn = fn(&Film) -> Result<Film, TooLarge>;
 
 /// What may be turned: a word for programs, one for people, the way out, and how.
 const TURNS: [(&str, &str, &str, Turn); 3] = [
@@ -149,13 +145,11 @@ pub fn films() -> Vec<Idea> {
 /// A picture that is turned, and whose light is wrong, too: two mistakes, for pictures that none explains alone.
 pub fn pairs() -> Vec<Idea> {
     let turned = |(mistake, how, help, turn): (&'static str, &str, &str, Turn)| {
-        CURVES.map(|(_, message, help_of_curve, curve)| {
-            film(
-                mistake,
-                &format!("the picture is {how}; and {message}"),
-                &format!("{help}; and {help_of_curve}"),
-                move |film| level::map(&turn(film)?, curve.to),
-            )
+        CURVES.map(|(_, message, help_of_curve, curve)| Idea {
+            mistake,
+            message: format!("the picture is {how}; and {message}"),
+            help: format!("{help}; and {help_of_curve}"),
+            make: Make::Turned(turn, curve),
         })
     };
     TURNS.into_iter().flat_map(turned).collect()
