@@ -53,3 +53,24 @@ fn a_colour_that_is_a_little_off_is_named_through_noise() {
         }
     }
 }
+
+#[test]
+fn only_what_grows_all_round_is_said_to() {
+    let folder = folder();
+    for (set, expected) in [
+        (
+            "Sail.sides=(2, 2, 2)",
+            "the triangle `Sail` has a wrong size: as if its side c were 2 instead of 1",
+        ),
+        (
+            "Crate.size=(0.5, 1.2, 2)",
+            "the box `Crate` has a wrong size: as if its size along y were 1.2 instead of 1.5",
+        ),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        assert_eq!(first(&folder)[1], expected);
+    }
+    render(&folder, &["-o", "b.png", "--set", "Ball.radius=1.3"]);
+    let [_, message] = first(&folder);
+    assert!(message.ends_with("pixels larger all round"), "{message}");
+}
