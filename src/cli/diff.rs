@@ -320,7 +320,13 @@ impl Report {
             .comparison
             .as_ref()
             .is_ok_and(|found| !found.is_equal());
-        if self.grade.is_thin {
+        if self.grade.may_be_noise {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "Sampling noise would explain it, though so few pixels differ that they do not say that it is noise."
+            )?;
+        } else if self.grade.is_thin {
             writeln!(out)?;
             writeln!(
                 out,

@@ -82,6 +82,8 @@ pub struct Grade {
     pub likely: Vec<Verdict>,
     /// Whether a mistake, or noise, would explain it that too few pixels tell of.
     pub is_thin: bool,
+    /// Whether noise would: then nothing need be wrong.
+    pub may_be_noise: bool,
 }
 
 /// A mistake that somebody may have made.
@@ -141,7 +143,7 @@ pub fn scene(
     if size(a) != size(exact) {
         return Ok(Grade {
             likely: whole::sizes(a, exact, whole::OF_SCENE),
-            is_thin: false,
+            ..Grade::default()
         });
     }
     let one_color = whole::one_color(a, exact, Some(scene));
@@ -157,6 +159,7 @@ pub fn scene(
         };
         Ok(Grade {
             is_thin: likely.is_empty() && (case.is_thin.get() || case.may_be_noise.get()),
+            may_be_noise: likely.is_empty() && case.may_be_noise.get(),
             likely,
         })
     })?
@@ -290,13 +293,13 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
     if size(a) != size(b) {
         return Grade {
             likely: whole::sizes(a, b, whole::OF_PICTURES),
-            is_thin: false,
+            ..Grade::default()
         };
     }
     if let Some(verdict) = whole::one_color(a, b, None) {
         return Grade {
             likely: vec![verdict],
-            is_thin: false,
+            ..Grade::default()
         };
     }
     let mut grade = best(a, b, whole::films());
@@ -339,6 +342,7 @@ fn best(a: &Film, b: &Film, ideas: Vec<Idea>) -> Grade {
     let likely = choice::best(found.collect(), a, difference).map_or_else(|_| Vec::new(), verdicts);
     Grade {
         is_thin: likely.is_empty() && is_thin,
+        may_be_noise: false,
         likely,
     }
 }
