@@ -361,6 +361,7 @@ fn files_that_are_no_pictures_are_trouble() {
     // The width, in the header.
     absurd[16..20].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff]);
     write("absurd.png", &absurd);
+    write("empty.EXR", b"");
     for (arguments, words) in [
         (["a.jpg", "a.png"], "but seems to be JPEG"),
         (["a.png", "a.jpg"], "but seems to be JPEG"),
@@ -371,6 +372,14 @@ fn files_that_are_no_pictures_are_trouble() {
         ),
         (["absurd.png", "a.png"], "cannot read absurd.png"),
         (["none.png", "a.png"], "cannot read none.png"),
+        (
+            ["a.png", "text.png"],
+            "cannot read text.png: it is no picture in PNG or OpenEXR",
+        ),
+        (
+            ["a.png", "empty.EXR"],
+            "cannot read empty.EXR: it is no picture in PNG or OpenEXR",
+        ),
         (
             ["a.scn", "a.png"],
             "a.scn is a scene: the picture comes first",
