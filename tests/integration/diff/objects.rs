@@ -74,3 +74,20 @@ fn only_what_grows_all_round_is_said_to() {
     let [_, message] = first(&folder);
     assert!(message.ends_with("pixels larger all round"), "{message}");
 }
+
+#[test]
+fn a_size_that_is_off_by_some_pixels_is_measured() {
+    let folder = folder();
+    let size = ["--set", "image.width=240", "--set", "image.height=160"];
+    for radius in ["0.85", "0.8"] {
+        let set = format!("Ball.radius={radius}");
+        render(
+            &folder,
+            &[&["-o", "b.png", "--set", &set], &size[..]].concat(),
+        );
+        let found = json(&folder, &[&["b.png", "a.scn"], &size[..]].concat());
+        let message = found["likely"][0]["message"].as_str().unwrap_or("none");
+        let words = format!("`Ball` is {radius} times as large as it should be");
+        assert!(message.contains(&words), "{message}");
+    }
+}
