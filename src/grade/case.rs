@@ -323,7 +323,7 @@ impl<'a> Case<'a> {
     }
 
     /// Whether what a mistake makes leaves little of the difference, or nothing but roundings or noise.
-    fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
+    pub fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
         if left < LEFT * self.difference {
             return Ok(true);
         }

@@ -153,8 +153,8 @@ pub fn scene(
         let likely = match one_color {
             Some(verdict) => with_nothing_in_sight(&case, verdict)?,
             None => match samples(&case)? {
-                Some(verdict) => vec![verdict],
-                None => mistakes(&case)?,
+                found if found.is_empty() => mistakes(&case)?,
+                found => found,
             },
         };
         Ok(Grade {
@@ -177,17 +177,17 @@ fn with_nothing_in_sight(case: &Case, verdict: Verdict) -> Result<Vec<Verdict>, 
 }
 
 /// What is said of a picture in which nothing but its samples is wrong.
-fn samples(case: &Case) -> Result<Option<Verdict>, RenderError> {
+fn samples(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let (a, exact) = (&case.full.a, &case.full.exact);
     // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer. They may be so many that something
     // wrong away from them is a small part of the squares.
     if !noise::has_strays(a, exact, &case.full.scene, |light| light)
         && let Some(first) = case.named(noise::ideas())?.into_iter().next()
     {
-        return Ok(Some(first.verdict));
+        return Ok(vec![first.verdict]);
     }
-    let truncated = truncated::verdict(case)?;
-    if truncated.is_some() {
+    let truncated = truncated::flat(case)?;
+    if !truncated.is_empty() {
         return Ok(truncated);
     }
     if let Some(noise) = noise::possible(a, exact, &case.variance)
@@ -195,18 +195,24 @@ fn samples(case: &Case) -> Result<Option<Verdict>, RenderError> {
         && !objects::is_in_one_part(case)
     {
         if noise.is_told() {
-            return Ok(Some(noise.verdict(case.difference)));
+            return Ok(vec![noise.verdict(case.difference)]);
         }
         case.may_be_noise.set(true);
     }
     if let Some(grid) = fixed::grid(case)? {
         if grid.is_told {
-            return Ok(Some(noise::verdict_of_grid(case.difference, grid.samples)));
+            return Ok(vec![noise::verdict_of_grid(case.difference, grid.samples)]);
         }
         case.may_be_noise.set(true);
     }
-    let empty = fixed::empty(case)?;
-    Ok(empty.map(|(share, noise)| noise.verdict_with_empty(case.difference, share)))
+    if let Some((share, noise)) = fixed::empty(case)? {
+        return Ok(vec![noise.verdict_with_empty(case.difference, share)]);
+    }
+    // What a right picture may be is said before what a wrong one is.
+    match case.may_be_noise.get() {
+        true => Ok(Vec::new()),
+        false => truncated::mixed(case),
+    }
 }
 
 /// The mistakes that explain a difference, from the likeliest kind on.

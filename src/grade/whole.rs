@@ -108,7 +108,6 @@ pub fn films() -> Vec<Idea> {
     let turns = TURNS.map(|(mistake, how, help, turn)| {
         film(mistake, &format!("the picture is {how}"), help, turn)
     });
-    let curves = CURVES.map(|(mistake, message, help, curve)| light(mistake, message, help, curve));
     let mut ideas = Vec::from(turns);
     ideas.push(film(
         "transposed",
@@ -119,7 +118,7 @@ pub fn films() -> Vec<Idea> {
             false => Ok(film.clone()),
         },
     ));
-    ideas.extend(curves);
+    ideas.extend(lights());
     let orders = [
         ([2, 1, 0], "blue, green, red"),
         ([0, 2, 1], "red, blue, green"),
@@ -159,15 +158,25 @@ fn transposed(film: &Film) -> Result<Film, TooLarge> {
     Film::from_fn(film.height(), film.width(), |x, y| film.pixel(y, x))
 }
 
-/// Those, and what takes the scene.
-pub fn ideas(scene: &Scene) -> Vec<Idea> {
+/// What happened to the light, before samples were averaged or after it.
+pub fn curves(scene: &Scene) -> Vec<Idea> {
+    let mut ideas = Vec::from(lights());
+    ideas.extend(averages(scene));
+    ideas
+}
+
+fn lights() -> [Idea; 3] {
+    CURVES.map(|(mistake, message, help, curve)| light(mistake, message, help, curve))
+}
+
+/// Samples that were averaged as other numbers than their light.
+fn averages(scene: &Scene) -> Vec<Idea> {
     let encoded = with_colors(scene, |color| Color {
         srgb: color
             .srgb
             .map(|channel| 255.0 * linear_to_srgb(channel / 255.0)),
     });
-    let mut ideas = films();
-    ideas.push(Idea {
+    let mut ideas = vec![Idea {
         mistake: "averaged_encoded",
         message: "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark".to_owned(),
         help: "decode a scene's colours to linear light, average there, and encode once".to_owned(),
@@ -178,7 +187,7 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
                 back: linear_to_srgb,
             },
         ),
-    });
+    }];
     let power = with_colors(scene, |color| Color {
         srgb: color
             .srgb
@@ -196,6 +205,13 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
             POWER,
         ),
     });
+    ideas
+}
+
+/// All of them.
+pub fn ideas(scene: &Scene) -> Vec<Idea> {
+    let mut ideas = films();
+    ideas.extend(averages(scene));
     if scene.image.width != scene.image.height {
         ideas.push(Idea {
             mistake: "squeezed",

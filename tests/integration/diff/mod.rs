@@ -1,5 +1,6 @@
 //! `diff`: pictures compared, and the mistakes in them named.
 
+mod bytes;
 mod faint;
 mod mistakes;
 mod numbers;
