@@ -325,5 +325,9 @@ pub fn sizes(a: &Film, b: &Film, way_out: &str) -> Vec<Verdict> {
             way_out,
         )];
     }
-    Vec::new()
+    vec![verdict(
+        "shape",
+        format!("another shape: {width} × {height} pixels where {b_width} × {b_height} are wanted"),
+        way_out,
+    )]
 }

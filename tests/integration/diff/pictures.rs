@@ -313,6 +313,18 @@ fn sizes_that_differ_are_named() {
     let found = json(&folder, &["b.png", "a.scn"]);
     assert_eq!(found["rmse"], Value::Null);
     assert_eq!(found["likely"][0]["mistake"], "resolution");
+    render(&folder, &["-o", "b.png", "--set", "image.width=48"]);
+    for (other, help) in [
+        ("a.scn", "help: render it in the size that the scene says"),
+        (
+            "a.png",
+            "help: pictures can be compared that have the same size",
+        ),
+    ] {
+        let (_, text) = diff(&folder, &["b.png", other]);
+        let words = "another shape: 48 × 64 pixels where 96 × 64 are wanted";
+        assert!(text.contains(words) && text.contains(help), "{text}");
+    }
     let turned = open(&folder, "a.png").rotate90();
     save(&folder, "b.png", turned);
     let found = json(&folder, &["b.png", "a.scn"]);
