@@ -34,8 +34,14 @@ pub fn at_most(bound: f64) -> String {
         return "0".to_owned();
     }
     let text = format!("{bound:.1e}");
-    match text.parse() {
-        Ok(read) if bound > read => format!("{:.1e}", bound * 1.05),
+    let is_less = text.parse().is_ok_and(|read: f64| read < bound);
+    match text.split_once('e') {
+        // One more in the last digit; tenths of up to 9.9 print as they are.
+        Some((digits, exponent)) if is_less => {
+            let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
+            let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);
+            format!("{carried:.1e}")
+        }
         _ => text,
     }
 }
@@ -168,6 +174,20 @@ mod tests {
         ];
         for (x, text) in cases {
             assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn a_bound_is_rounded_up_by_no_more_than_its_last_digit() {
+        for (bound, text) in [
+            (0.0, "0"),
+            (2.5e-10, "2.5e-10"),
+            (2.53e-10, "2.6e-10"),
+            (2.57e-10, "2.6e-10"),
+            (9.93e-13, "1.0e-12"),
+            (1.01, "1.1e0"),
+        ] {
+            assert_eq!(at_most(bound), text);
         }
     }
 

@@ -49,7 +49,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         progress: &|_| {},
         cancel,
     };
-    let other = if film::is_picture(&b) {
+    let other = if film::is_picture(&b) || is_named_as_picture(&args.b) {
         if !args.overrides.sets.is_empty() {
             let message = format!(
                 "`--set` changes a scene, and {} is a picture",
@@ -150,6 +150,15 @@ fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
 
 fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
+}
+
+/// Whether a file's ending is that of a picture, so that it is one, however broken.
+fn is_named_as_picture(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| {
+        ["png", "exr"]
+            .iter()
+            .any(|own| ending.eq_ignore_ascii_case(own))
+    })
 }
 
 fn ended(error: RenderError) -> Result<Status, Trouble> {
@@ -320,7 +329,13 @@ impl Report {
             .comparison
             .as_ref()
             .is_ok_and(|found| !found.is_equal());
-        if self.grade.is_thin {
+        if self.grade.may_be_noise {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "Sampling noise would explain it, though so few pixels differ that they do not say that it is noise."
+            )?;
+        } else if self.grade.is_thin {
             writeln!(out)?;
             writeln!(
                 out,

@@ -165,6 +165,10 @@ fn square(scene: &Scene, first: Checkerboard) -> Change {
     }
 }
 
+/// A coordinate of less than this share of the other is 0. It is a choice: who takes a corner of squares for another one displaces it by as
+/// much along both axes, or along one.
+const NOTHING: f64 = 0.05;
+
 fn origin(scene: &Scene, first: Checkerboard) -> Change {
     let quarters = (0..4).flat_map(|x| (0..8).map(move |z| [x, z]));
     let side = first.square;
@@ -180,7 +184,7 @@ fn origin(scene: &Scene, first: Checkerboard) -> Change {
             let by = least(-DVec2::new(by.x, by.z) / side) * side;
             // What is found of one coordinate is known as well as of the other.
             let far = by.abs().max_element();
-            let [x, z] = by.to_array().map(|x| match x.abs() < 0.05 * far {
+            let [x, z] = by.to_array().map(|x| match x.abs() < NOTHING * far {
                 true => "0".to_owned(),
                 false => found(x, 0.0),
             });

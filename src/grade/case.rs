@@ -184,9 +184,11 @@ impl<'a> Case<'a> {
             // A part of the picture costs less than its small picture where that has many objects in each pixel.
             Make::Object(..) if self.full.is_heavy => return Ok(Some(0.0)),
             // Neither single samples nor curves mean the same in a small picture; and what is known need not be guessed.
-            Make::Sample(_) | Make::Light(_) | Make::Curved(..) | Make::Is(..) => {
-                return Ok(Some(0.0));
-            }
+            Make::Sample(_)
+            | Make::Light(_)
+            | Make::Turned(..)
+            | Make::Curved(..)
+            | Make::Is(..) => return Ok(Some(0.0)),
             _ => {}
         }
         let small = self.small.made(make, &self.control)?;
@@ -266,11 +268,15 @@ impl<'a> Case<'a> {
         outside(&self.differences) > LEFT * LEFT && strays > 0.5
     }
 
-    /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes.
+    /// Whether most of the difference is where an object cannot be seen, and there is no more of it where it can be than noise makes: no pixel
+    /// of one colour, for one.
     pub fn is_elsewhere(&self, shape: &Shape) -> bool {
-        let part = self.view.extent(shape);
-        let inside = part.map_or(0.0, |part| self.differences.share(part));
-        (1.0 - inside).sqrt() > HOPE && part.is_none_or(|part| self.excess(part) <= SIGMAS)
+        let Some(part) = self.view.extent(shape) else {
+            return true;
+        };
+        (1.0 - self.differences.share(part)).sqrt() > HOPE
+            && self.excess(part) <= SIGMAS
+            && self.strays.share(part) == 0.0
     }
 
     /// At most so many of something that takes a part of the picture each, or a small one: fewer of a scene with a great many objects.
@@ -317,7 +323,7 @@ impl<'a> Case<'a> {
     }
 
     /// Whether what a mistake makes leaves little of the difference, or nothing but roundings or noise.
-    fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
+    pub fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
         if left < LEFT * self.difference {
             return Ok(true);
         }
@@ -329,10 +335,11 @@ impl<'a> Case<'a> {
         let (full, control) = (&self.full, &self.control);
         match make {
             Make::Light(curve) => {
-                if self.is_rounding_before(*curve) {
-                    return Ok(true);
-                }
-                return Ok(self.is_noise_before(*curve, made, &full.exact, &self.variance)?);
+                return Ok(self.is_curved(*curve, made, &full.exact, &self.variance)?);
+            }
+            Make::Turned(turn, curve) => {
+                let (means, variance) = (turn(&full.exact)?, turn(&self.variance)?);
+                return Ok(self.is_curved(*curve, made, &means, &variance)?);
             }
             Make::Curved(scene, curve) => {
                 if noise::has_strays(&full.a, made, scene, curve.to) {
@@ -363,12 +370,23 @@ impl<'a> Case<'a> {
         compare(&self.full.a, made, tolerance).is_ok_and(|found| found.is_equal())
     }
 
-    /// Whether a curve made the picture from the exact one's bytes: then it is off by a rounding after the curve and by one before it.
-    fn is_rounding_before(&self, curve: Curve) -> bool {
+    /// Whether a curve made the picture from means, which may have been rounded or have noise.
+    fn is_curved(
+        &self,
+        curve: Curve,
+        made: &Film,
+        means: &Film,
+        variance: &Film,
+    ) -> Result<bool, TooLarge> {
+        Ok(self.is_rounding_before(curve, means)
+            || self.is_noise_before(curve, made, means, variance)?)
+    }
+
+    /// Whether a curve made the picture from another one's bytes: then it is off by a rounding after the curve and by one before it.
+    fn is_rounding_before(&self, curve: Curve, means: &Film) -> bool {
         let byte = |light: f64| 255.0 * linear_to_srgb(light);
         let made = |at: f64| byte((curve.to)(srgb_to_linear(at.clamp(0.0, 255.0) / 255.0)));
-        let (a, exact) = (self.full.a.pixels(), self.full.exact.pixels());
-        let mut pairs = a.iter().zip(exact);
+        let mut pairs = self.full.a.pixels().iter().zip(means.pixels());
         pairs.all(|(p, q)| {
             (0..3).all(|i| {
                 let (is, should) = (byte(p[i]), byte(q[i]));

@@ -17,7 +17,7 @@ const NAMED: usize = 3;
 
 /// Errors that add up beyond so many deviations decide between two explanations: exp(−4.5), by chance once in 90 choices. It is a choice
 /// between what is true nearly, not whether something is wrong at all, which takes more.
-const DOUBT: f64 = 3.0;
+pub const DOUBT: f64 = 3.0;
 
 /// A mistake that explains a difference.
 pub struct Explanation {

@@ -44,7 +44,13 @@ impl View {
             (depth > 0.0).then_some((at, radius * pixels))
         };
         let ((at, radius), (there, other)) = (image(from)?, image(to)?);
-        Off::by(there - at, other - radius)
+        // What has another shape is larger on some sides, or smaller on others.
+        let outwards = if are_similar(from, to) {
+            other - radius
+        } else {
+            0.0
+        };
+        Off::by(there - at, outwards)
     }
 
     /// A part of the picture in which all lies that is seen of two shapes, if there are two; `None` if that is nowhere.
@@ -174,6 +180,30 @@ pub fn ball(shape: &Shape) -> Option<(DVec3, f64)> {
         Shape::Checkerboard(_) => None,
     }
 }
+
+/// Whether one shape is the other displaced and enlarged: then its outline is as much farther out all round.
+fn are_similar(shape: &Shape, other: &Shape) -> bool {
+    let is_enlarged = |from: DVec3, to: DVec3| {
+        let factors = to / from;
+        factors.max_element() - factors.min_element() <= ROUNDINGS * factors.max_element()
+    };
+    match (shape, other) {
+        (Shape::Sphere(_), Shape::Sphere(_)) => true,
+        (Shape::Triangle(one), Shape::Triangle(other)) => {
+            is_enlarged(one.sides, other.sides)
+                && one.normal == other.normal
+                && one.spin == other.spin
+        }
+        (Shape::Box(one), Shape::Box(other)) => {
+            is_enlarged(one.max - one.min, other.max - other.min)
+        }
+        _ => false,
+    }
+}
+
+/// Factors of lengths differ by so much of them where only roundings do: those of a few operations on coordinates that are up to a million
+/// times as large as a shape.
+const ROUNDINGS: f64 = 1e-9;
 
 /// The smallest part with both.
 fn union(a: Option<Area>, b: Option<Area>) -> Option<Area> {

@@ -88,63 +88,140 @@ const GRIDS: [u64; 32] = [
 /// The share of pixels that are black or of the background's colour as no sample fell into them, and the noise of the rest.
 pub fn empty(case: &Case) -> Result<Option<(f64, Noise)>, RenderError> {
     for fill in [[0.0; 3], case.full.scene.image.background.to_linear()] {
-        let found = filled_with(case, fill)?;
-        if found.is_some() {
-            return Ok(found);
+        let Some(empty) = Empty::of(case, fill) else {
+            continue;
+        };
+        if let Some(found) = empty.in_the_mean(case)? {
+            return Ok(Some(found));
+        }
+        if let Some((share, noise)) = empty.filled(case)? {
+            if noise.is_told() {
+                return Ok(Some((share, noise)));
+            }
+            case.may_be_noise.set(true);
         }
     }
     Ok(None)
 }
 
-/// The same of one colour. Such pixels are where it happens: two neighbours as often as chance has it.
-fn filled_with(case: &Case, fill: [f64; 3]) -> Result<Option<(f64, Noise)>, RenderError> {
-    let (a, exact, variance) = (&case.full.a, &case.full.exact, &case.variance);
-    let [width, height] = size(a);
-    let near = Near::to(&fill);
-    let is_flat =
-        |x: u32, y: u32| !near.holds(&exact.pixel(x, y)) && noise::is_flat(&variance.pixel(x, y));
-    let is_empty = |x: u32, y: u32| near.holds(&a.pixel(x, y));
-    let (mut flat, mut empty, mut pairs, mut both) = (0u64, 0u64, 0u64, 0u64);
-    for (x, y) in Area::whole(width, height).iter() {
-        if !is_flat(x, y) {
-            continue;
+/// Pixels that no sample fell into, among those in which something else than their colour should be seen.
+struct Empty {
+    fill: [f64; 3],
+    near: Near,
+    /// Pixels of one colour, and how many of them are empty.
+    flat: u64,
+    empty: u64,
+}
+
+impl Empty {
+    /// Those of one colour, if there are as many as chance has, where it has them: two neighbours as often as one after the other.
+    fn of(case: &Case, fill: [f64; 3]) -> Option<Self> {
+        let (a, exact, variance) = (&case.full.a, &case.full.exact, &case.variance);
+        let [width, height] = size(a);
+        let near = Near::to(&fill);
+        let is_flat = |x: u32, y: u32| {
+            !near.holds(&exact.pixel(x, y)) && noise::is_flat(&variance.pixel(x, y))
+        };
+        let is_empty = |x: u32, y: u32| near.holds(&a.pixel(x, y));
+        let (mut flat, mut empty, mut pairs, mut both) = (0u64, 0u64, 0u64, 0u64);
+        for (x, y) in Area::whole(width, height).iter() {
+            if !is_flat(x, y) {
+                continue;
+            }
+            flat += 1;
+            empty += u64::from(is_empty(x, y));
+            if x + 1 < width && is_flat(x + 1, y) {
+                pairs += 1;
+                both += u64::from(is_empty(x, y) && is_empty(x + 1, y));
+            }
         }
-        flat += 1;
-        empty += u64::from(is_empty(x, y));
-        if x + 1 < width && is_flat(x + 1, y) {
-            pairs += 1;
-            both += u64::from(is_empty(x, y) && is_empty(x + 1, y));
+        let share = empty as f64 / flat.max(1) as f64;
+        // A pair has but two others that it shares a pixel with.
+        let is_chance = is_chance(both, share * share * pairs as f64, 3.0);
+        (flat > 0 && is_chance && share <= MOSTLY).then_some(Self {
+            fill,
+            near,
+            flat,
+            empty,
+        })
+    }
+
+    fn share(&self) -> f64 {
+        self.empty as f64 / self.flat as f64
+    }
+
+    /// The noise of means into which the fill comes everywhere: where many pixels are empty one of several colours that has the fill's may be
+    /// so or not.
+    fn in_the_mean(&self, case: &Case) -> Result<Option<(f64, Noise)>, RenderError> {
+        if self.empty == 0 {
+            return Ok(None);
         }
+        let (a, exact, variance) = (&case.full.a, &case.full.exact, &case.variance);
+        let [width, height] = size(a);
+        let share = self.share();
+        let filled = Film::from_fn(width, height, |x, y| {
+            match noise::is_flat(&variance.pixel(x, y)) && self.near.holds(&a.pixel(x, y)) {
+                true => exact.pixel(x, y),
+                false => a.pixel(x, y),
+            }
+        })?;
+        let full = 1.0 - share;
+        let made = Film::from_fn(width, height, |x, y| {
+            let light = exact.pixel(x, y);
+            [0, 1, 2].map(|i| full * light[i] + share * self.fill[i])
+        })?;
+        let spread = Film::from_fn(width, height, |x, y| {
+            let (light, one) = (exact.pixel(x, y), variance.pixel(x, y));
+            let away = [0, 1, 2].map(|i| light[i] - self.fill[i]);
+            [0, 1, 2].map(|i| full * one[i].max(0.0) + share * full * away[i] * away[i])
+        })?;
+        let Some(noise) = noise::judge(a, &made, &spread) else {
+            return Ok(None);
+        };
+        let is_noise = noise::are_flat_pixels_right(&filled, exact, variance)
+            && !case.is_biased(a, &made, &spread, noise)?;
+        Ok(is_noise.then_some((share, noise)))
     }
-    let share = empty as f64 / flat.max(1) as f64;
-    let expected = share * share * pairs as f64;
-    // The number of pairs has a variance below three times its mean: a pair has but two others that it shares a pixel with.
-    let is_chance = (both as f64 - expected).abs() <= SIGMAS * (3.0 * expected).sqrt() + 3.0;
-    if empty == 0 || !is_chance || share > 0.9 {
-        return Ok(None);
+
+    /// The noise of the other pixels: where few are empty, a pixel of several colours is one of them if its samples would hardly make it so.
+    fn filled(&self, case: &Case) -> Result<Option<(f64, Noise)>, RenderError> {
+        let (a, exact, variance) = (&case.full.a, &case.full.exact, &case.variance);
+        let [width, height] = size(a);
+        // That many fall into a pixel on an average of which e^−n pixels have none (Poisson); one more that is empty is no less likely.
+        let samples = libm::log(self.flat as f64 / self.empty.max(1) as f64);
+        let (mut mixed, mut among) = (0u64, 0u64);
+        let mut filled = Film::clone(a);
+        for (x, y) in Area::whole(width, height).iter() {
+            let (is, should) = (a.pixel(x, y), exact.pixel(x, y));
+            if self.near.holds(&should) {
+                continue;
+            }
+            let one = variance.pixel(x, y);
+            let is_flat = noise::is_flat(&one);
+            mixed += u64::from(!is_flat);
+            if self.near.holds(&is) && (is_flat || !noise::may_be(&is, &should, &one, samples)) {
+                among += u64::from(!is_flat);
+                filled.put(Area::pixel(x, y), &[should]);
+            }
+        }
+        let expected = self.share() * mixed as f64;
+        // They are a part of those that are expected.
+        if self.empty + among == 0 || among as f64 > expected && !is_chance(among, expected, 1.0) {
+            return Ok(None);
+        }
+        let Some(noise) = noise::possible(&filled, exact, variance) else {
+            return Ok(None);
+        };
+        let share = (self.empty + among) as f64 / (self.flat + mixed) as f64;
+        Ok((!case.is_biased(&filled, exact, variance, noise)?).then_some((share, noise)))
     }
-    let filled = Film::from_fn(width, height, |x, y| match is_empty(x, y) {
-        true => exact.pixel(x, y),
-        false => a.pixel(x, y),
-    })?;
-    // Where a pixel of several colours has the fill's, that may be one of them: noise is judged as if the fill came in everywhere.
-    let full = 1.0 - share;
-    let made = Film::from_fn(width, height, |x, y| {
-        let light = exact.pixel(x, y);
-        [0, 1, 2].map(|i| full * light[i] + share * fill[i])
-    })?;
-    let spread = Film::from_fn(width, height, |x, y| {
-        let (light, one) = (exact.pixel(x, y), variance.pixel(x, y));
-        let away = [0, 1, 2].map(|i| light[i] - fill[i]);
-        [0, 1, 2].map(|i| full * one[i].max(0.0) + share * full * away[i] * away[i])
-    })?;
-    let Some(noise) = noise::judge(a, &made, &spread) else {
-        return Ok(None);
-    };
-    if !noise::are_flat_pixels_right(&filled, exact, variance)
-        || case.is_biased(a, &made, &spread, noise)?
-    {
-        return Ok(None);
-    }
-    Ok(Some((share, noise)))
+}
+
+/// Where more than this share of the pixels has a colour it is no fill. It is a choice: as with a tenth of a sample in each pixel.
+const MOSTLY: f64 = 0.9;
+
+/// Whether a number is what chance makes of an expected one, if its variance is so many times as large: with room for the few that a small
+/// one is not known by.
+fn is_chance(number: u64, expected: f64, times: f64) -> bool {
+    (number as f64 - expected).abs() <= SIGMAS * (times * expected).sqrt() + 3.0
 }

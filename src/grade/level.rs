@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::{DVec2, DVec3};
 
-use super::{Make, bias::Trend, exact, extent::View, order, sampled};
+use super::{Curve, Make, Turn, bias::Trend, exact, extent::View, order, sampled};
 use crate::{
     area::Area,
     film::{Film, TooLarge},
@@ -123,6 +123,7 @@ impl<'a> Level<'a> {
         match make {
             Make::Film(make) => Ok(make(&self.exact)?),
             Make::Light(curve) => Ok(map(&self.exact, curve.to)?),
+            Make::Turned(turn, curve) => Ok(turned(&self.exact, *turn, *curve)?),
             Make::Scene(scene) if self.factor == 1 => {
                 Ok(render::render_exact(&World::new(scene), self.part, control)?.film)
             }
@@ -293,6 +294,11 @@ pub fn map(film: &Film, curve: impl Fn(f64) -> f64) -> Result<Film, TooLarge> {
     Film::from_fn(film.width(), film.height(), |x, y| {
         film.pixel(x, y).map(&curve)
     })
+}
+
+/// A picture turned, and its light taken through a curve.
+pub fn turned(film: &Film, turn: Turn, curve: Curve) -> Result<Film, TooLarge> {
+    map(&turn(film)?, curve.to)
 }
 
 /// The middle of a scene's picture in pixels `factor` times as large.

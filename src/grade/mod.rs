@@ -82,6 +82,8 @@ pub struct Grade {
     pub likely: Vec<Verdict>,
     /// Whether a mistake, or noise, would explain it that too few pixels tell of.
     pub is_thin: bool,
+    /// Whether noise would: then nothing need be wrong.
+    pub may_be_noise: bool,
 }
 
 /// A mistake that somebody may have made.
@@ -95,6 +97,9 @@ struct Idea {
 /// What a mistake makes of the exact picture.
 type Change = dyn Fn(&Film) -> Result<Film, TooLarge>;
 
+/// A picture turned in some way.
+type Turn = fn(&Film) -> Result<Film, TooLarge>;
+
 /// From the right picture to the one that a mistake makes.
 enum Make {
     /// From the exact picture.
@@ -105,6 +110,8 @@ enum Make {
     Object(Box<Scene>, Box<[Option<Shape>; 2]>),
     /// The exact picture, its light taken through a curve.
     Light(Curve),
+    /// The exact picture turned, and its light taken through a curve.
+    Turned(Turn, Curve),
     /// That of a scene, its light taken through a curve.
     Curved(Box<Scene>, Curve),
     /// The exact picture of another scene in those pixels whose centre sees a point (x, z) of the floor, in squares, for which this holds.
@@ -136,7 +143,7 @@ pub fn scene(
     if size(a) != size(exact) {
         return Ok(Grade {
             likely: whole::sizes(a, exact, whole::OF_SCENE),
-            is_thin: false,
+            ..Grade::default()
         });
     }
     let one_color = whole::one_color(a, exact, Some(scene));
@@ -146,12 +153,13 @@ pub fn scene(
         let likely = match one_color {
             Some(verdict) => with_nothing_in_sight(&case, verdict)?,
             None => match samples(&case)? {
-                Some(verdict) => vec![verdict],
-                None => mistakes(&case)?,
+                found if found.is_empty() => mistakes(&case)?,
+                found => found,
             },
         };
         Ok(Grade {
             is_thin: likely.is_empty() && (case.is_thin.get() || case.may_be_noise.get()),
+            may_be_noise: likely.is_empty() && case.may_be_noise.get(),
             likely,
         })
     })?
@@ -169,15 +177,17 @@ fn with_nothing_in_sight(case: &Case, verdict: Verdict) -> Result<Vec<Verdict>, 
 }
 
 /// What is said of a picture in which nothing but its samples is wrong.
-fn samples(case: &Case) -> Result<Option<Verdict>, RenderError> {
+fn samples(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let (a, exact) = (&case.full.a, &case.full.exact);
-    // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer.
-    let found = case.named(noise::ideas())?;
-    if let Some(first) = found.into_iter().next() {
-        return Ok(Some(first.verdict));
+    // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer. They may be so many that something
+    // wrong away from them is a small part of the squares.
+    if !noise::has_strays(a, exact, &case.full.scene, |light| light)
+        && let Some(first) = case.named(noise::ideas())?.into_iter().next()
+    {
+        return Ok(vec![first.verdict]);
     }
-    let truncated = truncated::verdict(case)?;
-    if truncated.is_some() {
+    let truncated = truncated::flat(case)?;
+    if !truncated.is_empty() {
         return Ok(truncated);
     }
     if let Some(noise) = noise::possible(a, exact, &case.variance)
@@ -185,18 +195,24 @@ fn samples(case: &Case) -> Result<Option<Verdict>, RenderError> {
         && !objects::is_in_one_part(case)
     {
         if noise.is_told() {
-            return Ok(Some(noise.verdict(case.difference)));
+            return Ok(vec![noise.verdict(case.difference)]);
         }
         case.may_be_noise.set(true);
     }
     if let Some(grid) = fixed::grid(case)? {
         if grid.is_told {
-            return Ok(Some(noise::verdict_of_grid(case.difference, grid.samples)));
+            return Ok(vec![noise::verdict_of_grid(case.difference, grid.samples)]);
         }
         case.may_be_noise.set(true);
     }
-    let empty = fixed::empty(case)?;
-    Ok(empty.map(|(share, noise)| noise.verdict_with_empty(case.difference, share)))
+    if let Some((share, noise)) = fixed::empty(case)? {
+        return Ok(vec![noise.verdict_with_empty(case.difference, share)]);
+    }
+    // What a right picture may be is said before what a wrong one is.
+    match case.may_be_noise.get() {
+        true => Ok(Vec::new()),
+        false => truncated::mixed(case),
+    }
 }
 
 /// The mistakes that explain a difference, from the likeliest kind on.
@@ -208,7 +224,7 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         .chain(board::ideas(scene))
         .chain(order::ideas(scene))
         .chain(objects::ideas(case))
-        .chain(objects::colors(case));
+        .chain(objects::colors(case)?);
     let mut found = verdicts(case.named(ideas.collect())?);
     if let [first, others @ ..] = found.as_slice()
         && first.mistake != "colors"
@@ -283,13 +299,13 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
     if size(a) != size(b) {
         return Grade {
             likely: whole::sizes(a, b, whole::OF_PICTURES),
-            is_thin: false,
+            ..Grade::default()
         };
     }
     if let Some(verdict) = whole::one_color(a, b, None) {
         return Grade {
             likely: vec![verdict],
-            is_thin: false,
+            ..Grade::default()
         };
     }
     let mut grade = best(a, b, whole::films());
@@ -311,6 +327,7 @@ fn best(a: &Film, b: &Film, ideas: Vec<Idea>) -> Grade {
         let made = match &idea.make {
             Make::Film(make) => make(b),
             Make::Light(curve) => level::map(b, curve.to),
+            Make::Turned(turn, curve) => level::turned(b, *turn, *curve),
             _ => return None,
         };
         let made = made.ok()?;
@@ -331,6 +348,7 @@ fn best(a: &Film, b: &Film, ideas: Vec<Idea>) -> Grade {
     let likely = choice::best(found.collect(), a, difference).map_or_else(|_| Vec::new(), verdicts);
     Grade {
         is_thin: likely.is_empty() && is_thin,
+        may_be_noise: false,
         likely,
     }
 }

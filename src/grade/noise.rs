@@ -83,8 +83,8 @@ pub fn squared(scene: &Scene) -> Scene {
     })
 }
 
-/// A scene with all its colours changed.
-pub fn with_colors(scene: &Scene, change: impl Fn(Color) -> Color) -> Scene {
+/// A scene with all its colours changed: the background's first, and then those of its objects in their order.
+pub fn with_colors(scene: &Scene, mut change: impl FnMut(Color) -> Color) -> Scene {
     let mut scene = scene.clone();
     scene.image.background = change(scene.image.background);
     for object in &mut scene.objects {
@@ -92,7 +92,7 @@ pub fn with_colors(scene: &Scene, change: impl Fn(Color) -> Color) -> Scene {
             Shape::Sphere(sphere) => sphere.color = change(sphere.color),
             Shape::Triangle(triangle) => triangle.color = change(triangle.color),
             Shape::Box(cuboid) => cuboid.color = change(cuboid.color),
-            Shape::Checkerboard(board) => board.colors = board.colors.map(&change),
+            Shape::Checkerboard(board) => board.colors = board.colors.map(&mut change),
         }
     }
     scene
@@ -348,6 +348,12 @@ impl Spread {
         let squares: f64 = self.alike.values().map(|&n| n as f64 * n as f64).sum();
         self.right as f64 <= right + SIGMAS * squares.sqrt()
     }
+}
+
+/// Whether a pixel may be the mean of so many samples, as unlikely as one in a great many pictures.
+pub fn may_be(is: &[f64; 3], should: &[f64; 3], variance: &[f64; 3], samples: f64) -> bool {
+    let exponents = (0..3).map(|i| exponent(variance[i], (is[i] - should[i]).abs()));
+    samples * exponents.fold(0.0, f64::max) <= -libm::log(CHANCE * CHANCE)
 }
 
 /// The mean of n samples between 0 and 1 of a variance v is off by t to one side with a probability of at most exp(−n x), for this x:

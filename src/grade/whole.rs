@@ -1,9 +1,8 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
 use super::{
-    Curve, Idea, Make, Verdict,
+    Curve, Idea, Make, Turn, Verdict,
     evidence::FEWEST,
-    level,
     noise::{is_off, with_colors},
     objects, size,
 };
@@ -41,9 +40,6 @@ const POWER: Curve = Curve {
     to: |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2)),
     back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
 };
-
-/// A picture turned in some way.
-type Turn = fn(&Film) -> Result<Film, TooLarge>;
 
 /// What may be turned: a word for programs, one for people, the way out, and how.
 const TURNS: [(&str, &str, &str, Turn); 3] = [
@@ -112,7 +108,6 @@ pub fn films() -> Vec<Idea> {
     let turns = TURNS.map(|(mistake, how, help, turn)| {
         film(mistake, &format!("the picture is {how}"), help, turn)
     });
-    let curves = CURVES.map(|(mistake, message, help, curve)| light(mistake, message, help, curve));
     let mut ideas = Vec::from(turns);
     ideas.push(film(
         "transposed",
@@ -123,7 +118,7 @@ pub fn films() -> Vec<Idea> {
             false => Ok(film.clone()),
         },
     ));
-    ideas.extend(curves);
+    ideas.extend(lights());
     let orders = [
         ([2, 1, 0], "blue, green, red"),
         ([0, 2, 1], "red, blue, green"),
@@ -149,13 +144,11 @@ pub fn films() -> Vec<Idea> {
 /// A picture that is turned, and whose light is wrong, too: two mistakes, for pictures that none explains alone.
 pub fn pairs() -> Vec<Idea> {
     let turned = |(mistake, how, help, turn): (&'static str, &str, &str, Turn)| {
-        CURVES.map(|(_, message, help_of_curve, curve)| {
-            film(
-                mistake,
-                &format!("the picture is {how}; and {message}"),
-                &format!("{help}; and {help_of_curve}"),
-                move |film| level::map(&turn(film)?, curve.to),
-            )
+        CURVES.map(|(_, message, help_of_curve, curve)| Idea {
+            mistake,
+            message: format!("the picture is {how}; and {message}"),
+            help: format!("{help}; and {help_of_curve}"),
+            make: Make::Turned(turn, curve),
         })
     };
     TURNS.into_iter().flat_map(turned).collect()
@@ -165,15 +158,25 @@ fn transposed(film: &Film) -> Result<Film, TooLarge> {
     Film::from_fn(film.height(), film.width(), |x, y| film.pixel(y, x))
 }
 
-/// Those, and what takes the scene.
-pub fn ideas(scene: &Scene) -> Vec<Idea> {
+/// What happened to the light, before samples were averaged or after it.
+pub fn curves(scene: &Scene) -> Vec<Idea> {
+    let mut ideas = Vec::from(lights());
+    ideas.extend(averages(scene));
+    ideas
+}
+
+fn lights() -> [Idea; 3] {
+    CURVES.map(|(mistake, message, help, curve)| light(mistake, message, help, curve))
+}
+
+/// Samples that were averaged as other numbers than their light.
+fn averages(scene: &Scene) -> Vec<Idea> {
     let encoded = with_colors(scene, |color| Color {
         srgb: color
             .srgb
             .map(|channel| 255.0 * linear_to_srgb(channel / 255.0)),
     });
-    let mut ideas = films();
-    ideas.push(Idea {
+    let mut ideas = vec![Idea {
         mistake: "averaged_encoded",
         message: "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark".to_owned(),
         help: "decode a scene's colours to linear light, average there, and encode once".to_owned(),
@@ -184,7 +187,7 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
                 back: linear_to_srgb,
             },
         ),
-    });
+    }];
     let power = with_colors(scene, |color| Color {
         srgb: color
             .srgb
@@ -202,6 +205,13 @@ pub fn ideas(scene: &Scene) -> Vec<Idea> {
             POWER,
         ),
     });
+    ideas
+}
+
+/// All of them.
+pub fn ideas(scene: &Scene) -> Vec<Idea> {
+    let mut ideas = films();
+    ideas.extend(averages(scene));
     if scene.image.width != scene.image.height {
         ideas.push(Idea {
             mistake: "squeezed",
@@ -315,5 +325,9 @@ pub fn sizes(a: &Film, b: &Film, way_out: &str) -> Vec<Verdict> {
             way_out,
         )];
     }
-    Vec::new()
+    vec![verdict(
+        "shape",
+        format!("another shape: {width} × {height} pixels where {b_width} × {b_height} are wanted"),
+        way_out,
+    )]
 }

@@ -197,7 +197,8 @@ fn distances(scene: &Scene) -> Vec<Idea> {
             "y_v goes from −view_height/2 to view_height/2, not from −view_height to view_height",
         ),
         (
-            d * 2.0 / camera.view_height,
+            // The window's height is to the distance as 2 is to d.
+            d * camera.view_height / 2.0,
             "view_height_ignored",
             "view_height was not minded: 2 was taken",
             "s = view_height/height is the side of a pixel in the view plane",

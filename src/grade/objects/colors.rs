@@ -2,13 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{ENOUGH, TRIED, called};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::Film,
-    grade::{Case, Idea, Make},
+    grade::{Case, Idea, Make, noise::with_colors, sampled},
+    render::RenderError,
     scene::{Scene, Shape},
 };
 
@@ -18,22 +19,20 @@ const NEAR: f64 = 2.5;
 
 /// Other colours: those that the picture shows where the exact one shows an object alone; last of all of them at once, if there are
 /// several.
-pub fn colors(case: &Case) -> Vec<Idea> {
+pub fn colors(case: &Case) -> Result<Vec<Idea>, RenderError> {
     let scene: &Scene = &case.full.scene;
-    let seen = Seen::new(case);
+    let seen = Seen::new(case)?;
     let background = Near::to(&scene.image.background.to_linear());
     let mut ideas = Vec::new();
     let mut all = scene.clone();
     let mut messages = Vec::new();
     let mut room = TRIED;
-    let mut shown = HashMap::new();
+    let mut owners = 0..;
     let mut change = |wanted: Color,
                       what: String,
                       set: &dyn Fn(&mut Scene, Color) -> Option<Shape>| {
-        let shown = shown.entry(bits(wanted.to_linear()));
-        let Some(shown) = *shown.or_insert_with(|| seen.shown(wanted)) else {
-            return;
-        };
+        let shown = owners.next().and_then(|owner| seen.shown(owner, wanted));
+        let Some(shown) = shown else { return };
         if background.holds(&shown.to_linear()) {
             // Where nothing is seen nothing has a colour.
             return;
@@ -94,7 +93,7 @@ pub fn colors(case: &Case) -> Vec<Idea> {
             make: Make::Scene(Box::new(all)),
         });
     }
-    ideas
+    Ok(ideas)
 }
 
 /// The first few, and how many more there are.
@@ -121,30 +120,43 @@ pub fn color(shape: &mut Shape) -> Vec<&mut Color> {
     }
 }
 
-/// The colours that a picture shows where the exact one shows one colour alone, by the bits of that one's light.
-struct Seen(HashMap<[u64; 3], Vec<[f64; 3]>>);
+/// The colours that a picture shows where the exact one shows one colour alone, by the number of what has it there: the background's is 0,
+/// and then come those of the objects. Objects that share a colour are told apart by what the middle of a pixel sees.
+struct Seen(Vec<Vec<[f64; 3]>>);
 
 impl Seen {
-    fn new(case: &Case) -> Self {
+    fn new(case: &Case) -> Result<Self, RenderError> {
         let scene: &Scene = &case.full.scene;
-        let mut seen = HashMap::from([(bits(scene.image.background.to_linear()), Vec::new())]);
-        for object in &scene.objects {
-            let mut shape = object.shape;
-            let colors = color(&mut shape).into_iter();
-            seen.extend(colors.map(|color| (bits(color.to_linear()), Vec::new())));
-        }
-        for (p, q) in case.full.a.pixels().iter().zip(case.full.exact.pixels()) {
-            if let Some(seen) = seen.get_mut(&bits(*q)) {
-                seen.push(*p);
+        let mut colors = Vec::new();
+        let numbered = with_colors(scene, |color| {
+            let number = colors.len() as u32;
+            colors.push(bits(color.to_linear()));
+            number_as_color(number)
+        });
+        let owners = (0..).zip(&colors);
+        let owners: HashMap<_, _> = owners
+            .map(|(number, own)| {
+                let shown = bits(number_as_color(number).to_linear());
+                (shown, (number as usize, *own))
+            })
+            .collect();
+        let middles = sampled(&numbered, DVec2::ZERO, &case.control)?;
+        let mut seen = vec![Vec::new(); colors.len()];
+        let pixels = case.full.a.pixels().iter().zip(case.full.exact.pixels());
+        for ((p, q), middle) in pixels.zip(middles.pixels()) {
+            if let Some((owner, own)) = owners.get(&bits(*middle))
+                && *own == bits(*q)
+            {
+                seen[*owner].push(*p);
             }
         }
-        Self(seen)
+        Ok(Self(seen))
     }
 
-    /// The colour that is shown in place of one, if it is one colour and another.
-    fn shown(&self, wanted: Color) -> Option<Color> {
+    /// The colour that is shown in place of an owner's, if it is one colour and another.
+    fn shown(&self, owner: usize, wanted: Color) -> Option<Color> {
         let light = wanted.to_linear();
-        let mut found = self.0.get(&bits(light))?.clone();
+        let mut found = self.0.get(owner)?.clone();
         if (found.len() as u64) < ENOUGH {
             return None;
         }
@@ -158,6 +170,14 @@ impl Seen {
         let is_one = near * 10 >= found.len() * 8;
         let srgb = median.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0));
         (is_one && !Near::to(&light).holds(&median)).then_some(Color { srgb })
+    }
+}
+
+/// A colour for each number: its three lowest bytes.
+fn number_as_color(number: u32) -> Color {
+    let [_, srgb @ ..] = number.to_be_bytes();
+    Color {
+        srgb: srgb.map(f64::from),
     }
 }
 

@@ -37,6 +37,9 @@ const WRONG: usize = FEWEST as usize;
 /// around its object, and the corner of a larger one may hold some of the rest.
 const AS_MUCH: f64 = 0.9;
 
+/// Bytes that are rounded are off by half a step, and light that was rounded on the way by a little more.
+const ROUNDED: f64 = 0.501;
+
 /// The object in whose part of the picture all of the difference is but noise; of several the one in whose part there is most of what noise
 /// would not make.
 pub fn confined(case: &Case) -> Result<Option<Verdict>, RenderError> {
@@ -251,7 +254,7 @@ fn outside(case: &Case, part: Area) -> Result<Option<Rest>, RenderError> {
         false => a.pixel(x, y),
     })?;
     let rounding = Tolerance {
-        steps: 0.501,
+        steps: ROUNDED,
         bounds: None,
     };
     if compare(&rest, exact, rounding).is_ok_and(|found| found.is_equal()) {

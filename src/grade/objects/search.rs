@@ -32,7 +32,7 @@ const OWN: f64 = 0.4;
 /// about its colour. Of a white object on a white and black floor half is lost on each side, and less than a half of the rest.
 const OWN_PART: f64 = 0.1;
 
-/// What moves an object by less than this, in pixels, is seen best by what a smaller step changes: a step's half pixel and the pixel's own
+/// What moves an object, or its outline, by less than this, in pixels, is seen best by what a smaller step changes: a step's half pixel and the pixel's own
 /// width on either side overlap with it.
 const LITTLE: f64 = 3.0;
 
@@ -41,7 +41,9 @@ pub fn search(case: &Case) -> Result<Vec<Idea>, RenderError> {
     let mut all = steps(case)?;
     for step in blobs(case) {
         let is_known = all.iter().any(|known| known.index == step.index);
-        if !is_known || step.by.length() > LITTLE {
+        // Of more than a little a small step tells less than a colour.
+        let is_large = || Sought::new(case, &step).is_some_and(|object| !object.is_little);
+        if !is_known || is_large() {
             all.push(step);
         }
     }
@@ -241,7 +243,9 @@ impl<'a> Sought<'a> {
             axes,
             depth,
             pixel,
-            is_little: step.is_known && by.length() < LITTLE && (factor - 1.0).abs() < 0.1,
+            is_little: step.is_known
+                && by.length() < LITTLE
+                && (factor - 1.0).abs() * radius < LITTLE * pixel,
         })
     }
 

@@ -259,11 +259,11 @@ fn odd(runs: u64) -> u64 {
     }
 }
 
-/// The methods that take samples, each once, in the order of the language's table.
 fn pixels(scene: &Scene) -> u64 {
     u64::from(scene.image.width) * u64::from(scene.image.height)
 }
 
+/// The methods that take samples, each once, in the order of the language's table.
 fn sampled(request: &Request) -> impl Iterator<Item = Method> {
     let asked = |method: &Method| request.methods.contains(method);
     Method::SAMPLED.into_iter().filter(asked)

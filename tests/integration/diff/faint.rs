@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use image::{ImageBuffer, Rgb};
+use pinhole::color::srgb_to_linear;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -54,6 +56,27 @@ fn first(folder: &TempDir, sets: &[&str]) -> [String; 2] {
             .unwrap_or("none")
             .to_owned()
     })
+}
+
+#[test]
+fn light_that_is_wrong_in_a_turned_picture_is_seen_through_noise() {
+    let folder = folder();
+    for (method, samples) in [("random", 4), ("regular", 1)] {
+        sampled(&folder, method, samples, &[]);
+        let picture = open(&folder, "b.png").to_rgb8();
+        let decoded = |byte: u8| (255.0 * srgb_to_linear(f64::from(byte) / 255.0)).round() as u8;
+        let (width, height) = picture.dimensions();
+        let turned = ImageBuffer::from_fn(width, height, |x, y| {
+            Rgb(picture.get_pixel(x, height - 1 - y).0.map(decoded))
+        });
+        save(&folder, "b.png", turned);
+        let [mistake, message] = first(&folder, &[]);
+        assert_eq!(mistake, "upside_down", "{method}");
+        assert!(
+            message.contains("; and the colours are too dark"),
+            "{method}: {message}"
+        );
+    }
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! `diff`: pictures compared, and the mistakes in them named.
 
+mod bytes;
 mod faint;
 mod mistakes;
 mod numbers;
+mod objects;
 mod pictures;
 mod right;
 mod samples;

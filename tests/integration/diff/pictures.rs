@@ -313,6 +313,18 @@ fn sizes_that_differ_are_named() {
     let found = json(&folder, &["b.png", "a.scn"]);
     assert_eq!(found["rmse"], Value::Null);
     assert_eq!(found["likely"][0]["mistake"], "resolution");
+    render(&folder, &["-o", "b.png", "--set", "image.width=48"]);
+    for (other, help) in [
+        ("a.scn", "help: render it in the size that the scene says"),
+        (
+            "a.png",
+            "help: pictures can be compared that have the same size",
+        ),
+    ] {
+        let (_, text) = diff(&folder, &["b.png", other]);
+        let words = "another shape: 48 × 64 pixels where 96 × 64 are wanted";
+        assert!(text.contains(words) && text.contains(help), "{text}");
+    }
     let turned = open(&folder, "a.png").rotate90();
     save(&folder, "b.png", turned);
     let found = json(&folder, &["b.png", "a.scn"]);
@@ -361,6 +373,7 @@ fn files_that_are_no_pictures_are_trouble() {
     // The width, in the header.
     absurd[16..20].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff]);
     write("absurd.png", &absurd);
+    write("empty.EXR", b"");
     for (arguments, words) in [
         (["a.jpg", "a.png"], "but seems to be JPEG"),
         (["a.png", "a.jpg"], "but seems to be JPEG"),
@@ -371,6 +384,14 @@ fn files_that_are_no_pictures_are_trouble() {
         ),
         (["absurd.png", "a.png"], "cannot read absurd.png"),
         (["none.png", "a.png"], "cannot read none.png"),
+        (
+            ["a.png", "text.png"],
+            "cannot read text.png: it is no picture in PNG or OpenEXR",
+        ),
+        (
+            ["a.png", "empty.EXR"],
+            "cannot read empty.EXR: it is no picture in PNG or OpenEXR",
+        ),
         (
             ["a.scn", "a.png"],
             "a.scn is a scene: the picture comes first",

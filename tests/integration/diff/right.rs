@@ -86,6 +86,17 @@ fn nobody_is_blamed_for_samples() {
     );
 }
 
+/// Of two hundred thousand pixels a few have no sample at all where there are eleven in each on an average, and chance has it.
+#[test]
+fn nobody_is_blamed_for_a_few_pixels_without_samples() {
+    let scene = example("figure_9_9.scn", 1, 1);
+    let subject = Subject::new(&scene, [640, 360]);
+    for (samples, seed) in [(11, 3), (12, 4)] {
+        let graded = subject.grade(Method::Scatter, samples, seed);
+        assert_eq!(graded, Ok(()), "{samples}, {seed}");
+    }
+}
+
 /// A scene and its exact picture.
 struct Subject {
     scene: Scene,

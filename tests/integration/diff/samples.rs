@@ -185,10 +185,54 @@ fn a_pixel_or_two_tell_of_no_mistake() {
     let (_, text) = diff(&folder, &[&["b.png", "a.scn"], &one[..]].concat());
     assert!(
         text.ends_with(
+            "\nSampling noise would explain it, though so few pixels differ that they do not say that it is noise.\n"
+        ),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_few_pixels_that_are_no_noise_are_not_said_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let dot = "image { width 40 height 30 background black }
+camera { eye (0, 0, 8) lookat (0, 0, 0) d 2 }
+sampler { method exact }
+sphere Dot { center (0.5, 0.3, 0) radius 0.4 color red }
+";
+    fs::write(folder.path().join("a.scn"), dot).unwrap();
+    render(&folder, &["-o", "b.png", "--set", "Dot.color=lime"]);
+    let found = json(&folder, &["b.png", "a.scn"]);
+    assert_eq!(found["thin"], true, "{found}");
+    let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+    assert!(
+        text.ends_with(
             "\nA simple mistake would explain it, but so few pixels tell of it that chance would, too.\n"
         ),
         "{text}"
     );
+}
+
+#[test]
+fn one_sample_in_each_pixel_excuses_no_wrong_colour() {
+    let folder = folder();
+    let one = [
+        "--set",
+        "sampler.method=regular",
+        "--set",
+        "sampler.per_pixel=1",
+    ];
+    for (set, words) in [
+        ("Ball.color=#808030", "`Ball` has the colour #808030"),
+        ("Ball.color=#8c8000", "`Ball` has the colour #8c8000"),
+        ("Sail.color=#0078a0", "`Sail` has the colour #0078a0"),
+    ] {
+        render(
+            &folder,
+            &[&["-o", "b.png", "--set", set], &one[..]].concat(),
+        );
+        let (_, text) = diff(&folder, &["b.png", "a.scn"]);
+        assert!(text.contains(words), "{set}: {text}");
+    }
 }
 
 #[test]

@@ -1,0 +1,102 @@
+//! Light that became bytes in a wrong way, and noise beside that.
+
+use image::{ImageBuffer, Rgb};
+use pinhole::color::linear_to_srgb;
+use tempfile::TempDir;
+
+use super::{folder, json, open, render, save};
+
+/// The picture `a.exr` with its light made bytes in some way, as `b.png`.
+fn with_bytes(folder: &TempDir, byte: impl Fn(f64) -> f64) {
+    let light = open(folder, "a.exr").to_rgb32f();
+    let (width, height) = light.dimensions();
+    let picture = ImageBuffer::from_fn(width, height, |x, y| {
+        let pixel = light.get_pixel(x, y).0;
+        Rgb(pixel.map(|light| byte(f64::from(light)).clamp(0.0, 255.0) as u8))
+    });
+    save(folder, "b.png", picture);
+}
+
+#[test]
+fn bytes_that_are_cut_off_are_named() {
+    let folder = folder();
+    let noisy = [
+        "--set",
+        "sampler.method=random",
+        "--set",
+        "sampler.per_pixel=16",
+    ];
+    for (sets, white, words) in [
+        (
+            &[][..],
+            255.0,
+            "as int(255 c) does: they are too dark by up to a step",
+        ),
+        (&[], 256.0, "as int(256 c) and int(255.999 c) do"),
+        (&[], 255.999, "as int(256 c) and int(255.999 c) do"),
+        (&noisy, 255.0, "; all else is sampling noise"),
+    ] {
+        render(&folder, &[&["-o", "a.exr"], sets].concat());
+        with_bytes(&folder, |light| (white * linear_to_srgb(light)).floor());
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "truncated", "{white}: {found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.contains(words), "{white}: {message}");
+    }
+}
+
+/// A larger picture by some method, as `a.exr`, and the arguments that make it so large.
+fn sampled(folder: &TempDir, method: &str, samples: u64) -> [&'static str; 4] {
+    let size = ["--set", "image.width=240", "--set", "image.height=160"];
+    let [method, samples] = [
+        format!("sampler.method={method}"),
+        format!("sampler.per_pixel={samples}"),
+    ];
+    let sampler = ["--set", &method, "--set", &samples];
+    render(folder, &[&["-o", "a.exr"], &size[..], &sampler].concat());
+    size
+}
+
+fn mistakes(folder: &TempDir, sets: &[&str]) -> Vec<String> {
+    let found = json(folder, &[&["b.png", "a.scn"], sets].concat());
+    let likely = found["likely"].as_array().unwrap().iter();
+    likely
+        .map(|one| one["mistake"].as_str().unwrap().to_owned())
+        .collect()
+}
+
+#[test]
+fn mixtures_alone_tell_of_bytes_that_are_cut_off() {
+    let folder = folder();
+    // A little more than a whole number stays one: flat colours are right.
+    for (white, more) in [(255.0, 1e-3), (256.0, 0.0)] {
+        for (method, samples) in [("sobol", 256), ("random", 4)] {
+            let size = sampled(&folder, method, samples);
+            with_bytes(&folder, |light| {
+                (white * linear_to_srgb(light) + more).floor()
+            });
+            // Beside the noise of few samples half a step is nothing.
+            let expected = if samples == 4 { "noise" } else { "truncated" };
+            assert_eq!(mistakes(&folder, &size), [expected], "{white}, {method}");
+        }
+    }
+}
+
+#[test]
+fn a_power_is_told_from_bytes_that_are_cut_off() {
+    let folder = folder();
+    for (method, samples) in [("random", 4), ("multi_jittered", 16), ("sobol", 256)] {
+        let size = sampled(&folder, method, samples);
+        with_bytes(&folder, |light| {
+            (255.0 * libm::pow(light, 1.0 / 2.2)).round()
+        });
+        let found = mistakes(&folder, &size);
+        // Noise may hide which of the two it is.
+        let both = ["truncated", "gamma_22"];
+        assert!(
+            found == ["gamma_22"] || samples == 4 && found == both,
+            "{method}: {found:?}"
+        );
+    }
+}

@@ -1,0 +1,93 @@
+//! Mistakes of objects that look like others.
+
+use std::fs;
+
+use super::{SCENE, folder, json, render};
+
+/// The first mistake that is found in `b.png`, and what is said of it.
+fn first(folder: &tempfile::TempDir) -> [String; 2] {
+    let found = json(folder, &["b.png", "a.scn"]);
+    let first = &found["likely"][0];
+    ["mistake", "message"].map(|key| first[key].as_str().unwrap_or("none").to_owned())
+}
+
+#[test]
+fn a_wrong_colour_is_named_where_others_have_the_right_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let other = "sphere Other { center (-0.2, 0.5, 2.5) radius 0.5 }\n";
+    let third = "sphere Third { center (1.5, 2.4, -1) radius 0.6 }\n";
+    fs::write(folder.path().join("a.scn"), [SCENE, other, third].concat()).unwrap();
+    for name in ["Ball", "Other", "Third"] {
+        for method in ["exact", "multi_jittered"] {
+            let [color, method] = [
+                format!("{name}.color=magenta"),
+                format!("sampler.method={method}"),
+            ];
+            render(&folder, &["-o", "b.png", "--set", &color, "--set", &method]);
+            let expected = format!("the sphere `{name}` has the colour #ff00ff instead of #808000");
+            assert_eq!(first(&folder), ["color".to_owned(), expected], "{method}");
+        }
+    }
+}
+
+#[test]
+fn a_colour_that_is_a_little_off_is_named_through_noise() {
+    let folder = folder();
+    for (set, name) in [
+        ("Sail.color=#0080a0", "Sail"),
+        ("Ball.color=#808030", "Ball"),
+    ] {
+        let size = ["--set", "image.width=240", "--set", "image.height=160"];
+        for (method, samples) in [("multi_jittered", "16"), ("random", "4")] {
+            let [method, samples] = [
+                format!("sampler.method={method}"),
+                format!("sampler.per_pixel={samples}"),
+            ];
+            let sets = ["--set", set, "--set", &method, "--set", &samples];
+            render(&folder, &[&["-o", "b.png"], &size[..], &sets].concat());
+            let found = json(&folder, &[&["b.png", "a.scn"], &size[..]].concat());
+            let first = &found["likely"][0];
+            assert_eq!(first["mistake"], "color", "{set}, {method}: {found:#}");
+            let message = first["message"].as_str().unwrap();
+            assert!(message.contains(name), "{set}, {method}: {message}");
+        }
+    }
+}
+
+#[test]
+fn only_what_grows_all_round_is_said_to() {
+    let folder = folder();
+    for (set, expected) in [
+        (
+            "Sail.sides=(2, 2, 2)",
+            "the triangle `Sail` has a wrong size: as if its side c were 2 instead of 1",
+        ),
+        (
+            "Crate.size=(0.5, 1.2, 2)",
+            "the box `Crate` has a wrong size: as if its size along y were 1.2 instead of 1.5",
+        ),
+    ] {
+        render(&folder, &["-o", "b.png", "--set", set]);
+        assert_eq!(first(&folder)[1], expected);
+    }
+    render(&folder, &["-o", "b.png", "--set", "Ball.radius=1.3"]);
+    let [_, message] = first(&folder);
+    assert!(message.ends_with("pixels larger all round"), "{message}");
+}
+
+#[test]
+fn a_size_that_is_off_by_some_pixels_is_measured() {
+    let folder = folder();
+    let size = ["--set", "image.width=240", "--set", "image.height=160"];
+    for radius in ["0.85", "0.8"] {
+        let set = format!("Ball.radius={radius}");
+        render(
+            &folder,
+            &[&["-o", "b.png", "--set", &set], &size[..]].concat(),
+        );
+        let found = json(&folder, &[&["b.png", "a.scn"], &size[..]].concat());
+        let message = found["likely"][0]["message"].as_str().unwrap_or("none");
+        let words = format!("`Ball` is {radius} times as large as it should be");
+        assert!(message.contains(&words), "{message}");
+    }
+}
