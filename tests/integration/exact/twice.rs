@@ -99,12 +99,14 @@ fn four_quarters_are_the_pixel_where_sides_cannot_be_told_apart() {
 /// A sphere that goes through a face which the eye is hardly above: its circle there is seen as an ellipse that is hardly more than a line.
 #[test]
 fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
-    let view = |eye: &str, rest: &str, size: u32| {
+    let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";
+    let board = "checkerboard { square 1e-4 colors (white, black) }";
+    let view = |eye: &str, rest: &str, size: u32, below: &str| {
         read(&format!(
             "image {{ width {size} height {size} background blue }}
              camera {{ eye {eye} {rest} }}
              sphere {{ center (0, 0, 0) radius 1 color red }}
-             box {{ min (-100, -50, -100) max (100, 0, 100) color black }}"
+             {below}"
         ))
     };
     let level = "direction (0, 0, -1) roll 45deg d 1 view_height 0.3333333333333333";
@@ -112,13 +114,20 @@ fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
     for exponent in 6..28 {
         let height = libm::ldexp(random.within(1.0, 2.0), -2 * exponent);
         let eye = format!("({}, {height:e}, 3)", random.within(-0.5, 0.5));
-        let scene = view(&eye, level, 2);
-        let bound = exact(&scene).bound();
-        assert!(bound <= 1e-13, "{eye}: {bound:e}");
-        adds_up(&scene, &eye);
+        for (below, limit) in [(face, 1e-13), (board, 1e-9)] {
+            let scene = view(&eye, level, 2, below);
+            let bound = exact(&scene).bound();
+            assert!(bound <= limit, "{eye}: {bound:e}");
+            adds_up(&scene, &eye);
+        }
     }
     // By an integral along x of 50 digits, split where the outline meets the pixel's sides.
-    let scene = view("(0.26249413893393775, 3.1572076715858895e-08, 3)", level, 1);
+    let scene = view(
+        "(0.26249413893393775, 3.1572076715858895e-08, 3)",
+        level,
+        1,
+        face,
+    );
     let found = exact(&scene);
     let off = (found.film.pixel(0, 0)[0] - 0.500_000_064_227_617_3).abs();
     assert!(off <= found.bound() && found.bound() < 1e-13, "{off:e}");
