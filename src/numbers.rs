@@ -36,7 +36,7 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // One more in the last digit; tenths of up to 9.9 print as they are.
+        // One more in the last digit: a sum of two numbers of a digit after the point rounds to what it is.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);

@@ -392,6 +392,7 @@ impl Report {
             "equal": found.is_some_and(Comparison::is_equal),
             "likely": likely.collect::<Vec<_>>(),
             "thin": self.grade.is_thin,
+            "may_be_noise": self.grade.may_be_noise,
         })
     }
 }

@@ -219,7 +219,7 @@ impl<'a> Integrator<'a> {
         let Shares { by_slot, bound, .. } = self.shares(Spot::pixel(x, y), live, scratch, cancel);
         // Of one colour it is that; else a mean of some, which parts of it may be known better than.
         let rounding = if by_slot.len() > 1 { 4.0 * UNIT } else { 0.0 };
-        self.mean(&by_slot, bound + rounding)
+        self.mean(&by_slot, (bound + rounding).min(1.0))
     }
 
     /// Whether an object that is all that may be seen fills what it is seen in, in two colours.

@@ -42,6 +42,8 @@ const FINEST: f64 = 256.0;
 const FINE: f64 = 16.0;
 /// ... and so many doublings or more may be needed.
 const DOUBLINGS: f64 = 32.0;
+/// However little time there is, so many may be computed: sums over what is left take for granted that these are not none.
+const FEWEST: f64 = 16.0;
 /// To ask for one takes so much less time than to compute it.
 const ASKED: f64 = 8.0;
 /// The last of all.
@@ -55,7 +57,7 @@ const FLAT: f64 = 4.0 / (PI * PI) * 0.5;
 /// most ½m⁻² and varies by at most as much again and that of ∫ m⁻³·|yF′| dm, |yF′| ≤ 17/16, and half an end is left out.
 const ABEL: f64 = (1.0 + 2.0 * (0.5 + 17.0 / 32.0) + 1.0) * PI;
 
-/// Small modes are neglected, too, which add up to no more than this part of the tolerance.
+/// Small modes are neglected, too, which add up to no more than this part of the tolerance; or than as many modes as may be computed leave anyhow.
 const LITTLE: f64 = 0.25;
 
 /// The lines that a side crosses.
@@ -308,6 +310,7 @@ pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f
     let Some(&(_, reference)) = sides.first() else {
         return Sum::default();
     };
+    let most = most.max(FEWEST);
     let total = |of: fn(&Lines) -> f64| sides.iter().map(|(_, side)| of(side)).sum::<f64>();
     let all = BEYOND * total(Lines::cubes);
     let flat = FLAT * total(Lines::squares).min(reference.size);
@@ -469,6 +472,26 @@ mod tests {
         }
         // The sum is that by ½·p_c, p_c = g − pτ.
         0.5 * sum * (lines.rise - lines.slope * lines.stride)
+    }
+
+    /// Of a small part of a pixel next to no modes may be computed.
+    #[test]
+    fn what_is_neglected_is_never_less_than_nothing() {
+        let lines = Lines::new(
+            &[0.37, 0.9].map(Double::from_f64),
+            &[1.7320508, 1e-6].map(Double::from_f64),
+            &Double::from_f64(40.0),
+            0.3,
+        );
+        let expected = by_quadrature(&lines);
+        for most in [0.0, 0.5, 1.0, 3.0, 20.0] {
+            let found = lines.sum(1e-12, most);
+            let error = (found.value - expected).abs();
+            assert!(
+                found.bound > 0.0 && error <= found.bound + 2e-5,
+                "{found:?}"
+            );
+        }
     }
 
     #[test]

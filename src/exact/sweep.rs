@@ -25,7 +25,7 @@ const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
 /// So much area may be doubtful in a slab.
 const CRUMB: f64 = 1.0 / (1u64 << 54) as f64;
 
-/// Slabs are not cut when they are narrower than this, nor when there are so many, those that may yet be cut among them.
+/// Slabs are not cut when they are narrower than this, nor when there are so many more than there were, those that may yet be cut among them.
 const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
 const MANY: usize = 4096;
 
@@ -63,12 +63,13 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         slabs: 0,
     };
     // The widest first: where there are too many, narrow ones are left.
+    let many = MANY + cuts.len();
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| Slab(pair[0], pair[1])).collect();
     while let Some(Slab(left, right)) = slabs.pop() {
         if sweep.regions.is_cancelled() {
             break;
         }
-        let is_last = right - left < NARROW || sweep.slabs + slabs.len() >= MANY;
+        let is_last = right - left < NARROW || sweep.slabs + slabs.len() >= many;
         if let Some(at) = sweep.slab(left, right, is_last) {
             slabs.extend([Slab(left, at), Slab(at, right)]);
         }

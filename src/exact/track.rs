@@ -182,7 +182,8 @@ impl Tangents {
     /// Of the conic that has such factors.
     ///
     /// Its gradient is off by a few roundings of its terms, κ times as many of itself, and so are both tangents' directions by as much of a
-    /// radian. A triangle's area by an angle at its base is half the square of the other leg. The conic's quadratic part Q is off by as
+    /// radian. By an angle at its base a triangle's area grows by half the square of the leg there. What the control is off along its tangent
+    /// changes the triangle and the weight, one up and the other down, by no more than that. The conic's quadratic part Q is off by as
     /// many of its own terms, and by what the vectors are, which are off by roundings of coordinates and by what the directions are; the
     /// weight's square is the quotient of two of it, and what lies between arc and chord grows no faster than the weight. The root is that of
     /// another conic as near as this one is known itself, which moves points and tangents together.

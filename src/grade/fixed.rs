@@ -220,8 +220,8 @@ impl Empty {
 /// Where more than this share of the pixels has a colour it is no fill. It is a choice: as with a tenth of a sample in each pixel.
 const MOSTLY: f64 = 0.9;
 
-/// Whether a number is what chance makes of an expected one, if its variance is so many times as large: with room for the few that a small
-/// one is not known by.
+/// Whether a number is what chance makes of an expected one, if its variance is so many times as large. A small expected number is known only
+/// by what was counted, so that it may be off by a few.
 fn is_chance(number: u64, expected: f64, times: f64) -> bool {
     (number as f64 - expected).abs() <= SIGMAS * (times * expected).sqrt() + 3.0
 }

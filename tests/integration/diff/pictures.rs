@@ -203,7 +203,8 @@ fn json_says_everything() {
             "tolerance",
             "equal",
             "likely",
-            "thin"
+            "thin",
+            "may_be_noise"
         ]
     );
     assert_eq!(

@@ -182,6 +182,7 @@ fn a_pixel_or_two_tell_of_no_mistake() {
     render(&folder, &[&["-o", "b.png"], &one[..], &sample].concat());
     let found = json(&folder, &[&["b.png", "a.scn"], &one[..]].concat());
     assert_eq!(found["thin"], true, "{found}");
+    assert!(found["may_be_noise"].is_boolean(), "{found}");
     let (_, text) = diff(&folder, &[&["b.png", "a.scn"], &one[..]].concat());
     assert!(
         text.ends_with(
