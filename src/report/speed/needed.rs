@@ -1,7 +1,6 @@
 //! What an error takes: samples and time, how far they can be trusted, and which method is the fastest.
 
 use super::{
-    check::CLOSE,
     fit::log_error,
     measure::{Measurement, Point, Series},
     notes::spread,
@@ -14,8 +13,8 @@ use crate::scene::Method;
 /// between them, no method but regular was off by more (hammersley 0.31 and scatter 0.30; sobol 0.09).
 const SAG: f64 = 0.8;
 
-/// Samples on a grid fall into step with the lines of a picture: the errors of regular fall by leaps, and where they were not measured close to a count
-/// nothing is known of them.
+/// Samples on a grid fall into step with the lines of a picture: the errors of regular fall by leaps, also between counts that are next to each other.
+/// Where they were not measured nothing is known of them.
 const LEAPING: Method = Method::Regular;
 
 /// So many standard errors count: 19 times of 20 no more than that is missed.
@@ -165,7 +164,7 @@ impl Series {
             (x - x_b) * self.bend(slope)
         };
         doubt = doubt.map(|doubt| libm::hypot(doubt, bend));
-        if self.method == LEAPING && (enough.is_none() || sag > CLOSE) {
+        if self.method == LEAPING {
             doubt = None;
         }
         let (seconds, spread) = self.seconds_at(per_pixel)?;

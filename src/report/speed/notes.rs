@@ -194,11 +194,14 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
             .filter_map(|&error| series.needed(error));
         needs.into_iter().any(|needed| needed.is_extrapolated)
     };
-    measured.series.iter().any(needs).then(|| {
-        format!(
-            "What is extrapolated goes on with the slope between the last of what was measured. × and ÷: {FACTOR}"
-        )
-    })
+    let goes_on = match measured.series.iter().any(needs) {
+        true => {
+            "What is extrapolated goes on with the slope between the last of what was measured. "
+        }
+        false => "",
+    };
+    let is_asked = !(measured.errors.is_empty() || measured.series.is_empty());
+    is_asked.then(|| format!("{goes_on}× and ÷: {FACTOR}"))
 }
 
 /// Of how many combinations of method and samples the times are noisy.
