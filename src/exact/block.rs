@@ -176,7 +176,8 @@ impl<'a> Block<'a> {
     ///
     /// - t puts off πn·D·m·|U|, and 1/p, off by E, up to ½πn·E·m⁻¹, since |F′| is at most ½: the modes up to Q together
     ///   (4/π)·(1 + ½ ln Q) of it for n = 1, up to where (D + E)·m is 1 and they are off anyhow. 1/p puts off no more than 17/16·|pE|·m⁻²
-    ///   either, since |yF′| is at most 17/16;
+    ///   either, since |yF′| is at most 17/16. Where all modes are summed at once (`kinks`), t puts off D·m⁻¹, and 1/p as much as if Q were |p|/m,
+    ///   from where on the latter is less;
     /// - m, with |F| ≤ ½ and |yF′| ≤ 17/16, up to 2.1·R·m⁻² of both, and c, if a part C of it is missing, 1.1·C·m⁻², but no
     ///   more than F(y_c) is twice; Σ 4/π²n² is ½.
     ///
@@ -208,9 +209,9 @@ impl<'a> Block<'a> {
         let climb = slopes * (moved / stride.hi.abs() + exactly / rise) + 4.0 * UNIT;
         let largest = lines.largest(*depth);
         let of_climb = (1.1 * climb).min(2.0 * (largest - 0.5));
-        let modes = 4.0 / PI * (1.0 + 0.5 * libm::log(MOST));
-        let of_flat = (modes * 0.5 * flat * inverses)
-            .min(0.55 * flat * board.fine.floor.slope[self.along].abs() * squares);
+        let slope = board.fine.floor.slope[self.along].abs();
+        let modes = 4.0 / PI * (1.5 + 0.5 * libm::log(MOST.max(slope / depth)));
+        let of_flat = (modes * 0.5 * flat * inverses).min(0.55 * flat * slope * squares);
         let Sum { value, bound } = board.fine.floor.per_slope[across];
         let relative = 0.5 * largest * (bound + 4.0 * UNIT) + 2.1 * deeper + 0.5 * of_climb;
         2.0 * value * (relative * squares + modes * largest * moved * inverses + of_flat)

@@ -32,7 +32,7 @@ const LANES: usize = 8;
 const CHUNK: usize = 64;
 
 /// (k + 1)!/2.
-const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
+pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
     while k < MAX_TERMS + 2 {

@@ -13,13 +13,15 @@
 //! 4. Areas have closed forms: `arc` for conics. What a region shows of a checkerboard (`board`) is summed row by row where it is
 //!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
-//!    recedes, and in `modes` at any distance. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
+//!    recedes, and in `modes` at any distance; but along diagonals, where too many of those are in step, they go from one of their `kinks` to the
+//!    next. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
 //!    in double-double (`closely`), up to the horizon, and near lines, which are few, one by one (`finely`); how long that may take is a
 //!    matter of `care`. Of squares too small to be seen it is told only how little they leave (`small`, `aslant`), and along a diagonal
 //!    what they do in the mean (`diagonal`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
+mod ahead;
 mod arc;
 mod aslant;
 mod block;
@@ -41,9 +43,11 @@ mod grid;
 mod groups;
 mod horizon;
 mod inverse;
+mod kinks;
 mod level;
 mod modes;
 mod polygon;
+mod quadrature;
 mod region;
 mod resonance;
 mod sides;

@@ -176,6 +176,48 @@ fn wide_views_of_rows_out_of_step() {
     }
 }
 
+/// Along the diagonals of a board, and where it goes on by such fractions as 3/5, no line is displaced much against the one before, or every fifth
+/// not: all modes are in step, and what lies between kinks is summed at once.
+#[test]
+fn wide_views_along_diagonals() {
+    for (eye, direction, rest, square) in [
+        (
+            "(4.87134, 18.40485726953807, 4.46713)",
+            "(1, 0.71976775250559488, 1)",
+            "d 1.3171781702432199e-11 far 797.58757025253317",
+            "0.031639511055832632",
+        ),
+        (
+            "(1.6949, 0.12267287093656334, -0.461423)",
+            "(1, -1.1116745184314281, 1)",
+            "d 1.0796698885081493e-12 far 1.8189856477370419",
+            "0.0052924187593660597",
+        ),
+        (
+            "(0.225893, 0.26353742865178387, 4.97195)",
+            "(5, 0.66067817927256389, 7)",
+            "d 2.2123853269590468e-13 far 6254.97292550573",
+            "0.00066089163104929554",
+        ),
+        (
+            "(-2.49873, 15.649840368095996, 2.82093)",
+            "(0.70710678118654746, 0.17355538029455023, 0.70710678118654757)",
+            "roll 42.7528deg d 4.6458604893516569e-19 far 7839315.5516397618",
+            "0.029677007846249021",
+        ),
+    ] {
+        let scene = read(&format!(
+            "image {{ width 4 height 2 }}
+             camera {{ eye {eye} direction {direction} {rest} }}
+             sampler {{ method exact }}
+             checkerboard {{ square {square} }}"
+        ));
+        let whole = Area::whole(4, 2);
+        let bound = part_adds_up(&scene, whole, eye).bound();
+        assert!(bound <= 1e-9, "{eye}: {bound:e}");
+    }
+}
+
 /// The horizon anywhere in views of any width beyond 179 degrees.
 #[test]
 fn wide_views_at_random() {
