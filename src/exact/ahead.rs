@@ -16,7 +16,7 @@ use super::edge::{HALF_FACTORIAL, MAX_TERMS};
 use super::euler::waves;
 use super::quadrature::integral;
 
-/// From so many times s on m is large: then no more than 1e-15·m⁻² is neglected, ...
+/// From so many times s on m is large: then no more than 2e-15·m⁻² is neglected, ...
 const LARGE: f64 = 20.0;
 /// ... and from so many times on with so few terms.
 const VERY_LARGE: f64 = 4000.0;
