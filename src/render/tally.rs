@@ -3,7 +3,7 @@
 use crate::{
     film::{self, Encoder, mean},
     sampling::Points,
-    tracer::Pixel,
+    tracer::{Packet, Pixel},
 };
 
 /// What a thread counts with.
@@ -14,6 +14,8 @@ pub(super) struct Tally<P> {
     pub(super) pixel: Pixel,
     /// Room for the points.
     pub(super) points: Points,
+    /// What is kept of samples that are traced one by one.
+    pub(super) packet: Packet,
 }
 
 impl<P> Tally<P> {
@@ -23,6 +25,7 @@ impl<P> Tally<P> {
             means: Means(Vec::new()),
             pixel: Pixel::default(),
             points: Points::default(),
+            packet: Packet::default(),
         }
     }
 }

@@ -12,7 +12,7 @@ use pinhole::{
     film::{Encoder, Film},
     render::{Control, Way, render_bytes, render_in_a_way},
     sampling::Sampling,
-    scene::{Count, Lens, Method, Sampler, Scene, View},
+    scene::{Count, Lens, Method, Sampler, Scene, Shape, View},
     tracer::{Part, Quartering, Room, World},
 };
 
@@ -218,6 +218,48 @@ fn crowds_of_all_kinds() {
         dense > all / 2 && open > all / 2,
         "{dense} and {open} of {all}"
     );
+}
+
+#[test]
+fn objects_as_small_as_pixels() {
+    // Of so many nothing is known before they are traced one by one, and few of them are in the way of all samples of a pixel.
+    let mut random = Random(12);
+    for (index, roll) in [0.0, 0.0, 30.0, 45.0].into_iter().enumerate() {
+        let shapes: Vec<_> = (0..3000)
+            .map(|count| {
+                let at = random.vector(2.5);
+                let size = random.within(0.01, 0.08);
+                match count % 3 {
+                    0 => sphere(at, size),
+                    1 => cuboid(at, at + size * dvec3(1.0, 2.0, 0.5)),
+                    _ => triangle(at, random.vector(1.0)),
+                }
+            })
+            .collect();
+        let mut camera = camera(dvec3(0.5, 0.3, 7.0), DVec3::ZERO);
+        camera.roll = pinhole::math::Angle::from_degrees(roll);
+        if index % 2 == 1 {
+            (camera.near, camera.far) = (5.5, Some(8.0));
+        }
+        let mut scenes = shapes.chunks(200).map(|shapes| scene(camera, shapes));
+        let mut all = scenes.next().unwrap();
+        all.objects.extend(scenes.flat_map(|scene| scene.objects));
+        for object in &mut all.objects {
+            if let Shape::Triangle(triangle) = &mut object.shape {
+                triangle.sides *= 0.05;
+            }
+        }
+        // Some of them twice: the first is seen.
+        all.objects.extend_from_within(100..900);
+        (all.image.width, all.image.height) = (71, 53);
+        for (n, method) in [2, 3, 4, 8, 9, 16].into_iter().zip(Method::SAMPLED) {
+            let all = with_samples(&all, method, Count::PerPixel(n));
+            let (plain, done) = part(&all, whole(&all), 1, Way::OneByOne);
+            let (culled, culled_done) = part(&all, whole(&all), 2, Way::Culled);
+            assert_eq!(plain.pixels(), culled.pixels(), "{index}: {n}");
+            assert_eq!(done, culled_done);
+        }
+    }
 }
 
 #[test]

@@ -11,10 +11,9 @@ mod trust;
 
 use std::ops::ControlFlow;
 
-use self::{
-    budget::{Budget, FEW},
-    trust::Trust,
-};
+pub use self::trust::Trust;
+
+use self::budget::{Budget, FEW};
 use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 

@@ -3,9 +3,10 @@
 mod colors;
 mod crowd;
 mod level;
+mod packet;
 mod ray;
 
-pub use self::ray::Hit;
+pub use self::{packet::Packet, ray::Hit};
 
 pub(super) use self::level::Level;
 
