@@ -337,34 +337,41 @@ impl Piece {
             .flatten()
             .map(|x| self.hull(1.0, x, left, right) - other.hull(-1.0, x, left, right))
             .fold(f64::NEG_INFINITY, f64::max);
-        hulls.min(self.rise(other))
+        let rise = self.between(other).map(|[rise, _]| rise);
+        hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// The same for arcs that are nearly parallel, however close: point by point of their parameter.
+    /// By how much it may rise above another one over the same range of x, and how far they may be apart, where both are arcs that are nearly
+    /// parallel, however close: point by point of their parameter, with the first one's chord level.
     ///
-    /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. What its x is
-    /// off, and what other weights move it, counts by the steepest tangent.
-    fn rise(&self, other: &Self) -> f64 {
-        let (Some((up, a)), Some((other_up, b))) = (&self.arc, &other.arc) else {
-            return f64::INFINITY;
-        };
+    /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. What its x is off counts by the
+    /// steepest tangent; and other weights move it by no more than where its tangents meet is away from it. Of narrow arcs that place is
+    /// uncertain along them, where little depends on it. A point is off by less than four times what the area is by the width.
+    fn between(&self, other: &Self) -> Option<[f64; 2]> {
+        let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
-            return f64::INFINITY;
+            return None;
         }
-        let [from, to] = [a, b].map(|arc| [arc.control - arc.start, arc.end - arc.control]);
-        let steepest = [from, to]
-            .as_flattened()
-            .iter()
-            .map(|leg| (leg.y / leg.x).abs())
-            .fold(0.0, f64::max);
-        let size = from[0].length() + from[1].length();
-        let moved = (a.weight - b.weight).abs() * size;
-        let rise = (a.start.y - b.start.y)
-            .max(a.control.y - b.control.y)
-            .max(a.end.y - b.end.y);
-        let aside = (a.control.x - b.control.x).abs() + moved;
-        let rounding = 64.0 * f64::UNIT * (1.0 + size);
-        rise + moved + (aside + rounding) * steepest + rounding
+        let chord = a.end - a.start;
+        let slope = chord.y / chord.x;
+        let height = |step: DVec2| step.y - slope * step.x;
+        let legs = [a, b].map(|arc| [arc.control - arc.start, arc.end - arc.control]);
+        let legs = legs.as_flattened();
+        let most =
+            |of: &dyn Fn(DVec2) -> f64| legs.iter().map(|&leg| of(leg).abs()).fold(0.0, f64::max);
+        let (steepest, tallest) = (most(&|leg| height(leg) / leg.x), most(&height));
+        let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
+        let weights = (a.weight - b.weight).abs();
+        let aside = (a.control.x - b.control.x).abs() + weights * size;
+        let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
+        let off = weights * tallest
+            + (aside + rounding) * steepest
+            + rounding
+            + 4.0 * (self.slack + other.slack);
+        let heights = [a.start - b.start, a.control - b.control, a.end - b.end].map(height);
+        let rise = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let apart = heights.into_iter().map(f64::abs).fold(0.0, f64::max);
+        Some([rise + off, apart + off])
     }
 
     /// The integral of y over its range.
@@ -380,12 +387,9 @@ impl Piece {
             .max((self.y[2] - other.y[2]).abs());
         match (&self.arc, &other.arc) {
             (None, None) => ends,
-            (Some((_, a)), Some((_, b))) => {
-                // A point of the arc is a mean of its control points, with weights that the arc's own weight gives.
-                let controls = (a.control - b.control).length();
-                let size = (a.control - a.start).length() + (a.end - a.control).length();
-                ends + controls + (a.weight - b.weight).abs() * size
-            }
+            (Some(_), Some(_)) => self
+                .between(other)
+                .map_or(f64::INFINITY, |[_, apart]| apart),
             _ => f64::INFINITY,
         }
     }

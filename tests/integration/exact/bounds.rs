@@ -212,7 +212,7 @@ fn heaps_in_a_small_part_of_a_pixel() {
     assert!(bound <= 1e-12, "{bound:e}");
 }
 
-/// Curves that go beside each other for long: of as many slabs as there may be the narrow ones are left in doubt, and not those that come last.
+/// Curves that go beside each other for long, nearer than slabs can be cut for: of the one scene all is told, of the other all but its endless squares.
 #[test]
 fn curves_beside_each_other() {
     for text in [
@@ -243,6 +243,11 @@ fn curves_beside_each_other() {
          }",
     ] {
         let bound = exact(&read(text)).bound();
-        assert!(bound <= 1e-7, "{bound:e}\n{text}");
+        let allowed = if text.contains("checkerboard") {
+            1e-9
+        } else {
+            1e-12
+        };
+        assert!(bound <= allowed, "{bound:e}\n{text}");
     }
 }
