@@ -346,7 +346,8 @@ impl Piece {
     ///
     /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. What its x is off counts by the
     /// steepest tangent; and other weights move it by no more than where its tangents meet is away from it. Of narrow arcs that place is
-    /// uncertain along them, where little depends on it. A point is off by less than four times what the area is by the width.
+    /// uncertain along them, where little depends on it. A point is off by less than eight times what the area is by the width; and by what x is rounded,
+    /// which moves no more area than roundings of it by the arc's height.
     fn between(&self, other: &Self) -> Option<[f64; 2]> {
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
@@ -367,7 +368,7 @@ impl Piece {
         let off = weights * tallest
             + (aside + rounding) * steepest
             + rounding
-            + 4.0 * (self.slack + other.slack);
+            + 8.0 * (self.slack + other.slack);
         let heights = [a.start - b.start, a.control - b.control, a.end - b.end].map(height);
         let rise = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let apart = heights.into_iter().map(f64::abs).fold(0.0, f64::max);
