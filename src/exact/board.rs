@@ -335,8 +335,8 @@ impl Board {
     pub(super) fn tail(&self, lines: f64) -> f64 {
         match lines {
             ..=COUNTED => COUNTED_TAIL,
-            ..f64::INFINITY => FINITE_TAIL * self.leeway,
-            _ => self.tail * self.leeway,
+            ..f64::INFINITY => FINITE_TAIL * self.leeway * self.care.part_neglected(),
+            _ => self.tail * self.leeway * self.care.part_neglected(),
         }
     }
 

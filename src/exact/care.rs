@@ -12,6 +12,8 @@ pub(super) const FINE: f64 = 1e-12;
 pub(super) enum Care {
     /// As is enough for nearly all pixels.
     Usual,
+    /// Of a pixel in which so many regions show squares without number that what is neglected of each is too much together.
+    Many,
     /// Of a pixel with so few squares that its mean must be known well, which it is not with the usual care.
     Great,
 }
@@ -20,7 +22,7 @@ impl Care {
     /// What a polygon may be off by.
     pub fn enough(self, polygon: &[DVec2]) -> f64 {
         match self {
-            Self::Usual => FINE,
+            Self::Usual | Self::Many => FINE,
             // All polygons of a pixel together by half as much as that; and each by a few roundings, which nothing spares it.
             Self::Great => {
                 let (area, _) = measure(polygon.iter().copied());
@@ -34,11 +36,19 @@ impl Care {
         self == Self::Great
     }
 
+    /// By what part of the usual as much may be neglected.
+    pub fn part_neglected(self) -> f64 {
+        match self {
+            Self::Usual | Self::Great => 1.0,
+            Self::Many => 1.0 / 64.0,
+        }
+    }
+
     /// How many sides of strips by lines of the board may be looked at, one after the other, some dozens to a microsecond. The greater number is
     /// enough for any polygon that is not crowded.
     pub fn patience(self) -> f64 {
         match self {
-            Self::Usual => 8e4,
+            Self::Usual | Self::Many => 8e4,
             Self::Great => 4e6,
         }
     }

@@ -280,9 +280,17 @@ impl<'a> Integrator<'a> {
             true => ENOUGH_CROWDED,
             false => ENOUGH,
         };
-        if whole.shares.of_boards > enough && !whole.shares.is_crowded {
-            care = Care::Great;
-            let again = with(care, spot);
+        if whole.shares.of_boards > enough {
+            let closer = match whole.shares.is_crowded {
+                true => Care::Many,
+                false => Care::Great,
+            };
+            let again = with(closer, spot);
+            let is_worth_it =
+                closer == Care::Great || again.shares.bound < 0.5 * whole.shares.bound;
+            if is_worth_it {
+                care = closer;
+            }
             if again.shares.bound < whole.shares.bound {
                 whole = again;
             }

@@ -251,3 +251,24 @@ fn curves_beside_each_other() {
         assert!(bound <= allowed, "{bound:e}\n{text}");
     }
 }
+
+/// Spheres that all but coincide cut what is seen of a board into so many regions that what is neglected of each is too much together.
+#[test]
+fn a_board_in_many_regions() {
+    for far in ["far 5000", "far 1e6", ""] {
+        let text = format!(
+            "image {{ width 1 height 1 background blue }}
+             camera {{
+               eye (-1.8603737249385341, 1, 1.4622338056093724)
+               direction (-0.9514402817618297, -0.027598734570998706, 0.21549868997034038)
+               roll 30deg d 0.32620205140372116 near 4.44474041915774 {far}
+             }}
+             checkerboard {{ y -0.19897537002530774 square 0.01922466376114783 }}
+             sphere {{ center (-6.2213043953821305, -0.1989753137269249, 5.515023694289672) radius 0.32531062980435055 color red }}
+             sphere {{ center (-6.221304045132754, -0.19897535882331618, 5.515023750588055) radius 0.32531062980435055 color olive }}
+             sphere {{ center (-6.221304045132754, -0.1989753137269249, 5.515023637991289) radius 0.32531061148988816 color lime }}"
+        );
+        let bound = exact(&read(&text)).bound();
+        assert!(bound <= 1e-9, "{far}: {bound:e}");
+    }
+}
