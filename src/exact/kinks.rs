@@ -19,8 +19,10 @@ use std::f64::consts::PI;
 
 /// So many kinks are looked at, and twice as many until what is left of the others is little; ...
 const FEWEST: f64 = 64.0;
-/// ... but no more than this: they would take longer than modes.
-const MOST: f64 = (1 << 14) as f64;
+/// ... but no more than this in all classes: they would take longer than modes do at worst, ...
+pub(super) const MOST: f64 = (1 << 14) as f64;
+/// ... or than most modes do.
+pub(super) const FEW: f64 = 256.0;
 /// Nor are they more than this by the line.
 const RARE: f64 = 1.0 / 16.0;
 /// Every so many lines at most are looked at for themselves.
@@ -30,12 +32,12 @@ const GRADUAL: f64 = 1.0 / 16.0;
 /// |B₃|/6 at most, B₃ made periodic.
 const THIRD: f64 = 0.008_03;
 
-/// Σ over the sides, each with its sign, of what `Lines::sum` is of one, of which `tolerance` may be neglected; `None` where there are too many
-/// kinks.
-pub(super) fn sum(sides: &[(f64, &Lines)], tolerance: f64) -> Option<Sum> {
+/// Σ over the sides, each with its sign, of what `Lines::sum` is of one, of which `tolerance` may be neglected; `None` where there are more
+/// kinks than `most`.
+pub(super) fn sum(sides: &[(f64, &Lines)], tolerance: f64, most: f64) -> Option<Sum> {
     let mut sum = Sum::default();
     for (sign, side) in sides {
-        let part = of_side(side, tolerance / sides.len() as f64)?;
+        let part = of_side(side, tolerance / sides.len() as f64, most)?;
         sum.value += sign * part.value;
         sum.bound += part.bound;
     }
@@ -43,14 +45,15 @@ pub(super) fn sum(sides: &[(f64, &Lines)], tolerance: f64) -> Option<Sum> {
 }
 
 /// Σ of one, by classes of every so many lines.
-fn of_side(side: &Lines, tolerance: f64) -> Option<Sum> {
+fn of_side(side: &Lines, tolerance: f64, most: f64) -> Option<Sum> {
     let counts = (1..=CLASSES).map(f64::from);
     let classes = |count: f64| {
         let growth = count * side.rise;
         let is_gradual = 0.0 <= growth && growth <= GRADUAL * side.depth;
         let is_finite = (side.depth + side.rise * side.lines).is_finite();
         let is_some = is_gradual && is_finite && count <= side.lines;
-        let class = |first| Class::new(side, [f64::from(first), count], tolerance / count);
+        let share = [tolerance, most].map(|all| all / count);
+        let class = |first| Class::new(side, [f64::from(first), count], share);
         let classes = is_some.then(|| (0..count as u32).map(class));
         classes?.collect::<Option<Vec<_>>>()
     };
@@ -76,7 +79,7 @@ struct Class {
 
 impl Class {
     /// From the line `first` on; `None` if there are too many kinks for so little to be neglected.
-    fn new(side: &Lines, [first, count]: [f64; 2], tolerance: f64) -> Option<Self> {
+    fn new(side: &Lines, [first, count]: [f64; 2], [tolerance, most]: [f64; 2]) -> Option<Self> {
         let mut kinks = Kinks::new(side, [first, count]);
         let lines = kinks.lines;
         if kinks.turning > RARE {
@@ -84,9 +87,9 @@ impl Class {
         }
         let is_within = [first > 0.0, first + count * lines < side.lines];
         let mut left = 0.0;
-        let mut some = FEWEST;
+        let mut some = FEWEST.min(most);
         while kinks.turning * lines > some {
-            if some > MOST {
+            if some > most {
                 return None;
             }
             let these = (some / kinks.turning).floor();
@@ -314,7 +317,7 @@ mod tests {
                 slope,
             );
             let all = (lines + 1000.0) / (depth * (depth + rise * lines));
-            let found = of_side(&side, tolerance * all).expect("few kinks");
+            let found = of_side(&side, tolerance * all, MOST).expect("few kinks");
             let every = Kinks::new(&side, [0.0, 1.0]);
             let mut expected = Double::from_f64(0.0);
             for j in 0..=lines as u32 {

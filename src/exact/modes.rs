@@ -45,6 +45,8 @@ const FINE: f64 = 16.0;
 const DOUBLINGS: f64 = 32.0;
 /// However little time there is, so many may be computed: sums over what is left take for granted that these are not none.
 const FEWEST: f64 = 16.0;
+/// Where modes leave no more than so many times as much as wanted, they are enough.
+const ENOUGH: f64 = 2.0;
 /// To ask for one takes so much less time than to compute it.
 const ASKED: f64 = 8.0;
 /// The last of all.
@@ -308,11 +310,15 @@ impl Lines {
 /// Σ over the sides, each with its sign, of what `Lines::sum` is of one. A mode's crossings may add up to `in_step`, by |θ| of the
 /// first side.
 pub(super) fn sum(sides: &[(f64, &Lines)], in_step: f64, tolerance: f64, most: f64) -> Sum {
-    let known = kinks::sum(sides, 0.5 * tolerance);
-    if let Some(known) = known.filter(|known| known.bound <= tolerance) {
+    let by_kinks = |most: f64| kinks::sum(sides, 0.5 * tolerance, most);
+    if let Some(known) = by_kinks(kinks::FEW).filter(|known| known.bound <= tolerance) {
         return known;
     }
     let sum = by_modes(sides, in_step, tolerance, most);
+    if sum.bound <= ENOUGH * tolerance {
+        return sum;
+    }
+    let known = by_kinks(kinks::MOST);
     known
         .filter(|known| known.bound <= sum.bound)
         .unwrap_or(sum)
@@ -569,7 +575,7 @@ mod tests {
                 slope,
             );
             let all = side.squares();
-            let found = kinks::sum(&[(1.0, &side)], 0.0).expect("few kinks");
+            let found = kinks::sum(&[(1.0, &side)], 0.0, kinks::MOST).expect("few kinks");
             let modes = by_modes(&[(1.0, &side)], side.in_step(), 1e-9 * all, 2e4);
             let off = (found.value - modes.value).abs();
             prop_assert!(off <= found.bound + modes.bound, "{found:?}, {modes:?}");
