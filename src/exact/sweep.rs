@@ -43,7 +43,11 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
                 regions.doubt(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => tracks.push(track),
-                    None => cuts.push(-line.factors[2] / line.factors[0]),
+                    None => {
+                        let [a, b, c] = line.factors;
+                        regions.doubt((b / a).abs());
+                        cuts.push(-c / a);
+                    }
                 }
             }
             Curve::Conic(conic) => {
@@ -161,7 +165,8 @@ impl Sweep<'_> {
 
 /// Adds the region between two neighbours.
 fn add(regions: &mut Regions, lower: &Piece, upper: &Piece, left: f64, right: f64) {
-    let area = upper.integral(left, right) - lower.integral(left, right);
+    // What is steep may leave the pixel in a slab that is cut no more.
+    let area = (upper.integral(left, right) - lower.integral(left, right)).min(right - left);
     regions.doubt((right - left) * (ROUNDING + lower.slack + upper.slack));
     if area <= 0.0 {
         return;

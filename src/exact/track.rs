@@ -12,6 +12,9 @@ use super::arc::Arc;
 /// In f64 the area of an arc is good enough if it is off by no more than this for each part of its width.
 const GOOD: f64 = 32.0 * f64::UNIT;
 
+/// A steeper line is as good as vertical: from one side of the pixel to the other it moves by less than eight roundings of x.
+const STEEP: f64 = (1u64 << 50) as f64;
+
 /// A curve followed from left to right.
 #[derive(Clone, Debug)]
 pub enum Track {
@@ -238,11 +241,11 @@ impl Tangents {
 }
 
 impl Track {
-    /// The tracks of a line; none if it is vertical.
+    /// The track of a line; none if it is vertical, or so steep that it may be said to be.
     pub fn of_line(line: &Line) -> Option<Self> {
         let [a, b, c] = line.factors;
         let (slope, start) = (-a / b, -c / b);
-        (slope.is_finite() && start.is_finite()).then_some(Self::Line { slope, start })
+        (slope.abs() <= STEEP && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
     /// y at an x where the track is.
