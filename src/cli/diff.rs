@@ -261,11 +261,14 @@ impl Report {
                 writeln!(out, "B         {other_w} x {other_h} pixels")?;
             }
             Ok(found) => {
-                let relation = match found.is_equal() {
-                    true => format!(
+                let relation = match (found.is_equal(), found.undecided) {
+                    (true, 0) => format!(
                         "are equal: no pixel differs by more than {tolerance} of 8-bit sRGB"
                     ),
-                    false => "differ".to_owned(),
+                    (true, _) => format!(
+                        "are equal where that is known: no pixel is known to differ by more than {tolerance} of 8-bit sRGB"
+                    ),
+                    (false, _) => "differ".to_owned(),
                 };
                 writeln!(out, "{a} and {b} {relation}")?;
                 writeln!(out)?;
