@@ -325,11 +325,7 @@ impl<P: film::Pixel> Frame<'_, P> {
                 self.pixel([x, y], Trace::Together(live, checks), &mut film, tally)
             }
             Part::Plain { area, live } => {
-                let trace = match (live, self.way) {
-                    (Some(live), _) => Trace::Among(live),
-                    (None, Way::OneByOne) => Trace::OneByOne,
-                    (None, _) => Trace::Packet,
-                };
+                let trace = live.map_or(Trace::OneByOne, Trace::Among);
                 let mut pixels = area.iter();
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
             }
@@ -376,7 +372,6 @@ impl<P: film::Pixel> Frame<'_, P> {
         let trace = match trace {
             // To prepare the pixel would take longer.
             Trace::Together(live, _) if samples == 1 => Trace::Among(live),
-            Trace::Packet if !tally.packet.takes_a_look(samples) => Trace::OneByOne,
             _ => trace,
         };
         if samples <= CHUNK {
@@ -447,7 +442,6 @@ impl<P: film::Pixel> Frame<'_, P> {
             counts,
             pixel,
             points,
-            packet,
             ..
         } = tally;
         let vectors = match end - first {
@@ -470,11 +464,6 @@ impl<P: film::Pixel> Frame<'_, P> {
                     counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
                 }
             }
-            Trace::Packet => {
-                let offsets = points.iter();
-                self.world
-                    .slots_in([x, y], offsets, packet, |slot| counts.add(slot, 1));
-            }
             Trace::OneByOne => {
                 for offset in points.iter() {
                     counts.add(self.world.slot_at(x, y, offset), 1);
@@ -491,8 +480,6 @@ enum Trace<'a> {
     Together(&'a [Live], Option<&'a Checks>),
     /// One by one, against these.
     Among(&'a [Live]),
-    /// One by one, with one way down the hierarchy where that is worth it.
-    Packet,
     /// One by one, against the objects that the hierarchy knows on their way.
     OneByOne,
 }

@@ -3,7 +3,7 @@
 use crate::{
     film::{self, Encoder, mean},
     sampling::Points,
-    tracer::{Packet, Pixel},
+    tracer::Pixel,
 };
 
 /// What a thread counts with.
@@ -14,8 +14,6 @@ pub(super) struct Tally<P> {
     pub(super) pixel: Pixel,
     /// Room for the points.
     pub(super) points: Points,
-    /// What is kept of samples that are traced one by one.
-    pub(super) packet: Packet,
 }
 
 impl<P> Tally<P> {
@@ -25,7 +23,6 @@ impl<P> Tally<P> {
             means: Means(Vec::new()),
             pixel: Pixel::default(),
             points: Points::default(),
-            packet: Packet::default(),
         }
     }
 }

@@ -37,4 +37,4 @@ pub use outlook::{Board, Live, Spot};
 pub use pixel::{Checks, Pixel};
 pub use quartering::{Part, Quartering, Room};
 pub use triangle::vertices;
-pub use world::{Hit, Packet, Precision, World};
+pub use world::{Hit, Precision, World};

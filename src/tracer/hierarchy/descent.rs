@@ -2,7 +2,7 @@
 
 use super::{
     grid::{LEVELS, Nearness},
-    tree::{Cell, Entry, Tree, part_of},
+    tree::{Entry, Tree, part_of},
 };
 
 /// The way from the root to the smallest cell that holds a point.
@@ -24,29 +24,6 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The way on from a cell of a level, behind its own list.
-    #[inline]
-    pub(super) fn below(tree: &'a Tree, cell: u32, level: u32, at: [u32; 2]) -> Self {
-        let mut descent = Self {
-            tree,
-            cell: None,
-            at,
-            level,
-        };
-        descent.go_down(tree.cells[cell as usize]);
-        descent
-    }
-
-    /// Goes on to the quarter that holds the point, if the cell is divided.
-    #[inline]
-    fn go_down(&mut self, cell: Cell) {
-        self.cell = (cell.quarters > 0).then(|| {
-            self.level -= 1;
-            let bit = |axis: usize| self.at[axis] >> self.level & 1;
-            cell.quarters + bit(0) + 2 * bit(1)
-        });
-    }
-
     /// The next list, unless all that is left is behind `bar`.
     #[inline]
     pub fn next(&mut self, bar: Nearness) -> Option<List<'a>> {
@@ -58,7 +35,11 @@ impl<'a> Descent<'a> {
             entries: &self.tree.entries[cell.start as usize..cell.end as usize],
             at: self.at.map(|x| part_of(self.level, x)),
         };
-        self.go_down(cell);
+        self.cell = (cell.quarters > 0).then(|| {
+            self.level -= 1;
+            let bit = |axis: usize| self.at[axis] >> self.level & 1;
+            cell.quarters + bit(0) + 2 * bit(1)
+        });
         Some(list)
     }
 }
@@ -72,12 +53,6 @@ pub struct List<'a> {
 }
 
 impl<'a> List<'a> {
-    /// Nothing.
-    pub(super) const EMPTY: Self = Self {
-        entries: &[],
-        at: [0; 2],
-    };
-
     /// The next object that the ray may meet, unless all that is left is behind `bar`.
     #[inline]
     pub fn next(&mut self, bar: Nearness) -> Option<usize> {

@@ -64,12 +64,6 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// A point's.
-    #[inline]
-    pub fn of(at: [u32; 2]) -> Self {
-        Self { low: at, high: at }
-    }
-
     #[inline]
     pub(super) fn meets(&self, other: &Self) -> bool {
         let meets = |i: usize| (self.low[i] <= other.high[i]) & (other.low[i] <= self.high[i]);
@@ -96,8 +90,7 @@ impl Rectangle {
     }
 
     /// The least that holds both.
-    #[inline]
-    pub fn with(&self, other: &Self) -> Self {
+    fn with(&self, other: &Self) -> Self {
         Self {
             low: [0, 1].map(|i| self.low[i].min(other.low[i])),
             high: [0, 1].map(|i| self.high[i].max(other.high[i])),
@@ -115,12 +108,6 @@ impl Item {
     #[inline]
     pub fn meets(&self, rectangle: &Rectangle) -> bool {
         self.bounds.meets(rectangle)
-    }
-
-    /// Whether it may be met at a point.
-    #[inline]
-    pub(super) fn holds(&self, at: [u32; 2]) -> bool {
-        self.bounds.holds(&Rectangle::of(at))
     }
 
     /// Whether it may be met everywhere in a rectangle.

@@ -11,18 +11,14 @@
 mod descent;
 mod grid;
 mod search;
-mod shared;
 mod tree;
 
-use self::{search::Search, tree::Tree};
+use self::{grid::Rectangle, search::Search, tree::Tree};
 use super::{camera::Direction, cover::Patch};
 use crate::threads::Threads;
 
-pub use self::{
-    descent::Descent,
-    grid::{Grid, Item, Nearness, Rectangle},
-    shared::{Asked, Shared},
-};
+pub use self::descent::Descent;
+pub use self::grid::{Grid, Item, Nearness};
 
 /// The objects that may be seen, by where in the view plane they are.
 #[derive(Debug)]
@@ -45,23 +41,6 @@ impl Hierarchy {
     #[inline]
     pub fn at(&self, r: &Direction<f64>) -> Option<Descent<'_>> {
         Some(Descent::new(&self.tree, self.grid.units(r)?))
-    }
-
-    /// Where a direction lies; none for one outside of the window.
-    #[inline]
-    pub fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
-        self.grid.units(r)
-    }
-
-    /// Finds what so many rays in a rectangle may meet.
-    pub fn share(&self, rectangle: &Rectangle, rays: usize, shared: &mut Shared) {
-        shared.find(&self.tree, rectangle, rays);
-    }
-
-    /// What one of these rays may meet.
-    #[inline]
-    pub fn shared_of<'a>(&'a self, shared: &'a Shared, at: [u32; 2]) -> Asked<'a> {
-        shared.of(&self.tree, at)
     }
 
     /// What holds all rays through a patch; none outside of the window.

@@ -201,7 +201,7 @@ impl Cell {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     corner: [u32; 2],
-    pub(super) level: u32,
+    level: u32,
 }
 
 impl Place {
@@ -209,15 +209,6 @@ impl Place {
         corner: [0; 2],
         level: LEVELS,
     };
-
-    /// The quarter that holds all of a rectangle which lies in the cell, if one does.
-    #[inline]
-    pub(super) fn quarter_with(self, rectangle: &Rectangle) -> Option<u32> {
-        let level = self.level - 1;
-        let quarter = |at: [u32; 2]| (at[0] >> level & 1) + 2 * (at[1] >> level & 1);
-        let first = quarter(rectangle.low);
-        (first == quarter(rectangle.high)).then_some(first)
-    }
 
     /// All of the cell.
     #[inline]

@@ -11,9 +11,10 @@ mod trust;
 
 use std::ops::ControlFlow;
 
-pub use self::trust::Trust;
-
-use self::budget::{Budget, FEW};
+use self::{
+    budget::{Budget, FEW},
+    trust::Trust,
+};
 use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 

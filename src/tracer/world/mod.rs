@@ -3,10 +3,9 @@
 mod colors;
 mod crowd;
 mod level;
-mod packet;
 mod ray;
 
-pub use self::{packet::Packet, ray::Hit};
+pub use self::ray::Hit;
 
 pub(super) use self::level::Level;
 
