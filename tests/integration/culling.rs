@@ -19,7 +19,7 @@ use pinhole::{
 use crate::{
     exact::{example, examples, random_scene, read},
     figure::figure,
-    tracer::{Random, camera, cuboid, floor, scene, scene_full_of_ties, sphere, triangle},
+    tracer::{Random, camera, cuboid, floor, planes::scene_full_of_ties, scene, sphere, triangle},
 };
 
 /// A part of a picture, and how many samples progress was told of.

@@ -1,5 +1,7 @@
 //! The binary from outside: arguments, files, output and exit status.
 
+mod render;
+
 use std::{
     fs,
     io::Write,
@@ -93,147 +95,6 @@ fn size(picture: &[u8]) -> (u32, u32) {
 }
 
 #[test]
-fn render_writes_a_picture_beside_the_scene() {
-    let folder = folder();
-    fs::create_dir(folder.path().join("sub")).unwrap();
-    fs::write(folder.path().join("sub/b.scene.scn"), SCENE).unwrap();
-    assert_eq!(done(&folder, &["render", "sub/b.scene.scn"]), b"");
-    assert_eq!(size(&read(&folder, "sub/b.scene.png")), (64, 36));
-    assert_eq!(names(&folder), ["a.scn", "sub"]);
-}
-
-#[test]
-fn the_ending_of_the_file_is_its_format() {
-    let folder = folder();
-    for name in ["b.png", "b.PNG", "b.exr"] {
-        done(&folder, &["render", "a.scn", "-o", name]);
-        assert_eq!(size(&read(&folder, name)), (64, 36));
-    }
-    for name in ["b", "b.jpg", "png", "b.png.", "b.png~", "b.png/"] {
-        let errors = fails(&folder, &["render", "a.scn", "--output", name], 2);
-        assert_eq!(
-            errors,
-            format!(
-                "error: the ending of {name} stands for no format: a picture's file ends in .png or .exr\n"
-            )
-        );
-    }
-}
-
-#[test]
-fn scene_and_picture_go_through_pipes() {
-    let folder = folder();
-    done(&folder, &["render", "a.scn"]);
-    let picture = read(&folder, "a.png");
-    let piped = pinhole_reading(&folder, SCENE.as_bytes(), &["render", "-", "-o", "-"]);
-    assert_eq!((status(&piped), errors(&piped)), (0, String::new()));
-    assert!(piped.stdout == picture);
-    // The picture that came out can go in again.
-    let again = pinhole_reading(&folder, &picture, &["render", "-", "-o", "-"]);
-    assert!(again.stdout == picture);
-    let nowhere = pinhole_reading(&folder, SCENE.as_bytes(), &["render", "-"]);
-    assert_eq!(status(&nowhere), 2);
-    assert_eq!(
-        errors(&nowhere),
-        "error: the scene comes from standard input: say with `-o FILE` where the picture goes\n"
-    );
-}
-
-#[test]
-fn neither_threads_nor_a_second_run_change_a_byte() {
-    let folder = folder();
-    done(&folder, &["render", "a.scn"]);
-    for threads in ["1", "2", "7", "100000"] {
-        done(
-            &folder,
-            &["render", "a.scn", "-o", "b.png", "--threads", threads],
-        );
-        assert!(read(&folder, "a.png") == read(&folder, "b.png"));
-    }
-    for threads in ["0", "-1", "1.5", "many", ""] {
-        fails(&folder, &["render", "a.scn", "--threads", threads], 2);
-    }
-}
-
-#[test]
-fn a_picture_renders_its_scene_again() {
-    let folder = folder();
-    let arguments = [
-        "--set",
-        "Ball.center=(0, 1.5, 0)",
-        "--set",
-        "h = 2",
-        "--crop",
-        "10,5,30,20",
-    ];
-    let first = [&["render", "a.scn", "-o", "b.png"], &arguments[..]].concat();
-    done(&folder, &first);
-    done(&folder, &["render", "b.png", "-o", "c.png"]);
-    assert!(read(&folder, "b.png") == read(&folder, "c.png"));
-    assert_eq!(size(&read(&folder, "c.png")), (30, 20));
-
-    // What is set and cropped now comes after what was set and cropped then.
-    let again = [
-        "render",
-        "b.png",
-        "-o",
-        "d.png",
-        "--set",
-        "h=3",
-        "--crop",
-        "0,0,64,36",
-    ];
-    done(&folder, &again);
-    let arguments = [&arguments[..4], &["--set", "h=3", "--crop", "0,0,64,36"]].concat();
-    done(
-        &folder,
-        &[&["render", "a.scn", "-o", "e.png"], &arguments[..]].concat(),
-    );
-    assert!(read(&folder, "d.png") == read(&folder, "e.png"));
-
-    assert_eq!(
-        fails(&folder, &["render", "b.png", "--set", "image.width=20"], 2),
-        "error: the crop 10,5,30,20, which b.png carries, does not lie within the picture, which has 20 × 36 pixels\n"
-    );
-
-    // The scene need not be there any more, and the picture need not be named as one.
-    fs::rename(folder.path().join("b.png"), folder.path().join("b.scn")).unwrap();
-    assert_eq!(done(&folder, &["check", "b.scn"]), b"");
-}
-
-#[test]
-fn a_crop_has_the_pixels_of_the_whole() {
-    let folder = folder();
-    done(&folder, &["render", "a.scn"]);
-    done(
-        &folder,
-        &["render", "a.scn", "-o", "b.png", "--crop", "20,10,31,17"],
-    );
-    let whole = image::load_from_memory(&read(&folder, "a.png")).unwrap();
-    let crop = image::load_from_memory(&read(&folder, "b.png")).unwrap();
-    assert!(whole.crop_imm(20, 10, 31, 17).to_rgb8() == crop.to_rgb8());
-    for outside in ["1,0,64,36", "0,36,1,1", "64,0,1,1", "0,0,4294967295,1"] {
-        assert_eq!(
-            fails(&folder, &["render", "a.scn", "--crop", outside], 2),
-            format!(
-                "error: the crop {outside} does not lie within the picture, which has 64 × 36 pixels\n"
-            )
-        );
-    }
-    for wrong in [
-        "0,0,0,1",
-        "1,2,3",
-        "1,2,3,4,5",
-        "-1,0,2,2",
-        "a",
-        "",
-        "1,1,1,4294967296",
-    ] {
-        fails(&folder, &["render", "a.scn", "--crop", wrong], 2);
-    }
-}
-
-#[test]
 fn a_scene_with_errors_is_status_1_and_trouble_with_files_2() {
     let folder = folder();
     fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
@@ -271,17 +132,6 @@ fn a_scene_with_errors_is_status_1_and_trouble_with_files_2() {
 }
 
 #[test]
-fn a_scene_is_not_replaced_by_its_picture() {
-    let folder = folder();
-    fs::write(folder.path().join("a.png"), SCENE).unwrap();
-    assert_eq!(
-        fails(&folder, &["render", "a.png"], 2),
-        "error: a.png is the scene itself: say with `-o FILE` where the picture goes\n"
-    );
-    assert_eq!(read(&folder, "a.png"), SCENE.as_bytes());
-}
-
-#[test]
 fn pictures_without_a_scene_are_trouble() {
     let folder = folder();
     image::DynamicImage::new_rgb8(4, 4)
@@ -309,43 +159,6 @@ fn standard_input_is_read_once() {
         errors(&output),
         "error: standard input can be read once only, and `-` is given twice\n"
     );
-}
-
-#[test]
-fn a_scene_of_a_megabyte_is_left_out_of_its_picture_with_a_warning() {
-    let folder = folder();
-    let long = format!("{SCENE}//{}\n", " ".repeat(1 << 20));
-    fs::write(folder.path().join("long.scn"), long).unwrap();
-    let output = pinhole(&folder, &["render", "long.scn"]);
-    assert_eq!(status(&output), 0);
-    assert_eq!(
-        errors(&output),
-        "warning: the scene and its overrides have more than 1 MiB of text, so long.png does not carry them\n"
-    );
-    fails(&folder, &["render", "long.png", "-o", "again.png"], 2);
-    // An EXR never carries one.
-    done(&folder, &["render", "long.scn", "-o", "long.exr"]);
-}
-
-#[test]
-fn a_picture_too_large_for_memory_is_refused() {
-    let folder = folder();
-    let huge = [
-        "--set",
-        "image.width=1048576",
-        "--set",
-        "image.height=1048576",
-    ];
-    let errors = fails(&folder, &[&["render", "a.scn"], &huge[..]].concat(), 2);
-    assert!(
-        errors
-            .starts_with("error: a picture of 1048576 × 1048576 pixels needs 3.0 TiB of memory, "),
-        "{errors}"
-    );
-    assert_eq!(names(&folder), ["a.scn"]);
-    let part = ["-o", "part.png", "--crop", "524288,524288,3,2"];
-    done(&folder, &[&["render", "a.scn"], &huge[..], &part].concat());
-    assert_eq!(size(&read(&folder, "part.png")), (3, 2));
 }
 
 #[test]
@@ -581,59 +394,4 @@ fn ctrl_c_keeps_what_the_hard_cases_have_shown() {
         cases.len()
     );
     assert!(people.ends_with(&end), "{people}");
-}
-
-#[cfg(unix)]
-#[test]
-fn ctrl_c_leaves_the_old_file() {
-    let folder = folder();
-    fs::write(folder.path().join("slow.scn"), SLOW).unwrap();
-    fs::write(folder.path().join("slow.png"), b"old").unwrap();
-    let mut render = command(folder.path(), &["render", "slow.scn"]);
-    interrupted(&mut render, 700);
-    assert_eq!(read(&folder, "slow.png"), b"old");
-    assert_eq!(names(&folder), ["a.scn", "slow.png", "slow.scn"]);
-}
-
-#[test]
-fn a_bound_that_is_worth_a_word_gets_one() {
-    let scene = "image { width 6 height 3 }
-                 camera { eye (0.31, 1.7, 2.2) direction (1, 0, -2) }
-                 sampler { method exact }
-                 checkerboard { y 0 square 5e-324 }";
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("wide.scn");
-    fs::write(&path, scene).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .args(["render", "-o"])
-        .arg(folder.path().join("wide.png"))
-        .arg(&path)
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{told}");
-    assert!(
-        told.contains("known less well than to a millionth, least of all the one at column"),
-        "{told}"
-    );
-}
-
-#[test]
-fn a_picture_of_one_colour_is_exactly_right() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(
-        folder.path().join("empty.scn"),
-        "image { width 4 height 4 } camera { eye (0, 1, 0) lookat (0, 1, -1) } sampler { method exact }",
-    )
-    .unwrap();
-    let output = command(folder.path(), &["render", "empty.scn"])
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        told.ends_with(
-            "\nexact: every channel is exactly its true mean; the 8-bit rounding of every pixel is certain\n"
-        ),
-        "{told}"
-    );
 }

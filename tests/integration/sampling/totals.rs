@@ -1,0 +1,139 @@
+//! Totals shared out among pixels, and scattered points.
+
+use super::*;
+
+#[test]
+fn a_total_is_shared_out_to_the_last_sample() {
+    for (width, height) in [(1, 1), (7, 3), (16, 16), (30, 17), (64, 1)] {
+        let pixels = u64::from(width) * u64::from(height);
+        for method in Method::SAMPLED {
+            for total in [
+                1,
+                2,
+                pixels - 1,
+                pixels,
+                pixels + 1,
+                5 * pixels / 2,
+                1000 * pixels + 7,
+            ] {
+                if total == 0 {
+                    continue;
+                }
+                let sampler = Sampler {
+                    method,
+                    count: Count::Total(total),
+                    seed: 2,
+                };
+                let sampling = Sampling::new(&sampler, width, height);
+                let counts = sampling.counts(Area::whole(width, height));
+                assert_eq!(counts.iter().sum::<u64>(), total, "{method:?}");
+                assert_eq!(sampling.total(), total);
+                for ((x, y), &count) in Area::whole(width, height).iter().zip(&counts) {
+                    assert_eq!(sampling.count(x, y), count);
+                    if method != Method::Scatter {
+                        assert!(count == total / pixels || count == total.div_ceil(pixels));
+                    }
+                    if count <= 2000 {
+                        let mut points = Vec::new();
+                        sampling.points(x, y, count, 0..count, &mut points);
+                        assert_eq!(points.len() as u64, count);
+                    }
+                }
+                let part = Area {
+                    x: width / 3,
+                    y: height / 3,
+                    width: width - width / 3,
+                    height: height - height / 3,
+                };
+                for ((x, y), count) in part.iter().zip(sampling.counts(part)) {
+                    assert_eq!(counts[Area::whole(width, height).index(x, y)], count);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_extra_samples_are_spread_evenly_in_both_directions() {
+    let (width, height) = (100, 60);
+    for extra in [1, 37, 600, 1500, 3000, 4321, 5999] {
+        let sampler = Sampler {
+            method: Method::Random,
+            count: Count::Total(6000 * 4 + extra),
+            seed: 0,
+        };
+        let sampling = Sampling::new(&sampler, width, height);
+        let density = extra as f64 / 6000.0;
+        for side in [2, 4, 8, 16, 32] {
+            for tile in Area::whole(width, height).tiles(side) {
+                let found: u64 = sampling.counts(tile).iter().map(|n| n - 4).sum();
+                let expected = density * tile.pixels() as f64;
+                assert!((found as f64 - expected).abs() < 1.0, "{extra}: {tile:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn half_a_sample_more_is_a_checkerboard_and_not_stripes() {
+    let sampler = Sampler {
+        method: Method::Random,
+        count: Count::Total(64 * 64 / 2),
+        seed: 0,
+    };
+    let sampling = Sampling::new(&sampler, 64, 64);
+    let first = sampling.count(0, 0);
+    for (x, y) in Area::whole(64, 64).iter() {
+        assert_eq!(sampling.count(x, y), first ^ u64::from((x + y) % 2));
+    }
+}
+
+#[test]
+fn scattered_points_fall_like_rain() {
+    // 40 × 25 pixels with 20 points each on average: χ² with 999 degrees of freedom, for some seeds.
+    let area = Area::whole(40, 25);
+    let mut empty = 0;
+    for seed in 0..20 {
+        let of = |total| {
+            let sampler = Sampler {
+                method: Method::Scatter,
+                count: Count::Total(total),
+                seed,
+            };
+            Sampling::new(&sampler, 40, 25).counts(area)
+        };
+        let chi2: f64 = of(20_000)
+            .iter()
+            .map(|&n| (n as f64 - 20.0) * (n as f64 - 20.0) / 20.0)
+            .sum();
+        assert!(
+            (chi2 - 999.0).abs() < 4.0 * (2.0 * 999.0_f64).sqrt(),
+            "{chi2}"
+        );
+        empty += of(1000).iter().filter(|&&n| n == 0).count();
+    }
+    // With as many points as pixels, a share of 1/e stays empty: 7358 ± 48 of 20 000.
+    assert!(empty.abs_diff(7358) < 200, "{empty}");
+}
+
+#[test]
+fn the_largest_scatter_sums_up() {
+    let side = 1 << 20;
+    let sampler = Sampler {
+        method: Method::Scatter,
+        count: Count::Total(1 << 53),
+        seed: 0,
+    };
+    let sampling = Sampling::new(&sampler, side, side);
+    let corner = Area {
+        x: side - 30,
+        y: side - 20,
+        width: 30,
+        height: 20,
+    };
+    let counts = sampling.counts(corner);
+    // 8192 each on average; the standard deviation of one is 90.5, of the mean of 600 it is 3.7.
+    let mean = counts.iter().sum::<u64>() as f64 / 600.0;
+    assert!((mean - 8192.0).abs() < 15.0, "{mean}");
+    assert!(counts.iter().all(|n| n.abs_diff(8192) < 450));
+}

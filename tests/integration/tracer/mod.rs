@@ -1,0 +1,269 @@
+//! The tracer against the oracle, above all within the last bits of every boundary.
+
+pub mod planes;
+mod sizes;
+
+use glam::{DVec2, DVec3, dvec2, dvec3};
+pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
+use pinhole::{
+    area::Area,
+    color::Color,
+    math::Angle,
+    render::{Control, render, render_exact},
+    report::numerics::{
+        oracle::{ALL_SIZES, Oracle},
+        scenes::{self, SIZE},
+    },
+    sampling::Sampling,
+    scene::{Checkerboard, Lens, Scene, Shape, Triangle, View},
+    source::{Source, Sources},
+    tracer::{Precision, World},
+};
+
+use crate::exact::read;
+
+pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
+    scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
+}
+
+pub fn floor() -> Shape {
+    scenes::board(0.0, 1.0)
+}
+
+/// Reproducible numbers (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A multiple of 1/2, at most `limit` halves from 0.
+    fn half(&mut self, limit: i64) -> f64 {
+        (self.bits() as i64 % (limit + 1)) as f64 / 2.0
+    }
+
+    fn point(&mut self, limit: i64) -> DVec3 {
+        dvec3(self.half(limit), self.half(limit), self.half(limit))
+    }
+
+    pub fn offset(&mut self) -> DVec2 {
+        dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
+    }
+
+    pub fn vector(&mut self, size: f64) -> DVec3 {
+        let mut one = || self.within(-size, size);
+        dvec3(one(), one(), one())
+    }
+}
+
+/// The colour that the oracle sees, in the numbering of [`scene`].
+fn expected(oracle: &Oracle, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
+    match oracle.seen(&oracle.direction(x, y, offset)) {
+        None => [0.0; 3],
+        Some(seen) => [seen.object as f64 + 1.0, f64::from(u8::from(seen.odd)), 0.0],
+    }
+}
+
+/// Compares the tracer with the oracle: at random points, and at the points of `f64` on both sides of the boundaries that
+/// random segments within pixels cross. Returns how many boundaries it found, so that a test can say that there were some.
+fn agrees(scene: &Scene, points: usize) -> usize {
+    let world = World::new(scene);
+    let oracle = Oracle::new(scene, ALL_SIZES);
+    let mut random = Random(points as u64);
+    let color = |x, y, offset| world.palette()[world.slot_at(x, y, offset)].srgb;
+    let check = |x, y, offset: DVec2| {
+        assert_eq!(
+            color(x, y, offset),
+            expected(&oracle, x, y, offset),
+            "pixel {x}, {y} at {offset:?} of {scene:?}"
+        );
+    };
+    let mut boundaries = 0;
+    let mut tries = 0;
+    while boundaries < points && tries < 40 * points + 4000 {
+        tries += 1;
+        let (x, y) = (random.bits() as u32 % SIZE, random.bits() as u32 % SIZE);
+        let (mut a, mut b) = (random.offset(), random.offset());
+        if tries % 16 == 0 {
+            check(x, y, a);
+        }
+        if color(x, y, a) == color(x, y, b) {
+            continue;
+        }
+        // Along x or y alone, down to neighbouring numbers.
+        let axis = usize::from(tries % 2 == 0);
+        let mut corner = a;
+        corner[axis] = b[axis];
+        if color(x, y, corner) == color(x, y, a) {
+            continue;
+        }
+        b = corner;
+        loop {
+            let mut middle = a;
+            middle[axis] = a[axis] + (b[axis] - a[axis]) / 2.0;
+            if middle == a || middle == b {
+                break;
+            }
+            if color(x, y, middle) == color(x, y, a) {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        check(x, y, a);
+        check(x, y, b);
+        boundaries += 1;
+    }
+    boundaries
+}
+
+#[test]
+fn f64_alone_decides_nearly_everything() {
+    let shapes = [
+        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
+        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
+        cuboid(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
+        floor(),
+    ];
+    let scene = scene(camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0)), &shapes);
+    let world = World::new(&scene);
+    let mut random = Random(2);
+    let mut doubts = 0;
+    for _ in 0..20_000 {
+        let (x, y) = (random.bits() as u32 % SIZE, random.bits() as u32 % SIZE);
+        let offset = random.offset();
+        let double = world.slot_in(Precision::Double, x, y, offset);
+        match world.slot_in(Precision::Single, x, y, offset) {
+            None => doubts += 1,
+            single => assert_eq!(single, double),
+        }
+    }
+    // The rows at the horizon leave doubts of about 1e-10 of the samples.
+    assert_eq!(doubts, 0);
+}
+
+#[test]
+fn the_examples_are_the_same_without_the_hierarchy() {
+    let folder = format!("{}/examples", env!("CARGO_MANIFEST_DIR"));
+    let files = std::fs::read_dir(folder).unwrap();
+    let paths = files.map(|entry| entry.unwrap().path());
+    let mut random = Random(3);
+    for path in paths.filter(|path| path.extension().is_some_and(|ending| ending == "scn")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let sources = Sources::new(Source::from_text("a.scn", text));
+        let scene = pinhole::scene::read(&sources).scene.unwrap();
+        let world = World::new(&scene);
+        let size = [scene.image.width, scene.image.height].map(u64::from);
+        for _ in 0..3000 {
+            let [x, y] = size.map(|size| (random.bits() % size) as u32);
+            let offset = random.offset();
+            let plain = [Precision::Single, Precision::Double, Precision::Big]
+                .into_iter()
+                .find_map(|precision| world.slot_in(precision, x, y, offset));
+            let found = world.slot_at(x, y, offset);
+            assert_eq!(Some(found), plain, "{path:?}, pixel {x}, {y} at {offset}");
+        }
+    }
+}
+
+#[test]
+fn the_figure_agrees_with_the_oracle() {
+    let shapes = [
+        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
+        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
+        cuboid(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
+        floor(),
+    ];
+    for (roll, near, far) in [(0.0, 0.0, None), (90.0, 0.0, None), (33.0, 7.0, Some(10.0))] {
+        let mut camera = camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0));
+        camera.roll = Angle::from_degrees(roll);
+        (camera.near, camera.far) = (near, far);
+        assert_eq!(agrees(&scene(camera, &shapes), 60), 60);
+    }
+}
+
+#[test]
+fn random_objects_agree_with_the_oracle() {
+    let mut random = Random(7);
+    let mut found = 0;
+    for round in 0..24 {
+        let eye = random.vector(4.0);
+        let mut camera = camera(eye, random.vector(1.0));
+        camera.up = random.vector(1.0);
+        camera.roll = Angle {
+            degrees: random.within(-400.0, 400.0),
+            radians: random.within(-10.0, 10.0),
+        };
+        camera.lens = Lens::Fov(Angle::from_degrees(random.within(1.0, 179.0)));
+        if round % 2 == 0 {
+            (camera.near, camera.far) = (2.0, Some(6.0));
+        }
+        let mut shapes = vec![floor()];
+        for _ in 0..2 {
+            let corner = random.vector(2.0);
+            shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
+            shapes.push(Shape::Triangle(Triangle {
+                centroid: random.vector(2.0),
+                normal: random.vector(1.0),
+                sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
+                spin: Angle::from_degrees(random.within(0.0, 360.0)),
+                color: Color::BLACK,
+            }));
+            shapes.push(cuboid(
+                corner,
+                corner + DVec3::splat(random.within(0.1, 2.0)),
+            ));
+        }
+        found += agrees(&scene(camera, &shapes), 16);
+    }
+    assert!(found > 200);
+}
+
+#[test]
+fn nearly_parallel_up_vectors_agree_with_the_oracle() {
+    for tilt in [1e-4, 1e-8, 1e-12, 1e-15, 1e-16, 1e-30, 1e-200] {
+        let mut camera = camera(dvec3(0.3, 10.0, 0.1), DVec3::ZERO);
+        camera.view = View::Direction(dvec3(tilt, -1.0, tilt / 3.0));
+        camera.lens = Lens::Distance(1.0);
+        assert_eq!(agrees(&scene(camera, &[floor()]), 20), 20);
+    }
+}
+
+#[test]
+fn concentric_and_equal_spheres_agree_with_the_oracle() {
+    let camera = camera(dvec3(0.0, 0.0, 5.0), DVec3::ZERO);
+    let next = 1.0 + f64::EPSILON;
+    for radii in [[1.0, 1.0], [1.0, next], [next, 1.0]] {
+        let shapes = radii.map(|radius| sphere(DVec3::ZERO, radius));
+        assert_eq!(agrees(&scene(camera, &shapes), 20), 20);
+    }
+}
+
+#[test]
+fn an_eye_on_or_near_a_surface_agrees_with_the_oracle() {
+    let mut found = 0;
+    for above in [1e-3, 1e-8, 1e-14, 0.0, -1e-14, -1e-8, -1e-3] {
+        let camera = camera(dvec3(0.0, 1.0 + above, 0.0), dvec3(3.0, 0.8, 0.4));
+        let shapes = [
+            sphere(DVec3::ZERO, 1.0),
+            cuboid(dvec3(-4.0, 0.0, -4.0), dvec3(4.0, 1.0, 4.0)),
+            triangle(dvec3(2.0, 1.0, 0.0), DVec3::Y),
+            Shape::Checkerboard(Checkerboard {
+                y: 1.0,
+                square: 0.3,
+                colors: [Color::BLACK; 2],
+            }),
+        ];
+        found += agrees(&scene(camera, &shapes), 20);
+    }
+    assert!(found > 40);
+}
