@@ -46,10 +46,14 @@ fn numbers_are_within_the_bounds_that_are_claimed() {
         let Some(bound) = row.claim.bound() else {
             continue;
         };
-        let error = row.tally.error[1];
+        // Rays parallel to the board meet it nowhere.
+        let Some(error) = row.tally.error[1] else {
+            assert_eq!(row.id, "P2");
+            continue;
+        };
         assert!(error <= bound, "{}: {error} > {bound}", row.id);
         // The last bit of a distance is a rounding's: were it never wrong, nothing would have been measured.
-        assert!(error > 0.0 || row.id == "P2", "{}", row.id);
+        assert!(error > 0.0, "{}", row.id);
     }
 }
 
@@ -62,7 +66,7 @@ fn every_case_breaks_the_textbook() {
             let least = if row.id == "S7" { 0.002 } else { 0.05 };
             assert!(share >= least, "{}: {share}", row.id);
         } else {
-            assert!(row.tally.error[0] > 10.0, "{}", row.id);
+            assert!(row.tally.error[0] > Some(10.0), "{}", row.id);
         }
     }
 }

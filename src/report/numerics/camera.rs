@@ -78,7 +78,7 @@ fn basis(camera: &Camera, bits: usize, tally: &mut Tally) {
         greatest
     });
     tally.inputs += 1;
-    tally.errors(errors);
+    tally.errors(errors.map(Some));
 }
 
 fn nearly_parallel(random: &mut Random, count: u64, tally: &mut Tally) {

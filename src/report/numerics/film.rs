@@ -49,7 +49,7 @@ fn means(random: &mut Random, count: u64, tally: &mut Tally) {
         let unit = ours.next_up() - ours;
         let error = |x: f64| (exact(x) - &truth).to_f64().value().abs() / unit;
         tally.inputs += 1;
-        tally.errors([error(running), error(ours)]);
+        tally.errors([error(running), error(ours)].map(Some));
     }
 }
 

@@ -82,8 +82,8 @@ impl Table {
         self.inputs() == self.planned
     }
 
-    /// The same for programs. An error that is no number, as of a distance that is not found at all, is null, as is what a
-    /// case does not ask.
+    /// The same for programs. An error that is no number, as of a distance that is not found at all, is null, as are what was
+    /// not measured and what a case does not ask.
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|row| {
             let Tally {
@@ -94,7 +94,7 @@ impl Table {
             let side = |i: usize| {
                 json!({
                     "wrong": row.claim.decides().then_some(wrong[i]),
-                    "error": row.claim.bound().map(|_| error[i]),
+                    "error": row.claim.bound().and(error[i]),
                 })
             };
             json!({
@@ -175,8 +175,11 @@ fn share(count: u64, inputs: u64) -> String {
     }
 }
 
-/// An error with two digits.
-fn size(error: f64) -> String {
+/// An error with two digits; nothing of what was not measured.
+fn size(error: Option<f64>) -> String {
+    let Some(error) = error else {
+        return "-".to_owned();
+    };
     match error {
         0.0 => "0".to_owned(),
         _ if error.is_infinite() => "inf".to_owned(),

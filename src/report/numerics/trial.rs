@@ -20,8 +20,8 @@ pub struct Tally {
     pub inputs: u64,
     /// Decisions that exact arithmetic makes otherwise.
     pub wrong: [u64; 2],
-    /// The greatest error of a number.
-    pub error: [f64; 2],
+    /// The greatest error of a number, if any was measured.
+    pub error: [Option<f64>; 2],
 }
 
 impl Tally {
@@ -30,15 +30,20 @@ impl Tally {
         Self {
             inputs: self.inputs + other.inputs,
             wrong: [0, 1].map(|i| self.wrong[i] + other.wrong[i]),
-            error: [0, 1].map(|i| self.error[i].max(other.error[i])),
+            error: [0, 1].map(|i| greater(self.error[i], other.error[i])),
         }
     }
 
-    /// Counts the errors of the two; what is no number is as wrong as can be.
-    pub fn errors(&mut self, errors: [f64; 2]) {
+    /// Counts the errors of the two, where they were measured; what is no number is as wrong as can be.
+    pub fn errors(&mut self, errors: [Option<f64>; 2]) {
         let number = |error: f64| if error.is_nan() { f64::INFINITY } else { error };
-        self.error = [0, 1].map(|i| self.error[i].max(number(errors[i])));
+        self.error = [0, 1].map(|i| greater(self.error[i], errors[i].map(number)));
     }
+}
+
+/// The greater of two numbers, as far as they are there.
+fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    a.into_iter().chain(b).reduce(f64::max)
 }
 
 /// What is seen: an object, and whether in its second colour.
@@ -123,14 +128,14 @@ impl Trial {
             && theirs.object == seen.object
         {
             let error = self.distance(theirs.t, theirs.point, &t, &point);
-            tally.errors([error, 0.0]);
+            tally.errors([Some(error), None]);
         }
         let (_, hits) = self.world.ray(pixels);
         let error = match hits.iter().find(|hit| hit.visible) {
             Some(hit) if hit.object == seen.object => self.distance(hit.t, hit.point, &t, &point),
             _ => f64::INFINITY,
         };
-        tally.errors([0.0, error]);
+        tally.errors([None, Some(error)]);
     }
 
     /// How far a distance and a point are from the true ones.
