@@ -40,6 +40,8 @@ pub struct Needed {
     pub spread: f64,
     /// Whether it lies beyond what was measured.
     pub is_extrapolated: bool,
+    /// Whether fewer may do, since fewer were not measured.
+    pub is_at_most: bool,
     /// Between two points, how much its logarithm may be off because the line between them sags; else 0.
     pub sag: f64,
 }
@@ -72,9 +74,9 @@ impl Needed {
         samples * (1.0 + self.spread / 2.0)
     }
 
-    /// Whether it was computed from points, and nothing is known of how far it may be off.
+    /// Whether nothing is known of how far it may be off: it was computed from points that do not tell, or fewer were not measured.
     pub(super) fn is_unknown(&self) -> bool {
-        self.factor.is_none() && (self.is_extrapolated || self.sag > 0.0)
+        self.factor.is_none() && (self.is_extrapolated || self.is_at_most || self.sag > 0.0)
     }
 }
 
@@ -124,6 +126,7 @@ impl Series {
                 seconds: first.seconds(),
                 spread: spread(&first.times),
                 is_extrapolated: false,
+                is_at_most: first.per_pixel > 1,
                 sag: 0.0,
             });
         }
@@ -174,6 +177,7 @@ impl Series {
             seconds,
             spread,
             is_extrapolated: enough.is_none(),
+            is_at_most: false,
             sag,
         })
     }

@@ -14,7 +14,7 @@ pub const NOISY: f64 = 0.2;
 
 /// What the factor of what an error takes means.
 pub(super) const FACTOR: &str = "two standard errors, and how far the line may be off: between two points as much as it may sag, and of what is extrapolated \
-     as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture.";
+     as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture, nor where fewer samples were not measured (≤).";
 
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
@@ -204,30 +204,35 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
     is_asked.then(|| format!("{goes_on}× and ÷: {FACTOR}"))
 }
 
-/// Of how many combinations of method and samples the times are noisy.
+/// Of how many combinations of method and samples the times are noisy, the exact method's among them.
 pub(super) fn noisy(measured: &Measurement) -> usize {
-    let points = measured.series.iter().flat_map(|series| &series.points);
-    points.filter(|point| point.spread() > NOISY).count()
+    spreads(measured).filter(|&(.., it)| it > NOISY).count()
+}
+
+/// Each method, its samples per pixel, if it takes samples, and how far its times spread.
+fn spreads(measured: &Measurement) -> impl Iterator<Item = (Method, Option<u64>, f64)> {
+    let sampled = measured.series.iter().flat_map(|series| {
+        let points = series.points.iter();
+        points.map(|point| (series.method, Some(point.per_pixel), point.spread()))
+    });
+    let exact = measured.exact.iter();
+    sampled.chain(exact.map(|exact| (Method::Exact, None, spread(&exact.times))))
 }
 
 fn noise(measured: &Measurement) -> Option<String> {
-    let combinations = measured.series.iter().map(|series| series.points.len());
     let count = noisy(measured);
-    let worst = measured
-        .series
-        .iter()
-        .flat_map(|series| series.points.iter().map(|point| (series.method, point)))
-        .max_by(|(_, a), (_, b)| a.spread().total_cmp(&b.spread()))?;
-    let (method, point) = worst;
+    let (method, per_pixel, worst) = spreads(measured).max_by(|(.., a), (.., b)| a.total_cmp(b))?;
+    let samples = per_pixel.map_or(String::new(), |per_pixel| {
+        format!(" with {per_pixel} per pixel")
+    });
     (count > 0).then(|| {
         format!(
             "The machine was noisy: of {} combinations of method and samples, {count} have times that spread by more than {} % of \
-             their median, from the least to the greatest; the worst is {} with {} per pixel, {:.0} %.",
-            combinations.sum::<usize>(),
+             their median, from the least to the greatest; the worst is {}{samples}, {:.0} %.",
+            spreads(measured).count(),
             NOISY * 100.0,
             method.name(),
-            point.per_pixel,
-            point.spread() * 100.0
+            worst * 100.0
         )
     })
 }

@@ -12,7 +12,7 @@ use super::{
     measure::{Measurement, Point, Series},
     notes::{notes, spread, verdicts},
     picture,
-    table::{cells, count, doubt, error, marked_slope, plural, seconds, time, tried},
+    table::{cells, doubt, error, marked_slope, plural, samples, seconds, time, tried},
 };
 use crate::{numbers, scene::Method};
 
@@ -187,15 +187,8 @@ fn errors(measured: &Measurement) -> String {
 }
 
 fn times(measured: &Measurement) -> String {
-    let with_range = |point: &Point| {
-        format!(
-            "{} ± {:.0} %",
-            seconds(point.seconds()),
-            point.spread() * 50.0
-        )
-    };
     let rows = measured.series.iter().map(|series| {
-        let mut row = cells(measured, series, with_range);
+        let mut row = cells(measured, series, |point| ranged(&point.times));
         let rate = series.points.last().map_or(0.0, Point::samples_per_second);
         row.push(format!("{:.1}", rate / 1e6));
         (series.method.name(), row)
@@ -238,8 +231,9 @@ fn needs(measured: &Measurement) -> String {
         };
         let none = || "–".to_owned();
         let samples = needed.map(|needed| match doubt(&needed) {
-            Some(doubt) => mark(format!("{} × ÷ {doubt}", count(needed.per_pixel))),
-            None => mark(count(needed.per_pixel)),
+            _ if needed.is_at_most => samples(&needed),
+            Some(doubt) => mark(format!("{} × ÷ {doubt}", samples(&needed))),
+            None => mark(samples(&needed)),
         });
         let time = needed.map(|needed| mark(time(&needed)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];

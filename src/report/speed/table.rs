@@ -147,7 +147,7 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
                 writeln!(
                     text,
                     "{name:16}{:>9}{:>8}{:>9}{extrapolated}{tried}",
-                    count(needed.per_pixel),
+                    samples(&needed),
                     doubt(&needed).unwrap_or_default(),
                     time(&needed),
                 )
@@ -263,6 +263,12 @@ pub(super) fn doubt(needed: &Needed) -> Option<String> {
         Some(factor) => Some(format!("{factor:.0e}")),
         None => needed.is_unknown().then(|| "?".to_owned()),
     }
+}
+
+/// The samples that an error takes: "≤" stands where fewer were not measured.
+pub(super) fn samples(needed: &Needed) -> String {
+    let least = if needed.is_at_most { "≤ " } else { "" };
+    format!("{least}{}", count(needed.per_pixel))
 }
 
 /// A number of samples.
