@@ -45,8 +45,11 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
                     Some(track) => tracks.push(track),
                     None => {
                         let [a, b, c] = line.factors;
-                        regions.doubt((b / a).abs());
-                        cuts.push(-c / a);
+                        // Else it is too far away, or no line at all.
+                        if b.abs() < a.abs() {
+                            regions.doubt((b / a).abs());
+                            cuts.push(-c / a);
+                        }
                     }
                 }
             }
