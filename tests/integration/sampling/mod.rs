@@ -1,4 +1,4 @@
-//! Each method's defining property, exactly: offsets are taken apart with whole numbers.
+//! Each method's defining property.
 
 mod errors;
 mod strata;

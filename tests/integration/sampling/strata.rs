@@ -1,4 +1,4 @@
-//! Where points lie: each method’s strata, taken apart with whole numbers.
+//! Where points lie: each method's strata, offsets taken apart with whole numbers.
 
 use super::*;
 
