@@ -66,6 +66,8 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
+use glam::DVec2;
+
 use crate::{
     area::Area,
     tracer::{Curve, Live, Part, Quartering, Room, Spot, World},
@@ -120,14 +122,37 @@ struct Piece {
     is_final: bool,
 }
 
-/// A spot with more objects than this, and more curves than the third root of that, is quartered if these are not in all of its quarters, or
-/// all but a few of them in one, down to spots of such a side.
+/// A spot with more objects than this is quartered, if that pays, down to spots of such a side; of smaller ones it is only told what they leave
+/// in doubt, which is less than a rounding.
 const SEVERAL: usize = 4;
-const MANY_CURVES: u64 = 16 * 16 * 16;
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
-/// Of more curves than the third root of that it cannot be told in spots larger than this whether they go their own ways.
-const VERY_MANY_CURVES: u64 = 48 * 48 * 48;
-const LARGE: f64 = 1.0 / 16.0;
+/// It does not pay with fewer curves.
+const FEW_CURVES: usize = 16;
+/// With no more than so many it pays if it does with the first quarters.
+const SOME_CURVES: usize = 48;
+/// With more, quarters and their own quarters may take so many times as long as all of the spot at once: often only parts of parts have fewer
+/// curves.
+const HOPE: f64 = 8.0;
+/// Of more objects than this it takes too long to look for where each two of them cross. A spot is quartered then until each of its objects was looked
+/// at so many times.
+const CROWD: usize = 24;
+const PATIENCE: f64 = 2048.0;
+
+/// A quarter of a spot, with what may be seen there, and how long it may take.
+struct Quarter {
+    spot: Spot,
+    live: Vec<Live>,
+    allowed: Allowed,
+}
+
+/// How long the parts of a spot may take.
+#[derive(Clone, Copy, Debug)]
+struct Allowed {
+    /// How many times they may look at an object.
+    looks: f64,
+    /// With fewer objects than a crowd, about how long they may take.
+    time: f64,
+}
 
 /// Room for what a pixel needs, kept from pixel to pixel.
 #[derive(Debug, Default)]
@@ -220,7 +245,12 @@ impl<'a> Integrator<'a> {
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Pixel {
-        let Shares { by_slot, bound, .. } = self.shares(Spot::pixel(x, y), live, scratch, cancel);
+        let allowed = Allowed {
+            looks: PATIENCE * live.len() as f64,
+            time: f64::INFINITY,
+        };
+        let Shares { by_slot, bound, .. } =
+            self.shares(Spot::pixel(x, y), live, allowed, scratch, cancel);
         // Of one colour it is that; else a mean of some, which parts of it may be known better than.
         let rounding = if by_slot.len() > 1 { 4.0 * UNIT } else { 0.0 };
         self.mean(&by_slot, (bound + rounding).min(1.0))
@@ -258,13 +288,30 @@ impl<'a> Integrator<'a> {
         &self,
         spot: Spot,
         live: &[Live],
+        allowed: Allowed,
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
-        if let Some(quarters) = self.with_fewer_curves(spot, live, &mut scratch.curves, cancel) {
+        let mut seen = Vec::new();
+        let live = match live.len() > SEVERAL {
+            true => {
+                self.world.live_in(spot, live, &mut seen);
+                &seen
+            }
+            false => live,
+        };
+        if live.len() > SEVERAL && spot.side <= SMALLEST {
+            return self.in_doubt(spot, live);
+        }
+        if let Some(quarters) = self.with_fewer_curves(spot, live, allowed, cancel) {
             let mut together = Shares::default();
-            for (quarter, live) in &quarters {
-                let shares = self.shares(*quarter, live, scratch, cancel);
+            for quarter in &quarters {
+                let Quarter {
+                    spot,
+                    live,
+                    allowed,
+                } = quarter;
+                let shares = self.shares(*spot, live, *allowed, scratch, cancel);
                 together.add_part(&shares, 0.25);
             }
             return together;
@@ -338,32 +385,65 @@ impl<'a> Integrator<'a> {
         &self,
         spot: Spot,
         live: &[Live],
-        curves: &mut Vec<Curve>,
+        allowed: Allowed,
         cancel: &AtomicBool,
-    ) -> Option<[(Spot, Vec<Live>); 4]> {
-        if live.len() <= SEVERAL || spot.side <= SMALLEST {
+    ) -> Option<[Quarter; 4]> {
+        if live.len() <= SEVERAL {
             return None;
         }
-        let mut time = |spot, live: &[Live]| {
-            self.world.curves(spot, live, cancel, curves);
-            (curves.len() as u64).saturating_pow(3)
+        let quarters = || {
+            spot.quarters().map(|spot| {
+                let mut seen = Vec::new();
+                self.world.live_in(spot, live, &mut seen);
+                (spot, seen)
+            })
         };
-        let whole = time(spot, live);
-        if whole <= MANY_CURVES {
+        let looks = 4.0 * live.len() as f64;
+        if live.len() > CROWD && allowed.looks >= looks {
+            let quarters = quarters();
+            let together: usize = quarters.iter().map(|(_, live)| live.len()).sum();
+            let left = (allowed.looks - looks) / together.max(1) as f64;
+            return Some(quarters.map(|(spot, live)| Quarter {
+                spot,
+                allowed: Allowed {
+                    looks: left * live.len() as f64,
+                    ..allowed
+                },
+                live,
+            }));
+        }
+        let curves = |spot, live: &[Live]| time(self.world.curves_about(spot, live, cancel));
+        let whole = curves(spot, live);
+        if whole <= time(FEW_CURVES) {
             return None;
         }
-        let (mut together, mut most) = (0_u64, 0_u64);
-        let quarters = spot.quarters().map(|quarter| {
-            let mut seen = Vec::new();
-            self.world.live_in(quarter, live, &mut seen);
-            let one = time(quarter, &seen);
-            together = together.saturating_add(one);
-            most = most.max(one);
-            (quarter, seen)
-        });
-        let is_large = spot.side > LARGE && whole > VERY_MANY_CURVES;
-        let is_heap = together - most <= whole / 4;
-        (is_large || is_heap || together <= whole / 4 * 3).then_some(quarters)
+        let quarters = quarters().map(|(spot, live)| (curves(spot, &live), spot, live));
+        let together: f64 = quarters.iter().map(|(time, ..)| time).sum();
+        let most = quarters.iter().map(|(time, ..)| *time).fold(0.0, f64::max);
+        let is_less = together <= 0.75 * whole || together - most <= 0.25 * whole;
+        let time_allowed = allowed.time.min(HOPE * whole);
+        let is_allowed = whole > time(SOME_CURVES) && together <= time_allowed;
+        (is_less || is_allowed).then(|| {
+            quarters.map(|(time, spot, live)| Quarter {
+                spot,
+                live,
+                allowed: Allowed {
+                    time: time_allowed * time / together,
+                    ..allowed
+                },
+            })
+        })
+    }
+
+    /// A spot that is smaller than matters.
+    fn in_doubt(&self, spot: Spot, live: &[Live]) -> Shares {
+        let (seen, _) = self.world.object_at(spot, DVec2::ZERO, live);
+        let slot = seen.map_or(self.colors.len() - 1, |object| self.world.slots(object)[0]);
+        Shares {
+            by_slot: vec![(slot, 1.0)],
+            bound: 1.0,
+            ..Shares::default()
+        }
     }
 
     fn shares_at_once(
@@ -401,6 +481,11 @@ impl<'a> Integrator<'a> {
         }
         Pixel { mean, bound }
     }
+}
+
+/// About how long a spot with so many curves takes.
+fn time(curves: usize) -> f64 {
+    (curves as f64).powi(3)
 }
 
 /// The pixels of a part of the picture.

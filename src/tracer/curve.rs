@@ -319,13 +319,45 @@ impl Conic {
     }
 
     /// The range of its form over the pixel.
+    ///
+    /// It is least and greatest at corners, or where it is level along a side or in all directions. Of such a place that is not known well
+    /// nothing much depends: to another one in the pixel the form rises by half the product of the way and of its gradient, which is
+    /// next to none.
     pub fn over_pixel(&self) -> Range {
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
-        let mixed = d.abs() + e.abs() + 0.5 * b.abs();
-        let rad = mixed + self.rad + 4.0 * f64::UNIT;
-        Range {
-            low: f - rad + 0.25 * (a.min(0.0) + c.min(0.0)),
-            high: f + rad + 0.25 * (a.max(0.0) + c.max(0.0)),
+        let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
+        let mut range = Range {
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+        };
+        let mut hold = |x: f64, y: f64| {
+            if x.abs() <= 0.5 && y.abs() <= 0.5 {
+                let value = at(x, y);
+                range.low = range.low.min(value);
+                range.high = range.high.max(value);
+            }
+        };
+        for side in [-0.5, 0.5] {
+            hold(side, -0.5);
+            hold(side, 0.5);
+            hold(side, -(b * side + e) / c);
+            hold(-(b * side + d) / a, side);
         }
+        let determinant = a * c - b * b;
+        hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
+        let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
+        let rad = self.rad + 16.0 * f64::UNIT * size;
+        Range {
+            low: range.low - rad,
+            high: range.high + rad,
+        }
+    }
+}
+
+impl Line {
+    /// The range of its form over the pixel.
+    pub fn over_pixel(&self) -> Range {
+        let [a, b, c] = self.factors;
+        Range::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)
     }
 }

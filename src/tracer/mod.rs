@@ -10,6 +10,7 @@
 //! what that leaves in doubt is decided in double-double, and what that leaves in doubt, in big numbers.
 
 mod boards;
+mod boundaries;
 mod camera;
 mod checkerboard;
 mod cover;

@@ -1,7 +1,5 @@
-//! What may be seen in a part of the picture: the objects that are not certain to be missed or hidden there, and in a single
-//! pixel the curves that bound what is seen of them.
-
-use std::sync::atomic::{AtomicBool, Ordering};
+//! What may be seen in a part of the picture: the objects that are not certain to be missed or hidden there, and which of them is seen at
+//! a point.
 
 use glam::DVec2;
 
@@ -12,7 +10,7 @@ use crate::{
 
 use super::{
     cover::{Patch, Range},
-    curve::{Crossings, Curve, Line, Place, Surface},
+    curve::{Crossings, Place, Surface},
     hierarchy::Item,
     object::Object,
     world::{Level, World},
@@ -87,9 +85,11 @@ pub struct Board {
     pub odd: bool,
 }
 
-/// The error of a line's form, and the doubtful area of a conic, from which on double-double was not enough.
+/// As many objects as lie above each other in pictures that people make. Of more it takes too long to compare each two.
+const FEW: usize = 8;
+
+/// The error of a line's form from which on double-double was not enough.
 pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
-const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 impl World {
     /// All objects, as candidates for any part of the picture.
@@ -113,6 +113,9 @@ impl World {
     pub fn live_in(&self, spot: Spot, among: &[Live], out: &mut Vec<Live>) {
         let patch = Patch::of_spot(&self.fast.camera, spot);
         self.live_among(&patch, among.iter().map(|live| live.object), out);
+        if out.len() > FEW {
+            self.drop_behind_middle(spot, &patch, out);
+        }
     }
 
     /// The same of a crowd.
@@ -194,8 +197,6 @@ impl World {
     /// Removes flat objects that lie behind another flat one all over the patch, though their depths there overlap, or in
     /// the same plane as one that comes before them in the file.
     fn drop_covered(&self, patch: &Patch, live: &mut Vec<Live>) {
-        // As many as lie above each other in pictures that people make; with more, the curves of the pixels decide.
-        const FEW: usize = 8;
         if live.len() > FEW {
             return;
         }
@@ -208,6 +209,30 @@ impl World {
                 });
             }
         }
+    }
+
+    /// Removes objects that lie all over a spot behind the one that is seen in its middle, if every ray through the spot meets that.
+    fn drop_behind_middle(&self, spot: Spot, patch: &Patch, live: &mut Vec<Live>) {
+        let (Some(middle), _) = self.object_at(spot, DVec2::ZERO, live) else {
+            return;
+        };
+        let front = live.iter().find(|live| live.object == middle).copied();
+        let Some(front) = front.filter(|front| front.is_whole && !front.is_cut) else {
+            return;
+        };
+        let point = self
+            .fast
+            .camera
+            .sample_point(spot.x, spot.y, spot.offset(DVec2::ZERO));
+        let r = self.fast.camera.direction(&point);
+        live.retain(|back| {
+            back.object == middle
+                || back.is_cut
+                || !(self.covers(middle, back.object, patch)
+                    // What is met there is behind it there; and so it is wherever it is met, which is in one piece, as it is convex.
+                    || matches!(f64::object(self, back.object).first(&r), Ok(Some(_)))
+                        && !self.may_cross(spot, front, *back))
+        });
     }
 
     /// Whether an object that every ray through a patch meets hides another there by the forms of their planes.
@@ -237,81 +262,6 @@ impl World {
         match b.is_seen_from_inside() {
             true => pairs.all(|covered| covered),
             false => pairs.any(|covered| covered),
-        }
-    }
-
-    /// The curves in a spot that may bound what is seen there of some objects: outlines, where surfaces cross each other, and
-    /// where the near and the far plane cut them. There may be as many as pairs of objects: once it is cancelled the rest of them is
-    /// left out.
-    pub fn curves(&self, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
-        out.clear();
-        self.curves_in::<Double>(spot, live, cancel, out);
-        let is_tight = |curve: &Curve| match curve {
-            Curve::Line(line) => line.rad < LOOSE_LINE,
-            Curve::Conic(conic) => conic.doubtful_area() < LOOSE_CONIC,
-        };
-        if !out.iter().all(is_tight) {
-            out.clear();
-            self.curves_in::<Big>(spot, live, cancel, out);
-        }
-    }
-
-    fn curves_in<T: Level>(
-        &self,
-        spot: Spot,
-        live: &[Live],
-        cancel: &AtomicBool,
-        out: &mut Vec<Curve>,
-    ) {
-        let frame = T::frame(self);
-        let place = Place::new(&frame.camera, spot);
-        let mut push = |curve: Curve| {
-            if curve.may_pass() {
-                out.push(curve);
-            }
-        };
-        let objects: Vec<_> = live
-            .iter()
-            .map(|live| T::object(self, live.object))
-            .collect();
-        let surfaces = |at: usize| -> Vec<Surface<T>> {
-            objects[at].surfaces(match live[at].is_cut {
-                true => Crossings::Both,
-                false => Crossings::First,
-            })
-        };
-        for (i, a) in live.iter().enumerate() {
-            if cancel.load(Ordering::Relaxed) {
-                return;
-            }
-            if !a.is_whole {
-                objects[i].outline(&place).into_iter().for_each(&mut push);
-                let clips = [&frame.near, &frame.far];
-                for clip in clips.into_iter().flatten() {
-                    for surface in &surfaces(i) {
-                        place
-                            .crossing(surface, &Surface::Plane(clip))
-                            .into_iter()
-                            .for_each(&mut push);
-                    }
-                }
-            }
-            for (j, b) in live.iter().enumerate().skip(i + 1) {
-                let apart = a.inverse_depth.high < b.inverse_depth.low
-                    || b.inverse_depth.high < a.inverse_depth.low;
-                if apart {
-                    continue;
-                }
-                let others = surfaces(j);
-                for surface in &surfaces(i) {
-                    for other in &others {
-                        place
-                            .crossing(surface, other)
-                            .into_iter()
-                            .for_each(&mut push);
-                    }
-                }
-            }
         }
     }
 
@@ -384,23 +334,5 @@ impl Board {
                 false => f64::INFINITY,
             }
         })
-    }
-}
-
-impl Curve {
-    /// Whether it may pass through the spot.
-    fn may_pass(&self) -> bool {
-        match self {
-            Self::Line(line) => line.over_pixel().holds_zero(),
-            Self::Conic(conic) => conic.over_pixel().holds_zero(),
-        }
-    }
-}
-
-impl Line {
-    /// The range of its form over the pixel.
-    fn over_pixel(&self) -> Range {
-        let [a, b, c] = self.factors;
-        Range::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)
     }
 }

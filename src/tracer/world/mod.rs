@@ -7,7 +7,7 @@ mod ray;
 
 pub use self::ray::Hit;
 
-pub(super) use self::level::Level;
+pub(super) use self::level::{Held, Level};
 
 use std::cmp::Ordering;
 

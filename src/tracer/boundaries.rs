@@ -1,0 +1,179 @@
+//! The curves in a spot that bound what is seen there: outlines, where surfaces cross each other, and where the near and the far plane
+//! cut them.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::math::{Big, Double};
+
+use super::{
+    curve::{Crossings, Curve, Place, Surface},
+    outlook::{LOOSE_LINE, Live, Spot},
+    world::{Held, Level, World},
+};
+
+/// The doubtful area of a conic from which on double-double was not enough.
+const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
+
+/// What a boundary belongs to, of the objects that may be seen, by their places among these.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// An object's outline.
+    Outline(usize),
+    /// An object and the near or the far plane.
+    Clips(usize),
+    /// Two objects.
+    Pair(usize, usize),
+}
+
+/// The boundaries of what may be seen in a spot, in one precision.
+struct Boundaries<'a, T: Level> {
+    world: &'a World,
+    live: &'a [Live],
+    objects: Vec<Held<'a, T>>,
+    place: Place<T>,
+}
+
+impl World {
+    /// The curves in a spot that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
+    /// the rest of them is left out.
+    pub fn curves(&self, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
+        out.clear();
+        let boundaries = Boundaries::<Double>::new(self, spot, live);
+        // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
+        let (mut loose, mut lacking) = (Vec::new(), Vec::new());
+        let mut of_lacking = Vec::new();
+        boundaries.each(cancel, |source| {
+            let before = out.len();
+            let is_whole = boundaries.push(source, out);
+            if !out[before..].iter().all(Curve::is_tight) {
+                out.truncate(before);
+                loose.push(source);
+            } else if !is_whole {
+                of_lacking.extend(out.drain(before..));
+                lacking.push(source);
+            }
+        });
+        if loose.is_empty() {
+            return out.append(&mut of_lacking);
+        }
+        let boundaries = Boundaries::<Big>::new(self, spot, live);
+        for source in loose.into_iter().chain(lacking) {
+            if cancel.load(Ordering::Relaxed) {
+                return;
+            }
+            boundaries.push(source, out);
+        }
+    }
+
+    /// Whether surfaces of two objects may cross each other in a spot, or be one there.
+    pub(super) fn may_cross(&self, spot: Spot, a: Live, b: Live) -> bool {
+        let mut curves = Vec::new();
+        let live = [a, b];
+        let boundaries = Boundaries::<Double>::new(self, spot, &live);
+        !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
+    }
+
+    /// How many curves may pass through a spot as far as double-double tells.
+    pub fn curves_about(&self, spot: Spot, live: &[Live], cancel: &AtomicBool) -> usize {
+        let (mut count, mut curves) = (0, Vec::new());
+        let boundaries = Boundaries::<Double>::new(self, spot, live);
+        boundaries.each(cancel, |source| {
+            boundaries.push(source, &mut curves);
+            count += curves.len();
+            curves.clear();
+        });
+        count
+    }
+}
+
+impl<'a, T: Level> Boundaries<'a, T> {
+    fn new(world: &'a World, spot: Spot, live: &'a [Live]) -> Self {
+        let objects = live.iter().map(|live| T::object(world, live.object));
+        Self {
+            world,
+            live,
+            objects: objects.collect(),
+            place: Place::new(&T::frame(world).camera, spot),
+        }
+    }
+
+    /// All sources that there are in the spot, until it is cancelled.
+    fn each(&self, cancel: &AtomicBool, mut take: impl FnMut(Source)) {
+        for (i, a) in self.live.iter().enumerate() {
+            if cancel.load(Ordering::Relaxed) {
+                return;
+            }
+            if !a.is_whole {
+                take(Source::Outline(i));
+                take(Source::Clips(i));
+            }
+            for (j, b) in self.live.iter().enumerate().skip(i + 1) {
+                let apart = a.inverse_depth.high < b.inverse_depth.low
+                    || b.inverse_depth.high < a.inverse_depth.low;
+                if !apart {
+                    take(Source::Pair(i, j));
+                }
+            }
+        }
+    }
+
+    /// Adds a source's curves that may pass through the spot. Says whether all surfaces of it cross each other somewhere, as all do that are not equal.
+    fn push(&self, source: Source, out: &mut Vec<Curve>) -> bool {
+        let mut push = |curve: Curve| {
+            if curve.may_pass() {
+                out.push(curve);
+            }
+        };
+        let mut all = true;
+        let mut cross = |a: &Surface<T>, b: &Surface<T>| match self.place.crossing(a, b) {
+            Some(curve) => push(curve),
+            None => all = false,
+        };
+        match source {
+            Source::Outline(i) => {
+                let outline = self.objects[i].outline(&self.place);
+                outline.into_iter().for_each(push);
+            }
+            Source::Clips(i) => {
+                let frame = T::frame(self.world);
+                for clip in [&frame.near, &frame.far].into_iter().flatten() {
+                    for surface in &self.surfaces(i) {
+                        cross(surface, &Surface::Plane(clip));
+                    }
+                }
+            }
+            Source::Pair(i, j) => {
+                let others = self.surfaces(j);
+                for surface in &self.surfaces(i) {
+                    others.iter().for_each(|other| cross(surface, other));
+                }
+            }
+        }
+        all
+    }
+
+    fn surfaces(&self, at: usize) -> Vec<Surface<'_, T>> {
+        self.objects[at].surfaces(match self.live[at].is_cut {
+            true => Crossings::Both,
+            false => Crossings::First,
+        })
+    }
+}
+
+impl Curve {
+    /// Whether it may pass through the spot.
+    fn may_pass(&self) -> bool {
+        match self {
+            Self::Line(line) => line.over_pixel().holds_zero(),
+            Self::Conic(conic) => conic.over_pixel().holds_zero(),
+        }
+    }
+
+    /// Whether a higher precision would tell next to nothing more.
+    fn is_tight(&self) -> bool {
+        match self {
+            Self::Line(line) => line.rad < LOOSE_LINE,
+            Self::Conic(conic) => conic.doubtful_area() < LOOSE_CONIC,
+        }
+    }
+}
