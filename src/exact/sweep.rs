@@ -35,14 +35,14 @@ const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some curves.
 pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
-    let mut tracks = Vec::new();
+    let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
     for curve in curves {
         match curve {
             Curve::Line(line) => {
                 regions.doubt(3.0 * line.rad);
                 match Track::of_line(line) {
-                    Some(track) => tracks.push(track),
+                    Some(track) => lines.push(track),
                     None => {
                         let [a, b, c] = line.factors;
                         // Else it is too far away, or no line at all.
@@ -57,7 +57,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
                 regions.doubt(conic.doubtful_area());
                 let graph = Graph::new(conic);
                 cuts.extend(graph.ends());
-                tracks.extend([-1.0, 1.0].map(|side| Track::Branch { graph, side }));
+                graphs.push(graph);
             }
         }
     }
@@ -65,7 +65,8 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
     let mut sweep = Sweep {
-        tracks,
+        lines,
+        graphs,
         regions,
         slabs: 0,
     };
@@ -111,7 +112,8 @@ impl PartialEq for Slab {
 impl Eq for Slab {}
 
 struct Sweep<'a> {
-    tracks: Vec<Track>,
+    lines: Vec<Track<'a>>,
+    graphs: Vec<Graph>,
     regions: Regions<'a>,
     slabs: usize,
 }
@@ -121,23 +123,27 @@ impl Sweep<'_> {
     fn slab(&mut self, left: f64, right: f64, is_last: bool) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let mut doubtful = 0.0;
-        let mut pieces: Vec<(&Track, Piece)> = Vec::with_capacity(self.tracks.len());
-        for track in &self.tracks {
-            if !track.is_at(middle) {
+        let mut pieces: Vec<(Track, Piece)> =
+            Vec::with_capacity(self.lines.len() + self.graphs.len());
+        let lines = self.lines.iter();
+        pieces.extend(lines.map(|line| (*line, line.straight(left, right))));
+        for graph in &self.graphs {
+            let Some(span) = graph.span(left, right) else {
                 continue;
-            }
-            match track.piece(left, right) {
-                Some(piece) => pieces.push((track, piece)),
-                None if is_last => doubtful += width.min(1.0),
-                None => return Some(middle),
+            };
+            for (track, piece) in [-1.0, 1.0].into_iter().filter_map(|side| span.branch(side)) {
+                match piece {
+                    Some(piece) => pieces.push((track, piece)),
+                    None if is_last => doubtful += width.min(1.0),
+                    None => return Some(middle),
+                }
             }
         }
         pieces.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
         let place = |y: f64| pieces.partition_point(|(_, piece)| piece.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
         // The pixel's sides in order with what lies outside of them, and neighbours inside with each other.
-        let sides = [-0.5, 0.5].map(|y| (Track::Level(y), Piece::level(y)));
-        let [bottom, top] = sides.each_ref().map(|(track, piece)| (track, *piece));
+        let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Piece::level(y)));
         let below = pieces[..first].iter().map(|below| (below, &bottom));
         let above = pieces[end..].iter().map(|above| (&top, above));
         let mut inside = vec![&bottom];

@@ -15,9 +15,12 @@ const GOOD: f64 = 32.0 * f64::UNIT;
 /// A steeper line is as good as vertical: from one side of the pixel to the other it moves by less than eight roundings of x.
 const STEEP: f64 = (1u64 << 50) as f64;
 
+/// A branch is as good as outside of the pixel if it is so far from it: no rounding matters.
+const OUTSIDE: f64 = 1.0 / (1u64 << 30) as f64;
+
 /// A curve followed from left to right.
-#[derive(Clone, Debug)]
-pub enum Track {
+#[derive(Clone, Copy, Debug)]
+pub enum Track<'a> {
     /// The line y = const.
     Level(f64),
     /// A line that is not vertical: y = slope · x + start.
@@ -30,7 +33,7 @@ pub enum Track {
     /// The upper or the lower one of a conic's two functions.
     Branch {
         /// The conic.
-        graph: Graph,
+        graph: &'a Graph,
         /// 1 or −1: the sign of the root.
         side: f64,
     },
@@ -43,6 +46,16 @@ pub struct Graph {
     factors: [Double; 6],
     /// Δ as a polynomial in x: the factors of x², 2x and 1.
     delta: [Double; 3],
+}
+
+/// A conic's functions over a range of x.
+#[derive(Debug)]
+pub struct Span<'a> {
+    graph: &'a Graph,
+    /// Left, middle and right.
+    x: [f64; 3],
+    /// √Δ at these.
+    roots: [f64; 3],
 }
 
 /// A track over a range of x, between its chord and two of its tangents.
@@ -89,14 +102,21 @@ impl Graph {
         delta.hi.max(0.0).sqrt()
     }
 
-    /// Whether it is there at x at all.
-    pub fn is_at(&self, x: f64) -> bool {
-        self.root(x) > 0.0
+    /// Its functions from `left` to `right`, where it is there at all.
+    pub fn span(&self, left: f64, right: f64) -> Option<Span<'_>> {
+        let x = [left, 0.5 * (left + right), right];
+        let middle = self.root(x[1]);
+        (middle > 0.0).then(|| Span {
+            graph: self,
+            x,
+            roots: [self.root(left), middle, self.root(right)],
+        })
     }
 
-    fn y(&self, x: f64, side: f64) -> f64 {
+    /// y at an x at which Δ has a root.
+    fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
-        let root = self.root(x) * side;
+        let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
         // Of the two ways to write the root the one that does not cancel.
@@ -134,22 +154,67 @@ impl Graph {
         };
         End { at: [at, y], root }
     }
+}
 
-    /// The arc from one of its points to another, if the two tangents meet between them; and by how much the area between it and its chord may
+impl<'a> Span<'a> {
+    /// One of the two functions as a track and its piece, where it is a number at all and may be seen in the pixel; that is none
+    /// if it turns too much to be followed at once.
+    pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Piece>)> {
+        let Self { graph, x, roots } = self;
+        let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
+        if !y[1].is_finite() {
+            return None;
+        }
+        // A function that bends one way only is nowhere farther from its chord than twice as far as in the middle.
+        let sagitta = y[1] - 0.5 * (y[0] + y[2]);
+        let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE;
+        if y.iter().all(|y| *y > beyond) || y.iter().all(|y| *y < -beyond) {
+            return None;
+        }
+        let straight = Piece {
+            y,
+            arc: None,
+            slack: 0.0,
+        };
+        let (start, end) = (DVec2::new(x[0], y[0]), DVec2::new(x[2], y[2]));
+        let width = end.x - start.x;
+        let piece = match self.arc([start, end], side) {
+            Some((arc, off)) => {
+                let bulge = 1f64.copysign((end - start).perp_dot(arc.control - start));
+                Some(Piece {
+                    arc: Some((bulge, arc)),
+                    slack: off / width,
+                    ..straight
+                })
+            }
+            // Too flat for its tangents to be told apart.
+            None => {
+                let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
+                (sagitta.abs() <= flat).then_some(Piece {
+                    slack: 2.0 * sagitta.abs() + flat,
+                    ..straight
+                })
+            }
+        };
+        Some((Track::Branch { graph, side }, piece))
+    }
+
+    /// The arc from its first point to its last, if the two tangents meet between them; and by how much the area between it and its chord may
     /// be off.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
+        let Self { graph, roots, .. } = self;
         let [start, end] = ends;
-        let factors = self.factors.map(|factor| factor.hi);
-        let rounded = ends.map(|at| End {
+        let factors = graph.factors.map(|factor| factor.hi);
+        let rounded = [(start, roots[0]), (end, roots[2])].map(|(at, root)| End {
             at: [at.x, at.y],
-            root: side * self.root(at.x),
+            root: side * root,
         });
         let mut tangents = Tangents::new(&factors, &rounded);
         // Of a conic that is next to nothing but a line hardly more than roundings is left of the gradient.
         let is_good = tangents.off <= GOOD * (end.x - start.x);
         if !is_good {
-            let ends = ends.map(|at| self.closely(at.x, side));
-            tangents = Tangents::new(&self.factors, &ends);
+            let ends = ends.map(|at| graph.closely(at.x, side));
+            tangents = Tangents::new(&graph.factors, &ends);
         }
         let Tangents { control, w2, off } = tangents;
         let arc = Arc {
@@ -240,7 +305,7 @@ impl Tangents {
     }
 }
 
-impl Track {
+impl Track<'_> {
     /// The track of a line; none if it is vertical, or so steep that it may be said to be.
     pub fn of_line(line: &Line) -> Option<Self> {
         let [a, b, c] = line.factors;
@@ -253,47 +318,17 @@ impl Track {
         match self {
             Self::Level(y) => *y,
             Self::Line { slope, start } => slope * x + start,
-            Self::Branch { graph, side } => graph.y(x, *side),
+            Self::Branch { graph, side } => graph.y(x, graph.root(x), *side),
         }
     }
 
-    /// Whether the track is there in the middle of a range without an end in it.
-    pub fn is_at(&self, x: f64) -> bool {
-        match self {
-            Self::Branch { graph, .. } => graph.is_at(x) && self.y(x).is_finite(),
-            _ => true,
-        }
-    }
-
-    /// The track from `left` to `right`; `None` if it turns too much to be followed at once.
-    pub fn piece(&self, left: f64, right: f64) -> Option<Piece> {
-        let middle = 0.5 * (left + right);
-        let y = [left, middle, right].map(|x| self.y(x));
-        let straight = Piece {
-            y,
+    /// A straight track from `left` to `right`.
+    pub fn straight(&self, left: f64, right: f64) -> Piece {
+        Piece {
+            y: [left, 0.5 * (left + right), right].map(|x| self.y(x)),
             arc: None,
             slack: 0.0,
-        };
-        let Self::Branch { graph, side } = self else {
-            return Some(straight);
-        };
-        let (start, end) = (DVec2::new(left, y[0]), DVec2::new(right, y[2]));
-        let sagitta = y[1] - 0.5 * (y[0] + y[2]);
-        if let Some((arc, off)) = graph.arc([start, end], *side) {
-            let bulge = 1f64.copysign((end - start).perp_dot(arc.control - start));
-            return Some(Piece {
-                arc: Some((bulge, arc)),
-                slack: off / (right - left),
-                ..straight
-            });
         }
-        // Too flat for its tangents to be told apart: a conic's arc over a chord is nowhere farther from it than twice
-        // the sagitta in the middle, unless it has an end there.
-        let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
-        (sagitta.abs() <= flat).then_some(Piece {
-            slack: 2.0 * sagitta.abs() + flat,
-            ..straight
-        })
     }
 }
 
