@@ -152,6 +152,8 @@ struct Allowed {
     looks: f64,
     /// With fewer objects than a crowd, about how long they may take.
     time: f64,
+    /// About how long it takes at once, where that is known.
+    whole: Option<f64>,
 }
 
 /// Room for what a pixel needs, kept from pixel to pixel.
@@ -248,6 +250,7 @@ impl<'a> Integrator<'a> {
         let allowed = Allowed {
             looks: PATIENCE * live.len() as f64,
             time: f64::INFINITY,
+            whole: None,
         };
         let Shares { by_slot, bound, .. } =
             self.shares(Spot::pixel(x, y), live, allowed, scratch, cancel);
@@ -413,7 +416,7 @@ impl<'a> Integrator<'a> {
             }));
         }
         let curves = |spot, live: &[Live]| time(self.world.curves_about(spot, live, cancel));
-        let whole = curves(spot, live);
+        let whole = allowed.whole.unwrap_or_else(|| curves(spot, live));
         if whole <= time(FEW_CURVES) {
             return None;
         }
@@ -429,6 +432,7 @@ impl<'a> Integrator<'a> {
                 live,
                 allowed: Allowed {
                     time: time_allowed * time / together,
+                    whole: Some(time),
                     ..allowed
                 },
             })

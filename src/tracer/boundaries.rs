@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::math::{Big, Double};
 
 use super::{
-    curve::{Crossings, Curve, Place, Surface},
+    curve::{Curve, Place, Surface},
     outlook::{LOOSE_LINE, Live, Spot},
     world::{Held, Level, World},
 };
@@ -153,10 +153,7 @@ impl<'a, T: Level> Boundaries<'a, T> {
     }
 
     fn surfaces(&self, at: usize) -> Vec<Surface<'_, T>> {
-        self.objects[at].surfaces(match self.live[at].is_cut {
-            true => Crossings::Both,
-            false => Crossings::First,
-        })
+        self.objects[at].surfaces(self.live[at].crossings)
     }
 }
 

@@ -57,7 +57,9 @@ pub enum Surface<'a, T: Real> {
 pub enum Crossings {
     /// The first one.
     First,
-    /// The second one as well.
+    /// The second one.
+    Second,
+    /// Both.
     Both,
 }
 

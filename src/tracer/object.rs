@@ -136,7 +136,7 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// The surfaces where rays meet it: those of their first crossings, or of their second ones as well.
+    /// The surfaces where rays meet it: those of their first crossings, of their second ones, or of both.
     pub fn surfaces(&self, which: Crossings) -> Vec<Surface<'_, T>> {
         match self {
             Self::EdgeOn => Vec::new(),
@@ -145,6 +145,7 @@ impl<T: Real> Object<T> {
             Self::Checkerboard(checkerboard) => vec![Surface::Plane(&checkerboard.plane)],
             Self::Cuboid(cuboid) => match which {
                 Crossings::First => cuboid.firsts().map(Surface::Plane).collect(),
+                Crossings::Second => cuboid.seconds().map(Surface::Plane).collect(),
                 Crossings::Both => {
                     let faces = cuboid.firsts().chain(cuboid.seconds());
                     faces.map(Surface::Plane).collect()

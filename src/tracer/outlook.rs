@@ -1,6 +1,8 @@
 //! What may be seen in a part of the picture: the objects that are not certain to be missed or hidden there, and which of them is seen at
 //! a point.
 
+use std::cmp::Ordering;
+
 use glam::DVec2;
 
 use crate::{
@@ -10,6 +12,7 @@ use crate::{
 
 use super::{
     cover::{Patch, Range},
+    crossing::Crossing,
     curve::{Crossings, Place, Surface},
     hierarchy::Item,
     object::Object,
@@ -25,8 +28,15 @@ pub struct Live {
     pub is_whole: bool,
     /// Holds the inverse depths of what may be seen of it.
     pub(super) inverse_depth: Range,
-    /// Whether the near plane may cut it there.
-    pub(super) is_cut: bool,
+    /// Where it may be seen: not only where rays meet it first if the near plane may cut it there.
+    pub(super) crossings: Crossings,
+}
+
+impl Live {
+    /// Whether the near plane may cut it.
+    pub(super) fn is_cut(&self) -> bool {
+        self.crossings != Crossings::First
+    }
 }
 
 /// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
@@ -98,7 +108,10 @@ impl World {
             object,
             is_whole: false,
             inverse_depth: Range::ALL,
-            is_cut: self.fast.near.is_some(),
+            crossings: match self.fast.near {
+                Some(_) => Crossings::Both,
+                None => Crossings::First,
+            },
         };
         (0..self.len()).map(live).collect()
     }
@@ -167,7 +180,7 @@ impl World {
             object: index,
             is_whole: cover.is_whole,
             inverse_depth: cover.inverse_depth.or_all(),
-            is_cut: false,
+            crossings: Crossings::First,
         };
         if let Some(near) = near
             && live.inverse_depth.high >= near.low
@@ -181,9 +194,15 @@ impl World {
             if behind.low > near.high {
                 return None;
             }
-            live.is_cut = true;
-            live.is_whole = false;
-            live.inverse_depth.low = live.inverse_depth.low.min(behind.low);
+            if live.inverse_depth.low > near.high {
+                live.crossings = Crossings::Second;
+                live.inverse_depth = behind;
+                live.is_whole &= behind.high < near.low;
+            } else {
+                live.crossings = Crossings::Both;
+                live.inverse_depth.low = live.inverse_depth.low.min(behind.low);
+                live.is_whole = false;
+            }
         }
         if let Some(far) = far {
             if live.inverse_depth.high < far.low {
@@ -201,10 +220,10 @@ impl World {
             return;
         }
         for front in live.clone() {
-            if front.is_whole {
+            if front.is_whole && !front.is_cut() {
                 live.retain(|back| {
                     back.object == front.object
-                        || back.is_cut
+                        || back.is_cut()
                         || !self.covers(front.object, back.object, patch)
                 });
             }
@@ -217,21 +236,33 @@ impl World {
             return;
         };
         let front = live.iter().find(|live| live.object == middle).copied();
-        let Some(front) = front.filter(|front| front.is_whole && !front.is_cut) else {
+        let Some(front) = front.filter(|front| front.is_whole) else {
             return;
         };
-        let point = self
+        let offset = spot.offset(DVec2::ZERO);
+        let r = self
             .fast
             .camera
-            .sample_point(spot.x, spot.y, spot.offset(DVec2::ZERO));
-        let r = self.fast.camera.direction(&point);
+            .direction(&self.fast.camera.sample_point(spot.x, spot.y, offset));
+        let is_met = |back: &Live| {
+            let object = f64::object(self, back.object);
+            let first = || object.first(&r).ok().flatten();
+            let is_beyond_near = |crossing: Crossing<f64>| match &self.fast.near {
+                Some(near) => crossing.inverse_depth.compare(&near.at(&r)) == Ok(Ordering::Less),
+                None => true,
+            };
+            match back.crossings {
+                Crossings::First => first().is_some(),
+                Crossings::Both => first().is_some_and(is_beyond_near),
+                Crossings::Second => first().and(object.second(&r)).is_some_and(is_beyond_near),
+            }
+        };
         live.retain(|back| {
+            let are_uncut = !front.is_cut() && !back.is_cut();
             back.object == middle
-                || back.is_cut
-                || !(self.covers(middle, back.object, patch)
+                || !(are_uncut && self.covers(middle, back.object, patch)
                     // What is met there is behind it there; and so it is wherever it is met, which is in one piece, as it is convex.
-                    || matches!(f64::object(self, back.object).first(&r), Ok(Some(_)))
-                        && !self.may_cross(spot, front, *back))
+                    || is_met(back) && !self.may_cross(spot, front, *back))
         });
     }
 

@@ -162,7 +162,7 @@ impl Pixel {
             _ => None,
         };
         let mut met = Met::Yes;
-        if live.is_cut {
+        if live.is_cut() {
             let (Some(near), Some(plane)) = (&frame.near, plane) else {
                 return Err(Hard);
             };
