@@ -1,6 +1,8 @@
 //! The curves in a spot that bound what is seen there: outlines, where surfaces cross each other, and where the near and the far plane
 //! cut them.
 
+mod equal;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::math::{Big, Double};
@@ -54,7 +56,8 @@ impl World {
             }
         });
         if loose.is_empty() {
-            return out.append(&mut of_lacking);
+            out.append(&mut of_lacking);
+            return equal::merge(out);
         }
         let boundaries = Boundaries::<Big>::new(self, spot, live);
         for source in loose.into_iter().chain(lacking) {
@@ -63,6 +66,7 @@ impl World {
             }
             boundaries.push(source, out);
         }
+        equal::merge(out);
     }
 
     /// Whether surfaces of two objects may cross each other in a spot, or be one there.
@@ -75,14 +79,13 @@ impl World {
 
     /// How many curves may pass through a spot as far as double-double tells.
     pub fn curves_about(&self, spot: Spot, live: &[Live], cancel: &AtomicBool) -> usize {
-        let (mut count, mut curves) = (0, Vec::new());
+        let mut curves = Vec::new();
         let boundaries = Boundaries::<Double>::new(self, spot, live);
         boundaries.each(cancel, |source| {
             boundaries.push(source, &mut curves);
-            count += curves.len();
-            curves.clear();
         });
-        count
+        equal::merge(&mut curves);
+        curves.len()
     }
 }
 
