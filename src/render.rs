@@ -16,7 +16,7 @@ use std::{
     ops::ControlFlow,
     sync::{
         Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
 
@@ -137,6 +137,26 @@ pub fn render_in_a_way<P: film::Pixel>(
     control: &Control,
     way: Way,
 ) -> Result<Film<P>, RenderError> {
+    Ok(film_and_rays(world, sampling, part, control, way)?.0)
+}
+
+/// Renders, and says how many of the samples were traced: the others lie in pixels that are certain to show one colour.
+pub fn render_and_count(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+) -> Result<(Film, u64), RenderError> {
+    film_and_rays(world, sampling, part, control, Way::Culled)
+}
+
+fn film_and_rays<P: film::Pixel>(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+    way: Way,
+) -> Result<(Film<P>, u64), RenderError> {
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors: Vec<_> = world
         .palette()
@@ -153,6 +173,7 @@ pub fn render_in_a_way<P: film::Pixel>(
         encoder: &encoder,
         control,
         way,
+        rays: AtomicU64::new(0),
         quartering: Quartering::for_samples(world, sampling.mean_count()),
         everything: match way {
             Way::Culled | Way::OneByOne => Vec::new(),
@@ -174,7 +195,7 @@ pub fn render_in_a_way<P: film::Pixel>(
                 },
             );
     })?;
-    finished(film, control)
+    Ok((finished(film, control)?, frame.rays.into_inner()))
 }
 
 /// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
@@ -297,6 +318,8 @@ struct Frame<'a, P> {
     encoder: &'a Encoder,
     control: &'a Control<'a>,
     way: Way,
+    /// How many samples were traced.
+    rays: AtomicU64,
     quartering: Quartering<'a>,
     /// All objects, for the ways that ask all of them.
     everything: Vec<Live>,
@@ -315,6 +338,7 @@ impl<P: film::Pixel> Frame<'_, P> {
             // A pixel without a sample shows the background.
             pixels: vec![background; tile.pixels() as usize],
             unreported: 0,
+            rays: 0,
         };
         let mut visit = |part: Part, checks: Option<&Checks>| match part {
             Part::Flat { area, slot } => {
@@ -345,6 +369,7 @@ impl<P: film::Pixel> Frame<'_, P> {
             ),
         };
         (self.control.progress)(film.unreported);
+        self.rays.fetch_add(film.rays, Ordering::Relaxed);
         flow.is_continue().then_some(film.pixels)
     }
 
@@ -374,6 +399,7 @@ impl<P: film::Pixel> Frame<'_, P> {
             Trace::Together(live, _) if samples == 1 => Trace::Among(live),
             _ => trace,
         };
+        film.rays += samples;
         if samples <= CHUNK {
             self.look([x, y], trace, &mut tally.pixel);
             self.chunk(x, y, samples, 0, trace, tally);

@@ -315,9 +315,9 @@ pub struct ReportArgs {
     /// Runs of each method with each number of samples [default: up to 9, as the time goes]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub runs: Option<u64>,
-    /// Tell the samples and the time that this error takes, in linear light, such as 1/256 or 0.001; may be given
-    /// any number of times
-    #[arg(long = "error", value_name = "E", default_value = "1/256", allow_negative_numbers = true, value_parser = error)]
+    /// Tell the samples and the time that this error takes, too, in linear light, such as 0.01 or 1/1000: 1/256 is always among
+    /// them; may be given any number of times
+    #[arg(long = "error", value_name = "E", allow_negative_numbers = true, value_parser = error)]
     pub errors: Vec<f64>,
     /// About how long a scene may take, where --samples and --runs leave a choice
     #[arg(long, value_name = "SECONDS", default_value_t = 45, allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]

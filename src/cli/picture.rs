@@ -55,8 +55,8 @@ impl Picture {
         }
     }
 
-    /// What is to be said of it: how exact a computed one is.
-    pub fn notes(&self, output: &Output) -> String {
+    /// What is to be said of it, which is a part of the whole picture: how exact a computed one is.
+    pub fn notes(&self, part: Area, output: &Output) -> String {
         match self {
             Self::Sampled(_) | Self::Bytes(_) => String::new(),
             Self::Exact(exact) => {
@@ -64,12 +64,12 @@ impl Picture {
                 match output {
                     Output::File(_, Format::Exr) => {
                         let certain = film::certified_floats(film, bounds);
-                        certificate(exact, certain, "the 32-bit rounding")
+                        certificate(exact, part, certain, "the 32-bit rounding")
                     }
-                    _ => certificate(exact, film::certified(film, bounds), BYTES),
+                    _ => certificate(exact, part, film::certified(film, bounds), BYTES),
                 }
             }
-            Self::ExactBytes(exact) => certificate(exact, exact.certain, BYTES),
+            Self::ExactBytes(exact) => certificate(exact, part, exact.certain, BYTES),
         }
     }
 }
@@ -131,8 +131,8 @@ const VAGUE: f32 = 1e-6;
 /// What is certain of the pixels of a PNG.
 const BYTES: &str = "the 8-bit rounding";
 
-/// What is certain of a computed picture, and of the numbers in its file: of so many pixels what is done to them.
-fn certificate<P: film::Pixel>(exact: &Exact<P>, certain: u64, what: &str) -> String {
+/// What is certain of a computed part of the picture, and of the numbers in its file: of so many pixels what is done to them.
+fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
         0 => format!("{what} of every pixel is certain"),
@@ -154,7 +154,11 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, certain: u64, what: &str) -> St
         && count > 0
     {
         let width = exact.film.width() as usize;
-        let (x, y) = (least % width, least / width);
+        // Places count in pixels of the whole picture.
+        let (x, y) = (
+            part.x as usize + least % width,
+            part.y as usize + least / width,
+        );
         let pixels = match count {
             1 => "one pixel is".to_owned(),
             more => format!("{} pixels are", numbers::grouped(more)),

@@ -53,7 +53,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         return Err(Trouble(format!("cannot write to {output}: {error}")));
     }
     output::to_people(&output.note_of_length(&recipe));
-    output::to_people(&picture.notes(&output));
+    output::to_people(&picture.notes(part, &output));
     if output::is_watched() {
         let (width, height) = picture.size();
         let seconds = started.elapsed().as_secs_f64();

@@ -101,10 +101,21 @@ fn request(args: &ReportArgs) -> Request {
         },
         samples: args.samples.clone(),
         runs: args.runs,
-        errors: args.errors.clone(),
+        errors: errors(&args.errors),
         budget: Duration::from_secs(args.budget),
         threads: None,
     }
+}
+
+/// The error that everybody wants to know of, and those that are asked for, each once.
+fn errors(asked: &[f64]) -> Vec<f64> {
+    let mut errors = vec![1.0 / 256.0];
+    for &error in asked {
+        if !errors.contains(&error) {
+            errors.push(error);
+        }
+    }
+    errors
 }
 
 /// Samples are for those who take them.

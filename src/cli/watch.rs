@@ -143,7 +143,8 @@ fn make(
         return Ok(None);
     }
     let done = Instant::now();
-    let notes = picture.notes(output);
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let notes = picture.notes(whole, output);
     // Also one that cannot be written can be seen.
     if let Some(film) = picture.into_film() {
         screen.draw(film);

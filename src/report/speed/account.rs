@@ -19,7 +19,7 @@ pub fn account(measurements: &[Measurement]) -> String {
          plus the number of the round.</li>\n\
          <li><b>What is timed</b> is the way from the scene in memory to the picture in memory: preparing objects and samples, starting the \
          threads, rendering. Reading the scene, comparing pictures and writing PNG files are not. Samples per second are all samples divided by that time: most lie in pixels \
-         that are certain to show one colour, and are not traced, so that fewer rays are. The time is the median of the runs; \
+         that are certain to show one colour, and are not traced. Rays per second are those that are, by the same time. The time is the median of the runs; \
          combinations whose times spread by more than {noisy} % of it are called noisy above.</li>\n\
          <li><b>The error</b> is the root of the mean squared difference to the exact picture, over all pixels and the three channels, in \
          linear light; that of several runs is the root of the mean of their squares. The reference is not rendered with many samples but \

@@ -10,13 +10,13 @@ use super::{
     measure::{Measurement, Point, Series},
     needed::Check,
     notes::{FACTOR, notes, spread, verdicts},
-    table::{RATE, SLOPE},
+    table::{AT_MOST, RATE, RAYS, SLOPE},
 };
 
 /// A row for each method and number of samples, after a row of names. Times are in seconds, errors in linear light. Rows of samples that were
 /// tried say for which error, and have no part in the slope. The exact method has a row without samples, and a bound in place of errors.
 pub fn to_csv(measured: &Measurement) -> String {
-    let mut text = "method,per_pixel,samples,runs,seconds_median,seconds_min,seconds_max,spread,samples_per_second,rmse,rmse_min,\
+    let mut text = "method,per_pixel,samples,runs,seconds_median,seconds_min,seconds_max,spread,samples_per_second,rays,rays_per_second,rmse,rmse_min,\
                     rmse_max,largest_error,slope,slope_error,bound,tried_for\n"
         .to_owned();
     for series in &measured.series {
@@ -35,7 +35,7 @@ pub fn to_csv(measured: &Measurement) -> String {
         let [fast, slow] = ends(&exact.times);
         let _ = writeln!(
             text,
-            "exact,,,{},{},{fast},{slow},{},,,,,,,,{},",
+            "exact,,,{},{},{fast},{slow},{},,,,,,,,,,{},",
             exact.times.len(),
             median(&exact.times),
             spread(&exact.times),
@@ -50,7 +50,7 @@ fn columns(series: &Series, point: &Point) -> String {
     let [fast, slow] = ends(&point.times);
     let [good, bad] = ends(&point.rmse);
     format!(
-        "{},{},{},{},{},{fast},{slow},{},{},{},{good},{bad},{}",
+        "{},{},{},{},{},{fast},{slow},{},{},{},{},{},{good},{bad},{}",
         series.method.name(),
         point.per_pixel,
         point.samples,
@@ -58,6 +58,8 @@ fn columns(series: &Series, point: &Point) -> String {
         point.seconds(),
         point.spread(),
         point.samples_per_second(),
+        point.rays,
+        point.rays_per_second(),
         point.error(),
         point.largest
     )
@@ -93,7 +95,7 @@ pub fn to_json(measured: &Measurement) -> Value {
         "methods": measured.series.iter().map(|series| of_series(series, &measured.errors)).collect::<Vec<_>>(),
         "verdicts": verdicts(measured),
         "notes": notes(measured),
-        "about": {"slope_error": SLOPE, "factor": FACTOR, "samples_per_second": RATE},
+        "about": {"slope_error": SLOPE, "factor": FACTOR, "at_most": AT_MOST, "samples_per_second": RATE, "rays": RAYS},
     })
 }
 
@@ -110,11 +112,12 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
     });
     let needed = errors.iter().map(|&error| match series.needed(error) {
         None => {
-            json!({"error": error, "per_pixel": null, "factor": null, "time": null, "extrapolated": null, "tried": null})
+            json!({"error": error, "per_pixel": null, "at_most": null, "factor": null, "time": null, "extrapolated": null, "tried": null})
         }
         Some(needed) => json!({
             "error": error,
             "per_pixel": needed.per_pixel,
+            "at_most": needed.is_at_most,
             "factor": needed.factor,
             "time": needed.seconds,
             "extrapolated": needed.is_extrapolated,
@@ -142,6 +145,8 @@ fn of_point(point: &Point) -> Value {
         "samples": point.samples,
         "time": times(&point.times),
         "samples_per_second": point.samples_per_second(),
+        "rays": point.rays,
+        "rays_per_second": point.rays_per_second(),
         "rmse": point.error(),
         "rmse_runs": point.rmse,
         "largest_error": point.largest,

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     area::Area,
     film::{Film, Recipe},
-    render::{Control, Exact, RenderError, render, render_exact},
+    render::{Control, Exact, RenderError, render_and_count, render_exact},
     sampling::{
         Sampling,
         hash::{Key, scale},
@@ -95,6 +95,8 @@ pub struct Point {
     pub per_pixel: u64,
     /// Samples of the whole picture.
     pub samples: u64,
+    /// How many of these were traced in the first run: the others lie in pixels that are certain to show one colour.
+    pub rays: u64,
     /// Seconds, run by run.
     pub times: Vec<f64>,
     /// The root of the mean of the squared differences to the exact picture, over all pixels and channels in linear light, run by run.
@@ -106,6 +108,7 @@ pub struct Point {
 /// What came out of a single run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
+    pub(super) rays: u64,
     pub(super) seconds: f64,
     pub(super) rmse: f64,
     pub(super) largest: f64,
@@ -116,6 +119,7 @@ impl Point {
         Self {
             per_pixel,
             samples: per_pixel.saturating_mul(pixels),
+            rays: 0,
             times: Vec::new(),
             rmse: Vec::new(),
             largest: 0.0,
@@ -123,6 +127,9 @@ impl Point {
     }
 
     pub(super) fn add(&mut self, run: Run) {
+        if self.times.is_empty() {
+            self.rays = run.rays;
+        }
         self.times.push(run.seconds);
         self.rmse.push(run.rmse);
         self.largest = self.largest.max(run.largest);
@@ -141,6 +148,11 @@ impl Point {
     /// How many samples are taken a second: whether they are traced, or known to show one colour without.
     pub fn samples_per_second(&self) -> f64 {
         self.samples as f64 / self.seconds()
+    }
+
+    /// How many of them are traced a second.
+    pub fn rays_per_second(&self) -> f64 {
+        self.rays as f64 / self.seconds()
     }
 }
 
@@ -418,10 +430,11 @@ pub(super) fn run(
     let started = Instant::now();
     let world = World::new(scene);
     let sampling = Sampling::new(&sampler, width, height);
-    let film = render(&world, &sampling, Area::whole(width, height), control)?;
+    let (film, rays) = render_and_count(&world, &sampling, Area::whole(width, height), control)?;
     let seconds = started.elapsed().as_secs_f64();
     let (rmse, largest) = difference(&film, reference);
     let run = Run {
+        rays,
         seconds,
         rmse,
         largest,

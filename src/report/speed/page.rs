@@ -189,20 +189,22 @@ fn errors(measured: &Measurement) -> String {
 fn times(measured: &Measurement) -> String {
     let rows = measured.series.iter().map(|series| {
         let mut row = cells(measured, series, |point| ranged(&point.times));
-        let rate = series.points.last().map_or(0.0, Point::samples_per_second);
-        row.push(format!("{:.1}", rate / 1e6));
+        let last = series.points.last();
+        for rate in [Point::samples_per_second, Point::rays_per_second] {
+            row.push(format!("{:.1}", last.map_or(0.0, rate) / 1e6));
+        }
         (series.method.name(), row)
     });
     let rungs = measured.rungs.len();
     let exact = measured.exact.as_ref().map(|exact| {
         let time = ranged(&exact.times);
-        format!("<td class=\"any\" colspan=\"{rungs}\">{time}</td><td></td>")
+        format!("<td class=\"any\" colspan=\"{rungs}\">{time}</td><td></td><td></td>")
     });
     let mut names = rung_names(measured);
-    names.push("million samples/s".to_owned());
+    names.extend(["million samples/s", "million rays/s"].map(str::to_owned));
     table(
-        "Time: the median of the runs, ± half of the distance from the least to the greatest, by samples per pixel; the rate with \
-         the most samples, traced or not: where pixels are certain to show one colour, none is. The exact method takes no samples.",
+        "Time: the median of the runs, ± half of the distance from the least to the greatest, by samples per pixel; the rates with \
+         the most samples, of all of them, and of those that are traced: where pixels are certain to show one colour, none is. The exact method takes no samples.",
         &names,
         rows,
         exact,

@@ -14,8 +14,13 @@ use crate::{numbers, scene::Method, suggest};
 pub(super) const SLOPE: &str = "of the line through the logarithms of samples and error; ± covers its standard error and the slope between any \
      two points, tried ones among them, of which one has at least twice the samples of the other. More samples than these may have another one.";
 
-/// What a rate means.
-pub(super) const RATE: &str = "all samples by the time that they take, traced or not: where pixels are certain to show one colour, none is.";
+/// What the rates mean.
+pub(super) const RATE: &str = "all samples by the time that they take, traced or not.";
+pub(super) const RAYS: &str = "those of the samples that are traced, by the same time: where pixels are certain to show one colour, none is.";
+
+/// What it means that fewer may do.
+pub(super) const AT_MOST: &str =
+    "whether fewer samples may do: these are the fewest that were measured.";
 
 /// The tables of errors, of times and of what an error takes.
 pub fn table(measured: &Measurement) -> String {
@@ -38,6 +43,7 @@ pub fn table(measured: &Measurement) -> String {
     if !measured.series.is_empty() {
         text += &wrapped(&format!("slope: {SLOPE}"));
         text += &wrapped(&format!("million samples/s: {RATE}"));
+        text += &wrapped(&format!("million rays/s: {RAYS}"));
     }
     text
 }
@@ -92,7 +98,7 @@ fn times(measured: &Measurement) -> String {
     }
     text += match measured.series.is_empty() {
         true => "    spread\n",
-        false => "    spread  million samples/s\n",
+        false => "    spread  million samples/s  million rays/s\n",
     };
     for series in &measured.series {
         let _ = write!(text, "{:16}", series.method.name());
@@ -100,15 +106,15 @@ fn times(measured: &Measurement) -> String {
             let _ = write!(text, "{cell:>9}");
         }
         let widest = series.points.iter().map(|point| point.spread());
-        let rate = series
-            .points
-            .last()
-            .map_or(0.0, |point| point.samples_per_second());
+        let last = series.points.last();
+        let samples = last.map_or(0.0, Point::samples_per_second);
+        let rays = last.map_or(0.0, Point::rays_per_second);
         let _ = writeln!(
             text,
-            "{:>10}{:>19.1}",
+            "{:>10}{:>19.1}{:>16.1}",
             percent(widest.fold(0.0, f64::max), measured.rounds()),
-            rate / 1e6
+            samples / 1e6,
+            rays / 1e6
         );
     }
     if let Some(exact) = &measured.exact {

@@ -210,20 +210,31 @@ fn a_bound_that_is_worth_a_word_gets_one() {
                  sampler { method exact }
                  checkerboard { y 0 square 5e-324 }";
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("wide.scn");
-    fs::write(&path, scene).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .args(["render", "-o"])
-        .arg(folder.path().join("wide.png"))
-        .arg(&path)
+    fs::write(folder.path().join("wide.scn"), scene).unwrap();
+    let output = command(folder.path(), &["render", "wide.scn"])
         .output()
         .unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{told}");
-    assert!(
-        told.contains("known less well than to a millionth, least of all the one at column"),
-        "{told}"
-    );
+    let place = place(&told);
+    assert!(place.iter().any(|&at| at > 0), "{told}");
+    // A crop tells the place in the whole picture, too.
+    let crop = format!("{},{},1,1", place[0], place[1]);
+    let output = command(folder.path(), &["render", "wide.scn", "--crop", &crop])
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("exact: one pixel is known"), "{told}");
+    assert_eq!(self::place(&told), place);
+}
+
+/// The column and the row of the pixel that is told to be known least.
+fn place(told: &str) -> [u32; 2] {
+    let told = told
+        .split_once("known less well than to a millionth, least of all the one at column ")
+        .and_then(|(_, place)| place.trim().split_once(", row "));
+    let (column, row) = told.unwrap_or_else(|| panic!("no place in {told:?}"));
+    [column, row].map(|number| number.parse().unwrap())
 }
 
 #[test]

@@ -70,7 +70,15 @@ fn a_folder_gets_whole_files() {
     let (names, first, exact) = (cells(0), cells(1), cells(7));
     let at = |name: &str| names.iter().position(|it| *it == name).unwrap();
     assert_eq!((exact[0], exact[at("runs")]), ("exact", "2"));
-    for name in ["rmse", "rmse_min", "rmse_max", "largest_error", "slope"] {
+    for name in [
+        "rays",
+        "rays_per_second",
+        "rmse",
+        "rmse_min",
+        "rmse_max",
+        "largest_error",
+        "slope",
+    ] {
         assert_eq!(exact[at(name)], "", "{name}");
         assert_ne!(first[at(name)], "", "{name}");
     }

@@ -96,6 +96,7 @@ fn people_get_a_table() {
         "the slope (*) has the errors of those in it",
         "the fastest sampled method",
         "million samples/s: all samples by the time that they take, traced or not",
+        "million rays/s: those of the samples that are traced",
         "slope: of the line through the logarithms of samples and error; ± covers",
     ] {
         let is_there = text.contains(word) || text.replace("\n ", " ").contains(word);
@@ -123,8 +124,6 @@ fn programs_get_json_and_errors_fall() {
         "64,1,16,4,16",
         "--runs",
         "3",
-        "--error",
-        "1/256",
         "--error",
         "0.5",
         "--error",
@@ -170,7 +169,30 @@ fn programs_get_json_and_errors_fall() {
             _ => -0.85..-0.55,
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
+        for point in measured {
+            let [samples, rays] = ["samples", "rays"].map(|key| point[key].as_u64().unwrap());
+            // Neither is all of the picture in doubt, nor nothing of it.
+            assert!(
+                samples / 20 < rays && rays < samples / 2,
+                "{name}: {rays} of {samples}"
+            );
+            let [samples_a_second, rays_a_second] =
+                ["samples_per_second", "rays_per_second"].map(|key| point[key].as_f64().unwrap());
+            let ratio = rays_a_second / samples_a_second;
+            assert!(
+                (ratio - rays as f64 / samples as f64).abs() < 1e-9,
+                "{name}"
+            );
+        }
         let needed = method["needed"].as_array().unwrap();
+        // That of which everybody is told, and those that were asked for.
+        let errors: Vec<_> = needed
+            .iter()
+            .map(|needed| needed["error"].as_f64())
+            .collect();
+        assert_eq!(errors, [1.0 / 256.0, 0.5, 1e-6].map(Some));
+        let at_most: Vec<_> = needed.iter().map(|needed| &needed["at_most"]).collect();
+        assert_eq!(at_most[1..], [true, false], "{name}");
         assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
         assert_eq!(needed[1]["extrapolated"], false);
         assert_eq!(needed[1]["factor"], Value::Null);
