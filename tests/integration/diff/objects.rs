@@ -127,3 +127,21 @@ fn a_triangle_that_is_turned_is_said_to_be() {
         assert!(message.starts_with(expected), "{set}: {message}");
     }
 }
+
+#[test]
+fn an_object_that_is_not_in_the_scene_is_nobody_elses_fault() {
+    let folder = folder();
+    for (text, color) in [
+        ("sphere { center (0.9, 0.4, 1.8) radius 0.4 }\n", "#808000"),
+        ("box { center (-0.6, 0.4, 2.6) }\n", "#ffa500"),
+    ] {
+        fs::write(folder.path().join("b.scn"), [SCENE, text].concat()).unwrap();
+        let output = super::pinhole(folder.path(), &["render", "b.scn"]);
+        assert!(output.status.success(), "{output:?}");
+        let [mistake, message] = first(&folder);
+        assert_eq!(mistake, "object_extra", "{message}");
+        let expected =
+            format!("something of the colour {color}, where nothing that has it should be");
+        assert!(message.starts_with(&expected), "{message}");
+    }
+}
