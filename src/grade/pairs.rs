@@ -11,7 +11,7 @@ use super::{
     exact, explained_share,
     fit::fit,
     level::{self, Level},
-    objects,
+    noise, objects,
     search::Change,
     whole,
 };
@@ -135,6 +135,10 @@ impl First {
         };
         let right = right.as_ref().unwrap_or(&full.exact);
         let rest = Case::new(&a, scene, right, &case.control)?;
+        if noise::possible(&a, right, &rest.variance).is_some() {
+            // The first mistake is the only one, and all else may be right.
+            return Ok(None);
+        }
         let ideas = search(&rest)?;
         let Some(second) = rest.named(ideas)?.into_iter().next() else {
             return Ok(None);
