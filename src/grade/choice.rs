@@ -7,10 +7,10 @@ use super::{LEFT, Make, Verdict, bias::Errors, evidence, extent::ball};
 use crate::film::{Film, TooLarge};
 
 /// Of several explanations, those that leave more than so many times what the best one leaves are not named: more than twice its squares.
-const RIVAL: f64 = 1.5;
+pub const RIVAL: f64 = 1.5;
 
 /// What rounding to bytes leaves of a picture of light colours, a step of which is 1/255 / √12: less is no difference between explanations.
-const ROUNDING: f64 = 1e-3;
+pub const ROUNDING: f64 = 1e-3;
 
 /// So many explanations are named at most.
 const NAMED: usize = 3;
@@ -42,8 +42,13 @@ impl Explanation {
         Ok(sum.sigmas > DOUBT || evidence::is_enough(a, &other.made, &self.made))
     }
 
-    /// Whether both change the same object.
-    fn is_of_same_object(&self, other: &Self) -> bool {
+    /// Whether both are about the same thing: they change the same object, or the same numbers of the scene, which the better one says.
+    fn is_of_same(&self, other: &Self) -> bool {
+        if let (Make::Scene(_), Make::Scene(_)) = (&self.make, &other.make)
+            && self.verdict.mistake == other.verdict.mistake
+        {
+            return true;
+        }
         let object = |make: &Make| match make {
             Make::Object(_, shapes) => shapes[0].and_then(|shape| ball(&shape)),
             _ => None,
@@ -78,7 +83,7 @@ pub fn best(
     let first = found.remove(first);
     let mut named = vec![first];
     for one in found {
-        let is_said = named.iter().any(|other| one.is_of_same_object(other));
+        let is_said = named.iter().any(|other| one.is_of_same(other));
         if named.len() < NAMED && !is_said && !named[0].is_better_than(&one, a)? {
             named.push(one);
         }

@@ -118,6 +118,22 @@ impl<'a> Level<'a> {
         })
     }
 
+    /// Another picture in this one's size, and the scene of which it should be one, if that is another.
+    pub fn beside<'b>(&'b self, a: Film, other: Option<(&Scene, Film)>) -> Level<'b> {
+        let (scene, exact) = match other {
+            Some((scene, exact)) => (Cow::Owned(self.sized(scene)), Cow::Owned(exact)),
+            None => (Cow::Borrowed(&*self.scene), Cow::Borrowed(&*self.exact)),
+        };
+        Level {
+            a: Cow::Owned(a),
+            scene,
+            exact,
+            factor: self.factor,
+            part: self.part,
+            is_heavy: self.is_heavy,
+        }
+    }
+
     /// The picture that a mistake makes.
     pub fn made(&self, make: &Make, control: &Control) -> Result<Film, RenderError> {
         match make {

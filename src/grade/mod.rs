@@ -23,6 +23,7 @@ mod level;
 mod noise;
 mod objects;
 mod order;
+mod pairs;
 mod search;
 mod shift;
 mod truncated;
@@ -44,7 +45,11 @@ use crate::{
 
 pub use self::extent::Off;
 
-use self::{case::Case, choice::Explanation, order::Order};
+use self::{
+    case::Case,
+    choice::{Explanation, RIVAL, ROUNDING},
+    order::Order,
+};
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
 const LEFT: f64 = 0.2;
@@ -131,6 +136,41 @@ enum Make {
 struct Curve {
     to: fn(f64) -> f64,
     back: fn(f64) -> f64,
+}
+
+/// What was done to a picture as a whole, so that it can be undone.
+#[derive(Clone, Copy)]
+enum Look {
+    /// Its pixels are elsewhere.
+    Turned { to: Turn, back: Turn },
+    /// Its channels are.
+    Ordered { to: Turn, back: Turn },
+    /// Its light went through a curve.
+    Curved(Curve),
+}
+
+impl Look {
+    fn done(&self, film: &Film) -> Result<Film, TooLarge> {
+        match self {
+            Self::Turned { to, .. } | Self::Ordered { to, .. } => to(film),
+            Self::Curved(curve) => level::map(film, curve.to),
+        }
+    }
+
+    fn undone(&self, film: &Film) -> Result<Film, TooLarge> {
+        match self {
+            Self::Turned { back, .. } | Self::Ordered { back, .. } => back(film),
+            Self::Curved(curve) => level::map(film, curve.back),
+        }
+    }
+
+    /// The mistake of which the picture is made.
+    fn make(self) -> Make {
+        match self {
+            Self::Turned { to, .. } | Self::Ordered { to, .. } => Make::Film(Box::new(to)),
+            Self::Curved(curve) => Make::Light(curve),
+        }
+    }
 }
 
 /// Names the mistakes that explain why `a` is not the exact picture of a scene.
@@ -225,23 +265,36 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         .chain(order::ideas(scene))
         .chain(objects::ideas(case))
         .chain(objects::colors(case)?);
-    let mut found = verdicts(case.named(ideas.collect())?);
+    let mut found = case.named(ideas.collect())?;
     if let [first, others @ ..] = found.as_slice()
-        && first.mistake != "colors"
-        && others.iter().any(|other| other.mistake == "colors")
+        && first.verdict.mistake != "colors"
+        && others.iter().any(|other| other.verdict.mistake == "colors")
     {
         // What explains the whole picture explains all of its colours.
-        found.retain(|verdict| verdict.mistake != "colors");
+        found.retain(|one| one.verdict.mistake != "colors");
     }
     if found.is_empty() {
-        found = verdicts(case.named(whole::pairs())?);
+        found = case.named(whole::pairs())?;
+    }
+    let is_too_small = case.differences.pixels < evidence::FEWEST;
+    let is_of_colors = (found.first()).is_some_and(|first| first.verdict.mistake == "colors");
+    if (found.is_empty() || is_of_colors) && !is_too_small {
+        // Two mistakes of which each is known are simpler than a list of colours.
+        let pairs = pairs::known(case)?;
+        let left = found.first().and_then(|first| first.verdict.rmse);
+        let most = left.map_or(f64::INFINITY, |left| RIVAL * left.max(ROUNDING));
+        if pairs
+            .iter()
+            .any(|pair| pair.rmse.is_some_and(|left| left <= most))
+        {
+            return Ok(pairs);
+        }
     }
     if !found.is_empty() {
-        return Ok(found);
+        return and_beside(case, found);
     }
-    if case.differences.pixels < evidence::FEWEST {
-        // Too few for any.
-        return Ok(found);
+    if is_too_small {
+        return Ok(Vec::new());
     }
     // What has to be searched for takes longer, what comes last longest.
     let found = case.named(objects::search(case)?)?;
@@ -249,6 +302,17 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         return Ok(verdicts(found));
     }
     numbers(case)
+}
+
+/// What explains a difference, and an object that is off beside that.
+fn and_beside(case: &Case, found: Vec<Explanation>) -> Result<Vec<Verdict>, RenderError> {
+    if let Some(first) = found.first()
+        && !case.is_all(&found)?
+        && let Some(both) = pairs::beside(case, first)?
+    {
+        return Ok(vec![both]);
+    }
+    Ok(verdicts(found))
 }
 
 /// The numbers of the camera or the checkerboard that explain a difference, as few of them as leave nothing but roundings and noise.
@@ -281,12 +345,18 @@ fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     if case.is_all(&found)? {
         return Ok(verdicts(found));
     }
+    if found.is_empty() {
+        let pairs = pairs::searched(case)?;
+        if !pairs.is_empty() {
+            return Ok(pairs);
+        }
+    }
     let starts: Vec<_> = single.starts.into_iter().chain(several.starts).collect();
     let any = camera::any(case, &starts)?;
     found = case.best_of(found, any.into_iter().collect())?;
     match found.is_empty() && !case.may_be_noise.get() {
         true => Ok(objects::reaching_out(case)?.into_iter().collect()),
-        false => Ok(verdicts(found)),
+        false => and_beside(case, found),
     }
 }
 

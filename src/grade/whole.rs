@@ -1,7 +1,7 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
 use super::{
-    Curve, Idea, Make, Turn, Verdict,
+    Curve, Idea, Look, Make, Turn, Verdict,
     evidence::FEWEST,
     noise::{is_off, with_colors},
     objects, size,
@@ -75,6 +75,31 @@ const TURNS: [(&str, &str, &str, Turn); 3] = [
     ),
 ];
 
+/// Orders of the colour channels: how they are called, from the right one to them, and back.
+const ORDERS: [(&str, Turn, Turn); 5] = [
+    ("blue, green, red", ordered::<2, 1, 0>, ordered::<2, 1, 0>),
+    ("red, blue, green", ordered::<0, 2, 1>, ordered::<0, 2, 1>),
+    ("green, red, blue", ordered::<1, 0, 2>, ordered::<1, 0, 2>),
+    ("green, blue, red", ordered::<1, 2, 0>, ordered::<2, 0, 1>),
+    ("blue, red, green", ordered::<2, 0, 1>, ordered::<1, 2, 0>),
+];
+
+const HELP_OF_ORDER: &str = "a picture's channels are in the order red, green, blue";
+
+fn ordered<const R: usize, const G: usize, const B: usize>(film: &Film) -> Result<Film, TooLarge> {
+    Film::from_fn(film.width(), film.height(), |x, y| {
+        [R, G, B].map(|i| film.pixel(x, y)[i])
+    })
+}
+
+fn said_of_order(name: &str) -> String {
+    format!("the colour channels are in the order {name}")
+}
+
+fn said_of_turn(how: &str) -> String {
+    format!("the picture is {how}")
+}
+
 /// What may have happened to the light: a word for programs, one for people, the way out, and the curve.
 const CURVES: [(&str, &str, &str, Curve); 3] = [
     (
@@ -105,9 +130,8 @@ const CURVES: [(&str, &str, &str, Curve); 3] = [
 
 /// What can be seen of two pictures alone.
 pub fn films() -> Vec<Idea> {
-    let turns = TURNS.map(|(mistake, how, help, turn)| {
-        film(mistake, &format!("the picture is {how}"), help, turn)
-    });
+    let turns =
+        TURNS.map(|(mistake, how, help, turn)| film(mistake, &said_of_turn(how), help, turn));
     let mut ideas = Vec::from(turns);
     ideas.push(film(
         "transposed",
@@ -119,26 +143,30 @@ pub fn films() -> Vec<Idea> {
         },
     ));
     ideas.extend(lights());
-    let orders = [
-        ([2, 1, 0], "blue, green, red"),
-        ([0, 2, 1], "red, blue, green"),
-        ([1, 0, 2], "green, red, blue"),
-        ([1, 2, 0], "green, blue, red"),
-        ([2, 0, 1], "blue, red, green"),
-    ];
-    for (order, name) in orders {
-        ideas.push(film(
-            "channels",
-            &format!("the colour channels are in the order {name}"),
-            "a picture's channels are in the order red, green, blue",
-            move |film| {
-                Film::from_fn(film.width(), film.height(), |x, y| {
-                    order.map(|i| film.pixel(x, y)[i])
-                })
-            },
-        ));
+    for (name, order, _) in ORDERS {
+        ideas.push(film("channels", &said_of_order(name), HELP_OF_ORDER, order));
     }
     ideas
+}
+
+/// What may have been done to a whole picture that can be undone: each turn, order and curve, as it is said of it alone.
+pub fn looks() -> Vec<(&'static str, String, &'static str, Look)> {
+    let turns = TURNS.map(|(mistake, how, help, turn)| {
+        // Each of them undoes itself.
+        let look = Look::Turned {
+            to: turn,
+            back: turn,
+        };
+        (mistake, said_of_turn(how), help, look)
+    });
+    let orders = ORDERS.map(|(name, to, back)| {
+        let look = Look::Ordered { to, back };
+        ("channels", said_of_order(name), HELP_OF_ORDER, look)
+    });
+    let curves = CURVES.map(|(mistake, message, help, curve)| {
+        (mistake, message.to_owned(), help, Look::Curved(curve))
+    });
+    turns.into_iter().chain(orders).chain(curves).collect()
 }
 
 /// A picture that is turned, and whose light is wrong, too: two mistakes, for pictures that none explains alone.

@@ -82,16 +82,24 @@ impl Palette {
         self.wrong.iter().filter(changes).count()
     }
 
-    /// What is seen of a colour that nothing in the scene has, if all else is right.
+    /// What is seen of a colour that nothing in the scene has, or nothing near, if all else is right.
     pub fn foreign(&self, case: &Case) -> Option<Verdict> {
         let (a, exact) = (&case.full.a, &case.full.exact);
         let (pixels, light) = self.commonest()?;
-        if pixels < FEWEST || !self.is_small() || self.mixes(&light) {
-            return None;
-        }
         let near = Near::to(&light);
         let whole = Area::whole(a.width(), a.height());
-        let blob = Blob::of(a, whole, &near);
+        let is_known = self.mixes(&light);
+        if pixels < FEWEST
+            || !self.is_small()
+            || is_known && !self.is_of_object_elsewhere(case, &near)
+        {
+            return None;
+        }
+        // What should have the colour has it elsewhere.
+        let new = |film: &Film, (x, y): (u32, u32)| {
+            near.holds(&film.pixel(x, y)) && !near.holds(&exact.pixel(x, y))
+        };
+        let blob = Blob::where_that(whole, |at| new(a, at));
         if blob.pixels as f64 >= PART * whole.pixels() as f64 {
             return None;
         }
@@ -102,7 +110,7 @@ impl Palette {
             // An edge may cover a little of a pixel that is next to one of which it covers a part.
             let mut around = around(around(Area::pixel(x, y), a), a).iter();
             let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
-            if around.any(|(x, y)| near.holds(&a.pixel(x, y))) {
+            if around.any(|at| new(a, at)) {
                 made.put(Area::pixel(x, y), &[p]);
             } else {
                 let is_flat = noise::is_flat(&case.variance.pixel(x, y));
@@ -116,10 +124,14 @@ impl Palette {
         let color = Color {
             srgb: light.map(|light| (255.0 * linear_to_srgb(light)).clamp(0.0, 255.0)),
         };
+        let but = match is_known {
+            true => "where nothing that has it should be",
+            false => "which nothing in the scene has",
+        };
         Some(Verdict {
             mistake: "object_extra",
             message: format!(
-                "something of the colour {color}, which nothing in the scene has, is seen in {} pixels around ({}, {})",
+                "something of the colour {color}, {but}, is seen in {} pixels around ({}, {})",
                 blob.pixels,
                 short(blob.middle.x.round()),
                 short(blob.middle.y.round())
@@ -131,6 +143,37 @@ impl Palette {
             explains: Some(explained_share(left, case.difference)),
             off: None,
         })
+    }
+
+    /// Whether a colour is that of objects, none of which, nor anything else that has it, may be seen in a pixel that is wrong in having it.
+    fn is_of_object_elsewhere(&self, case: &Case, near: &Near) -> bool {
+        let scene = &case.full.scene;
+        let (a, exact) = (&case.full.a, &case.full.exact);
+        if near.holds(&scene.image.background.to_linear()) {
+            return false;
+        }
+        let mut parts = Vec::new();
+        for object in &scene.objects {
+            let mut shape = object.shape;
+            let has_it = |color: &mut Color| near.holds(&color.to_linear());
+            if color(&mut shape).into_iter().any(has_it) {
+                match shape {
+                    Shape::Checkerboard(_) => return false,
+                    _ => parts.extend(case.view.extent(&shape)),
+                }
+            }
+        }
+        let is_wrong =
+            |(x, y): &(u32, u32)| near.holds(&a.pixel(*x, *y)) && !near.holds(&exact.pixel(*x, *y));
+        let whole = Area::whole(a.width(), a.height());
+        let mut wrong = whole.iter().filter(is_wrong);
+        let is_beside = |(x, y): (u32, u32)| {
+            let pixel = around(Area::pixel(x, y), a);
+            parts
+                .iter()
+                .all(|part| pixel.iter().all(|(x, y)| !Area::pixel(x, y).lies_in(*part)))
+        };
+        !parts.is_empty() && wrong.all(is_beside)
     }
 
     /// What most of the wrong pixels are, and how many are so.

@@ -1,5 +1,7 @@
 //! Objects in a wrong place or of a wrong size.
 
+mod fields;
+
 use std::ops::RangeInclusive;
 
 use glam::{DVec2, DVec3};
@@ -11,7 +13,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    film::Film,
+    film::{Film, rmse},
     grade::{
         Case, Idea, LEFT, Make,
         bias::SIGMAS,
@@ -179,9 +181,14 @@ pub(super) struct Blob {
 
 impl Blob {
     pub fn of(film: &Film, part: Area, near: &Near) -> Self {
+        Self::where_that(part, |(x, y)| near.holds(&film.pixel(x, y)))
+    }
+
+    /// Where something holds.
+    pub fn where_that(part: Area, holds: impl Fn((u32, u32)) -> bool) -> Self {
         let (mut sum, mut pixels) = (DVec2::ZERO, 0);
         for (x, y) in part.iter() {
-            if near.holds(&film.pixel(x, y)) {
+            if holds((x, y)) {
                 sum += DVec2::new(f64::from(x), f64::from(y));
                 pixels += 1;
             }
@@ -264,6 +271,10 @@ impl<'a> Sought<'a> {
                 ideas.extend(self.stretched(side, octaves)?);
             }
         }
+        if self.explained(&ideas).is_none() {
+            ideas.extend(self.spun()?);
+            ideas.extend(self.facing()?);
+        }
         let size = libm::log2(step.factor);
         let make = |p: &[f64]| self.with(DVec3::ZERO, libm::exp2(p[0]));
         ideas.extend(self.fit(&[size], &[octaves], &make)?.and_then(|fit| {
@@ -319,68 +330,6 @@ impl<'a> Sought<'a> {
     fn explained<'i>(&self, ideas: &'i [Found]) -> Option<&'i Found> {
         let enough = LEFT * self.case.difference;
         ideas.iter().find(|(left, _)| *left < enough)
-    }
-
-    /// With one size of a box that is another one, or one side of a triangle.
-    fn stretched(&self, side: usize, octaves: f64) -> Result<Option<Found>, RenderError> {
-        let lengths = |shape: &Shape| match shape {
-            Shape::Box(cuboid) => Some(cuboid.max - cuboid.min),
-            Shape::Triangle(triangle) => Some(triangle.sides),
-            Shape::Sphere(_) | Shape::Checkerboard(_) => None,
-        };
-        let Some(should) = lengths(&self.shape) else {
-            return Ok(None);
-        };
-        let shape = |p: &[f64]| {
-            let mut shape = self.shape;
-            let factor = libm::exp2(p[0]);
-            match &mut shape {
-                Shape::Box(cuboid) => {
-                    let more = should[side] * (factor - 1.0) / 2.0;
-                    cuboid.min[side] -= more;
-                    cuboid.max[side] += more;
-                }
-                Shape::Triangle(triangle) => triangle.sides[side] *= factor,
-                Shape::Sphere(_) | Shape::Checkerboard(_) => {}
-            }
-            let longest = lengths(&shape).map_or(0.0, DVec3::max_element);
-            // Sides of a triangle have to meet.
-            let is_one = match shape {
-                Shape::Triangle(triangle) => 2.0 * longest < triangle.sides.element_sum(),
-                _ => factor.is_finite() && factor > 0.0,
-            };
-            is_one.then_some(shape)
-        };
-        let make = |p: &[f64]| Some(with_shape(&self.case.full.scene, self.index, shape(p)?));
-        let Some(Fit { at, left }) = self.fit(&[0.0], &[octaves], &make)? else {
-            return Ok(None);
-        };
-        let (Some(made), Some(is)) = (make(&at), shape(&at).as_ref().and_then(lengths)) else {
-            return Ok(None);
-        };
-        let (what, help) = match self.shape {
-            Shape::Triangle(_) => (
-                ["side a", "side b", "side c"][side],
-                "sides are (a, b, c): a from the base's left end to the apex, b from its right end, c the base",
-            ),
-            _ => (
-                ["size along x", "size along y", "size along z"][side],
-                "size is (x, y, z): the lengths of the edges along the three axes, half of each on either side of the center",
-            ),
-        };
-        let message = format!(
-            "{} has a wrong size: as if its {what} were {} instead of {}",
-            self.name,
-            found(is[side], should[side]),
-            short(should[side])
-        );
-        let idea = Idea {
-            mistake: "object_size",
-            message,
-            help: help.to_owned(),
-            make: made,
-        };
-        Ok(Some((left, idea)))
     }
 
     /// Somewhere else: what looks displaced and larger may be nearer. From the better of two starts.
@@ -478,5 +427,44 @@ impl<'a> Sought<'a> {
             }
         }
         fit(full, control, &at, widths, make)
+    }
+
+    /// Fits in the small picture from the best of some places and from none, and then in the whole one.
+    fn fit_from(
+        &self,
+        places: Vec<Vec<f64>>,
+        widths: &[f64],
+        make: &dyn Fn(&[f64]) -> Option<Make>,
+    ) -> Result<Option<Fit>, RenderError> {
+        let Case {
+            small,
+            full,
+            control,
+            ..
+        } = self.case;
+        let none = vec![0.0; widths.len()];
+        if full.is_heavy {
+            return fit(full, control, &none, widths, make);
+        }
+        let mut nearest: Option<(f64, Vec<f64>)> = None;
+        for at in places {
+            let Some(make) = make(&at) else { continue };
+            let left = rmse(&small.a, &small.made(&make, control)?);
+            if nearest.as_ref().is_none_or(|nearest| left < nearest.0) {
+                nearest = Some((left, at));
+            }
+        }
+        let mut found: Option<Fit> = None;
+        for at in nearest.map(|(_, at)| at).into_iter().chain([none]) {
+            if let Some(fit) = fit(small, control, &at, widths, make)?
+                && found.as_ref().is_none_or(|found| fit.left < found.left)
+            {
+                found = Some(fit);
+            }
+        }
+        match found {
+            Some(found) => fit(full, control, &found.at, widths, make),
+            None => Ok(None),
+        }
     }
 }

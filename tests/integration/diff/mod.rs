@@ -5,6 +5,7 @@ mod faint;
 mod mistakes;
 mod numbers;
 mod objects;
+mod pairs;
 mod pictures;
 mod right;
 mod samples;

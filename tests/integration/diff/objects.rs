@@ -91,3 +91,57 @@ fn a_size_that_is_off_by_some_pixels_is_measured() {
         assert!(message.contains(&words), "{message}");
     }
 }
+
+#[test]
+fn a_triangle_that_is_turned_is_said_to_be() {
+    let folder = folder();
+    let size = ["--set", "image.width=240", "--set", "image.height=160"];
+    for (set, expected) in [
+        (
+            "Sail.spin=10deg",
+            "the triangle `Sail` is spun wrongly: as if its spin were 10 degrees instead of 0",
+        ),
+        (
+            "Sail.spin=-35deg",
+            "the triangle `Sail` is spun wrongly: as if its spin were -35 degrees instead of 0",
+        ),
+        (
+            "Sail.normal=(0.3, 0.4, 1)",
+            "the triangle `Sail` faces a wrong way: as if the y of its normal were 0.4 instead of 0",
+        ),
+        (
+            "Sail.normal=(0.7, 0, 1)",
+            "the triangle `Sail` faces a wrong way: as if the x of its normal were 0.7 instead of 0.3",
+        ),
+        (
+            "Sail.sides=(1.7, 2, 1)",
+            "the triangle `Sail` has a wrong size: as if its side a were 1.7 instead of 2",
+        ),
+    ] {
+        render(
+            &folder,
+            &[&["-o", "b.png", "--set", set], &size[..]].concat(),
+        );
+        let found = json(&folder, &[&["b.png", "a.scn"], &size[..]].concat());
+        let message = found["likely"][0]["message"].as_str().unwrap_or("none");
+        assert!(message.starts_with(expected), "{set}: {message}");
+    }
+}
+
+#[test]
+fn an_object_that_is_not_in_the_scene_is_nobody_elses_fault() {
+    let folder = folder();
+    for (text, color) in [
+        ("sphere { center (0.9, 0.4, 1.8) radius 0.4 }\n", "#808000"),
+        ("box { center (-0.6, 0.4, 2.6) }\n", "#ffa500"),
+    ] {
+        fs::write(folder.path().join("b.scn"), [SCENE, text].concat()).unwrap();
+        let output = super::pinhole(folder.path(), &["render", "b.scn"]);
+        assert!(output.status.success(), "{output:?}");
+        let [mistake, message] = first(&folder);
+        assert_eq!(mistake, "object_extra", "{message}");
+        let expected =
+            format!("something of the colour {color}, where nothing that has it should be");
+        assert!(message.starts_with(&expected), "{message}");
+    }
+}
