@@ -11,6 +11,7 @@ use crate::math::{Big, Double};
 use self::reach::Reach;
 use super::{
     curve::{Curve, Place, Surface},
+    object::Object,
     outlook::{LOOSE_LINE, Live, Spot},
     world::{Held, Level, World},
 };
@@ -98,9 +99,13 @@ impl World {
     /// Where each of some objects is met in a spot, at most.
     fn reaches(&self, spot: Spot, live: &[Live]) -> Vec<Reach> {
         let place = Place::new(&Double::frame(self).camera, spot);
-        let reach = |live: &Live| match live.is_whole {
-            true => Reach::whole(),
-            false => Reach::within(Double::object(self, live.object).outline(&place)),
+        let reach = |live: &Live| {
+            let object = Double::object(self, live.object);
+            // Of a sphere no line bounds more than what lies behind the eye.
+            match live.is_whole || matches!(*object, Object::Sphere(_)) {
+                true => Reach::whole(),
+                false => Reach::within(object.outline(&place)),
+            }
         };
         live.iter().map(reach).collect()
     }

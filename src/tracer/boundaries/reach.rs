@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::math::Real;
+use crate::math::{Real, UP};
 
 use super::super::curve::{Curve, Line};
 
@@ -47,11 +47,11 @@ impl Reach {
 
     /// Whether no ray meets both this object and another one.
     pub fn is_apart(&self, other: &Self) -> bool {
-        let is_beyond = |a: &Self, b: &Self| {
-            let is_beyond = |line: &Line| b.polygon.iter().all(|at| below(line, *at) < 0.0);
-            a.polygon.is_empty() || a.sides.iter().any(is_beyond)
+        let excludes = |a: &Self, b: &Self| {
+            let excludes = |line: &Line| b.polygon.iter().all(|at| at_most(line, *at) < 0.0);
+            a.polygon.is_empty() || a.sides.iter().any(excludes)
         };
-        is_beyond(self, other) || is_beyond(other, self)
+        excludes(self, other) || excludes(other, self)
     }
 
     /// Whether a line may pass where the object is met.
@@ -62,7 +62,7 @@ impl Reach {
         };
         ![line, &opposite].into_iter().any(|line| {
             let mut vertices = self.polygon.iter();
-            vertices.all(|at| below(line, *at) < 0.0)
+            vertices.all(|at| at_most(line, *at) < 0.0)
         })
     }
 }
@@ -72,7 +72,7 @@ fn cut(polygon: &[DVec2], line: &Line) -> Vec<DVec2> {
     let mut part = Vec::with_capacity(polygon.len() + 1);
     let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
     for (here, next) in ends {
-        let (a, b) = (below(line, *here), below(line, *next));
+        let (a, b) = (at_most(line, *here), at_most(line, *next));
         let is_outside = a < 0.0;
         if !is_outside {
             part.push(*here);
@@ -85,7 +85,7 @@ fn cut(polygon: &[DVec2], line: &Line) -> Vec<DVec2> {
 }
 
 /// The form's value at a point, and as much more as may be missing: it is negative where the true one is for certain.
-fn below(line: &Line, at: DVec2) -> f64 {
+fn at_most(line: &Line, at: DVec2) -> f64 {
     let [a, b, c] = line.factors;
-    a * at.x + b * at.y + c + (line.rad + MARGIN)
+    a * at.x + b * at.y + c + (line.rad * UP + MARGIN)
 }
