@@ -15,7 +15,7 @@ const GOOD: f64 = 32.0 * f64::UNIT;
 /// A steeper line is as good as vertical: from one side of the pixel to the other it moves by less than eight roundings of x.
 const STEEP: f64 = (1u64 << 50) as f64;
 
-/// A branch is as good as outside of the pixel if it is so far from it: no rounding matters.
+/// A branch is outside of the pixel if it is so far from it by the size of its values: no rounding of them matters.
 const OUTSIDE: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve followed from left to right.
@@ -167,7 +167,8 @@ impl<'a> Span<'a> {
         }
         // A function that bends one way only is nowhere farther from its chord than twice as far as in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
-        let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE;
+        let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
+        let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE * size;
         if y.iter().all(|y| *y > beyond) || y.iter().all(|y| *y < -beyond) {
             return None;
         }

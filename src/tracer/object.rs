@@ -124,7 +124,7 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// What bounds the rays that meet it.
+    /// What bounds the rays that meet it; each line's form is not negative where it is met.
     pub fn outline(&self, place: &Place<T>) -> Vec<Curve> {
         let line = |form: &Form<T>| place.line(form);
         match self {

@@ -2,13 +2,16 @@
 //! cut them.
 
 mod equal;
+mod reach;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::math::{Big, Double};
 
+use self::reach::Reach;
 use super::{
     curve::{Curve, Place, Surface},
+    object::Object,
     outlook::{LOOSE_LINE, Live, Spot},
     world::{Held, Level, World},
 };
@@ -33,6 +36,8 @@ struct Boundaries<'a, T: Level> {
     live: &'a [Live],
     objects: Vec<Held<'a, T>>,
     place: Place<T>,
+    /// Where each object is met, as double-double tells.
+    reaches: &'a [Reach],
 }
 
 impl World {
@@ -40,7 +45,8 @@ impl World {
     /// the rest of them is left out.
     pub fn curves(&self, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
         out.clear();
-        let boundaries = Boundaries::<Double>::new(self, spot, live);
+        let reaches = self.reaches(spot, live);
+        let boundaries = Boundaries::<Double>::new(self, spot, live, &reaches);
         // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
         let (mut loose, mut lacking) = (Vec::new(), Vec::new());
         let mut of_lacking = Vec::new();
@@ -59,7 +65,7 @@ impl World {
             out.append(&mut of_lacking);
             return equal::merge(out);
         }
-        let boundaries = Boundaries::<Big>::new(self, spot, live);
+        let boundaries = Boundaries::<Big>::new(self, spot, live, &reaches);
         for source in loose.into_iter().chain(lacking) {
             if cancel.load(Ordering::Relaxed) {
                 return;
@@ -73,30 +79,47 @@ impl World {
     pub(super) fn may_cross(&self, spot: Spot, a: Live, b: Live) -> bool {
         let mut curves = Vec::new();
         let live = [a, b];
-        let boundaries = Boundaries::<Double>::new(self, spot, &live);
+        let reaches = self.reaches(spot, &live);
+        let boundaries = Boundaries::<Double>::new(self, spot, &live, &reaches);
         !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
     }
 
     /// How many curves may pass through a spot as far as double-double tells.
     pub fn curves_about(&self, spot: Spot, live: &[Live], cancel: &AtomicBool) -> usize {
         let mut curves = Vec::new();
-        let boundaries = Boundaries::<Double>::new(self, spot, live);
+        let reaches = self.reaches(spot, live);
+        let boundaries = Boundaries::<Double>::new(self, spot, live, &reaches);
         boundaries.each(cancel, |source| {
             boundaries.push(source, &mut curves);
         });
         equal::merge(&mut curves);
         curves.len()
     }
+
+    /// Where each of some objects is met in a spot, at most.
+    fn reaches(&self, spot: Spot, live: &[Live]) -> Vec<Reach> {
+        let place = Place::new(&Double::frame(self).camera, spot);
+        let reach = |live: &Live| {
+            let object = Double::object(self, live.object);
+            // Of a sphere no line bounds more than what lies behind the eye.
+            match live.is_whole || matches!(*object, Object::Sphere(_)) {
+                true => Reach::whole(),
+                false => Reach::within(object.outline(&place)),
+            }
+        };
+        live.iter().map(reach).collect()
+    }
 }
 
 impl<'a, T: Level> Boundaries<'a, T> {
-    fn new(world: &'a World, spot: Spot, live: &'a [Live]) -> Self {
+    fn new(world: &'a World, spot: Spot, live: &'a [Live], reaches: &'a [Reach]) -> Self {
         let objects = live.iter().map(|live| T::object(world, live.object));
         Self {
             world,
             live,
             objects: objects.collect(),
             place: Place::new(&T::frame(world).camera, spot),
+            reaches,
         }
     }
 
@@ -120,10 +143,20 @@ impl<'a, T: Level> Boundaries<'a, T> {
         }
     }
 
-    /// Adds a source's curves that may pass through the spot. Says whether all surfaces of it cross each other somewhere, as all do that are not equal.
+    /// Adds a source's curves that may pass through the spot, and through where its objects are met. Says whether all surfaces of it that are
+    /// seen there cross each other somewhere, as all do that are not equal.
     fn push(&self, source: Source, out: &mut Vec<Curve>) -> bool {
+        let met = match source {
+            Source::Outline(_) => [None; 2],
+            Source::Clips(i) => [Some(i), None],
+            Source::Pair(i, j) => [Some(i), Some(j)],
+        };
         let mut push = |curve: Curve| {
-            if curve.may_pass() {
+            let is_met = |i: &usize| match &curve {
+                Curve::Line(line) => self.reaches[*i].is_crossed_by(line),
+                Curve::Conic(_) => true,
+            };
+            if curve.may_pass() && met.iter().flatten().all(is_met) {
                 out.push(curve);
             }
         };
@@ -146,6 +179,9 @@ impl<'a, T: Level> Boundaries<'a, T> {
                 }
             }
             Source::Pair(i, j) => {
+                if self.reaches[i].is_apart(&self.reaches[j]) {
+                    return true;
+                }
                 let others = self.surfaces(j);
                 for surface in &self.surfaces(i) {
                     others.iter().for_each(|other| cross(surface, other));

@@ -3,6 +3,7 @@
 mod board;
 mod bounds;
 mod diagonal;
+mod many;
 mod rational;
 mod shapes;
 mod twice;
