@@ -116,6 +116,11 @@ impl Area {
         quarters.filter(|quarter| quarter.width > 0 && quarter.height > 0)
     }
 
+    /// The pixel in its middle, or the one after that.
+    pub fn middle(self) -> Self {
+        Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
+    }
+
     // As u64, so that an area that a user made up cannot overflow.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)

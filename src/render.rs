@@ -34,7 +34,7 @@ use crate::{
     math::Vectors,
     sampling::Sampling,
     threads,
-    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
+    tracer::{Among, Checks, Item, Live, Part, Pixel, Quartering, Room, World},
 };
 
 /// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
@@ -348,8 +348,12 @@ impl<P: film::Pixel> Frame<'_, P> {
             Part::Open { x, y, live } => {
                 self.pixel([x, y], Trace::Together(live, checks), &mut film, tally)
             }
-            Part::Plain { area, live } => {
-                let trace = live.map_or(Trace::OneByOne, Trace::Among);
+            Part::Plain { area, among } => {
+                let trace = match among {
+                    Among::All => Trace::OneByOne,
+                    Among::Crowd(crowd) => Trace::InCrowd(crowd),
+                    Among::Live(live) => Trace::Among(live),
+                };
                 let mut pixels = area.iter();
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
             }
@@ -363,7 +367,7 @@ impl<P: film::Pixel> Frame<'_, P> {
             Way::OneByOne => visit(
                 Part::Plain {
                     area: tile,
-                    live: None,
+                    among: Among::All,
                 },
                 None,
             ),
@@ -490,6 +494,11 @@ impl<P: film::Pixel> Frame<'_, P> {
                     counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
                 }
             }
+            Trace::InCrowd(crowd) => {
+                for offset in points.iter() {
+                    counts.add(self.world.slot_in_crowd(x, y, offset, crowd), 1);
+                }
+            }
             Trace::OneByOne => {
                 for offset in points.iter() {
                     counts.add(self.world.slot_at(x, y, offset), 1);
@@ -506,6 +515,8 @@ enum Trace<'a> {
     Together(&'a [Live], Option<&'a Checks>),
     /// One by one, against these.
     Among(&'a [Live]),
+    /// One by one, against those of these whose bounds hold the ray.
+    InCrowd(&'a [Item]),
     /// One by one, against the objects that the hierarchy knows on their way.
     OneByOne,
 }

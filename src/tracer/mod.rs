@@ -36,6 +36,6 @@ pub use curve::{Conic, Curve, Line};
 pub use hierarchy::Item;
 pub use outlook::{Board, Live, Spot};
 pub use pixel::{Checks, Pixel};
-pub use quartering::{Part, Quartering, Room};
+pub use quartering::{Among, Part, Quartering, Room};
 pub use triangle::vertices;
 pub use world::{Hit, Precision, World};

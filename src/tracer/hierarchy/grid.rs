@@ -110,6 +110,15 @@ impl Item {
         self.bounds.meets(rectangle)
     }
 
+    /// Whether a ray in these units may meet it.
+    #[inline]
+    pub fn holds(&self, at: [u32; 2]) -> bool {
+        let holds = |axis: usize| {
+            (self.bounds.low[axis] <= at[axis]) & (at[axis] <= self.bounds.high[axis])
+        };
+        holds(0) & holds(1)
+    }
+
     /// Whether it may be met everywhere in a rectangle.
     #[inline]
     pub fn may_fill(&self, rectangle: &Rectangle) -> bool {

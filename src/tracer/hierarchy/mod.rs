@@ -43,6 +43,12 @@ impl Hierarchy {
         Some(Descent::new(&self.tree, self.grid.units(r)?))
     }
 
+    /// Where a direction lies in the units of bounds; none outside of the window.
+    #[inline]
+    pub fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
+        self.grid.units(r)
+    }
+
     /// What holds all rays through a patch; none outside of the window.
     #[inline]
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {

@@ -6,12 +6,16 @@ use glam::DVec2;
 
 use crate::{area::Area, tracer::world::World};
 
-/// A part is cut if it has so many samples for each candidate: to look at a candidate's bounds in each quarter takes a few hundredths of
+/// A part is cut if it has so many samples for each candidate: to look at a candidate in each quarter takes a few hundredths of
 /// their time.
 const A_CANDIDATE: f64 = 16.0;
 
+/// By its candidates' bounds alone it is cut if it has so many: each sample that is traced among them afterwards is spared the bounds of the
+/// others.
+const BOUNDS: f64 = 8.0;
+
 /// To look at candidates themselves takes longer than at their bounds: that is begun where so many times as many could be paid for.
-const LOOK: usize = 4;
+const LOOK: f64 = 4.0;
 
 /// So few candidates are looked at wherever they are looked for: they cost little, and may fill the part.
 pub const FEW: usize = 4;
@@ -20,6 +24,9 @@ pub const FEW: usize = 4;
 /// share of a candidate adds to that, one more.
 const A_PIXEL: f64 = 1.0;
 const OF_A_PIXEL: f64 = 0.7;
+
+/// Where bounds are known samples are traced among them, one by one, in about this share of the time.
+const PAID: f64 = 0.5;
 
 /// What a board shows in several pixels is worth knowing from so many samples a pixel on.
 const A_CHECK: f64 = 3.0;
@@ -68,11 +75,19 @@ impl Budget {
         self.most_in_a_pixel().max(shared) as usize
     }
 
+    /// So many candidates of a part are worth looking at by their bounds.
+    pub fn most_bounds(self, area: Area) -> usize {
+        let shared = self.samples * area.pixels() as f64 / BOUNDS;
+        shared.max(self.most(area) as f64) as usize
+    }
+
     /// Whether so many are so few that they are looked at themselves, not only at their bounds.
     pub fn is_for_a_look(self, area: Area, candidates: usize) -> bool {
-        candidates <= FEW
-            || candidates * LOOK <= self.most(area)
-            || candidates as f64 <= self.most_in_a_pixel()
+        if area.pixels() == 1 {
+            return candidates as f64 <= PAID * self.most_in_a_pixel();
+        }
+        let times = if candidates <= FEW { 1.0 } else { LOOK };
+        times * A_CANDIDATE * candidates as f64 <= self.samples * area.pixels() as f64
     }
 
     /// Whether what a board shows in several pixels is worth knowing.
@@ -87,10 +102,7 @@ impl Budget {
         }
         let (mut rays, mut asked) = (0.0, 0);
         for quarter in area.quarters() {
-            let (x, y) = (
-                quarter.x + quarter.width / 2,
-                quarter.y + quarter.height / 2,
-            );
+            let Area { x, y, .. } = quarter.middle();
             asked += world.asked(x, y, DVec2::ZERO);
             rays += 1.0;
         }

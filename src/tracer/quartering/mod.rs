@@ -22,6 +22,9 @@ use crate::area::Area;
 /// whose bounds they fill but a small part.
 const CROWD: usize = 32;
 
+/// So many bounds are looked at in less time than it takes to go down the hierarchy, whose lists have up to 32 in their last cell.
+const SCANNED: usize = 16;
+
 /// Cuts the parts of one picture.
 #[derive(Debug)]
 pub struct Quartering<'a> {
@@ -53,9 +56,20 @@ pub enum Part<'a> {
     Plain {
         /// Where it lies.
         area: Area,
-        /// The objects that may be seen there, in file order, if they are few.
-        live: Option<&'a [Live]>,
+        /// What its rays may meet, as far as that is known.
+        among: Among<'a>,
     },
+}
+
+/// What the rays of a part may meet.
+#[derive(Clone, Copy, Debug)]
+pub enum Among<'a> {
+    /// What the hierarchy knows on their way.
+    All,
+    /// Objects whose bounds meet the part, the one that may be nearest first.
+    Crowd(&'a [Item]),
+    /// Objects that may be seen there, in file order.
+    Live(&'a [Live]),
 }
 
 /// What is kept from area to area: the candidates at each depth of the quartering, for their room, and whether it was worth to look for them.
@@ -97,11 +111,15 @@ impl<'a> Quartering<'a> {
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if self.budget.is_limited() && !room.trust.takes_a_look() {
-            return visit(Part::Plain { area, live: None }, None);
+            return visit(plain(area), None);
         }
         let mut plain = 0;
         let flow = self.whole(area, room, &mut |part, checks| {
-            if let Part::Plain { area, live: None } = part {
+            if let Part::Plain {
+                area,
+                among: Among::All,
+            } = part
+            {
                 plain += area.pixels();
             }
             visit(part, checks)
@@ -118,15 +136,15 @@ impl<'a> Quartering<'a> {
     ) -> ControlFlow<()> {
         let mut crowd = take(&mut room.crowds, 0);
         let mut budget = self.budget;
-        let mut is_found = self.find(area, budget.most(area), &mut crowd);
+        let mut is_found = self.find(area, budget.most_bounds(area), &mut crowd);
         if !is_found {
             budget = budget.probed(self.world, area);
-            is_found = budget.most(area) > self.budget.most(area)
+            is_found = budget.most(area) > self.budget.most_bounds(area)
                 && self.find(area, budget.most(area), &mut crowd);
         }
         let flow = match is_found {
             true => self.disperse(area, &crowd, budget, 0, room, visit),
-            false => visit(Part::Plain { area, live: None }, None),
+            false => visit(plain(area), None),
         };
         room.crowds[0] = crowd;
         flow
@@ -147,19 +165,18 @@ impl<'a> Quartering<'a> {
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if crowd.len() > budget.most(area) {
+        if crowd.len() > budget.most_bounds(area) {
             budget = budget.probed(self.world, area);
         }
-        if crowd.len() > budget.most(area) {
-            return visit(Part::Plain { area, live: None }, None);
-        }
-        let is_for_a_look = crowd.len() < CROWD && budget.is_for_a_look(area, crowd.len());
-        if is_for_a_look || area.pixels() == 1 {
+        if budget.is_for_a_look(area, crowd.len()) && (crowd.len() < CROWD || area.pixels() == 1) {
             let mut live = take(&mut room.live, depth);
             self.world.live_of(area, crowd, &mut live);
-            let flow = self.cut(area, &live, budget, depth + 1, room, visit);
+            let flow = self.cut(area, &live, crowd, budget, depth + 1, room, visit);
             room.live[depth] = live;
             return flow;
+        }
+        if area.pixels() == 1 || !self.is_worth_a_cut(area, crowd, budget) {
+            return visit(plain_among(area, crowd), None);
         }
         let mut below = take(&mut room.crowds, depth + 1);
         let flow = area.quarters().try_for_each(|quarter| {
@@ -170,10 +187,28 @@ impl<'a> Quartering<'a> {
         flow
     }
 
+    /// Whether an area may be cut by a crowd's bounds, and its quarters are likely to have so few of it that this is a gain, or something that
+    /// hides others, as far as the middle tells.
+    fn is_worth_a_cut(&self, area: Area, crowd: &[Item], budget: Budget) -> bool {
+        // That rays ask many objects does not make bounds tell more.
+        if crowd.len() > budget.most(area).max(self.budget.most_bounds(area)) {
+            return false;
+        }
+        let few = SCANNED.max(budget.most(Area::pixel(0, 0)));
+        crowd.len() <= few
+            || self.world.is_met_by(area.middle(), crowd, few)
+            || crowd.len() <= budget.most(area)
+                && area
+                    .quarters()
+                    .any(|quarter| self.world.may_fill(quarter, crowd))
+    }
+
+    /// Cuts a part by what may be seen in it, which is some of a crowd.
     fn cut(
         &self,
         area: Area,
         live: &[Live],
+        crowd: &[Item],
         mut budget: Budget,
         depth: usize,
         room: &mut Room,
@@ -186,8 +221,14 @@ impl<'a> Quartering<'a> {
             budget = budget.probed(self.world, area);
         }
         if live.len() > budget.most(area) {
-            let live = (live.len() <= FEW).then_some(live);
-            return visit(Part::Plain { area, live }, None);
+            let part = match live.len() <= FEW {
+                true => Part::Plain {
+                    area,
+                    among: Among::Live(live),
+                },
+                false => plain_among(area, crowd),
+            };
+            return visit(part, None);
         }
         if area.pixels() == 1 {
             let Area { x, y, .. } = area;
@@ -202,14 +243,14 @@ impl<'a> Quartering<'a> {
                 return flow;
             }
             // What hides all else in the whole does so in its quarters.
-            return area
-                .quarters()
-                .try_for_each(|quarter| self.cut(quarter, live, budget, depth + 1, room, visit));
+            return area.quarters().try_for_each(|quarter| {
+                self.cut(quarter, live, crowd, budget, depth + 1, room, visit)
+            });
         }
         let mut below = take(&mut room.live, depth);
         let flow = area.quarters().try_for_each(|quarter| {
             self.world.live(quarter, live, &mut below);
-            self.cut(quarter, &below, budget, depth + 1, room, visit)
+            self.cut(quarter, &below, crowd, budget, depth + 1, room, visit)
         });
         room.live[depth] = below;
         flow
@@ -231,6 +272,23 @@ impl<'a> Quartering<'a> {
             }
             _ => None,
         }
+    }
+}
+
+/// A part of which nothing is known.
+fn plain<'a>(area: Area) -> Part<'a> {
+    let among = Among::All;
+    Part::Plain { area, among }
+}
+
+/// A part whose rays may meet some objects alone.
+fn plain_among(area: Area, crowd: &[Item]) -> Part<'_> {
+    match crowd.len() <= SCANNED {
+        true => Part::Plain {
+            area,
+            among: Among::Crowd(crowd),
+        },
+        false => plain(area),
     }
 }
 

@@ -4,7 +4,7 @@ use std::{fmt::Write, ops::ControlFlow};
 
 use glam::dvec3;
 
-use super::{Part, Quartering, Room, budget::Budget};
+use super::{Among, Part, Quartering, Room, budget::Budget};
 use crate::{
     area::Area,
     scene::{self, Scene},
@@ -112,14 +112,17 @@ fn parts_are_of_all_kinds_but_for_exact_pictures() {
     let floor = "checkerboard { square 0.3 y -1 } sphere { center (0, 1, -6) }";
     let world = World::new(&read(&format!("{} {floor}", thousand_spheres(5.0))));
     let count = |quartering: &Quartering| {
-        let mut kinds = [0; 4];
+        let mut kinds = [0; 5];
         for tile in Area::whole(SIZE, SIZE).tiles(16) {
             let flow = quartering.parts(tile, &mut Room::default(), &mut |part| {
                 kinds[match part {
                     Part::Flat { .. } => 0,
                     Part::Open { .. } => 1,
-                    Part::Plain { live: Some(_), .. } => 2,
-                    Part::Plain { live: None, .. } => 3,
+                    Part::Plain { among, .. } => match among {
+                        Among::Live(_) => 2,
+                        Among::Crowd(_) => 3,
+                        Among::All => 4,
+                    },
                 }] += 1;
                 ControlFlow::Continue(())
             });
@@ -129,10 +132,13 @@ fn parts_are_of_all_kinds_but_for_exact_pictures() {
     };
     let [one, three] = [1.0, 3.0].map(|samples| count(&Quartering::for_samples(&world, samples)));
     let found = |kind: usize| one[kind] + three[kind] > 0;
-    assert!((0..4).all(found), "{one:?} {three:?}");
+    assert!((0..5).all(found), "{one:?} {three:?}");
     let [flat, open, plain @ ..] = count(&Quartering::new(&world));
-    assert!(flat > 0 && open > 0 && plain == [0, 0]);
-    assert_eq!(count(&Quartering::for_samples(&world, 0.0)), [0, 0, 0, 16]);
+    assert!(flat > 0 && open > 0 && plain == [0; 3]);
+    assert_eq!(
+        count(&Quartering::for_samples(&world, 0.0)),
+        [0, 0, 0, 0, 16]
+    );
 }
 
 #[test]

@@ -5,10 +5,14 @@
 
 use std::hint::black_box;
 
-use super::World;
+use glam::DVec2;
+
+use super::{Nearest, World};
 use crate::{
     area::Area,
+    math::Doubt,
     tracer::{
+        camera::Direction,
         cover::{Patch, Range},
         hierarchy::{Item, Nearness},
         object::Object,
@@ -61,6 +65,58 @@ impl World {
         if out.len() < NEARBY && among.len() >= NEARBY {
             self.fetch(out);
         }
+    }
+
+    /// Whether no more than `most` of a crowd have bounds that meet a part of the picture.
+    pub fn is_met_by(&self, part: Area, crowd: &[Item], most: usize) -> bool {
+        let patch = Patch::new(&self.fast.camera, part);
+        self.hierarchy.rectangle(&patch).is_none_or(|rectangle| {
+            let met = crowd.iter().filter(|item| item.meets(&rectangle));
+            met.take(most + 1).count() <= most
+        })
+    }
+
+    /// Whether one of a crowd has bounds that hold all of a part of the picture.
+    pub fn may_fill(&self, part: Area, crowd: &[Item]) -> bool {
+        let patch = Patch::new(&self.fast.camera, part);
+        let rectangle = self.hierarchy.rectangle(&patch);
+        rectangle.is_some_and(|rectangle| crowd.iter().any(|item| item.may_fill(&rectangle)))
+    }
+
+    /// What [`slot_at`](World::slot_at) answers in a part of the picture with this crowd.
+    #[inline]
+    pub fn slot_in_crowd(&self, x: u32, y: u32, offset: DVec2, crowd: &[Item]) -> usize {
+        let point = self.fast.camera.sample_point(x, y, offset);
+        let r = self.fast.camera.direction(&point);
+        let Some(at) = self.hierarchy.units(&r) else {
+            return self.slot_at(x, y, offset);
+        };
+        let seen = self.nearest_in_crowd(crowd, at, &r);
+        match seen.and_then(|nearest| self.with_color(&r, nearest)) {
+            Ok(seen) => self.slot(seen),
+            Err(Doubt) => self.slot(self.seen_after_doubt(&point)),
+        }
+    }
+
+    #[inline]
+    fn nearest_in_crowd(
+        &self,
+        crowd: &[Item],
+        at: [u32; 2],
+        r: &Direction<f64>,
+    ) -> Result<Option<Nearest<f64>>, Doubt> {
+        let mut nearest = None;
+        // All farther than this is hidden.
+        let mut bar = Nearness::NONE;
+        for item in crowd {
+            if item.nearest <= bar {
+                break;
+            }
+            if item.holds(at) {
+                self.raise(r, item.object as usize, &mut nearest, &mut bar)?;
+            }
+        }
+        Ok(nearest)
     }
 
     /// All that is not nearer than this is behind an object, if that fills a patch.
