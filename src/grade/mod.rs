@@ -49,6 +49,7 @@ use self::{
     case::Case,
     choice::{Explanation, RIVAL, ROUNDING},
     order::Order,
+    pairs::Pairs,
 };
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
@@ -278,17 +279,20 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     }
     let is_too_small = case.differences.pixels < evidence::FEWEST;
     let is_of_colors = (found.first()).is_some_and(|first| first.verdict.mistake == "colors");
-    if (found.is_empty() || is_of_colors) && !is_too_small {
-        // Two mistakes of which each is known are simpler than a list of colours.
-        let pairs = pairs::known(case)?;
-        let left = found.first().and_then(|first| first.verdict.rmse);
-        let most = left.map_or(f64::INFINITY, |left| RIVAL * left.max(ROUNDING));
-        if pairs
-            .iter()
-            .any(|pair| pair.rmse.is_some_and(|left| left <= most))
-        {
-            return Ok(pairs);
-        }
+    let pairs = match (found.is_empty() || is_of_colors) && !is_too_small {
+        true => Pairs::new(case)?,
+        false => None,
+    };
+    let both = match &pairs {
+        Some(pairs) => pairs.known()?,
+        None => None,
+    };
+    let left = found.first().and_then(|first| first.verdict.rmse);
+    if let Some(both) = &both
+        && left.map_or(both.is_all, |left| both.left <= RIVAL * left.max(ROUNDING))
+    {
+        // Two mistakes of which each is known are simpler than a list of colours, and than what is searched for if they explain all.
+        return Ok(vec![both.verdict.clone()]);
     }
     if !found.is_empty() {
         return and_beside(case, found);
@@ -297,11 +301,15 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         return Ok(Vec::new());
     }
     // What has to be searched for takes longer, what comes last longest.
-    let found = case.named(objects::search(case)?)?;
-    if !found.is_empty() {
-        return Ok(verdicts(found));
+    let mut found = verdicts(case.named(objects::search(case)?)?);
+    if found.is_empty() {
+        found = numbers(case, pairs.as_ref())?;
     }
-    numbers(case)
+    // One mistake is simpler than two, unless these leave less.
+    Ok(match both {
+        Some(both) if both.is_better_than(&found) => vec![both.verdict],
+        _ => found,
+    })
 }
 
 /// What explains a difference, and an object that is off beside that.
@@ -316,7 +324,7 @@ fn and_beside(case: &Case, found: Vec<Explanation>) -> Result<Vec<Verdict>, Rend
 }
 
 /// The numbers of the camera or the checkerboard that explain a difference, as few of them as leave nothing but roundings and noise.
-fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
+fn numbers(case: &Case, pairs: Option<&Pairs>) -> Result<Vec<Verdict>, RenderError> {
     let scene = &case.full.scene;
     // A camera that moved a little displaces the picture, nearly.
     let mut ideas = shift::search(case)?;
@@ -345,11 +353,11 @@ fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     if case.is_all(&found)? {
         return Ok(verdicts(found));
     }
-    if found.is_empty() {
-        let pairs = pairs::searched(case)?;
-        if !pairs.is_empty() {
-            return Ok(pairs);
-        }
+    if found.is_empty()
+        && let Some(pairs) = pairs
+        && let Some(both) = pairs.searched(single.least.min(several.least))?
+    {
+        return Ok(vec![both.verdict]);
     }
     let starts: Vec<_> = single.starts.into_iter().chain(several.starts).collect();
     let any = camera::any(case, &starts)?;
