@@ -7,7 +7,7 @@
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
 //! not independent, `truncated` bytes that are not rounded, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
-//! one, and `choice` which of several it is. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
+//! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
 mod bias;
@@ -29,10 +29,7 @@ mod shift;
 mod truncated;
 mod whole;
 
-use std::sync::atomic::Ordering;
-
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::{
     area::Area,
@@ -137,41 +134,6 @@ enum Make {
 struct Curve {
     to: fn(f64) -> f64,
     back: fn(f64) -> f64,
-}
-
-/// What was done to a picture as a whole, so that it can be undone.
-#[derive(Clone, Copy)]
-enum Look {
-    /// Its pixels are elsewhere.
-    Turned { to: Turn, back: Turn },
-    /// Its channels are.
-    Ordered { to: Turn, back: Turn },
-    /// Its light went through a curve.
-    Curved(Curve),
-}
-
-impl Look {
-    fn done(&self, film: &Film) -> Result<Film, TooLarge> {
-        match self {
-            Self::Turned { to, .. } | Self::Ordered { to, .. } => to(film),
-            Self::Curved(curve) => level::map(film, curve.to),
-        }
-    }
-
-    fn undone(&self, film: &Film) -> Result<Film, TooLarge> {
-        match self {
-            Self::Turned { back, .. } | Self::Ordered { back, .. } => back(film),
-            Self::Curved(curve) => level::map(film, curve.back),
-        }
-    }
-
-    /// The mistake of which the picture is made.
-    fn make(self) -> Make {
-        match self {
-            Self::Turned { to, .. } | Self::Ordered { to, .. } => Make::Film(Box::new(to)),
-            Self::Curved(curve) => Make::Light(curve),
-        }
-    }
 }
 
 /// Names the mistakes that explain why `a` is not the exact picture of a scene.
@@ -462,43 +424,6 @@ impl Idea {
 fn explained_share(left: f64, difference: f64) -> f64 {
     let share = left / difference;
     (1.0 - share * share).max(0.0)
-}
-
-/// One sample in each pixel, at an offset from its centre.
-fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, RenderError> {
-    let world = World::new(scene);
-    let colors: Vec<_> = world
-        .palette()
-        .iter()
-        .map(|color| color.to_linear())
-        .collect();
-    let (width, height) = (scene.image.width, scene.image.height);
-    let mut film = Film::new(width, height)?;
-    let row = |y| {
-        if control.cancel.load(Ordering::Relaxed) {
-            return Err(RenderError::Cancelled);
-        }
-        let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
-        Ok(row.collect())
-    };
-    let rows: Vec<Vec<_>> = threads::install(control.threads, || {
-        (0..height)
-            .into_par_iter()
-            .map(row)
-            .collect::<Result<_, _>>()
-    })??;
-    for (y, row) in (0..).zip(rows) {
-        film.put(
-            Area {
-                x: 0,
-                y,
-                width,
-                height: 1,
-            },
-            &row,
-        );
-    }
-    Ok(film)
 }
 
 /// A scene and its exact picture, for tests.

@@ -6,14 +6,14 @@
 //! before, in a tiny picture.
 
 use super::{
-    Case, Curve, Idea, LEFT, Look, Make, Verdict, board, camera,
+    Case, Curve, Idea, LEFT, Make, Verdict, board, camera,
     choice::{Explanation, RIVAL, ROUNDING},
     evidence, exact, explained_share,
     fit::fit,
     level::{self, Level},
     objects,
     search::Change,
-    whole,
+    whole::{self, Look},
 };
 use crate::{
     film::{Film, rmse},
