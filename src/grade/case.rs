@@ -155,6 +155,9 @@ impl<'a> Case<'a> {
         if self.is_rounding(made, evidence::APART) {
             return Ok(true);
         }
+        if let Some(is_curved) = self.is_of_light(make, made)? {
+            return Ok(is_curved);
+        }
         Ok(match self.noise_in(make, made)? {
             // Small errors of another number would pass for noise of many samples.
             Some((variance, noise)) => {
@@ -332,33 +335,50 @@ impl<'a> Case<'a> {
             return Ok(true);
         }
         // The picture may have the mistake and noise.
-        let (full, control) = (&self.full, &self.control);
-        match make {
-            Make::Light(curve) => {
-                return Ok(self.is_curved(*curve, made, &full.exact, &self.variance)?);
-            }
-            Make::Turned(turn, curve) => {
-                let (means, variance) = (turn(&full.exact)?, turn(&self.variance)?);
-                return Ok(self.is_curved(*curve, made, &means, &variance)?);
-            }
-            Make::Curved(scene, curve) => {
-                if noise::has_strays(&full.a, made, scene, curve.to) {
-                    return Ok(false);
-                }
-                let means = level::map(made, curve.back)?;
-                let variance = noise::variance(scene, &means, control)?;
-                return Ok(self.is_noise_before(*curve, made, &means, &variance)?);
-            }
-            _ => {}
+        if let Some(is_curved) = self.is_of_light(make, made)? {
+            return Ok(is_curved);
         }
         Ok(match self.noise_in(make, made)? {
             // What is little beside noise may hide another mistake.
             Some((variance, noise)) => {
                 left <= HOPE * self.difference
-                    || !self.is_biased(&full.a, made, &variance, noise)?
+                    || !self.is_biased(&self.full.a, made, &variance, noise)?
             }
             None => false,
         })
+    }
+
+    /// Whether the picture is one whose light went through a curve, but for roundings and noise, if a mistake is of that kind.
+    fn is_of_light(&self, make: &Make, made: &Film) -> Result<Option<bool>, RenderError> {
+        let (full, control) = (&self.full, &self.control);
+        Ok(Some(match make {
+            Make::Light(curve) => self.is_light(*curve, made)?,
+            Make::Turned(turn, curve) => {
+                let (means, variance) = (turn(&full.exact)?, turn(&self.variance)?);
+                self.is_curved(*curve, made, &means, &variance)?
+            }
+            Make::Curved(scene, curve) => {
+                if noise::has_strays(&full.a, made, scene, curve.to) {
+                    return Ok(Some(false));
+                }
+                let means = level::map(made, curve.back)?;
+                let variance = noise::variance(scene, &means, control)?;
+                self.is_noise_before(*curve, made, &means, &variance)?
+            }
+            _ => return Ok(None),
+        }))
+    }
+
+    /// Whether a curve made the picture from the right one, which may have been rounded or have noise.
+    pub fn is_light(&self, curve: Curve, made: &Film) -> Result<bool, TooLarge> {
+        self.is_curved(curve, made, &self.full.exact, &self.variance)
+    }
+
+    /// Whether nothing need be wrong with the picture: it is right but for roundings, or may have noise.
+    pub fn may_be_right(&self) -> bool {
+        let (a, exact) = (&self.full.a, &self.full.exact);
+        self.is_rounding(exact, evidence::APART)
+            || noise::possible(a, exact, &self.variance).is_some()
     }
 
     /// Whether the picture is another one but for so many steps of 8-bit sRGB.
@@ -383,7 +403,7 @@ impl<'a> Case<'a> {
     }
 
     /// Whether a curve made the picture from another one's bytes: then it is off by a rounding after the curve and by one before it.
-    fn is_rounding_before(&self, curve: Curve, means: &Film) -> bool {
+    pub fn is_rounding_before(&self, curve: Curve, means: &Film) -> bool {
         let byte = |light: f64| 255.0 * linear_to_srgb(light);
         let made = |at: f64| byte((curve.to)(srgb_to_linear(at.clamp(0.0, 255.0) / 255.0)));
         let mut pairs = self.full.a.pixels().iter().zip(means.pixels());

@@ -42,7 +42,8 @@ impl Explanation {
         Ok(sum.sigmas > DOUBT || evidence::is_enough(a, &other.made, &self.made))
     }
 
-    /// Whether both are about the same thing: they change the same object, or the same numbers of the scene, which the better one says.
+    /// Whether both are about the same thing, of which the better one says enough: they change the same object, or are the same mistake of
+    /// other numbers, as of two coordinates of the eye.
     fn is_of_same(&self, other: &Self) -> bool {
         if let (Make::Scene(_), Make::Scene(_)) = (&self.make, &other.make)
             && self.verdict.mistake == other.verdict.mistake

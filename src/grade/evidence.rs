@@ -3,20 +3,21 @@
 //! Where the picture that a mistake makes and the right one can be told apart, each pixel sides with one of them. If the mistake had
 //! nothing to do with the picture, a pixel would side with it as often as not, and of n pixels p more than half would with a probability of at most
 //! exp(−2p²/n) (Hoeffding, Probability inequalities for sums of bounded random variables, 1963, theorem 2). Of all the mistakes that are
-//! thought of, none may pass by chance more often than once in twenty pictures. So with all pixels on its side a mistake takes 16 of them.
+//! thought of, none may pass by chance more often than once in twenty pictures. So with all pixels on its side a mistake takes 20 of them.
 
 use crate::{color::linear_to_srgb, film::Film};
 
 /// More mistakes than this are not thought of before those that are searched for, in pictures of a dozen objects: some forty of the whole
-/// picture, the camera and the board, and up to seven of each object. A number that is searched for is one mistake more.
-const MISTAKES: f64 = 128.0;
+/// picture, the camera and the board, up to sixteen of each object, and of the forty any two that are not about the same. A number that is
+/// searched for is one mistake more.
+const MISTAKES: f64 = 1024.0;
 
 /// In so large a share of pictures one of them may be named by chance: as usual in statistics, where all of a picture's pixels that tell of
 /// anything are as few as can be; each pixel more that agrees halves it, about.
 const CHANCE: f64 = 0.05;
 
 /// It takes so many pixels that agree, as many as [`MISTAKES`] and [`CHANCE`] ask for.
-pub const FEWEST: u64 = 16;
+pub const FEWEST: u64 = 20;
 
 /// Two pictures can be told apart where they are farther apart than this, in steps of 8-bit sRGB: when both are rounded.
 pub const APART: f64 = 1.0;
@@ -57,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn it_takes_sixteen_pixels_that_agree() {
+    fn it_takes_twenty_pixels_that_agree() {
         for pixels in 0..40 {
             // The mistake makes all of them gray, and so are they.
             let (a, right) = (row(64, pixels), row(64, 0));

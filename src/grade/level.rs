@@ -1,10 +1,11 @@
 //! A picture and its scene at some size.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, sync::atomic::Ordering};
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
-use super::{Curve, Make, Turn, bias::Trend, exact, extent::View, order, sampled};
+use super::{Curve, Make, Turn, bias::Trend, exact, extent::View, order};
 use crate::{
     area::Area,
     film::{Film, TooLarge},
@@ -12,6 +13,7 @@ use crate::{
     render::{self, Control, RenderError},
     sampling::Sampling,
     scene::{Count, Image, Lens, Method, Sampler, Scene, Shape},
+    threads,
     tracer::{Basis, World},
 };
 
@@ -293,6 +295,43 @@ impl<'a> Level<'a> {
             factor => resized(scene, [self.a.width(), self.a.height()], factor),
         }
     }
+}
+
+/// One sample in each pixel, at an offset from its centre.
+pub fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, RenderError> {
+    let world = World::new(scene);
+    let colors: Vec<_> = world
+        .palette()
+        .iter()
+        .map(|color| color.to_linear())
+        .collect();
+    let (width, height) = (scene.image.width, scene.image.height);
+    let mut film = Film::new(width, height)?;
+    let row = |y| {
+        if control.cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
+        Ok(row.collect())
+    };
+    let rows: Vec<Vec<_>> = threads::install(control.threads, || {
+        (0..height)
+            .into_par_iter()
+            .map(row)
+            .collect::<Result<_, _>>()
+    })??;
+    for (y, row) in (0..).zip(rows) {
+        film.put(
+            Area {
+                x: 0,
+                y,
+                width,
+                height: 1,
+            },
+            &row,
+        );
+    }
+    Ok(film)
 }
 
 /// A grid of so many samples in each pixel of a scene's picture.

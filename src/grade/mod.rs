@@ -7,7 +7,7 @@
 //! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
 //! not independent, `truncated` bytes that are not rounded, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
-//! one, and `choice` which of several it is. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
+//! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
 mod bias;
@@ -29,10 +29,7 @@ mod shift;
 mod truncated;
 mod whole;
 
-use std::sync::atomic::Ordering;
-
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::{
     area::Area,
@@ -49,6 +46,7 @@ use self::{
     case::Case,
     choice::{Explanation, RIVAL, ROUNDING},
     order::Order,
+    pairs::Pairs,
 };
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
@@ -136,41 +134,6 @@ enum Make {
 struct Curve {
     to: fn(f64) -> f64,
     back: fn(f64) -> f64,
-}
-
-/// What was done to a picture as a whole, so that it can be undone.
-#[derive(Clone, Copy)]
-enum Look {
-    /// Its pixels are elsewhere.
-    Turned { to: Turn, back: Turn },
-    /// Its channels are.
-    Ordered { to: Turn, back: Turn },
-    /// Its light went through a curve.
-    Curved(Curve),
-}
-
-impl Look {
-    fn done(&self, film: &Film) -> Result<Film, TooLarge> {
-        match self {
-            Self::Turned { to, .. } | Self::Ordered { to, .. } => to(film),
-            Self::Curved(curve) => level::map(film, curve.to),
-        }
-    }
-
-    fn undone(&self, film: &Film) -> Result<Film, TooLarge> {
-        match self {
-            Self::Turned { back, .. } | Self::Ordered { back, .. } => back(film),
-            Self::Curved(curve) => level::map(film, curve.back),
-        }
-    }
-
-    /// The mistake of which the picture is made.
-    fn make(self) -> Make {
-        match self {
-            Self::Turned { to, .. } | Self::Ordered { to, .. } => Make::Film(Box::new(to)),
-            Self::Curved(curve) => Make::Light(curve),
-        }
-    }
 }
 
 /// Names the mistakes that explain why `a` is not the exact picture of a scene.
@@ -278,17 +241,20 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     }
     let is_too_small = case.differences.pixels < evidence::FEWEST;
     let is_of_colors = (found.first()).is_some_and(|first| first.verdict.mistake == "colors");
-    if (found.is_empty() || is_of_colors) && !is_too_small {
-        // Two mistakes of which each is known are simpler than a list of colours.
-        let pairs = pairs::known(case)?;
-        let left = found.first().and_then(|first| first.verdict.rmse);
-        let most = left.map_or(f64::INFINITY, |left| RIVAL * left.max(ROUNDING));
-        if pairs
-            .iter()
-            .any(|pair| pair.rmse.is_some_and(|left| left <= most))
-        {
-            return Ok(pairs);
-        }
+    let pairs = match (found.is_empty() || is_of_colors) && !is_too_small {
+        true => Pairs::new(case)?,
+        false => None,
+    };
+    let both = match &pairs {
+        Some(pairs) => pairs.known()?,
+        None => None,
+    };
+    let left = found.first().and_then(|first| first.verdict.rmse);
+    if let Some(both) = &both
+        && left.map_or(both.is_all, |left| both.left <= RIVAL * left.max(ROUNDING))
+    {
+        // Two mistakes of which each is known are simpler than a list of colours, and than what is searched for if they explain all.
+        return Ok(vec![both.verdict.clone()]);
     }
     if !found.is_empty() {
         return and_beside(case, found);
@@ -297,11 +263,15 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         return Ok(Vec::new());
     }
     // What has to be searched for takes longer, what comes last longest.
-    let found = case.named(objects::search(case)?)?;
-    if !found.is_empty() {
-        return Ok(verdicts(found));
+    let mut found = verdicts(case.named(objects::search(case)?)?);
+    if found.is_empty() {
+        found = numbers(case, pairs.as_ref())?;
     }
-    numbers(case)
+    // One mistake is simpler than two, unless these leave less.
+    Ok(match both {
+        Some(both) if both.is_better_than(&found) => vec![both.verdict],
+        _ => found,
+    })
 }
 
 /// What explains a difference, and an object that is off beside that.
@@ -316,7 +286,7 @@ fn and_beside(case: &Case, found: Vec<Explanation>) -> Result<Vec<Verdict>, Rend
 }
 
 /// The numbers of the camera or the checkerboard that explain a difference, as few of them as leave nothing but roundings and noise.
-fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
+fn numbers(case: &Case, pairs: Option<&Pairs>) -> Result<Vec<Verdict>, RenderError> {
     let scene = &case.full.scene;
     // A camera that moved a little displaces the picture, nearly.
     let mut ideas = shift::search(case)?;
@@ -345,11 +315,11 @@ fn numbers(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     if case.is_all(&found)? {
         return Ok(verdicts(found));
     }
-    if found.is_empty() {
-        let pairs = pairs::searched(case)?;
-        if !pairs.is_empty() {
-            return Ok(pairs);
-        }
+    if found.is_empty()
+        && let Some(pairs) = pairs
+        && let Some(both) = pairs.searched(single.least.min(several.least))?
+    {
+        return Ok(vec![both.verdict]);
     }
     let starts: Vec<_> = single.starts.into_iter().chain(several.starts).collect();
     let any = camera::any(case, &starts)?;
@@ -454,43 +424,6 @@ impl Idea {
 fn explained_share(left: f64, difference: f64) -> f64 {
     let share = left / difference;
     (1.0 - share * share).max(0.0)
-}
-
-/// One sample in each pixel, at an offset from its centre.
-fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, RenderError> {
-    let world = World::new(scene);
-    let colors: Vec<_> = world
-        .palette()
-        .iter()
-        .map(|color| color.to_linear())
-        .collect();
-    let (width, height) = (scene.image.width, scene.image.height);
-    let mut film = Film::new(width, height)?;
-    let row = |y| {
-        if control.cancel.load(Ordering::Relaxed) {
-            return Err(RenderError::Cancelled);
-        }
-        let row = (0..width).map(|x| colors[world.slot_at(x, y, offset)]);
-        Ok(row.collect())
-    };
-    let rows: Vec<Vec<_>> = threads::install(control.threads, || {
-        (0..height)
-            .into_par_iter()
-            .map(row)
-            .collect::<Result<_, _>>()
-    })??;
-    for (y, row) in (0..).zip(rows) {
-        film.put(
-            Area {
-                x: 0,
-                y,
-                width,
-                height: 1,
-            },
-            &row,
-        );
-    }
-    Ok(film)
 }
 
 /// A scene and its exact picture, for tests.

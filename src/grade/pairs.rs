@@ -6,14 +6,14 @@
 //! before, in a tiny picture.
 
 use super::{
-    Case, Curve, Idea, Look, Make, Verdict, board, camera,
+    Case, Curve, Idea, LEFT, Make, Verdict, board, camera,
     choice::{Explanation, RIVAL, ROUNDING},
-    exact, explained_share,
+    evidence, exact, explained_share,
     fit::fit,
     level::{self, Level},
-    noise, objects,
+    objects,
     search::Change,
-    whole,
+    whole::{self, Look},
 };
 use crate::{
     film::{Film, rmse},
@@ -34,7 +34,7 @@ const FITTED: usize = 8;
 const SIGNS: [&str; 4] = ["roll_sign", "roll_ignored", "up_negated", "board_swapped"];
 
 /// What a mistake is about. Two mistakes about the same are one.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum About {
     Turn,
     Order,
@@ -123,7 +123,7 @@ impl First {
         &self,
         case: &Case,
         search: impl FnOnce(&Case) -> Result<Vec<Idea>, RenderError>,
-    ) -> Result<Option<Verdict>, RenderError> {
+    ) -> Result<Option<Both>, RenderError> {
         let full = &case.full;
         let (a, scene, right) = match &self.undo {
             Undo::Look(look) => (look.undone(&full.a)?, &*full.scene, None),
@@ -135,21 +135,46 @@ impl First {
         };
         let right = right.as_ref().unwrap_or(&full.exact);
         let rest = Case::new(&a, scene, right, &case.control)?;
-        if noise::possible(&a, right, &rest.variance).is_some() {
+        let curve = match &self.undo {
+            Undo::Look(Look::Curved(curve)) => Some(*curve),
+            _ => None,
+        };
+        let is_alone = match curve {
+            // Of roundings it makes larger ones.
+            Some(curve) => case.is_light(curve, &level::map(right, curve.to)?)?,
+            None => false,
+        };
+        if is_alone || rest.may_be_right() {
             // The first mistake is the only one, and all else may be right.
             return Ok(None);
         }
         let ideas = search(&rest)?;
-        let Some(second) = rest.named(ideas)?.into_iter().next() else {
+        let found = rest.named(ideas)?;
+        case.is_thin.set(case.is_thin.get() | rest.is_thin.get());
+        let is_all = rest.is_all(&found)?;
+        let Some(second) = found.into_iter().next() else {
             return Ok(None);
+        };
+        let is_all =
+            is_all || curve.is_some_and(|curve| case.is_rounding_before(curve, &second.made));
+        // What the second one alone makes.
+        let alone = match (&self.undo, &second.make) {
+            (Undo::Look(_), _) => Some(second.made.clone()),
+            (Undo::Scene(_), Make::Film(_) | Make::Light(_)) => {
+                Some(full.made(&second.make, &case.control)?)
+            }
+            _ => None,
         };
         let made = match &self.undo {
             Undo::Look(look) => look.done(&second.made)?,
             Undo::Scene(_) => second.made,
         };
+        if alone.is_some_and(|alone| !evidence::is_enough(&full.a, &alone, &made)) {
+            return Ok(None);
+        }
         let left = rmse(&full.a, &made);
         let is_turned = matches!(self.undo, Undo::Look(Look::Turned { .. }));
-        Ok((left < case.difference).then(|| Verdict {
+        let verdict = Verdict {
             mistake: self.mistake,
             message: format!("{}; and {}", self.message, second.verdict.message),
             help: format!("{}; and {}", self.help, second.verdict.help),
@@ -157,7 +182,33 @@ impl First {
             explains: Some(explained_share(left, case.difference)),
             // It is off by so much in the picture that is turned back.
             off: second.verdict.off.filter(|_| !is_turned),
+        };
+        let explains = is_all || left < LEFT * case.difference;
+        Ok(explains.then_some(Both {
+            verdict,
+            left,
+            is_all,
         }))
+    }
+}
+
+/// Two mistakes that explain a picture together.
+pub struct Both {
+    pub verdict: Verdict,
+    /// The root mean square of what they leave.
+    pub left: f64,
+    /// Whether that is nothing but roundings or noise.
+    pub is_all: bool,
+}
+
+impl Both {
+    /// Whether something that explains the picture, too, leaves clearly more.
+    pub fn is_better_than(&self, found: &[Verdict]) -> bool {
+        let left = match found.first() {
+            Some(first) => first.rmse.unwrap_or(0.0),
+            None => f64::INFINITY,
+        };
+        left > RIVAL * self.left.max(ROUNDING)
     }
 }
 
@@ -190,7 +241,7 @@ struct Tiny<'a> {
 }
 
 impl<'a> Tiny<'a> {
-    fn new(case: &'a Case, first: Option<&'a First>) -> Result<Self, RenderError> {
+    fn new(case: &'a Case, first: Option<&First>) -> Result<Self, RenderError> {
         let tiny = &case.tiny;
         let level = match first.map(|first| &first.undo) {
             None => tiny.beside(Film::clone(&tiny.a), None),
@@ -239,79 +290,178 @@ fn spread(film: &Film) -> f64 {
     (sum / (3.0 * count)).sqrt().max(f64::MIN_POSITIVE)
 }
 
-/// Two mistakes that are known without a search.
-pub fn known(case: &Case) -> Result<Vec<Verdict>, RenderError> {
-    if is_hopeless(case) {
-        return Ok(Vec::new());
+/// The first mistakes of a picture, in its tiny one.
+pub struct Pairs<'a> {
+    case: &'a Case<'a>,
+    firsts: Vec<First>,
+    /// With none of them undone, and with each.
+    none: Tiny<'a>,
+    tiny: Vec<Tiny<'a>>,
+    /// The least that one of them alone leaves, or none.
+    least: f64,
+}
+
+impl<'a> Pairs<'a> {
+    /// Nothing, where nothing is to be said of two mistakes.
+    pub fn new(case: &'a Case<'a>) -> Result<Option<Self>, RenderError> {
+        if is_hopeless(case) {
+            return Ok(None);
+        }
+        let firsts = firsts(&case.full.scene);
+        let none = Tiny::new(case, None)?;
+        let tiny = firsts.iter().map(|first| Tiny::new(case, Some(first)));
+        let tiny = tiny.collect::<Result<Vec<_>, _>>()?;
+        Ok(Some(Self {
+            least: tiny.iter().map(|one| one.left).fold(none.left, f64::min),
+            case,
+            firsts,
+            none,
+            tiny,
+        }))
     }
-    let firsts = firsts(&case.full.scene);
-    let none = Tiny::new(case, None)?;
-    let tiny = each(case, &firsts)?;
-    let mut pairs: Vec<(f64, usize, Idea)> = Vec::new();
-    for (i, first) in firsts.iter().enumerate() {
-        let least = none.left.min(tiny[i].left);
-        let mut add = |left: f64, second: Idea| {
-            if left <= SHARE * least {
-                pairs.push((left, i, second));
-            }
-        };
-        match &first.undo {
-            Undo::Scene(scene) => {
-                for second in of_scene(scene) {
-                    if !first.is_alike(second.mistake) {
-                        let idea = second.idea();
-                        let made = tiny[i].level.made(&idea.make, &case.control)?;
-                        add(tiny[i].left_by(&made), idea);
+
+    /// Two mistakes that are known without a search.
+    pub fn known(&self) -> Result<Option<Both>, RenderError> {
+        let (case, firsts) = (self.case, &self.firsts);
+        let mut pairs: Vec<(f64, usize, Idea)> = Vec::new();
+        for (i, (first, tiny)) in firsts.iter().zip(&self.tiny).enumerate() {
+            let mut add = |left: f64, second: Idea| {
+                if left <= SHARE * self.least {
+                    pairs.push((left, i, second));
+                }
+            };
+            match &first.undo {
+                Undo::Scene(scene) => {
+                    for second in of_scene(scene) {
+                        // The same two are thought of the other way round, too.
+                        if second.about > first.about && !first.is_alike(second.mistake) {
+                            let idea = second.idea();
+                            let made = tiny.level.made(&idea.make, &case.control)?;
+                            add(tiny.left_by(&made), idea);
+                        }
+                    }
+                    for (second, tiny_second) in firsts.iter().zip(&self.tiny) {
+                        if matches!(second.undo, Undo::Look(_)) && !first.is_alike(second.mistake) {
+                            add(tiny_second.left_by(&tiny.level.exact), second.idea());
+                        }
                     }
                 }
-                for (second, tiny_second) in firsts.iter().zip(&tiny) {
-                    if matches!(second.undo, Undo::Look(_)) && !first.is_alike(second.mistake) {
-                        add(tiny_second.left_by(&tiny[i].level.exact), second.idea());
-                    }
-                }
-            }
-            Undo::Look(look) => {
-                for (second, tiny_second) in firsts.iter().zip(&tiny).skip(i + 1) {
-                    if !first.is_alike(second.mistake) {
-                        let undone = look.undone(&tiny_second.level.a)?;
-                        let left = rmse(&undone, &none.level.exact) / tiny_second.spread;
-                        add(left, second.idea());
+                Undo::Look(look) => {
+                    for (second, tiny_second) in firsts.iter().zip(&self.tiny).skip(i + 1) {
+                        if !first.is_alike(second.mistake) {
+                            let undone = look.undone(&tiny_second.level.a)?;
+                            let left = rmse(&undone, &self.none.level.exact) / tiny_second.spread;
+                            add(left, second.idea());
+                        }
                     }
                 }
             }
         }
+        pairs.sort_by(|p, q| p.0.total_cmp(&q.0));
+        let mut found = Vec::new();
+        for (_, i, second) in pairs.into_iter().take(TRIED) {
+            found.extend(firsts[i].then(case, |_| Ok(vec![second]))?);
+        }
+        Ok(best(found))
     }
-    pairs.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let mut found = Vec::new();
-    for (_, i, second) in pairs.into_iter().take(TRIED) {
-        found.extend(firsts[i].then(case, |_| Ok(vec![second]))?);
+
+    /// An object that is off in a picture that is wrong as a whole, too, or a number. What the best number alone leaves is given, in the tiny
+    /// picture.
+    pub fn searched(&self, least: f64) -> Result<Option<Both>, RenderError> {
+        let left = |i: &usize| self.tiny[*i].left;
+        let mut hopeful: Vec<_> = (0..self.firsts.len())
+            .filter(|i| left(i) <= SHARE * self.none.left)
+            .collect();
+        hopeful.sort_by(|p, q| left(p).total_cmp(&left(q)));
+        let mut found = Vec::new();
+        for i in hopeful.into_iter().take(TRIED) {
+            found.extend(self.firsts[i].then(self.case, of_objects)?);
+        }
+        if found.is_empty() {
+            found = self.numbers(self.least.min(least / self.none.spread))?;
+        }
+        Ok(best(found))
     }
-    Ok(best(found))
+
+    /// Numbers that are others in a picture that is wrong as a whole, too.
+    fn numbers(&self, least: f64) -> Result<Vec<Both>, RenderError> {
+        let (case, firsts) = (self.case, &self.firsts);
+        let mut pairs = Vec::new();
+        for group in groups(firsts) {
+            pairs.extend(self.nearest(&group)?);
+        }
+        pairs.sort_by(|p, q| p.left.total_cmp(&q.left));
+        pairs.truncate(FITTED);
+        for pair in &mut pairs {
+            let (first, tiny) = (&firsts[pair.first], &self.tiny[pair.first]);
+            let scene = first.scene(case);
+            let change = &changes(first, scene)[pair.change];
+            let make = |at: &[f64]| Some(Make::Scene(Box::new((change.with)(scene, at)?)));
+            let widths = &change.widths;
+            if let Some(found) = fit(&tiny.level, &case.control, &pair.at, widths, &make)? {
+                pair.left = found.left / tiny.spread;
+                pair.at = found.at;
+            }
+        }
+        pairs.retain(|pair| pair.left <= SHARE * least);
+        pairs.sort_by(|p, q| p.left.total_cmp(&q.left));
+        let mut found = Vec::new();
+        for pair in pairs.into_iter().take(TRIED) {
+            let first = &firsts[pair.first];
+            found.extend(first.then(case, |rest| {
+                let scene: &Scene = &rest.full.scene;
+                let change = &changes(first, scene)[pair.change];
+                let fit = change.fit(rest, &rest.small, &pair.at)?;
+                let idea = fit.and_then(|fit| change.idea(scene, &fit.at));
+                Ok(idea.into_iter().collect())
+            })?);
+        }
+        // A number comes near to much.
+        found.retain(|both| both.is_all);
+        Ok(found)
+    }
+
+    /// The nearest place of each number, of first mistakes that share a scene.
+    fn nearest(&self, group: &[usize]) -> Result<Vec<Pair>, RenderError> {
+        let (case, firsts) = (self.case, &self.firsts);
+        let Some(one) = group.first().map(|i| &firsts[*i]) else {
+            return Ok(Vec::new());
+        };
+        let scene = one.scene(case);
+        let mut pairs = Vec::new();
+        for (number, change) in changes(one, scene).iter().enumerate() {
+            let mut near: Vec<Option<Pair>> = Vec::new();
+            near.resize_with(group.len(), || None);
+            if group.iter().all(|i| firsts[*i].is_alike(change.mistake)) {
+                continue;
+            }
+            for at in &change.starts {
+                let Some(other) = (change.with)(scene, at) else {
+                    continue;
+                };
+                let make = Make::Scene(Box::new(other));
+                let made = case.tiny.made(&make, &case.control)?;
+                for (near, first) in near.iter_mut().zip(group) {
+                    let left = self.tiny[*first].left_by(&made);
+                    if near.as_ref().is_none_or(|near| left < near.left) {
+                        *near = Some(Pair {
+                            left,
+                            first: *first,
+                            change: number,
+                            at: at.clone(),
+                        });
+                    }
+                }
+            }
+            let near = near.into_iter().flatten();
+            pairs.extend(near.filter(|pair| !firsts[pair.first].is_alike(change.mistake)));
+        }
+        Ok(pairs)
+    }
 }
 
-/// An object that is off in a picture that is wrong as a whole, too, or a number.
-pub fn searched(case: &Case) -> Result<Vec<Verdict>, RenderError> {
-    if is_hopeless(case) {
-        return Ok(Vec::new());
-    }
-    let firsts = firsts(&case.full.scene);
-    let none = Tiny::new(case, None)?;
-    let tiny = each(case, &firsts)?;
-    let mut hopeful: Vec<_> = (0..firsts.len())
-        .filter(|i| tiny[*i].left <= SHARE * none.left)
-        .collect();
-    hopeful.sort_by(|p, q| tiny[*p].left.total_cmp(&tiny[*q].left));
-    let mut found = Vec::new();
-    for i in hopeful.into_iter().take(TRIED) {
-        found.extend(firsts[i].then(case, of_objects)?);
-    }
-    if found.is_empty() {
-        found = numbers(case, &firsts, &none, &tiny)?;
-    }
-    Ok(best(found))
-}
-
-/// An object that is off, too, in a picture that one mistake explains but for that.
+/// An object that is off, too, in a picture that one mistake explains but for that. It is named only if nothing but roundings or noise is left:
+/// what is explained nearly leaves something of which an object may take a part.
 pub fn beside(case: &Case, first: &Explanation) -> Result<Option<Verdict>, RenderError> {
     if is_hopeless(case) {
         return Ok(None);
@@ -331,7 +481,8 @@ pub fn beside(case: &Case, first: &Explanation) -> Result<Option<Verdict>, Rende
         },
         _ => return Ok(None),
     };
-    first.then(case, of_objects)
+    let both = first.then(case, of_objects)?;
+    Ok(both.filter(|both| both.is_all).map(|both| both.verdict))
 }
 
 fn of_objects(case: &Case) -> Result<Vec<Idea>, RenderError> {
@@ -343,13 +494,6 @@ fn of_objects(case: &Case) -> Result<Vec<Idea>, RenderError> {
 /// Where a picture may be right, or takes too long, nothing is said of two mistakes.
 fn is_hopeless(case: &Case) -> bool {
     case.may_be_noise.get() || case.full.is_heavy || case.tiny.is_heavy
-}
-
-fn each<'a>(case: &'a Case, firsts: &'a [First]) -> Result<Vec<Tiny<'a>>, RenderError> {
-    firsts
-        .iter()
-        .map(|first| Tiny::new(case, Some(first)))
-        .collect()
 }
 
 /// The numbers that may be others beside a first mistake: of the camera alone, if each of them takes pictures of its own.
@@ -370,46 +514,6 @@ struct Pair {
     at: Vec<f64>,
 }
 
-/// Numbers that are others in a picture that is wrong as a whole, too.
-fn numbers(
-    case: &Case,
-    firsts: &[First],
-    none: &Tiny,
-    tiny: &[Tiny],
-) -> Result<Vec<Verdict>, RenderError> {
-    let mut pairs = Vec::new();
-    for group in groups(firsts) {
-        pairs.extend(nearest(case, firsts, tiny, &group)?);
-    }
-    pairs.sort_by(|p, q| p.left.total_cmp(&q.left));
-    pairs.truncate(FITTED);
-    for pair in &mut pairs {
-        let (first, tiny) = (&firsts[pair.first], &tiny[pair.first]);
-        let scene = first.scene(case);
-        let change = &changes(first, scene)[pair.change];
-        let make = |at: &[f64]| Some(Make::Scene(Box::new((change.with)(scene, at)?)));
-        let widths = &change.widths;
-        if let Some(found) = fit(&tiny.level, &case.control, &pair.at, widths, &make)? {
-            pair.left = found.left / tiny.spread;
-            pair.at = found.at;
-        }
-    }
-    pairs.retain(|pair| pair.left <= SHARE * none.left.min(tiny[pair.first].left));
-    pairs.sort_by(|p, q| p.left.total_cmp(&q.left));
-    let mut found = Vec::new();
-    for pair in pairs.into_iter().take(TRIED) {
-        let first = &firsts[pair.first];
-        found.extend(first.then(case, |rest| {
-            let scene: &Scene = &rest.full.scene;
-            let change = &changes(first, scene)[pair.change];
-            let fit = change.fit(rest, &rest.small, &pair.at)?;
-            let idea = fit.and_then(|fit| change.idea(scene, &fit.at));
-            Ok(idea.into_iter().collect())
-        })?);
-    }
-    Ok(found)
-}
-
 /// The first mistakes that share the pictures of places: what was done to the picture leaves its scene as it was.
 fn groups(firsts: &[First]) -> Vec<Vec<usize>> {
     let all = 0..firsts.len();
@@ -420,52 +524,9 @@ fn groups(firsts: &[First]) -> Vec<Vec<usize>> {
     signs.map(|i| vec![i]).chain([looks]).collect()
 }
 
-/// The nearest place of each number, of first mistakes that share a scene.
-fn nearest(
-    case: &Case,
-    firsts: &[First],
-    tiny: &[Tiny],
-    group: &[usize],
-) -> Result<Vec<Pair>, RenderError> {
-    let Some(one) = group.first().map(|i| &firsts[*i]) else {
-        return Ok(Vec::new());
-    };
-    let scene = one.scene(case);
-    let mut pairs = Vec::new();
-    for (number, change) in changes(one, scene).iter().enumerate() {
-        let mut near: Vec<Option<Pair>> = Vec::new();
-        near.resize_with(group.len(), || None);
-        if group.iter().all(|i| firsts[*i].is_alike(change.mistake)) {
-            continue;
-        }
-        for at in &change.starts {
-            let Some(other) = (change.with)(scene, at) else {
-                continue;
-            };
-            let make = Make::Scene(Box::new(other));
-            let made = case.tiny.made(&make, &case.control)?;
-            for (near, first) in near.iter_mut().zip(group) {
-                let left = tiny[*first].left_by(&made);
-                if near.as_ref().is_none_or(|near| left < near.left) {
-                    *near = Some(Pair {
-                        left,
-                        first: *first,
-                        change: number,
-                        at: at.clone(),
-                    });
-                }
-            }
-        }
-        let near = near.into_iter().flatten();
-        pairs.extend(near.filter(|pair| !firsts[pair.first].is_alike(change.mistake)));
-    }
-    Ok(pairs)
-}
-
 /// The one that leaves least, the first of those that leave about as much.
-fn best(found: Vec<Verdict>) -> Vec<Verdict> {
-    let left = |verdict: &Verdict| verdict.rmse.unwrap_or(0.0).max(ROUNDING);
+fn best(found: Vec<Both>) -> Option<Both> {
+    let left = |both: &Both| both.left.max(ROUNDING);
     let least = found.iter().map(left).fold(f64::INFINITY, f64::min);
-    let first = found.into_iter().find(|one| left(one) <= RIVAL * least);
-    first.into_iter().collect()
+    found.into_iter().find(|one| left(one) <= RIVAL * least)
 }

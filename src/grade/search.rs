@@ -83,6 +83,8 @@ pub struct Found {
     pub ideas: Vec<Idea>,
     /// What comes nearest to the tiny picture with each that is of the camera's numbers: which they are, and the fit.
     pub starts: Vec<(Vec<usize>, Fit)>,
+    /// The least that one of them leaves there.
+    pub least: f64,
 }
 
 /// The changes that come nearest to the picture.
@@ -92,6 +94,8 @@ pub fn nearest(case: &Case, changes: &[Change]) -> Result<Found, RenderError> {
         let start = start(case, change)?;
         best.extend(start.map(|start| (change, nothing_in_noise(case, start))));
     }
+    let least = best.iter().map(|(_, start)| start.left);
+    let least = least.fold(case.tiny_difference, f64::min);
     let is_of_camera = |(change, _): &&(&Change, Fit)| !change.numbers.is_empty();
     let starts = best.iter().filter(is_of_camera);
     let starts = starts
@@ -111,6 +115,7 @@ pub fn nearest(case: &Case, changes: &[Change]) -> Result<Found, RenderError> {
     Ok(Found {
         ideas: ideas.collect(),
         starts,
+        least,
     })
 }
 

@@ -1,8 +1,9 @@
 //! Mistakes of the whole picture: turned, mirrored, its channels or its encoding confused.
 
 use super::{
-    Curve, Idea, Look, Make, Turn, Verdict,
+    Curve, Idea, Make, Turn, Verdict,
     evidence::FEWEST,
+    level,
     noise::{is_off, with_colors},
     objects, size,
 };
@@ -11,6 +12,41 @@ use crate::{
     film::{Film, TooLarge, rmse},
     scene::Scene,
 };
+
+/// What was done to a picture as a whole, so that it can be undone.
+#[derive(Clone, Copy)]
+pub enum Look {
+    /// Its pixels are elsewhere.
+    Turned { to: Turn, back: Turn },
+    /// Its channels are.
+    Ordered { to: Turn, back: Turn },
+    /// Its light went through a curve.
+    Curved(Curve),
+}
+
+impl Look {
+    pub fn done(&self, film: &Film) -> Result<Film, TooLarge> {
+        match self {
+            Self::Turned { to, .. } | Self::Ordered { to, .. } => to(film),
+            Self::Curved(curve) => level::map(film, curve.to),
+        }
+    }
+
+    pub fn undone(&self, film: &Film) -> Result<Film, TooLarge> {
+        match self {
+            Self::Turned { back, .. } | Self::Ordered { back, .. } => back(film),
+            Self::Curved(curve) => level::map(film, curve.back),
+        }
+    }
+
+    /// The mistake of which the picture is made.
+    pub fn make(self) -> Make {
+        match self {
+            Self::Turned { to, .. } | Self::Ordered { to, .. } => Make::Film(Box::new(to)),
+            Self::Curved(curve) => Make::Light(curve),
+        }
+    }
+}
 
 fn film(
     mistake: &'static str,

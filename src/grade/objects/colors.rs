@@ -8,7 +8,7 @@ use super::{ENOUGH, TRIED, called};
 use crate::{
     color::{Color, linear_to_srgb, srgb_to_linear},
     film::Film,
-    grade::{Case, Idea, Make, noise::with_colors, sampled},
+    grade::{Case, Idea, Make, level::sampled, noise::with_colors},
     render::RenderError,
     scene::{Scene, Shape},
 };

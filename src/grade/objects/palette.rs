@@ -96,11 +96,14 @@ impl Palette {
             return None;
         }
         // What should have the colour has it elsewhere.
-        let new = |film: &Film, (x, y): (u32, u32)| {
-            near.holds(&film.pixel(x, y)) && !near.holds(&exact.pixel(x, y))
-        };
-        let blob = Blob::where_that(whole, |at| new(a, at));
-        if blob.pixels as f64 >= PART * whole.pixels() as f64 {
+        let pairs = a.pixels().iter().zip(exact.pixels());
+        let new: Vec<_> = pairs
+            .map(|(p, q)| near.holds(p) && !near.holds(q))
+            .collect();
+        let is_new = |(x, y): (u32, u32)| new[y as usize * a.width() as usize + x as usize];
+        let blob = Blob::where_that(whole, is_new);
+        // What is off by a step or two is near the colour that it should be, and so not new.
+        if blob.pixels < FEWEST || blob.pixels as f64 >= PART * whole.pixels() as f64 {
             return None;
         }
         // All that is left is in pixels that do not have it, near none that does: little, or nothing but noise.
@@ -110,7 +113,7 @@ impl Palette {
             // An edge may cover a little of a pixel that is next to one of which it covers a part.
             let mut around = around(around(Area::pixel(x, y), a), a).iter();
             let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
-            if around.any(|at| new(a, at)) {
+            if around.any(is_new) {
                 made.put(Area::pixel(x, y), &[p]);
             } else {
                 let is_flat = noise::is_flat(&case.variance.pixel(x, y));

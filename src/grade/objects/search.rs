@@ -102,6 +102,10 @@ struct Step {
     is_known: bool,
 }
 
+/// One place is better than another that is nearer to none if it leaves less than this share of what that leaves: what looks the same leaves
+/// the same but for roundings. It is a choice; a fit's last steps gain less than this.
+const CLEARLY: f64 = 0.99;
+
 /// By what factors an object's size may be off: slopes tell little of more.
 const GROWTH: RangeInclusive<f64> = 0.125..=8.0;
 
@@ -429,10 +433,11 @@ impl<'a> Sought<'a> {
         fit(full, control, &at, widths, make)
     }
 
-    /// Fits in the small picture from the best of some places and from none, and then in the whole one.
+    /// Fits in the small picture from none and from the best of some places, and then in the whole one, if that is hopeful. Of places that are
+    /// alike, as of a triangle that looks the same after a third of a turn, the nearest is taken.
     fn fit_from(
         &self,
-        places: Vec<Vec<f64>>,
+        mut places: Vec<Vec<f64>>,
         widths: &[f64],
         make: &dyn Fn(&[f64]) -> Option<Make>,
     ) -> Result<Option<Fit>, RenderError> {
@@ -446,25 +451,30 @@ impl<'a> Sought<'a> {
         if full.is_heavy {
             return fit(full, control, &none, widths, make);
         }
-        let mut nearest: Option<(f64, Vec<f64>)> = None;
+        places.retain(|at| *at != none);
+        let square = |at: &[f64]| -> f64 { at.iter().map(|way| way * way).sum() };
+        places.sort_by(|p, q| square(p).total_cmp(&square(q)));
+        let mut nearest = (self.case.small_difference, None);
         for at in places {
             let Some(make) = make(&at) else { continue };
             let left = rmse(&small.a, &small.made(&make, control)?);
-            if nearest.as_ref().is_none_or(|nearest| left < nearest.0) {
-                nearest = Some((left, at));
+            if left < CLEARLY * nearest.0 {
+                nearest = (left, Some(at));
             }
         }
         let mut found: Option<Fit> = None;
-        for at in nearest.map(|(_, at)| at).into_iter().chain([none]) {
+        for at in [Some(none), nearest.1].into_iter().flatten() {
             if let Some(fit) = fit(small, control, &at, widths, make)?
-                && found.as_ref().is_none_or(|found| fit.left < found.left)
+                && (found.as_ref()).is_none_or(|found| fit.left < CLEARLY * found.left)
             {
                 found = Some(fit);
             }
         }
         match found {
-            Some(found) => fit(full, control, &found.at, widths, make),
-            None => Ok(None),
+            Some(found) if found.left <= self.case.hopeful() * self.case.small_difference => {
+                fit(full, control, &found.at, widths, make)
+            }
+            _ => Ok(None),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{SCENE, folder, json, render};
+use super::{SCENE, folder, json, open, render, save};
 
 /// The first mistake that is found in `b.png`, and what is said of it.
 fn first(folder: &tempfile::TempDir) -> [String; 2] {
@@ -125,6 +125,42 @@ fn a_triangle_that_is_turned_is_said_to_be() {
         let found = json(&folder, &[&["b.png", "a.scn"], &size[..]].concat());
         let message = found["likely"][0]["message"].as_str().unwrap_or("none");
         assert!(message.starts_with(expected), "{set}: {message}");
+    }
+}
+
+#[test]
+fn a_triangle_with_equal_sides_is_spun_by_the_least() {
+    let folder = folder();
+    let scene = SCENE.replace("sides (2, 2, 1)", "sides (2, 2, 2)");
+    fs::write(folder.path().join("a.scn"), scene).unwrap();
+    for spin in ["10", "-10", "25"] {
+        let set = format!("Sail.spin={spin}deg");
+        render(&folder, &["-o", "b.png", "--set", &set]);
+        let expected = format!(
+            "the triangle `Sail` is spun wrongly: as if its spin were {spin} degrees instead of 0"
+        );
+        let [_, message] = first(&folder);
+        assert!(message.starts_with(&expected), "{message}");
+    }
+}
+
+#[test]
+fn edges_that_are_a_step_or_two_off_are_no_object() {
+    let folder = folder();
+    let right = open(&folder, "a.png").to_rgb8();
+    let orange = [255, 165, 0];
+    for by in [1, 2] {
+        let mut picture = right.clone();
+        for (x, y, pixel) in picture.enumerate_pixels_mut() {
+            // At the left and the right edge of the box.
+            let beside = |x: u32| right.get_pixel_checked(x, y).is_some_and(|p| p.0 != orange);
+            if pixel.0 == orange && (beside(x.wrapping_sub(1)) || beside(x + 1)) {
+                pixel.0 = orange.map(|byte: u8| byte.saturating_sub(by).max(by));
+            }
+        }
+        save(&folder, "b.png", picture);
+        let [mistake, message] = first(&folder);
+        assert_ne!(mistake, "object_extra", "{by}: {message}");
     }
 }
 

@@ -102,6 +102,64 @@ fn two_mistakes_are_both_named() {
 }
 
 #[test]
+fn noise_is_no_second_mistake() {
+    let folder = folder();
+    type One = (
+        &'static [(&'static str, &'static str)],
+        fn(&mut RgbImage),
+        &'static str,
+    );
+    let cases: [One; 3] = [
+        (&[], dark, OF_LIGHT),
+        (&[ROLLED], as_it_is, OF_ROLL),
+        (&[], mirrored, OF_MIRROR),
+    ];
+    for (replaced, edit, expected) in cases {
+        for samples in [4, 16] {
+            let sampler = format!("method random per_pixel {samples}");
+            let replaced = [replaced, &[("method exact", &*sampler)]].concat();
+            let said = said(&folder, &replaced, &edit);
+            assert!(said.starts_with(expected), "{samples}: {said}");
+            assert!(!said.contains("; and "), "{samples}: {said}");
+        }
+    }
+}
+
+#[test]
+fn what_one_mistake_explains_is_not_laid_on_two() {
+    let folder = folder();
+    for (replaced, expected) in [
+        (MOVED, OF_BALL),
+        (
+            ("center (-1.6, 1, 0)", "center (-1.6, 1, 1.5)"),
+            "the sphere `Ball` is in a wrong place: as if the z",
+        ),
+        (NEARER, "the view plane is at the wrong distance"),
+        (
+            ("d 2.75", "d 1.43"),
+            "the view plane is at the wrong distance: as if d were 1.43",
+        ),
+        (
+            ("d 2.75", "d 5.2"),
+            "the view plane is at the wrong distance: as if d were 5.2",
+        ),
+        (("roll 10deg", "roll -6deg"), "the camera is rolled wrongly"),
+        (
+            ("eye (3, 3.5, 8)", "eye (3, 3.5, 6.5)"),
+            "eye is in a wrong place: as if its z",
+        ),
+        (
+            ("eye (3, 3.5, 8)", "eye (-2, 3.5, 8)"),
+            "eye is in a wrong place: as if its x",
+        ),
+    ] {
+        let said = said(&folder, &[replaced], &as_it_is);
+        assert!(said.starts_with(expected), "{replaced:?}: {said}");
+        assert!(!said.contains("; and "), "{replaced:?}: {said}");
+    }
+}
+
+#[test]
 fn a_wrong_distance_is_told_once() {
     let folder = folder();
     for distance in ["2.1", "2.6", "3.4"] {

@@ -58,6 +58,7 @@ fn series(points: &[(u64, f64, f64)]) -> Series {
             .map(|square: f64| error * square.sqrt())
             .to_vec(),
         largest: 1.0,
+        rays: 0,
     };
     Series {
         method: Method::Sobol,

@@ -94,9 +94,10 @@ impl Sought<'_> {
         };
         let make = |p: &[f64]| self.with_triangle(spun(p));
         // A fit finds what is off by less than a third of the way to the next place, about.
-        let places = (-17..=18).map(|k| vec![10.0 * f64::from(k)]).collect();
+        // Of two that are as far to either side the first is taken, which is the positive one.
+        let places = (-17..=18).rev().map(|k| vec![10.0 * f64::from(k)]);
         let width = self.half_a_pixel_of_turn().to_degrees();
-        let Some(Fit { at, left }) = self.fit_from(places, &[width], &make)? else {
+        let Some(Fit { at, left }) = self.fit_from(places.collect(), &[width], &make)? else {
             return Ok(None);
         };
         let in_degrees = |angle: Angle| angle.degrees + angle.radians.to_degrees();
