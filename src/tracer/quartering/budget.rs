@@ -12,7 +12,7 @@ const A_CANDIDATE: f64 = 16.0;
 
 /// By its candidates' bounds alone it is cut if it has so many: each sample that is traced among them afterwards is spared the bounds of the
 /// others.
-const BOUNDS: f64 = 8.0;
+const BOUNDS: f64 = 5.0;
 
 /// To look at candidates themselves takes longer than at their bounds: that is begun where so many times as many could be paid for.
 const LOOK: f64 = 4.0;

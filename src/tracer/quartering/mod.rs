@@ -190,8 +190,8 @@ impl<'a> Quartering<'a> {
     /// Whether an area may be cut by a crowd's bounds, and its quarters are likely to have so few of it that this is a gain, or something that
     /// hides others, as far as the middle tells.
     fn is_worth_a_cut(&self, area: Area, crowd: &[Item], budget: Budget) -> bool {
-        // That rays ask many objects does not make bounds tell more.
-        if crowd.len() > budget.most(area).max(self.budget.most_bounds(area)) {
+        // What was begun is carried on, though where objects are larger than the quarters there come to be more of them for each sample.
+        if crowd.len() > budget.most(area).max(self.budget.most_bounds(area).saturating_mul(2)) {
             return false;
         }
         let few = SCANNED.max(budget.most(Area::pixel(0, 0)));
