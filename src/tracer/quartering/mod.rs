@@ -191,7 +191,8 @@ impl<'a> Quartering<'a> {
     /// hides others, as far as the middle tells.
     fn is_worth_a_cut(&self, area: Area, crowd: &[Item], budget: Budget) -> bool {
         // What was begun is carried on, though where objects are larger than the quarters there come to be more of them for each sample.
-        if crowd.len() > budget.most(area).max(self.budget.most_bounds(area).saturating_mul(2)) {
+        let most = self.budget.most_bounds(area).saturating_mul(2);
+        if crowd.len() > most.max(budget.most(area)) {
             return false;
         }
         let few = SCANNED.max(budget.most(Area::pixel(0, 0)));
