@@ -72,6 +72,13 @@ pub enum Among<'a> {
     Live(&'a [Live]),
 }
 
+/// What is known of an area: the objects that may be seen there, in file order, which are some of a crowd there or in a larger one.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    live: &'a [Live],
+    crowd: &'a [Item],
+}
+
 /// What is kept from area to area: the candidates at each depth of the quartering, for their room, and whether it was worth to look for them.
 #[derive(Debug, Default)]
 pub struct Room {
@@ -171,7 +178,14 @@ impl<'a> Quartering<'a> {
         if budget.is_for_a_look(area, crowd.len()) && (crowd.len() < CROWD || area.pixels() == 1) {
             let mut live = take(&mut room.live, depth);
             self.world.live_of(area, crowd, &mut live);
-            let flow = self.cut(area, &live, crowd, budget, depth + 1, room, visit);
+            let flow = self.cut(
+                area,
+                Known { live: &live, crowd },
+                budget,
+                depth + 1,
+                room,
+                visit,
+            );
             room.live[depth] = live;
             return flow;
         }
@@ -204,12 +218,11 @@ impl<'a> Quartering<'a> {
                     .any(|quarter| self.world.may_fill(quarter, crowd))
     }
 
-    /// Cuts a part by what may be seen in it, which is some of a crowd.
+    /// Cuts a part by what may be seen in it.
     fn cut(
         &self,
         area: Area,
-        live: &[Live],
-        crowd: &[Item],
+        Known { live, crowd }: Known,
         mut budget: Budget,
         depth: usize,
         room: &mut Room,
@@ -245,13 +258,30 @@ impl<'a> Quartering<'a> {
             }
             // What hides all else in the whole does so in its quarters.
             return area.quarters().try_for_each(|quarter| {
-                self.cut(quarter, live, crowd, budget, depth + 1, room, visit)
+                self.cut(
+                    quarter,
+                    Known { live, crowd },
+                    budget,
+                    depth + 1,
+                    room,
+                    visit,
+                )
             });
         }
         let mut below = take(&mut room.live, depth);
         let flow = area.quarters().try_for_each(|quarter| {
             self.world.live(quarter, live, &mut below);
-            self.cut(quarter, &below, crowd, budget, depth + 1, room, visit)
+            self.cut(
+                quarter,
+                Known {
+                    live: &below,
+                    crowd,
+                },
+                budget,
+                depth + 1,
+                room,
+                visit,
+            )
         });
         room.live[depth] = below;
         flow
