@@ -71,7 +71,8 @@ mod tests {
     fn pixels_against_it_count() {
         let (right, made) = (row(1000, 0), row(1000, 1000));
         assert!(!is_enough(&row(1000, 500), &right, &made));
-        assert!(!is_enough(&row(1000, 560), &right, &made));
-        assert!(is_enough(&row(1000, 570), &right, &made));
+        // √(1000 ln(1024/0.05)/2) = 70.45 more than half.
+        assert!(!is_enough(&row(1000, 570), &right, &made));
+        assert!(is_enough(&row(1000, 571), &right, &made));
     }
 }

@@ -17,7 +17,7 @@ const BOUNDS: f64 = 5.0;
 /// To look at candidates themselves takes longer than at their bounds: that is begun where so many times as many could be paid for.
 const LOOK: f64 = 4.0;
 
-/// So few candidates are looked at wherever they are looked for: they cost little, and may fill the part.
+/// So few candidates are looked at where they could be paid for once: they may fill the part.
 pub const FEW: usize = 4;
 
 /// In the time in which a pixel is prepared to trace its samples together so many of them are traced one by one, and in the time that this
