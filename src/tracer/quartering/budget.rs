@@ -14,6 +14,9 @@ const A_CANDIDATE: f64 = 16.0;
 /// others.
 const BOUNDS: f64 = 5.0;
 
+/// To cut takes as long as to look at so many bounds once more for a sample each: with fewer in all that is what is done.
+const A_CUT: f64 = 128.0;
+
 /// To look at candidates themselves takes longer than at their bounds: that is begun where so many times as many could be paid for.
 const LOOK: f64 = 4.0;
 
@@ -79,6 +82,11 @@ impl Budget {
     pub fn most_bounds(self, area: Area) -> usize {
         let shared = self.samples * area.pixels() as f64 / BOUNDS;
         shared.max(self.most(area) as f64) as usize
+    }
+
+    /// Whether so many candidates are more than the samples of a part may well look at by their bounds.
+    pub fn is_for_a_cut(self, area: Area, candidates: usize) -> bool {
+        candidates as f64 * self.samples * area.pixels() as f64 >= A_CUT
     }
 
     /// Whether so many are so few that they are looked at themselves, not only at their bounds.

@@ -189,7 +189,8 @@ impl<'a> Quartering<'a> {
             room.live[depth] = live;
             return flow;
         }
-        if area.pixels() == 1 || !self.is_worth_a_cut(area, crowd, budget) {
+        let is_small = area.pixels() == 1 || !budget.is_for_a_cut(area, crowd.len());
+        if is_small || !self.is_worth_a_cut(area, crowd, budget) {
             return visit(plain_among(area, crowd), None);
         }
         let mut below = take(&mut room.crowds, depth + 1);

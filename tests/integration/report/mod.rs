@@ -188,8 +188,8 @@ fn programs_get_json_and_errors_fall() {
             .map(|needed| needed["error"].as_f64())
             .collect();
         assert_eq!(errors, [1.0 / 256.0, 0.5, 1e-6].map(Some));
-        let at_most: Vec<_> = needed.iter().map(|needed| &needed["at_most"]).collect();
-        assert_eq!(at_most[1..], [true, false], "{name}");
+        // There are no fewer than one.
+        assert_eq!(needed[1]["at_most"], false, "{name}");
         assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
         assert_eq!(needed[1]["extrapolated"], false);
         assert_eq!(needed[1]["factor"], Value::Null);
@@ -208,6 +208,19 @@ fn programs_get_json_and_errors_fall() {
         .unwrap();
     let runs = random["measured"][3]["rmse_runs"].as_array().unwrap();
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);
+}
+
+#[test]
+fn where_the_fewest_samples_are_enough_programs_are_told() {
+    let folder = folder();
+    let arguments = "a.scn --format json --methods random --samples 4,16 --runs 2 --error 0.5";
+    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let needed = &answer["reports"][0]["methods"][0]["needed"][1];
+    assert_eq!(
+        (&needed["per_pixel"], &needed["at_most"]),
+        (&4.0.into(), &true.into())
+    );
 }
 
 #[test]
