@@ -32,6 +32,11 @@ impl Big {
         (Self::round(sin), Self::round(cos))
     }
 
+    /// π/2.
+    pub fn quarter_turn() -> Self {
+        Self::round(Float::pi(PRECISION + GUARD) / wide(2.0))
+    }
+
     /// The tangent of half an angle, without loss near 180°.
     pub fn tan_half(angle: Angle) -> Self {
         let (sin, cos) = sin_cos(angle, 0.5);

@@ -1,6 +1,6 @@
 //! Double-double numbers: the unevaluated sum of two `f64`, good for about 32 digits.
 
-use super::{Big, Real};
+use super::{Angle, Ball, Big, Real, sine};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
@@ -84,6 +84,9 @@ impl Real for Double {
     }
     fn is_zero(&self) -> bool {
         self.hi == 0.0
+    }
+    fn sin_cos(angle: Angle) -> (Ball<Self>, Ball<Self>) {
+        sine::sin_cos(angle)
     }
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {

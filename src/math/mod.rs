@@ -10,6 +10,7 @@ mod double;
 pub mod exact;
 mod radius;
 mod real;
+mod sine;
 pub mod trig;
 mod vectors;
 

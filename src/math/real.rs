@@ -2,9 +2,9 @@
 
 use std::fmt::Debug;
 
-use super::Radius;
+use super::{Angle, Ball, Big, Radius};
 
-/// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`](super::Big), from fast to precise.
+/// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`](Big), from fast to precise.
 ///
 /// Operations take references, since a big number is not free to copy. Each result is off by at most
 /// [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64` or `Double` that
@@ -24,7 +24,7 @@ pub trait Real: Clone + Debug + Sized {
     /// a − b, without rounding where the kind can hold it.
     fn difference(a: f64, b: f64) -> Self;
     /// The rounding of a more precise number.
-    fn from_big(x: &super::Big) -> Self;
+    fn from_big(x: &Big) -> Self;
     /// The nearest `f64`, or one of the two nearest.
     fn to_f64(&self) -> f64;
     /// Its absolute value, rounded.
@@ -33,6 +33,12 @@ pub trait Real: Clone + Debug + Sized {
     fn is_negative(&self) -> bool;
     /// Whether it is zero, and not merely too small for an `f64`.
     fn is_zero(&self) -> bool;
+
+    /// Sine and cosine of an angle, each within a few units; of a multiple of 90° exactly 0 and ±1.
+    fn sin_cos(angle: Angle) -> (Ball<Self>, Ball<Self>) {
+        let (sin, cos) = Big::sin_cos(angle);
+        (Ball::from_big(&sin), Ball::from_big(&cos))
+    }
 
     /// self + other.
     fn plus(&self, other: &Self) -> Self;
@@ -80,7 +86,7 @@ impl Real for f64 {
     fn difference(a: f64, b: f64) -> Self {
         a - b
     }
-    fn from_big(x: &super::Big) -> Self {
+    fn from_big(x: &Big) -> Self {
         x.to_f64()
     }
     #[inline]

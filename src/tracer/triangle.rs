@@ -185,8 +185,7 @@ fn offsets<T: Real>(shape: &scene::Triangle) -> [Ball3<T>; 3] {
     let mean_x = (&c + &apex_x) / &three;
     let mean_y = &apex_y / &three;
 
-    let (sin, cos) = Big::sin_cos(shape.spin);
-    let (sin, cos) = (Ball::<T>::from_big(&sin), Ball::<T>::from_big(&cos));
+    let (sin, cos) = T::sin_cos(shape.spin);
     let (right, top) = plane_axes::<T>(shape.normal);
     [
         (-&mean_x, -&mean_y),

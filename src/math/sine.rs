@@ -1,0 +1,190 @@
+//! Sine and cosine in double-double, with a bound on their error.
+
+use std::{array, sync::LazyLock};
+
+use super::{Angle, Ball, Big, Double, Real, double::two_product};
+
+/// Further radians, of a million turns and more, are left to [`Big`]: its π has digits enough.
+const MOST_RADIANS: f64 = (1u64 << 20) as f64;
+
+/// Terms of a series. With r ≤ 0.8, which is above π/4, the first that is left out of the cosine's is r³⁰/30! < 2^−117, and of the sine's, beside
+/// r itself, r³⁰/31! < 2^−122; as terms alternate and get smaller, no more than that is missing.
+const TERMS: usize = 15;
+const LEFT_OUT: f64 = 1.0 / (1u128 << 116) as f64;
+
+/// What the series need.
+struct Constants {
+    /// π/2 as a sum of three `f64`; 2^−159 may be missing, an eighth of the last one's unit.
+    quarter_turn: [f64; 3],
+    radians_per_degree: Ball<Double>,
+    /// (−1)ⁿ/(2n)!.
+    cosine: [Ball<Double>; TERMS],
+    /// (−1)ⁿ/(2n + 1)!.
+    sine: [Ball<Double>; TERMS],
+}
+
+static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
+    let quarter_turn = Big::quarter_turn();
+    let mut rest = quarter_turn.clone();
+    let parts = array::from_fn(|_| {
+        let part = Real::to_f64(&rest);
+        rest = rest.minus(&Big::from_f64(part));
+        part
+    });
+    // 0!, 1!, 2!, …, each from the one before.
+    let mut factorial = Big::from_f64(1.0);
+    let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
+        factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
+        let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
+        // i⁰, i¹, i², … without i.
+        if n % 4 < 2 { reciprocal } else { -reciprocal }
+    });
+    Constants {
+        quarter_turn: parts,
+        radians_per_degree: Ball::from_big(&quarter_turn.over(&Big::from_f64(90.0))),
+        cosine: array::from_fn(|n| reciprocals[2 * n].clone()),
+        sine: array::from_fn(|n| reciprocals[2 * n + 1].clone()),
+    }
+});
+
+/// Sine and cosine of an angle; of a multiple of 90° exactly 0 and ±1.
+pub fn sin_cos(angle: Angle) -> (Ball<Double>, Ball<Double>) {
+    if angle.radians.abs() > MOST_RADIANS {
+        let (sin, cos) = Big::sin_cos(angle);
+        return (Ball::from_big(&sin), Ball::from_big(&cos));
+    }
+    let degrees = of_degrees(angle.degrees);
+    if angle.radians == 0.0 {
+        return degrees;
+    }
+    let radians = of_radians(angle.radians);
+    if angle.degrees == 0.0 {
+        return radians;
+    }
+    let ((s, c), (t, d)) = (degrees, radians);
+    (&s * &d + &c * &t, &c * &d - &s * &t)
+}
+
+/// Degrees are reduced mod 90 without rounding: a remainder is exact, and so is the difference to 90 of a number between 45 and 90 (Sterbenz).
+fn of_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
+    let within_turn = degrees % 360.0;
+    let mut rest = within_turn % 90.0;
+    let mut quarters = (within_turn - rest) / 90.0;
+    if rest.abs() > 45.0 {
+        let quarter = 1f64.copysign(rest);
+        rest -= 90.0 * quarter;
+        quarters += quarter;
+    }
+    let rest = Ball::exact(rest) * &CONSTANTS.radians_per_degree;
+    turned(series(&rest), quarters)
+}
+
+/// Radians are reduced mod π/2 in three steps (Cody and Waite), of which the first two take away exact products.
+fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
+    let [first, second, third] = CONSTANTS.quarter_turn;
+    let quarters = (radians / first).round();
+    let product = |part: f64| Ball {
+        mid: two_product(quarters, part),
+        rad: 0.0,
+    };
+    let last = Ball {
+        mid: Double::from_f64(third),
+        rad: third.abs() * f64::EPSILON,
+    };
+    let rest = Ball::exact(radians) - product(first) - product(second);
+    turned(series(&(rest - Ball::exact(quarters) * last)), quarters)
+}
+
+/// After so many quarter turns more.
+fn turned<T>((sin, cos): (Ball<T>, Ball<T>), quarters: f64) -> (Ball<T>, Ball<T>)
+where
+    T: Real,
+{
+    match quarters.rem_euclid(4.0) as u8 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// Sine and cosine of r, |r| ≤ 0.8, by their series, from the smallest term to the largest.
+fn series(r: &Ball<Double>) -> (Ball<Double>, Ball<Double>) {
+    let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
+    if r.mid.is_zero() && r.rad == 0.0 {
+        return (zero, one);
+    }
+    let square = r * r;
+    let sum = |terms: &[Ball<Double>; TERMS]| {
+        let rest = Ball {
+            mid: Double::from_f64(0.0),
+            rad: LEFT_OUT,
+        };
+        let all = |sum: Ball<Double>, term: &Ball<Double>| &sum * &square + term;
+        let sum = terms.iter().rev().fold(zero.clone(), all);
+        sum + rest
+    };
+    (r * &sum(&CONSTANTS.sine), sum(&CONSTANTS.cosine))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn big(x: &Double) -> Big {
+        Big::from_f64(x.hi).plus(&Big::from_f64(x.lo))
+    }
+
+    /// Whether both balls hold the true numbers and are about as narrow as double-double can be.
+    fn is_right(angle: Angle) -> bool {
+        let (sin, cos) = sin_cos(angle);
+        let (true_sin, true_cos) = Big::sin_cos(angle);
+        [(sin, true_sin), (cos, true_cos)]
+            .iter()
+            .all(|(ball, truth)| {
+                let error = Real::to_f64(&big(&ball.mid).minus(truth)).abs();
+                error <= ball.rad && ball.rad <= 64.0 * Double::UNIT
+            })
+    }
+
+    /// Angles at and beside multiples of an eighth of a turn.
+    fn near_eighths() -> impl Strategy<Value = (f64, i32)> {
+        (
+            -400..400i32,
+            prop_oneof![Just(0.0), -1e-6..1e-6, -1e-300..1e-300],
+        )
+            .prop_map(|(n, off)| (off, n))
+    }
+
+    proptest! {
+        #[test]
+        fn the_true_numbers_lie_within(degrees in -1e6..1e6f64, radians in -1e6..1e6f64, size in 0..300i32) {
+            let small = libm::exp2(f64::from(-size));
+            prop_assert!(is_right(Angle::from_degrees(degrees * small)));
+            prop_assert!(is_right(Angle::from_radians(radians * small)));
+            let both = Angle { degrees, radians: radians * small };
+            prop_assert!(is_right(both));
+        }
+
+        #[test]
+        fn so_they_do_where_one_of_them_is_small((off, eighths) in near_eighths()) {
+            let eighths = f64::from(eighths);
+            prop_assert!(is_right(Angle::from_degrees(45.0 * eighths + off)));
+            prop_assert!(is_right(Angle::from_radians(std::f64::consts::FRAC_PI_4 * eighths + off)));
+        }
+    }
+
+    #[test]
+    fn quarter_turns_are_exact_and_farther_angles_right() {
+        for (degrees, expected) in [(0.0, (0.0, 1.0)), (-90.0, (-1.0, 0.0)), (5.4e5, (0.0, 1.0))] {
+            let (sin, cos) = sin_cos(Angle::from_degrees(degrees));
+            assert_eq!((sin.mid.hi, cos.mid.hi), expected, "{degrees}");
+            assert_eq!((sin.rad, cos.rad), (0.0, 0.0), "{degrees}");
+        }
+        for radians in [1e7, -3e20, MOST_RADIANS, 1e300] {
+            assert!(is_right(Angle::from_radians(radians)), "{radians}");
+        }
+    }
+}
