@@ -116,6 +116,15 @@ impl<P> Exact<P> {
     pub fn bound(&self) -> f64 {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }
+
+    /// The root of the mean of their squares, which is no less than the root of the mean squared error of all pixels and channels.
+    pub fn root_mean_square_bound(&self) -> f64 {
+        let squares = self
+            .bounds
+            .iter()
+            .map(|&bound| f64::from(bound) * f64::from(bound));
+        (squares.sum::<f64>() / self.bounds.len().max(1) as f64).sqrt()
+    }
 }
 
 /// Renders a part of the picture, which lies in it, with samples.

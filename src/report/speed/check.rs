@@ -119,7 +119,7 @@ fn renders(measured: &Measurement) -> Vec<Render> {
     for (at, series) in measured.series.iter().enumerate() {
         for &wanted in &measured.errors {
             let tries = series.checks.iter().filter(|check| check.wanted == wanted);
-            let needed = series.needed(wanted);
+            let needed = measured.needed(series, wanted);
             let is_open = |needed: &Needed| needed.is_extrapolated || needed.sag > CLOSE;
             let needed = needed.filter(|needed| is_open(needed) && tries.count() < TRIES);
             let render = needed.and_then(|needed| {

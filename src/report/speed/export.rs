@@ -38,7 +38,7 @@ pub fn to_csv(measured: &Measurement) -> String {
             "exact,,,{},{},{fast},{slow},{},,,,,,,,,,{},",
             exact.times.len(),
             median(&exact.times),
-            spread(&exact.times),
+            spread_cell(&exact.times),
             measured.reference.bound()
         );
     }
@@ -56,7 +56,7 @@ fn columns(series: &Series, point: &Point) -> String {
         point.samples,
         point.times.len(),
         point.seconds(),
-        point.spread(),
+        spread_cell(&point.times),
         point.samples_per_second(),
         point.rays,
         point.rays_per_second(),
@@ -73,6 +73,7 @@ pub fn to_json(measured: &Measurement) -> Value {
         json!({
             "time": times(&exact.times),
             "bound": reference.bound(),
+            "root_mean_square_bound": reference.root_mean_square_bound(),
         })
     });
     json!({
@@ -92,14 +93,14 @@ pub fn to_json(measured: &Measurement) -> Value {
         "seconds": measured.seconds,
         "reference": {"method": "exact", "bound": reference.bound()},
         "exact": exact,
-        "methods": measured.series.iter().map(|series| of_series(series, &measured.errors)).collect::<Vec<_>>(),
+        "methods": measured.series.iter().map(|series| of_series(measured, series)).collect::<Vec<_>>(),
         "verdicts": verdicts(measured),
         "notes": notes(measured),
         "about": {"slope_error": SLOPE, "factor": FACTOR, "at_most": AT_MOST, "samples_per_second": RATE, "rays": RAYS},
     })
 }
 
-fn of_series(series: &Series, errors: &[f64]) -> Value {
+fn of_series(measured: &Measurement, series: &Series) -> Value {
     let fit = series.fit().map(|fit| {
         json!({
             "slope": fit.slope,
@@ -110,7 +111,8 @@ fn of_series(series: &Series, errors: &[f64]) -> Value {
             "points": fit.points,
         })
     });
-    let needed = errors.iter().map(|&error| match series.needed(error) {
+    let errors = measured.errors.iter();
+    let needed = errors.map(|&error| match measured.needed(series, error) {
         None => {
             json!({"error": error, "per_pixel": null, "at_most": null, "factor": null, "time": null, "extrapolated": null, "tried": null})
         }
@@ -155,7 +157,7 @@ fn of_point(point: &Point) -> Value {
 
 fn times(times: &[f64]) -> Value {
     let [min, max] = ends(times);
-    json!({"median": median(times), "min": min, "max": max, "spread": spread(times), "runs": times})
+    json!({"median": median(times), "min": min, "max": max, "spread": known_spread(times), "runs": times})
 }
 
 fn ends(values: &[f64]) -> [f64; 2] {
@@ -172,4 +174,14 @@ pub(super) fn sha256(text: &str) -> String {
         let _ = write!(digits, "{byte:02x}");
     }
     digits
+}
+
+/// How far times spread; nothing is known of a single one.
+fn known_spread(times: &[f64]) -> Option<f64> {
+    (times.len() > 1).then(|| spread(times))
+}
+
+/// The same in a table, where nothing stands for what is not known.
+fn spread_cell(times: &[f64]) -> String {
+    known_spread(times).map_or_else(String::new, |spread| spread.to_string())
 }

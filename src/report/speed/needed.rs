@@ -1,7 +1,7 @@
 //! What an error takes: samples and time, how far they can be trusted, and which method is the fastest.
 
 use super::{
-    fit::log_error,
+    fit::{log_error, median},
     measure::{Measurement, Point, Series},
     notes::spread,
     plan::LEAST_SHARE,
@@ -40,7 +40,7 @@ pub struct Needed {
     pub spread: f64,
     /// Whether it lies beyond what was measured.
     pub is_extrapolated: bool,
-    /// Whether fewer may do, since fewer were not measured.
+    /// Whether fewer may do: of fewer none were measured, or none between those that leave an error and these, which leave none.
     pub is_at_most: bool,
     /// Between two points, how much its logarithm may be off because the line between them sags; else 0.
     pub sag: f64,
@@ -144,12 +144,19 @@ impl Series {
         let slope = (y_b - y_a) / (x_b - x_a);
         let share = (libm::log(error) - y_a) / (y_b - y_a);
         let x = x_a + share * (x_b - x_a);
-        // No error at all has no logarithm: its samples are enough.
-        let exact = if b.error() > 0.0 {
-            libm::exp(x)
-        } else {
-            b.per_pixel as f64
-        };
+        // No error at all has no logarithm, and no line goes there: its samples are enough, and fewer may be, too.
+        if b.error() == 0.0 {
+            return Some(Needed {
+                per_pixel: b.per_pixel as f64,
+                factor: None,
+                seconds: b.seconds(),
+                spread: spread(&b.times),
+                is_extrapolated: false,
+                is_at_most: b.per_pixel > a.per_pixel + 1,
+                sag: 0.0,
+            });
+        }
+        let exact = libm::exp(x);
         if slope >= 0.0 || !exact.is_finite() {
             return None;
         }
@@ -266,6 +273,23 @@ fn is_apart(point: &Point, last: &Point) -> bool {
 }
 
 impl Measurement {
+    /// What an error takes of a method; none if more samples do not help, or if that error cannot be told from none.
+    pub fn needed(&self, series: &Series, error: f64) -> Option<Needed> {
+        series.needed(error).filter(|_| self.tells(error))
+    }
+
+    /// Whether the reference is known well enough to tell such an error from none: by the root of the mean of its bounds' squares, since errors
+    /// are such means.
+    pub(super) fn tells(&self, error: f64) -> bool {
+        error > self.reference.root_mean_square_bound()
+    }
+
+    /// How long the exact method takes for an error, if it was measured and is known to come there.
+    pub(super) fn exact_seconds(&self, error: f64) -> Option<f64> {
+        let exact = self.exact.as_ref().filter(|_| self.tells(error));
+        exact.map(|exact| median(&exact.times))
+    }
+
     /// The sampled methods that need the least time for an error; none if none comes there.
     pub fn fastest(&self, error: f64) -> Option<Fastest> {
         let is_first = |series: &Series| {
@@ -276,7 +300,7 @@ impl Measurement {
             return Some(Fastest::All);
         }
         let needs = self.series.iter();
-        let needs = needs.filter_map(|series| Some((series.method, series.needed(error)?)));
+        let needs = needs.filter_map(|series| Some((series.method, self.needed(series, error)?)));
         let mut needs: Vec<_> = needs.collect();
         needs.sort_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds));
         let (_, best) = *needs.first()?;

@@ -141,10 +141,11 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes.extend(noise(measured));
     notes.extend(drift(measured));
     notes.extend(extrapolation(measured));
-    let bound = measured.reference.bound();
-    for &wanted in measured.errors.iter().filter(|&&wanted| wanted <= bound) {
+    let bound = measured.reference.root_mean_square_bound();
+    let errors = measured.errors.iter().copied();
+    for wanted in errors.filter(|&wanted| !measured.tells(wanted)) {
         notes.push(format!(
-            "An error of {} cannot be told from none: the reference itself is known to {} only.",
+            "An error of {} cannot be told from none: the reference itself is known to {} only, in the mean of squares.",
             error(wanted),
             at_most(bound)
         ));
@@ -191,7 +192,7 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
         let needs = measured
             .errors
             .iter()
-            .filter_map(|&error| series.needed(error));
+            .filter_map(|&error| measured.needed(series, error));
         needs.into_iter().any(|needed| needed.is_extrapolated)
     };
     let goes_on = match measured.series.iter().any(needs) {
@@ -227,9 +228,9 @@ fn noise(measured: &Measurement) -> Option<String> {
     });
     (count > 0).then(|| {
         format!(
-            "The machine was noisy: of {} combinations of method and samples, {count} have times that spread by more than {} % of \
+            "The machine was noisy: of {} of method and samples, {count} have times that spread by more than {} % of \
              their median, from the least to the greatest; the worst is {}{samples}, {:.0} %.",
-            spreads(measured).count(),
+            plural(spreads(measured).count() as u64, "combination"),
             NOISY * 100.0,
             method.name(),
             worst * 100.0

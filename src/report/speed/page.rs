@@ -226,7 +226,7 @@ fn needs(measured: &Measurement) -> String {
         .iter()
         .any(|series| !series.checks.is_empty());
     let cell = |series: &Series, wanted: f64| {
-        let needed = series.needed(wanted);
+        let needed = measured.needed(series, wanted);
         let mark = |text: String| match needed.is_some_and(|needed| needed.is_extrapolated) {
             true => format!("{text}*"),
             false => text,
@@ -252,10 +252,14 @@ fn needs(measured: &Measurement) -> String {
             .flat_map(|&wanted| cell(series, wanted));
         (series.method.name(), row.collect())
     });
-    let exact = measured.exact.as_ref().map(|exact| {
-        let time = seconds(median(&exact.times));
+    let exact = measured.exact.as_ref().map(|_| {
         let tried = if is_tried { "<td></td>" } else { "" };
-        format!("<td>–</td><td>{time}</td>{tried}").repeat(measured.errors.len())
+        let cell = |&wanted: &f64| {
+            let time = measured.exact_seconds(wanted);
+            let time = time.map_or_else(|| "–".to_owned(), seconds);
+            format!("<td>–</td><td>{time}</td>{tried}")
+        };
+        measured.errors.iter().map(cell).collect()
     });
     let names: Vec<_> = measured
         .errors

@@ -19,8 +19,7 @@ pub(super) const RATE: &str = "all samples by the time that they take, traced or
 pub(super) const RAYS: &str = "those of the samples that are traced, by the same time: where pixels are certain to show one colour, none is.";
 
 /// What it means that fewer may do.
-pub(super) const AT_MOST: &str =
-    "whether fewer samples may do: these are the fewest that were measured.";
+pub(super) const AT_MOST: &str = "whether fewer samples may do: these are the fewest that were measured, or the fewest of those that left no error at all.";
 
 /// The tables of errors, of times and of what an error takes.
 pub fn table(measured: &Measurement) -> String {
@@ -41,6 +40,9 @@ pub fn table(measured: &Measurement) -> String {
         text += &wrapped(&format!("note: {note}"));
     }
     if !measured.series.is_empty() {
+        text += &wrapped(
+            "largest: the largest difference of any channel of any pixel, with the most samples.",
+        );
         text += &wrapped(&format!("slope: {SLOPE}"));
         text += &wrapped(&format!("million samples/s: {RATE}"));
         text += &wrapped(&format!("million rays/s: {RAYS}"));
@@ -140,7 +142,7 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
     );
     for series in &measured.series {
         let name = series.method.name();
-        let _ = match series.needed(wanted) {
+        let _ = match measured.needed(series, wanted) {
             None => writeln!(text, "{name:16}{:>9}{:>8}{:>9}", "-", "", "-"),
             Some(needed) => {
                 let extrapolated = match needed.is_extrapolated {
@@ -160,15 +162,10 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
             }
         };
     }
-    if let Some(exact) = &measured.exact {
-        let _ = writeln!(
-            text,
-            "{:16}{:>9}{:>8}{:>9}",
-            "exact",
-            "-",
-            "",
-            seconds(median(&exact.times))
-        );
+    if measured.exact.is_some() {
+        let time = measured.exact_seconds(wanted);
+        let time = time.map_or("-".to_owned(), seconds);
+        let _ = writeln!(text, "{:16}{:>9}{:>8}{time:>9}", "exact", "-", "");
     }
     text
 }

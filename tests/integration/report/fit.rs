@@ -117,9 +117,14 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     }
     // Where more samples do not help nothing is promised.
     assert_eq!(series(&[(1, 1.0, 0.4), (4, 1.0, 0.4)]).needed(0.1), None);
-    // No error at all is one that is small enough.
-    let clean = series(&[(1, 1.0, 0.4), (4, 2.0, 0.0)]);
-    assert_eq!(clean.needed(0.1).unwrap().per_pixel, 4.0);
+    // No error at all is one that is small enough, and fewer samples that were not measured may leave none, either.
+    for (per_pixel, is_at_most) in [(4, true), (2, false)] {
+        let clean = series(&[(1, 1.0, 0.4), (per_pixel, 2.0, 0.0)]);
+        let needed = clean.needed(0.1).unwrap();
+        assert_eq!(needed.per_pixel, per_pixel as f64);
+        assert_eq!(needed.is_at_most, is_at_most);
+        assert_eq!((needed.factor, needed.seconds), (None, 2.0));
+    }
 }
 
 #[test]

@@ -252,6 +252,49 @@ fn single_runs_promise_nothing() {
 }
 
 #[test]
+fn no_method_comes_nearer_than_the_reference_is_known() {
+    let folder = folder();
+    // Where the bound is, and below what any number of samples is worth.
+    let arguments =
+        "a.scn --format json --methods exact,sobol --samples 1,4 --runs 1 --error 1e-17";
+    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = &answer["reports"][0];
+    let bound = report["exact"]["root_mean_square_bound"].as_f64().unwrap();
+    let largest = report["exact"]["bound"].as_f64().unwrap();
+    assert!(1e-17 < bound && bound <= largest, "{bound} {largest}");
+    let needed = report["methods"][0]["needed"].as_array().unwrap();
+    let [common, least] = needed.as_slice() else {
+        panic!("{needed:?}");
+    };
+    assert!(common["per_pixel"].is_number() && least["per_pixel"].is_null());
+    // Nothing is known of the spread of a single run.
+    assert!(report["exact"]["time"]["spread"].is_null());
+
+    let text = report_text(
+        &folder,
+        "a.scn --methods exact,sobol --samples 1,4 --runs 1 --error 1e-17",
+    );
+    let (_, below) = text.split_once("for 1.0e-17").unwrap();
+    let row = |name: &str| {
+        let mut rows = below.lines().filter(|line| line.starts_with(name));
+        let cells = rows.next().unwrap().split_whitespace();
+        cells.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(row("exact"), ["exact", "-", "-"], "{text}");
+    assert_eq!(row("sobol"), ["sobol", "-", "-"], "{text}");
+    assert!(
+        below.contains("An error of 1.0e-17 cannot be told from none"),
+        "{text}"
+    );
+}
+
+fn report_text(folder: &TempDir, arguments: &str) -> String {
+    let output = report(folder, &arguments.split(' ').collect::<Vec<_>>());
+    words(&output.stderr).to_owned()
+}
+
+#[test]
 fn a_picture_of_one_colour_has_no_error() {
     let folder = folder();
     let empty =
