@@ -24,11 +24,13 @@ const LOOK: f64 = 4.0;
 pub const FEW: usize = 4;
 
 /// In the time in which a pixel is prepared to trace its samples together so many of them are traced one by one, and in the time that this
-/// share of a candidate adds to that, one more.
+/// share of a candidate adds to that, one more. A candidate has so many forms there: of a large one most have one sign all over the pixel.
 const A_PIXEL: f64 = 1.0;
 const OF_A_PIXEL: f64 = 0.7;
+const FORMS: f64 = 2.0;
 
-/// Where bounds are known samples are traced among them, one by one, in about this share of the time.
+/// Where bounds are known samples are traced among them, one by one, in about this share of the time. Those of a crowd are often of small objects,
+/// whose forms are all evaluated.
 const PAID: f64 = 0.5;
 
 /// What a board shows in several pixels is worth knowing from so many samples a pixel on.
@@ -91,11 +93,13 @@ impl Budget {
 
     /// Whether so many are so few that they are looked at themselves, not only at their bounds.
     pub fn is_for_a_look(self, area: Area, candidates: usize) -> bool {
-        if area.pixels() == 1 {
-            return candidates as f64 <= PAID * self.most_in_a_pixel();
-        }
         let times = if candidates <= FEW { 1.0 } else { LOOK };
         times * A_CANDIDATE * candidates as f64 <= self.samples * area.pixels() as f64
+    }
+
+    /// Whether candidates with so many forms, whose bounds are known, are prepared for the samples of a pixel, to trace them together.
+    pub fn is_for_forms(self, forms: usize) -> bool {
+        forms as f64 <= FORMS * PAID * self.most_in_a_pixel()
     }
 
     /// Whether what a board shows in several pixels is worth knowing.

@@ -175,7 +175,17 @@ impl<'a> Quartering<'a> {
         if crowd.len() > budget.most_bounds(area) {
             budget = budget.probed(self.world, area);
         }
-        if budget.is_for_a_look(area, crowd.len()) && (crowd.len() < CROWD || area.pixels() == 1) {
+        let is_for_a_look = match area.pixels() {
+            1 => {
+                // Few enough to be counted, first.
+                crowd.len() <= budget.most(area) && {
+                    let objects = crowd.iter().map(|item| item.object as usize);
+                    budget.is_for_forms(self.world.forms(objects))
+                }
+            }
+            _ => crowd.len() < CROWD && budget.is_for_a_look(area, crowd.len()),
+        };
+        if is_for_a_look {
             let mut live = take(&mut room.live, depth);
             self.world.live_of(area, crowd, &mut live);
             let flow = self.cut(

@@ -75,6 +75,10 @@ fn budgets_of_all_sizes() {
     assert_eq!(most(64.0, pixel), 44);
     assert!(most(libm::exp2(60.0), tile) > 1 << 60);
     assert_eq!(Budget::ENDLESS.most(pixel), usize::MAX);
+    // In a crowd 64 samples pay for five boxes, and eight for one sphere or triangle.
+    assert!(Budget::of(64.0).is_for_forms(5 * 8) && !Budget::of(64.0).is_for_forms(6 * 8));
+    assert!(Budget::of(8.0).is_for_forms(4) && !Budget::of(8.0).is_for_forms(6));
+    assert!(Budget::ENDLESS.is_for_forms(1 << 40));
     assert!(Budget::of(16.0).is_for_a_look(tile, 4) && !Budget::of(1.0).is_for_a_look(tile, 128));
 }
 

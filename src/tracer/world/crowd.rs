@@ -67,6 +67,11 @@ impl World {
         }
     }
 
+    /// About how many forms some objects have together.
+    pub fn forms(&self, objects: impl Iterator<Item = usize>) -> usize {
+        objects.map(|object| self.objects[object].forms()).sum()
+    }
+
     /// Whether no more than `most` of a crowd have bounds that meet a part of the picture.
     pub fn is_met_by(&self, part: Area, crowd: &[Item], most: usize) -> bool {
         let patch = Patch::new(&self.fast.camera, part);
