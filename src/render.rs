@@ -46,7 +46,7 @@ const TILE_SAMPLES: u64 = 1 << 18;
 /// And no tile is made so small that it has much fewer.
 const FEW_SAMPLES: u64 = 1 << 10;
 
-/// So few samples are placed by the vectors that every processor has.
+/// Fewer samples than these are placed and looked at by the vectors that every processor has.
 const FEW: u64 = 8;
 
 /// A pixel's samples are taken so many at a time; a pixel with more is shared by the threads.
@@ -483,10 +483,10 @@ impl<P: film::Pixel> Frame<'_, P> {
             points,
             ..
         } = tally;
-        let vectors = match end - first {
-            // To choose others takes longer.
-            0..FEW => Vectors::Baseline,
-            _ => self.way.vectors(),
+        let vectors = match trace {
+            Trace::Together(..) if end - first >= FEW => self.way.vectors(),
+            // To choose others takes longer, and rays that are traced one by one afterwards are slower for it.
+            _ => Vectors::Baseline,
         };
         self.sampling
             .place(vectors, [x, y], samples, first..end, points);
