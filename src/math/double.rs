@@ -130,8 +130,8 @@ impl Real for Double {
     }
     fn scaled(&self, exponent: i32) -> Self {
         Self {
-            hi: libm::ldexp(self.hi, exponent),
-            lo: libm::ldexp(self.lo, exponent),
+            hi: Real::scaled(&self.hi, exponent),
+            lo: Real::scaled(&self.lo, exponent),
         }
     }
     fn floor(&self) -> (Self, bool) {

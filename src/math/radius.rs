@@ -42,7 +42,7 @@ impl Radius for f64 {
         f64::sqrt(self)
     }
     fn scaled(self, exponent: i32) -> Self {
-        libm::ldexp(self, exponent)
+        super::Real::scaled(&self, exponent)
     }
     fn exponent(self) -> i32 {
         libm::frexp(self.min(f64::MAX)).1
