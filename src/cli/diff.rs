@@ -332,11 +332,17 @@ impl Report {
             .comparison
             .as_ref()
             .is_ok_and(|found| !found.is_equal());
-        if self.grade.may_be_noise {
+        if self.grade.may_be_noise && self.grade.is_thin {
             writeln!(out)?;
             writeln!(
                 out,
                 "Sampling noise would explain it, though so few pixels differ that they do not say that it is noise."
+            )?;
+        } else if self.grade.may_be_noise {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "Samples at the same places in all pixels may explain it: it is wrong only where colours meet, and nothing says what else it is."
             )?;
         } else if self.grade.is_thin {
             writeln!(out)?;

@@ -8,7 +8,7 @@ use std::cell::{Cell, OnceCell};
 use glam::DVec3;
 
 use super::{
-    Curve, FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE,
+    FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE, alike,
     bias::{Errors, SIGMAS},
     choice::{self, Explanation},
     evidence,
@@ -20,8 +20,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    color::{linear_to_srgb, srgb_to_linear},
-    film::{Film, Tolerance, TooLarge, compare, rmse},
+    film::{Film, Tolerance, compare, rmse},
     render::{Control, RenderError},
     scene::{Scene, Shape},
 };
@@ -53,6 +52,10 @@ pub struct Case<'a> {
     pub is_thin: Cell<bool>,
     /// Noise would make the difference, though too few pixels tell of it to say so.
     pub may_be_noise: Cell<bool>,
+    /// A mistake was passed over that would show itself where one colour should be seen, and nothing is wrong there.
+    pub is_belied: Cell<bool>,
+    /// Samples at the same places in all pixels foretell the errors.
+    pub is_alike: Cell<bool>,
     pub control: Control<'a>,
 }
 
@@ -99,6 +102,8 @@ impl<'a> Case<'a> {
             view: View::of(scene),
             is_thin: Cell::new(false),
             may_be_noise: Cell::new(false),
+            is_belied: Cell::new(false),
+            is_alike: Cell::new(false),
             control,
         })
     }
@@ -341,37 +346,17 @@ impl<'a> Case<'a> {
         Ok(match self.noise_in(make, made)? {
             // What is little beside noise may hide another mistake.
             Some((variance, noise)) => {
-                left <= HOPE * self.difference
-                    || !self.is_biased(&self.full.a, made, &variance, noise)?
+                let is_named = left <= HOPE * self.difference
+                    || !self.is_biased(&self.full.a, made, &variance, noise)?;
+                // What noise leaves of a mistake it shows where one colour should be seen; and what samples foretell needs no mistake.
+                let is_belied = is_named && alike::is_belied(self, made, &variance, noise);
+                if is_belied {
+                    self.is_belied.set(true);
+                }
+                is_named && !is_belied && !self.is_alike.get()
             }
             None => false,
         })
-    }
-
-    /// Whether the picture is one whose light went through a curve, but for roundings and noise, if a mistake is of that kind.
-    fn is_of_light(&self, make: &Make, made: &Film) -> Result<Option<bool>, RenderError> {
-        let (full, control) = (&self.full, &self.control);
-        Ok(Some(match make {
-            Make::Light(curve) => self.is_light(*curve, made)?,
-            Make::Turned(turn, curve) => {
-                let (means, variance) = (turn(&full.exact)?, turn(&self.variance)?);
-                self.is_curved(*curve, made, &means, &variance)?
-            }
-            Make::Curved(scene, curve) => {
-                if noise::has_strays(&full.a, made, scene, curve.to) {
-                    return Ok(Some(false));
-                }
-                let means = level::map(made, curve.back)?;
-                let variance = noise::variance(scene, &means, control)?;
-                self.is_noise_before(*curve, made, &means, &variance)?
-            }
-            _ => return Ok(None),
-        }))
-    }
-
-    /// Whether a curve made the picture from the right one, which may have been rounded or have noise.
-    pub fn is_light(&self, curve: Curve, made: &Film) -> Result<bool, TooLarge> {
-        self.is_curved(curve, made, &self.full.exact, &self.variance)
     }
 
     /// Whether nothing need be wrong with the picture: it is right but for roundings, or may have noise.
@@ -381,40 +366,18 @@ impl<'a> Case<'a> {
             || noise::possible(a, exact, &self.variance).is_some()
     }
 
+    /// Whether samples that hang together may be all that is wrong: a mistake was passed over that they belie.
+    pub fn may_be_alike(&self) -> bool {
+        self.is_belied.get() && self.may_be_right()
+    }
+
     /// Whether the picture is another one but for so many steps of 8-bit sRGB.
-    fn is_rounding(&self, made: &Film, steps: f64) -> bool {
+    pub fn is_rounding(&self, made: &Film, steps: f64) -> bool {
         let tolerance = Tolerance {
             steps,
             bounds: None,
         };
         compare(&self.full.a, made, tolerance).is_ok_and(|found| found.is_equal())
-    }
-
-    /// Whether a curve made the picture from means, which may have been rounded or have noise.
-    fn is_curved(
-        &self,
-        curve: Curve,
-        made: &Film,
-        means: &Film,
-        variance: &Film,
-    ) -> Result<bool, TooLarge> {
-        Ok(self.is_rounding_before(curve, means)
-            || self.is_noise_before(curve, made, means, variance)?)
-    }
-
-    /// Whether a curve made the picture from another one's bytes: then it is off by a rounding after the curve and by one before it.
-    pub fn is_rounding_before(&self, curve: Curve, means: &Film) -> bool {
-        let byte = |light: f64| 255.0 * linear_to_srgb(light);
-        let made = |at: f64| byte((curve.to)(srgb_to_linear(at.clamp(0.0, 255.0) / 255.0)));
-        let mut pairs = self.full.a.pixels().iter().zip(means.pixels());
-        pairs.all(|(p, q)| {
-            (0..3).all(|i| {
-                let (is, should) = (byte(p[i]), byte(q[i]));
-                // With room for light that was rounded, too.
-                let half = 0.5 * evidence::APART + 0.01;
-                made(should - half) - half <= is && is <= made(should + half) + half
-            })
-        })
     }
 
     /// The noise in which alone the picture differs from what a mistake makes, and the variance of one sample.
@@ -464,19 +427,6 @@ impl<'a> Case<'a> {
             variance.put(part, noise::of_squares(&squares, &means)?.pixels());
         }
         Ok(variance)
-    }
-
-    /// Whether a curve made the picture from means with noise, which is looked at before the curve.
-    fn is_noise_before(
-        &self,
-        curve: Curve,
-        made: &Film,
-        means: &Film,
-        variance: &Film,
-    ) -> Result<bool, TooLarge> {
-        let a = &self.full.a;
-        let before = level::map(a, curve.back)?;
-        Ok(noise::judge_through([a, made], [&before, means], variance).is_some())
     }
 }
 

@@ -95,13 +95,27 @@ pub fn fit(
     Ok(Some(Fit { at, left }))
 }
 
-/// The normal equations of a ≈ current + Σ way · (slope − current), a row for each number.
-struct Problem(Vec<Vec<f64>>);
+/// The normal equations of b ≈ Σ way · slope, a row for each number.
+pub struct Problem(Vec<Vec<f64>>);
 
 impl Problem {
+    /// With so many numbers, and nothing known of them.
+    pub fn of(numbers: usize) -> Self {
+        Self(vec![vec![0.0; numbers + 1]; numbers])
+    }
+
+    /// That of which the products of all numbers are known with those before them and themselves; the last one is what they should make.
+    pub fn of_products(half: Vec<Vec<f64>>) -> Self {
+        let numbers = half.len().saturating_sub(1);
+        let product = |i: usize, j: usize| half[i.max(j)][i.min(j)];
+        let row = |i| (0..=numbers).map(|j| product(i, j)).collect();
+        Self((0..numbers).map(row).collect())
+    }
+
+    /// That of a ≈ current + Σ way · (slope − current).
     fn new(a: &Film, current: &Film, slopes: &[Film]) -> Self {
         let n = slopes.len();
-        let mut matrix = vec![vec![0.0; n + 1]; n];
+        let mut problem = Self::of(n);
         let mut own = vec![0.0; n + 1];
         for (at, (p, q)) in a.pixels().iter().zip(current.pixels()).enumerate() {
             for channel in 0..3 {
@@ -109,20 +123,25 @@ impl Problem {
                     *own = slope.pixels()[at][channel] - q[channel];
                 }
                 own[n] = p[channel] - q[channel];
-                for (i, row) in matrix.iter_mut().enumerate() {
-                    if own[i] != 0.0 {
-                        for (sum, other) in row.iter_mut().zip(&own) {
-                            *sum += own[i] * other;
-                        }
-                    }
+                problem.add(&own);
+            }
+        }
+        problem
+    }
+
+    /// One more number that is known: the slopes, and it.
+    pub fn add(&mut self, own: &[f64]) {
+        for (row, slope) in self.0.iter_mut().zip(own) {
+            if *slope != 0.0 {
+                for (sum, other) in row.iter_mut().zip(own) {
+                    *sum += slope * other;
                 }
             }
         }
-        Self(matrix)
     }
 
     /// Their solution by Gauss's elimination, with so many times its square added to each number's. A number that changes nothing stays.
-    fn solved(&self, damping: f64) -> Option<Vec<f64>> {
+    pub fn solved(&self, damping: f64) -> Option<Vec<f64>> {
         let mut matrix = self.0.clone();
         let n = matrix.len();
         let squares: Vec<f64> = (0..n).map(|i| matrix[i][i]).collect();

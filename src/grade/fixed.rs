@@ -1,7 +1,12 @@
 //! Samples of right pictures whose errors are not those of independent ones: always at the same places in a pixel, or none in some.
 
+use std::sync::atomic::Ordering;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
 use super::{
-    Case, LEFT,
+    Case, LEFT, Verdict, alike,
     bias::SIGMAS,
     evidence, level,
     noise::{self, Noise},
@@ -19,8 +24,103 @@ use crate::{
 pub struct Grid {
     /// How many they are; none if several numbers of them make the picture.
     pub samples: Option<u64>,
+    /// Which corner of each of its cells they are at, if they are not in their middles.
+    pub corner: Option<&'static str>,
     /// Whether enough pixels tell of it.
     pub is_told: bool,
+}
+
+/// So many samples in a grid, in its cells' middles or at a corner of each.
+#[derive(Clone, Copy)]
+struct Cells {
+    samples: u64,
+    corner: Option<Corner>,
+}
+
+/// A corner of a grid's cells, whose offset from a pixel's left and upper edge is a number of cells.
+#[derive(Clone, Copy)]
+struct Corner {
+    /// The grid's rows and columns.
+    side: u32,
+    is_lower: bool,
+}
+
+impl Cells {
+    fn all() -> impl Iterator<Item = Self> {
+        let middles = GRIDS.into_iter().map(|samples| Self {
+            samples,
+            corner: None,
+        });
+        let corners = (2..=SIDE).flat_map(|side| {
+            [false, true].map(|is_lower| Self {
+                samples: u64::from(side * side),
+                corner: Some(Corner { side, is_lower }),
+            })
+        });
+        middles.chain(corners)
+    }
+
+    /// What they make of a part of the picture.
+    fn picture(&self, case: &Case, world: &World, part: Area) -> Result<Film, RenderError> {
+        match self.corner {
+            None => {
+                let sampling = level::grid(&case.full.scene, self.samples);
+                render::render(world, &sampling, part, &case.control)
+            }
+            Some(corner) => corner.picture(case, world, part),
+        }
+    }
+}
+
+impl Corner {
+    fn picture(&self, case: &Case, world: &World, part: Area) -> Result<Film, RenderError> {
+        let colors = world.palette().iter().map(|color| color.to_linear());
+        let colors: Vec<_> = colors.map(DVec3::from).collect();
+        let cells: Vec<_> = Area::whole(self.side, self.side)
+            .iter()
+            .map(|(column, row)| self.offset(column, row))
+            .collect();
+        let (exact, variance, cancel) = (&case.full.exact, &case.variance, case.control.cancel);
+        let pixel = |x: u32, y: u32| {
+            if noise::is_flat(&variance.pixel(x, y)) {
+                return exact.pixel(x, y);
+            }
+            let samples = cells.iter().map(|cell| colors[world.slot_at(x, y, *cell)]);
+            (samples.sum::<DVec3>() / cells.len() as f64).to_array()
+        };
+        let row = |row: u32| -> Result<Vec<_>, RenderError> {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
+            let columns = 0..part.width;
+            Ok(columns
+                .map(|column| pixel(part.x + column, part.y + row))
+                .collect())
+        };
+        let rows = (0..part.height).into_par_iter().map(row);
+        let rows: Vec<_> = rows.collect::<Result<_, _>>()?;
+        Ok(Film::from_fn(part.width, part.height, |x, y| {
+            rows[y as usize][x as usize]
+        })?)
+    }
+
+    /// That of a cell, from the pixel's centre.
+    fn offset(&self, column: u32, row: u32) -> DVec2 {
+        let along = |cell: u32| f64::from(cell) / f64::from(self.side) - 0.5;
+        let down = match self.is_lower {
+            // Counted from below; as far down as a sample may be, as the edge itself is the next pixel's.
+            true => (-along(row)).min(0.5f64.next_down()),
+            false => along(row),
+        };
+        DVec2::new(along(column), down)
+    }
+
+    fn name(&self) -> &'static str {
+        match self.is_lower {
+            true => "lower left",
+            false => "upper left",
+        }
+    }
 }
 
 /// The samples of a pixel, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up, and
@@ -46,21 +146,19 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
     };
     let world = World::new(&case.full.scene);
     let mut found = Vec::new();
-    for samples in GRIDS {
-        let sampling = level::grid(&case.full.scene, samples);
+    for cells in Cells::all() {
         // Some rows tell which grid it may be.
-        let there = render::render(&world, &sampling, band, &case.control)?;
+        let there = cells.picture(case, &world, band)?;
         if !is_near(&a_there, &there, enough) {
             continue;
         }
-        let whole = Area::whole(width, height);
-        let made = render::render(&world, &sampling, whole, &case.control)?;
+        let made = cells.picture(case, &world, Area::whole(width, height))?;
         if is_near(a, &made, LEFT * case.difference) {
-            found.push((rmse(a, &made), samples, made));
+            found.push((rmse(a, &made), cells, made));
         }
     }
     found.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let Some((left, samples, made)) = found.first() else {
+    let Some((left, cells, made)) = found.first() else {
         return Ok(None);
     };
     let is_told = evidence::is_enough(a, exact, made);
@@ -71,9 +169,38 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
     let mut others = found[1..].iter();
     let is_the_one = others.all(|(_, _, other)| evidence::is_enough(a, other, made));
     Ok(Some(Grid {
-        samples: is_the_one.then_some(*samples),
+        samples: is_the_one.then_some(cells.samples),
+        corner: cells.corner.map(|corner| corner.name()),
         is_told,
     }))
+}
+
+impl Grid {
+    /// What is said of it.
+    pub fn verdict(&self, difference: f64) -> Verdict {
+        let samples = self.samples;
+        let samples = samples.map_or("a few".to_owned(), |samples| samples.to_string());
+        let (rest, help) = match self.corner {
+            None => (
+                "so that edges along rows and columns are displaced by a part of a pixel"
+                    .to_owned(),
+                alike::HELP.to_owned(),
+            ),
+            Some(corner) => (
+                format!(
+                    "at the {corner} corners of its cells, so that all edges are displaced by half of a cell"
+                ),
+                format!(
+                    "the middle of cell i of n is at (i + 0.5)/n, not at i/n; {}",
+                    alike::HELP
+                ),
+            ),
+        };
+        let message = format!(
+            "the picture is that of {samples} samples in each pixel, a grid at the same places in all of them, {rest}"
+        );
+        alike::verdict(difference, &message, help)
+    }
 }
 
 /// As few rows as have some edges that are not parallel to them.
@@ -84,6 +211,9 @@ const GRIDS: [u64; 32] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20, 24, 25, 30, 32, 36, 49, 50, 64, 81,
     100, 121, 144, 169, 196, 256,
 ];
+
+/// Grids of more rows and columns have corners a sixteenth of a pixel from their cells' middles, or less.
+const SIDE: u32 = 8;
 
 /// The share of pixels that are black or of the background's colour as no sample fell into them, and the noise of the rest.
 pub fn empty(case: &Case) -> Result<Option<(f64, Noise)>, RenderError> {

@@ -4,12 +4,13 @@
 //! best first; none, if none does. A mistake is a function: of the exact picture, or of the scene, whose exact picture is then made. It is
 //! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
 //!
-//! Mistakes of the whole picture are in `whole`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
-//! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` knows samples whose errors are
-//! not independent, `truncated` bytes that are not rounded, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
-//! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
+//! Mistakes of the whole picture are in `whole` and `gray`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
+//! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` and `alike` know samples whose errors are
+//! not independent, `truncated` and `rounded` bytes that are not rounded or are finer than they need be, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
+//! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `light` undoes curves. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
+mod alike;
 mod bias;
 mod board;
 mod camera;
@@ -19,11 +20,14 @@ mod evidence;
 mod extent;
 mod fit;
 mod fixed;
+mod gray;
 mod level;
+mod light;
 mod noise;
 mod objects;
 mod order;
 mod pairs;
+mod rounded;
 mod search;
 mod shift;
 mod truncated;
@@ -43,6 +47,7 @@ use crate::{
 pub use self::extent::Off;
 
 use self::{
+    alike::Alike,
     case::Case,
     choice::{Explanation, RIVAL, ROUNDING},
     order::Order,
@@ -85,7 +90,8 @@ pub struct Grade {
     pub likely: Vec<Verdict>,
     /// Whether a mistake, or noise, would explain it that too few pixels tell of.
     pub is_thin: bool,
-    /// Whether noise would: then nothing need be wrong.
+    /// Whether noise would: then nothing need be wrong. If it is not for want of pixels that it is not called so, it is noise of samples
+    /// that hang together.
     pub may_be_noise: bool,
 }
 
@@ -155,17 +161,42 @@ pub fn scene(
         let case = Case::new(a, scene, exact, control)?;
         let likely = match one_color {
             Some(verdict) => with_nothing_in_sight(&case, verdict)?,
-            None => match samples(&case)? {
-                found if found.is_empty() => mistakes(&case)?,
-                found => found,
-            },
+            None => likely(&case)?,
         };
+        let may_be_noise = case.may_be_noise.get() || case.may_be_alike();
         Ok(Grade {
             is_thin: likely.is_empty() && (case.is_thin.get() || case.may_be_noise.get()),
-            may_be_noise: likely.is_empty() && case.may_be_noise.get(),
+            may_be_noise: likely.is_empty() && may_be_noise,
             likely,
         })
     })?
+}
+
+/// What is said of a picture that is not of one colour.
+fn likely(case: &Case) -> Result<Vec<Verdict>, RenderError> {
+    let found = samples(case)?;
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    // Samples at the same places in all pixels look like something that is displaced by a part of a pixel. Only what explains nearly all is a
+    // mistake then, and nothing can where they explain most.
+    let alike = match case.may_be_noise.get() {
+        true => None,
+        false => alike::find(case)?,
+    };
+    let alike = alike.filter(|_| case.may_be_right());
+    let verdict = |alike: &Alike| vec![alike.verdict(case.difference)];
+    if let Some(alike) = &alike
+        && alike.explain_most()
+    {
+        return Ok(verdict(alike));
+    }
+    case.is_alike.set(alike.is_some());
+    let found = mistakes(case)?;
+    Ok(match (&alike, found.is_empty()) {
+        (Some(alike), true) => verdict(alike),
+        _ => found,
+    })
 }
 
 /// What is said of a picture of one colour. If it is the background's the camera may look past everything, as any that does makes the same
@@ -182,6 +213,9 @@ fn with_nothing_in_sight(case: &Case, verdict: Verdict) -> Result<Vec<Verdict>, 
 /// What is said of a picture in which nothing but its samples is wrong.
 fn samples(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let (a, exact) = (&case.full.a, &case.full.exact);
+    if let Some(verdict) = rounded::verdict(case) {
+        return Ok(vec![verdict]);
+    }
     // One sample at a fixed place makes errors at edges alone, as noise does, and is the better answer. They may be so many that something
     // wrong away from them is a small part of the squares.
     if !noise::has_strays(a, exact, &case.full.scene, |light| light)
@@ -204,7 +238,7 @@ fn samples(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     }
     if let Some(grid) = fixed::grid(case)? {
         if grid.is_told {
-            return Ok(vec![noise::verdict_of_grid(case.difference, grid.samples)]);
+            return Ok(vec![grid.verdict(case.difference)]);
         }
         case.may_be_noise.set(true);
     }
@@ -223,6 +257,7 @@ fn mistakes(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let scene = &case.full.scene;
     let ideas = whole::ideas(scene)
         .into_iter()
+        .chain(gray::ideas(&case.full.a, &case.full.exact)?)
         .chain(camera::ideas(scene))
         .chain(board::ideas(scene))
         .chain(order::ideas(scene))
@@ -348,7 +383,10 @@ pub fn pictures(a: &Film, b: &Film) -> Grade {
             ..Grade::default()
         };
     }
-    let mut grade = best(a, b, whole::films());
+    let mut ideas = whole::films();
+    // A picture that is too large is none that was read.
+    ideas.extend(gray::ideas(a, b).unwrap_or_default());
+    let mut grade = best(a, b, ideas);
     if grade.likely.is_empty() {
         let pairs = best(a, b, whole::pairs());
         grade = Grade {

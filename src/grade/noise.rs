@@ -22,6 +22,11 @@ use crate::{
 /// such pixels with a thousand samples each none is likely to show it; and the exact picture itself is known to 1e-12 where it has one colour.
 const NO_VARIANCE: f64 = 1e-9;
 
+/// Light that is farther than this from each colour is no single one, however small its variance is: the exact picture is known to that. A
+/// sample at a pixel's corner sees what is cut off there, and of a hundred thousand pixels with an edge some have less than [`NO_VARIANCE`] of
+/// what is beyond it at a corner: a triangle as high and wide as 1/30 000 of the pixel.
+const ONE_COLOR: f64 = 1e-12;
+
 /// How far a pixel of one colour may be off, in steps of 8-bit sRGB: rounded, which is half a step, and half of that for another decoding
 /// of the colour's bytes, whose light is rounded, too.
 const FLAT: f64 = 0.75;
@@ -62,7 +67,31 @@ pub struct Noise {
 
 /// The variance of one sample in each pixel and channel.
 pub fn variance(scene: &Scene, exact_film: &Film, control: &Control) -> Result<Film, RenderError> {
-    Ok(of_squares(&exact(&squared(scene), control)?, exact_film)?)
+    let variance = of_squares(&exact(&squared(scene), control)?, exact_film)?;
+    let colors = colors(scene);
+    let known: HashSet<_> = colors.iter().map(bits).collect();
+    let is_near = |p: &[f64; 3], q: &[f64; 3]| (0..3).all(|i| (p[i] - q[i]).abs() <= ONE_COLOR);
+    let pixel = |x, y| {
+        let (own, light) = (variance.pixel(x, y), exact_film.pixel(x, y));
+        let is_one = known.contains(&bits(&light))
+            || !is_flat(&own)
+            || colors.iter().any(|color| is_near(color, &light));
+        match is_one {
+            true => own,
+            false => own.map(|one| one.max(NO_VARIANCE)),
+        }
+    };
+    Ok(Film::from_fn(variance.width(), variance.height(), pixel)?)
+}
+
+/// The light of the background and of all objects.
+fn colors(scene: &Scene) -> Vec<[f64; 3]> {
+    let mut colors = Vec::new();
+    with_colors(scene, |color| {
+        colors.push(color.to_linear());
+        color
+    });
+    colors
 }
 
 /// The same from the means of the squares, and the means.
@@ -173,19 +202,8 @@ pub fn are_flat_pixels_right(a: &Film, exact: &Film, variance: &Film) -> bool {
 /// Noise has no such pixel, and it is known without the variance. Numbers that were looked for are known to a part of a pixel only,
 /// so that pixels beside others of another colour do not count.
 pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> f64) -> bool {
-    let mut colors = HashSet::new();
-    let mut add = |color: Color| {
-        colors.insert(bits(&color.to_linear().map(&curve)));
-    };
-    add(scene.image.background);
-    for object in &scene.objects {
-        match object.shape {
-            Shape::Sphere(sphere) => add(sphere.color),
-            Shape::Triangle(triangle) => add(triangle.color),
-            Shape::Box(cuboid) => add(cuboid.color),
-            Shape::Checkerboard(board) => board.colors.into_iter().for_each(&mut add),
-        }
-    }
+    let colors = colors(scene).into_iter();
+    let colors: HashSet<_> = colors.map(|color| bits(&color.map(&curve))).collect();
     let whole = Area::whole(a.width(), a.height());
     whole.iter().any(|(x, y)| {
         let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
@@ -417,22 +435,6 @@ impl Noise {
             explains: None,
             off: None,
         }
-    }
-}
-
-/// What is said of the same samples in each pixel, so many if that is known.
-pub fn verdict_of_grid(difference: f64, samples: Option<u64>) -> Verdict {
-    let samples = samples.map_or("a few".to_owned(), |samples| samples.to_string());
-    Verdict {
-        mistake: "noise",
-        message: format!(
-            "sampling noise: the picture is that of {samples} samples in each pixel, a grid at the same places in all of them, so that \
-             edges along rows and columns are displaced by a part of a pixel"
-        ),
-        help: "nothing is wrong with the scene or the camera; samples that lie elsewhere in each pixel (jittered, sobol) come closer".to_owned(),
-        rmse: Some(difference),
-        explains: None,
-        off: None,
     }
 }
 

@@ -1,10 +1,10 @@
 //! Light that became bytes in a wrong way, and noise beside that.
 
-use image::{ImageBuffer, Rgb};
-use pinhole::color::linear_to_srgb;
+use image::{DynamicImage, ImageBuffer, Luma, Rgb};
+use pinhole::color::{linear_to_srgb, srgb_to_linear};
 use tempfile::TempDir;
 
-use super::{folder, json, open, render, save};
+use super::{diff, folder, json, open, render, save};
 
 /// The picture `a.exr` with its light made bytes in some way, as `b.png`.
 fn with_bytes(folder: &TempDir, byte: impl Fn(f64) -> f64) {
@@ -99,4 +99,105 @@ fn a_power_is_told_from_bytes_that_are_cut_off() {
             "{method}: {found:?}"
         );
     }
+}
+
+/// The picture `a.exr` with 16 bits in each channel, made of its encoded colour in some way, as `b.png`.
+fn with_wide_numbers(folder: &TempDir, number: impl Fn(f64) -> f64) {
+    let light = open(folder, "a.exr").to_rgb32f();
+    let (width, height) = light.dimensions();
+    let picture = ImageBuffer::from_fn(width, height, |x, y| {
+        let pixel = light.get_pixel(x, y).0;
+        Rgb(pixel.map(|light| number(linear_to_srgb(f64::from(light))) as u16))
+    });
+    save(folder, "b.png", DynamicImage::ImageRgb16(picture));
+}
+
+#[test]
+fn bytes_in_a_file_of_16_bits_are_told() {
+    let folder = folder();
+    render(&folder, &["-o", "a.exr"]);
+    type Number = fn(f64) -> f64;
+    let cases: [(Number, &str, &str); 3] = [
+        (
+            |color| 257.0 * (255.0 * color).round(),
+            "rounded",
+            "the picture is right, rounded to 8 bits",
+        ),
+        (
+            |color| 256.0 * (255.0 * color).round(),
+            "rounded",
+            "8 bits were made 16 by a shift",
+        ),
+        (
+            |color| (65535.0 * color).floor(),
+            "truncated",
+            "the 16 bits of each channel are cut off instead of rounded",
+        ),
+    ];
+    for (number, mistake, words) in cases {
+        with_wide_numbers(&folder, number);
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], mistake, "{words}: {found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.starts_with(words), "{words}: {message}");
+        assert_eq!(found["thin"], false, "{words}");
+    }
+    // A picture that is wrong, too, is not said to be right.
+    let moved = ["-o", "a.exr", "--set", "Ball.center=(-1.5, 1, 0)"];
+    render(&folder, &moved);
+    with_wide_numbers(&folder, cases[0].0);
+    assert_eq!(mistakes(&folder, &[]), ["object_place"]);
+}
+
+#[test]
+fn gray_pictures_are_named() {
+    let folder = folder();
+    let luma = |[r, g, b]: [f64; 3]| 0.299 * r + 0.587 * g + 0.114 * b;
+    let mean = |[r, g, b]: [f64; 3]| (r + g + b) / 3.0;
+    type Gray = fn([f64; 3]) -> f64;
+    let cases: [(Gray, &str); 3] = [
+        (
+            luma,
+            "0.299 R + 0.587 G + 0.114 B of its encoded colour in place of a colour",
+        ),
+        (mean, "the mean of its encoded colour's channels"),
+        (
+            |color| {
+                let [r, g, b] = color.map(srgb_to_linear);
+                linear_to_srgb(0.2126 * r + 0.7152 * g + 0.0722 * b)
+            },
+            "the luminance of its light",
+        ),
+    ];
+    for sets in [
+        &[][..],
+        &[
+            "--set",
+            "sampler.method=random",
+            "--set",
+            "sampler.per_pixel=16",
+        ],
+    ] {
+        render(&folder, &[&["-o", "a.exr"], sets].concat());
+        let light = open(&folder, "a.exr").to_rgb32f();
+        let (width, height) = light.dimensions();
+        for (gray, words) in cases {
+            let picture = ImageBuffer::from_fn(width, height, |x, y| {
+                let pixel = light.get_pixel(x, y).0;
+                let color = pixel.map(|light| linear_to_srgb(f64::from(light)));
+                Luma([(255.0 * gray(color)).round() as u8])
+            });
+            save(&folder, "b.png", DynamicImage::ImageLuma8(picture));
+            let found = json(&folder, &["b.png", "a.scn"]);
+            let likely = found["likely"].as_array().unwrap();
+            assert_eq!(likely.len(), 1, "{words}: {found:#}");
+            assert_eq!(likely[0]["mistake"], "gray", "{words}: {found:#}");
+            let message = likely[0]["message"].as_str().unwrap();
+            assert!(message.contains(words), "{words}: {message}");
+        }
+    }
+    // Of pictures alone, too.
+    let (_, text) = diff(&folder, &["b.png", "a.png"]);
+    assert!(text.contains("the picture is gray"), "{text}");
 }

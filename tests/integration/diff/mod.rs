@@ -1,5 +1,6 @@
 //! `diff`: pictures compared, and the mistakes in them named.
 
+mod alike;
 mod bytes;
 mod faint;
 mod mistakes;

@@ -1,0 +1,264 @@
+//! Samples that are alike in all pixels: at the same places in each.
+//!
+//! Their errors hang together: an edge seems displaced by a part of a pixel in all pixels through which it goes alike, so that what looks for
+//! sums of errors takes them for a camera that is off by as much. Two things tell them apart.
+//!
+//! Where one colour should be seen all samples see it, wherever they are, and no pixel is wrong. An edge that is really off by δ misses a share
+//! of about δ/2 of each of δ L more pixels beside L of its own, which one of n samples each shows in n L δ²/2 of them. Errors add up beyond six
+//! deviations where 4 L n δ² is more than 36, and then these are 4.5: [`is_belied`] asks whether none is there of those that a mistake makes.
+//!
+//! And each pixel is a mean of what it would be with a single sample, at each of some places, with the same weights in all pixels. Such weights
+//! are found in some pixels, and make the others, too: [`find`]. Errors that are independent from pixel to pixel cannot be foretold at all.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{
+    Case, Verdict,
+    bias::SIGMAS,
+    fit::Problem,
+    noise::{self, Noise},
+    size,
+};
+use crate::{area::Area, film::Film, render::RenderError, tracer::World};
+
+/// Where so many pixels are expected and none is there, it is no chance: by Poisson one in twenty, as with all mistakes, ln 20.
+const EXPECTED: f64 = 3.0;
+
+/// Whether a mistake, of which a picture would have noise beside it, would show itself where one colour should be seen, and nothing is wrong there.
+/// `variance` is that of one sample with the mistake.
+pub fn is_belied(case: &Case, made: &Film, variance: &Film, noise: Noise) -> bool {
+    if case.strays.pixels > 0 {
+        return false;
+    }
+    let samples = noise.samples.max(1.0);
+    let right = case.full.exact.pixels().iter().zip(case.variance.pixels());
+    let wrong = made.pixels().iter().zip(variance.pixels());
+    let expected =
+        right.zip(wrong).map(
+            |((right, own), (wrong, variance))| match noise::is_flat(own) {
+                true => seen(DVec3::from(*right), DVec3::from(*wrong), variance, samples),
+                false => 0.0,
+            },
+        );
+    expected.sum::<f64>() > EXPECTED
+}
+
+/// How many of some samples see something else in a pixel than its one colour, one at most, if one would be seen.
+fn seen(right: DVec3, wrong: DVec3, variance: &[f64; 3], samples: f64) -> f64 {
+    let off = wrong - right;
+    let squares = off.length_squared();
+    if squares == 0.0 {
+        return 0.0;
+    }
+    // A share c of another colour that is d away makes it off by c d, with a variance of c (1 − c) d².
+    let variance: f64 = variance.iter().map(|one| one.max(0.0)).sum();
+    let share = squares / (squares + variance);
+    let shown = right + off * (1.0 / (samples * share)).max(1.0);
+    match noise::is_off((&shown.to_array(), &right.to_array())) {
+        true => (samples * share).min(1.0),
+        false => 0.0,
+    }
+}
+
+/// Places along each side of a pixel. Of more than 16 × 16 samples that are spread evenly they are too few to tell where these are; but the
+/// errors of so many are those of edges that go along rows of them, and in these places make about the same.
+const PLACES: usize = 16;
+
+/// So many pixels are looked at, at most: half of them for [`PLACES`]² weights, of which each has some four dozen numbers.
+const PIXELS: usize = 8192;
+
+/// What explains more than this of the squares in other pixels than those in which it was found is it, and need not be compared with anything else.
+const MOST: f64 = 0.5;
+
+/// Samples at the same places in each pixel.
+pub struct Alike {
+    /// The share of the squared difference that they explain, in pixels in which they were not looked for.
+    share: f64,
+}
+
+impl Alike {
+    /// What is said of them.
+    pub fn verdict(&self, difference: f64) -> Verdict {
+        let message = "the picture is wrong only where colours meet, and alike where the same is seen, as it is with samples at the same \
+                       places in all pixels, so that edges are displaced by a part of a pixel";
+        verdict(difference, message, HELP.to_owned())
+    }
+
+    pub fn explain_most(&self) -> bool {
+        self.share > MOST
+    }
+}
+
+/// The way out for all of them.
+pub const HELP: &str = "nothing is wrong with the scene or the camera; samples that lie elsewhere in each pixel (jittered, sobol) come closer";
+
+/// What is said of samples at the same places.
+pub fn verdict(difference: f64, message: &str, help: String) -> Verdict {
+    Verdict {
+        mistake: "noise",
+        message: format!("sampling noise: {message}"),
+        help,
+        rmse: Some(difference),
+        explains: None,
+        off: None,
+    }
+}
+
+/// The samples of a picture, if they are at the same places in each pixel: if they foretell its errors, and better than any small displacement
+/// of all of it.
+pub fn find(case: &Case) -> Result<Option<Alike>, RenderError> {
+    if case.strays.pixels > 0 {
+        return Ok(None);
+    }
+    let pixels = pixels(case);
+    // Every other one: neighbours are about the same.
+    let [known, others] =
+        [0, 1].map(|first| -> Vec<_> { pixels.iter().skip(first).step_by(2).collect() });
+    let Some(weights) = nearest(&known) else {
+        return Ok(None);
+    };
+    let field = Field::nearest(&known);
+    let (mut sum, mut own, mut left, mut all) = (0.0, 0.0, 0.0, 0.0);
+    for pixel in others {
+        let foretold = pixel.with(&weights);
+        let displaced = field.of(pixel);
+        for channel in 0..3 {
+            let error = pixel.error[channel];
+            all += error * error;
+            left += (error - foretold[channel]) * (error - foretold[channel]);
+        }
+        let change = (foretold - displaced).dot(pixel.error - displaced);
+        sum += change;
+        own += change * change;
+    }
+    let is_told = own > 0.0 && sum > SIGMAS * own.sqrt();
+    Ok(is_told.then(|| Alike {
+        share: 1.0 - left / all,
+    }))
+}
+
+/// A pixel of several colours.
+struct Pixel {
+    /// How far it is from the picture's middle, to the right and down.
+    at: DVec2,
+    /// What it is off.
+    error: DVec3,
+    /// What it would be off with a single sample, at each of the places.
+    off: Vec<DVec3>,
+    /// What it is off if samples are a little more to the right, and down.
+    slopes: [DVec3; 2],
+}
+
+/// Some pixels of several colours, all over the picture.
+fn pixels(case: &Case) -> Vec<Pixel> {
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    let [width, height] = size(a);
+    let whole = Area::whole(width, height).iter();
+    let mixed: Vec<_> = whole
+        .zip(case.variance.pixels())
+        .filter(|(_, variance)| !noise::is_flat(variance))
+        .map(|(at, _)| at)
+        .collect();
+    let step = mixed.len().div_ceil(PIXELS).max(1);
+    let world = World::new(&case.full.scene);
+    let colors: Vec<_> = (world.palette().iter())
+        .map(|color| DVec3::from(color.to_linear()))
+        .collect();
+    let middle = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
+    mixed
+        .par_iter()
+        .step_by(step)
+        .map(|&(x, y)| {
+            let right = DVec3::from(exact.pixel(x, y));
+            let sample = |place| colors[world.slot_at(x, y, offset(place))] - right;
+            let off: Vec<_> = (0..PLACES * PLACES).map(sample).collect();
+            Pixel {
+                at: DVec2::new(f64::from(x), f64::from(y)) - middle,
+                error: DVec3::from(a.pixel(x, y)) - right,
+                slopes: slopes(&off),
+                off,
+            }
+        })
+        .collect()
+}
+
+/// A place in a pixel, from its centre.
+fn offset(place: usize) -> DVec2 {
+    let along = |at: usize| (at as f64 + 0.5) / PLACES as f64 - 0.5;
+    DVec2::new(along(place % PLACES), along(place / PLACES))
+}
+
+impl Pixel {
+    /// What it is off with samples of these weights.
+    fn with(&self, weights: &[f64]) -> DVec3 {
+        let products = self.off.iter().zip(weights);
+        products.map(|(off, weight)| *off * *weight).sum()
+    }
+}
+
+/// What a pixel is off if samples are a little more to the right, and down: a displacement of its edges within it.
+fn slopes(off: &[DVec3]) -> [DVec3; 2] {
+    let mean = 1.0 / off.len() as f64;
+    let places = off.iter().enumerate();
+    places.fold([DVec3::ZERO; 2], |[x, y], (place, off)| {
+        let by = offset(place) * mean;
+        [x + *off * by.x, y + *off * by.y]
+    })
+}
+
+/// Each weight's own square is counted so many times more, so that what little is known of it does not make it large (Hoerl and Kennard, Ridge
+/// regression, 1970): twice as much of it is known from other pixels, or it is as good as none. What is foretold is too little then, but not of
+/// another sign, which is what tells.
+const DAMPING: f64 = 1.0;
+
+/// The weights that leave least, as far as they are known; none, if nothing is.
+fn nearest(pixels: &[&Pixel]) -> Option<Vec<f64>> {
+    // One row for each place, and one for what is off.
+    let along = |place: usize| -> Vec<DVec3> {
+        let own = |pixel: &&Pixel| pixel.off.get(place).copied().unwrap_or(pixel.error);
+        pixels.iter().map(own).collect()
+    };
+    let rows: Vec<_> = (0..=PLACES * PLACES).into_par_iter().map(along).collect();
+    let product = |p: &[DVec3], q: &[DVec3]| p.iter().zip(q).map(|(p, q)| p.dot(*q)).sum::<f64>();
+    let half = (0..rows.len()).into_par_iter().map(|i| {
+        let before = rows[..=i].iter();
+        before.map(|row| product(&rows[i], row)).collect()
+    });
+    Problem::of_products(half.collect()).solved(DAMPING)
+}
+
+/// A small displacement of all of a picture, as a camera that is off makes it: to the right and down, and so much more of both for each pixel
+/// to the right of its middle, and below it.
+struct Field([f64; 6]);
+
+impl Field {
+    /// The one that explains most.
+    fn nearest(pixels: &[&Pixel]) -> Self {
+        let mut problem = Problem::of(6);
+        for pixel in pixels {
+            for channel in 0..3 {
+                let slopes = Self::slopes(pixel).map(|slope| slope[channel]);
+                let [p, q, r, s, t, u] = slopes;
+                problem.add(&[p, q, r, s, t, u, pixel.error[channel]]);
+            }
+        }
+        let mut field = [0.0; 6];
+        if let Some(solution) = problem.solved(0.0) {
+            field.copy_from_slice(&solution);
+        }
+        Self(field)
+    }
+
+    fn slopes(pixel: &Pixel) -> [DVec3; 6] {
+        let [x, y] = pixel.slopes;
+        let (right, down) = (pixel.at.x, pixel.at.y);
+        [x, y, x * right, y * right, x * down, y * down]
+    }
+
+    /// What a pixel is off then.
+    fn of(&self, pixel: &Pixel) -> DVec3 {
+        let parts = Self::slopes(pixel).into_iter().zip(self.0);
+        parts.map(|(slope, by)| slope * by).sum()
+    }
+}
