@@ -61,8 +61,7 @@ fn seen(right: DVec3, wrong: DVec3, variance: &[f64; 3], samples: f64) -> f64 {
     }
 }
 
-/// Places along each side of a pixel. Of more than 16 × 16 samples that are spread evenly they are too few to tell where these are; but the
-/// errors of so many are those of edges that go along rows of them, and in these places make about the same.
+/// Places along each side of a pixel: as fine as the samples of which errors are seen at all, which are some hundreds.
 const PLACES: usize = 16;
 
 /// So many pixels are looked at, at most: half of them for [`PLACES`]² weights, of which each has some four dozen numbers.
@@ -207,9 +206,8 @@ fn slopes(off: &[DVec3]) -> [DVec3; 2] {
     })
 }
 
-/// Each weight's own square is counted so many times more, so that what little is known of it does not make it large (Hoerl and Kennard, Ridge
-/// regression, 1970): twice as much of it is known from other pixels, or it is as good as none. What is foretold is too little then, but not of
-/// another sign, which is what tells.
+/// So many times its square is added to each weight's, so that one of which little is known stays small (Hoerl and Kennard, Ridge regression,
+/// 1970): as much as a weight has of its own. What is foretold is less than what it should be then, but not of another sign, which is what tells.
 const DAMPING: f64 = 1.0;
 
 /// The weights that leave least, as far as they are known; none, if nothing is.

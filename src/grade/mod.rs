@@ -6,7 +6,7 @@
 //!
 //! Mistakes of the whole picture are in `whole` and `gray`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` and `alike` know samples whose errors are
-//! not independent, `truncated` and `rounded` bytes that are not rounded or are finer than they need be, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
+//! not independent, `truncated` bytes that are not rounded, `rounded` numbers that are coarser than their file, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
 //! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `light` undoes curves. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
