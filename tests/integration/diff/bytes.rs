@@ -195,9 +195,11 @@ fn gray_pictures_are_named() {
             assert_eq!(likely[0]["mistake"], "gray", "{words}: {found:#}");
             let message = likely[0]["message"].as_str().unwrap();
             assert!(message.contains(words), "{words}: {message}");
+            if sets.is_empty() {
+                // Of pictures alone, too.
+                let (_, text) = diff(&folder, &["b.png", "a.exr"]);
+                assert!(text.contains("the picture is gray"), "{text}");
+            }
         }
     }
-    // Of pictures alone, too.
-    let (_, text) = diff(&folder, &["b.png", "a.png"]);
-    assert!(text.contains("the picture is gray"), "{text}");
 }
