@@ -349,7 +349,8 @@ impl<'a> Case<'a> {
                 let is_named = left <= HOPE * self.difference
                     || !self.is_biased(&self.full.a, made, &variance, noise)?;
                 // What noise leaves of a mistake it shows where one colour should be seen; and what samples foretell needs no mistake.
-                let is_belied = is_named && alike::is_belied(self, made, &variance, noise);
+                let is_belied = is_named
+                    && (self.may_be_places(left) || alike::is_belied(self, made, &variance, noise));
                 if is_belied {
                     self.is_belied.set(true);
                 }
@@ -359,6 +360,12 @@ impl<'a> Case<'a> {
         })
     }
 
+    /// Whether samples at the same places in all pixels may do as much as a mistake that leaves so much: nothing is wrong where one colour
+    /// should be seen, and not enough is explained.
+    fn may_be_places(&self, left: f64) -> bool {
+        self.strays.pixels == 0 && left > alike::LEFT * self.difference
+    }
+
     /// Whether nothing need be wrong with the picture: it is right but for roundings, or may have noise.
     pub fn may_be_right(&self) -> bool {
         let (a, exact) = (&self.full.a, &self.full.exact);
@@ -366,9 +373,10 @@ impl<'a> Case<'a> {
             || noise::possible(a, exact, &self.variance).is_some()
     }
 
-    /// Whether samples that hang together may be all that is wrong: a mistake was passed over that they belie.
+    /// Whether samples that hang together may be all that is wrong: nothing is where one colour should be seen, or a mistake was passed over
+    /// that they belie.
     pub fn may_be_alike(&self) -> bool {
-        self.is_belied.get() && self.may_be_right()
+        self.strays.pixels == 0 || self.is_belied.get() && self.may_be_right()
     }
 
     /// Whether the picture is another one but for so many steps of 8-bit sRGB.
