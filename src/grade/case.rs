@@ -373,10 +373,16 @@ impl<'a> Case<'a> {
             || noise::possible(a, exact, &self.variance).is_some()
     }
 
-    /// Whether samples that hang together may be all that is wrong: nothing is where one colour should be seen, or a mistake was passed over
-    /// that they belie.
+    /// Whether samples that hang together may be all that is wrong: where one colour should be seen, as it is in some pixels, nothing is, and the
+    /// others are no farther off than a sample each leaves them; or a mistake was passed over that they belie.
     pub fn may_be_alike(&self) -> bool {
-        self.strays.pixels == 0 || self.is_belied.get() && self.may_be_right()
+        let variances = || self.variance.pixels().iter();
+        let flat = variances().filter(|one| noise::is_flat(one)).count() as u64;
+        let one_sample = variances().flatten().map(|one| one.max(0.0)).sum::<f64>();
+        let channels = 3.0 * self.variance.pixels().len() as f64;
+        let is_little = self.difference * self.difference * channels <= one_sample;
+        let may_be_samples = self.strays.pixels == 0 && flat >= evidence::FEWEST && is_little;
+        may_be_samples || self.is_belied.get() && self.may_be_right()
     }
 
     /// Whether the picture is another one but for so many steps of 8-bit sRGB.

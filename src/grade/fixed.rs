@@ -166,11 +166,17 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
         // Within a step of it is within a step of much.
         return Ok(None);
     }
-    let mut others = found[1..].iter();
-    let is_the_one = others.all(|(_, _, other)| evidence::is_enough(a, other, made));
+    let corner = |cells: &Cells| cells.corner.map(|corner| corner.name());
+    // Those that cannot be told from it.
+    let others = found[1..].iter();
+    let others: Vec<_> = others
+        .filter(|(_, _, other)| !evidence::is_enough(a, other, made))
+        .map(|(_, cells, _)| corner(cells))
+        .collect();
+    let is_known = others.iter().all(|other| *other == corner(cells));
     Ok(Some(Grid {
-        samples: is_the_one.then_some(cells.samples),
-        corner: cells.corner.map(|corner| corner.name()),
+        samples: others.is_empty().then_some(cells.samples),
+        corner: corner(cells).filter(|_| is_known),
         is_told,
     }))
 }

@@ -84,13 +84,24 @@ pub fn variance(scene: &Scene, exact_film: &Film, control: &Control) -> Result<F
     Ok(Film::from_fn(variance.width(), variance.height(), pixel)?)
 }
 
-/// The light of the background and of all objects.
+/// The light of the background and of all objects, each once.
 fn colors(scene: &Scene) -> Vec<[f64; 3]> {
-    let mut colors = Vec::new();
-    with_colors(scene, |color| {
-        colors.push(color.to_linear());
-        color
-    });
+    let (mut colors, mut known) = (Vec::new(), HashSet::new());
+    let mut add = |color: Color| {
+        let light = color.to_linear();
+        if known.insert(bits(&light)) {
+            colors.push(light);
+        }
+    };
+    add(scene.image.background);
+    for object in &scene.objects {
+        match object.shape {
+            Shape::Sphere(sphere) => add(sphere.color),
+            Shape::Triangle(triangle) => add(triangle.color),
+            Shape::Box(cuboid) => add(cuboid.color),
+            Shape::Checkerboard(board) => board.colors.into_iter().for_each(&mut add),
+        }
+    }
     colors
 }
 

@@ -4,7 +4,7 @@ use std::{array, sync::LazyLock};
 
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
-/// Further radians, of a million turns and more, are left to [`Big`]: its π has digits enough.
+/// More radians, which are a hundred thousand turns and more, are left to [`Big`]: its π has digits enough.
 const MOST_RADIANS: f64 = (1u64 << 20) as f64;
 
 /// Terms of a series. With r ≤ 0.8, which is above π/4, the first that is left out of the cosine's is r³⁰/30! < 2^−117, and of the sine's, beside
@@ -14,7 +14,7 @@ const LEFT_OUT: f64 = 1.0 / (1u128 << 116) as f64;
 
 /// What the series need.
 struct Constants {
-    /// π/2 as a sum of three `f64`; 2^−159 may be missing, an eighth of the last one's unit.
+    /// π/2 as a sum of three `f64`; half of the last one's unit may be missing, 2^−163.
     quarter_turn: [f64; 3],
     radians_per_degree: Ball<Double>,
     /// (−1)ⁿ/(2n)!.

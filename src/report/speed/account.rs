@@ -1,14 +1,16 @@
 //! How the numbers of the page came about, for those who distrust them.
 
 use super::{measure::Measurement, notes::NOISY, page::prose};
-use crate::numbers;
+use crate::{numbers, render::Exact};
 
 /// The section, as HTML.
 pub fn account(measurements: &[Measurement]) -> String {
-    let bounds = measurements
-        .iter()
-        .map(|measured| measured.reference.bound());
-    let bound = prose(&numbers::at_most(bounds.fold(0.0, f64::max)));
+    let greatest = |of: fn(&Exact) -> f64| {
+        let bounds = measurements.iter();
+        let bounds = bounds.map(|measured| of(&measured.reference));
+        prose(&numbers::at_most(bounds.fold(0.0, f64::max)))
+    };
+    let [bound, mean] = [Exact::bound, Exact::root_mean_square_bound].map(greatest);
     let noisy = NOISY * 100.0;
     format!(
         "<section>\n<h2>How the numbers came about</h2>\n<ul>\n\
@@ -24,7 +26,7 @@ pub fn account(measurements: &[Measurement]) -> String {
          <li><b>The error</b> is the root of the mean squared difference to the exact picture, over all pixels and the three channels, in \
          linear light; that of several runs is the root of the mean of their squares. The reference is not rendered with many samples but \
          computed from the areas that the objects cover in a pixel, with a bound for each pixel that grows with every operation; the \
-         greatest bound here is {bound}. No error that is smaller means anything.</li>\n\
+         greatest bound here is {bound}, and the root of the mean of their squares {mean}: no error that is smaller means anything.</li>\n\
          <li><b>The slope</b> b of error ∝ samples<sup>b</sup> is the least-squares line through the logarithms of samples and error, one \
          point for each number of samples. With residuals r of k points and x = ln samples, its standard error is \
          √(Σr² / (k − 2) / Σ(x − x̄)²) (Draper and Smith, <i>Applied Regression Analysis</i>, 3rd ed. 1998, section 1.4). A few points may \

@@ -73,7 +73,6 @@ pub fn to_json(measured: &Measurement) -> Value {
         json!({
             "time": times(&exact.times),
             "bound": reference.bound(),
-            "root_mean_square_bound": reference.root_mean_square_bound(),
         })
     });
     json!({
@@ -91,7 +90,11 @@ pub fn to_json(measured: &Measurement) -> Value {
         "runs": measured.rounds(),
         "per_pixel": measured.rungs,
         "seconds": measured.seconds,
-        "reference": {"method": "exact", "bound": reference.bound()},
+        "reference": {
+            "method": "exact",
+            "bound": reference.bound(),
+            "root_mean_square_bound": reference.root_mean_square_bound(),
+        },
         "exact": exact,
         "methods": measured.series.iter().map(|series| of_series(measured, series)).collect::<Vec<_>>(),
         "verdicts": verdicts(measured),

@@ -290,8 +290,11 @@ impl Measurement {
         exact.map(|exact| median(&exact.times))
     }
 
-    /// The sampled methods that need the least time for an error; none if none comes there.
+    /// The sampled methods that need the least time for an error; none if none comes there, or if that error cannot be told from none.
     pub fn fastest(&self, error: f64) -> Option<Fastest> {
+        if !self.tells(error) {
+            return None;
+        }
         let is_first = |series: &Series| {
             let first = series.points.first();
             first.is_some_and(|point| point.error() <= error)
