@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::{Angle, Ball, Big, Radius};
 
-/// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`](Big), from fast to precise.
+/// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`], from fast to precise.
 ///
 /// Operations take references, since a big number is not free to copy. Each result is off by at most
 /// [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64` or `Double` that
