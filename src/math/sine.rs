@@ -2,7 +2,11 @@
 
 use std::{array, sync::LazyLock};
 
-use super::{Angle, Ball, Big, Double, Real, double::two_product};
+use super::{
+    Angle, Ball, Big, Double, Real,
+    double::two_product,
+    trig::{reduced, turned},
+};
 
 /// More radians, which are a hundred thousand turns and more, are left to [`Big`]: its π has digits enough.
 const MOST_RADIANS: f64 = (1u64 << 20) as f64;
@@ -65,16 +69,8 @@ pub fn sin_cos(angle: Angle) -> (Ball<Double>, Ball<Double>) {
     (&s * &d + &c * &t, &c * &d - &s * &t)
 }
 
-/// Degrees are reduced mod 90 without rounding: a remainder is exact, and so is the difference to 90 of a number between 45 and 90 (Sterbenz).
 fn of_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
-    let within_turn = degrees % 360.0;
-    let mut rest = within_turn % 90.0;
-    let mut quarters = (within_turn - rest) / 90.0;
-    if rest.abs() > 45.0 {
-        let quarter = 1f64.copysign(rest);
-        rest -= 90.0 * quarter;
-        quarters += quarter;
-    }
+    let (rest, quarters) = reduced(degrees);
     let rest = Ball::exact(rest) * &CONSTANTS.radians_per_degree;
     turned(series(&rest), quarters)
 }
@@ -93,19 +89,6 @@ fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     };
     let rest = Ball::exact(radians) - product(first) - product(second);
     turned(series(&(rest - Ball::exact(quarters) * last)), quarters)
-}
-
-/// After so many quarter turns more.
-fn turned<T>((sin, cos): (Ball<T>, Ball<T>), quarters: f64) -> (Ball<T>, Ball<T>)
-where
-    T: Real,
-{
-    match quarters.rem_euclid(4.0) as u8 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
 }
 
 /// Sine and cosine of r, |r| ≤ 0.8, by their series, from the smallest term to the largest.

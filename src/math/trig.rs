@@ -3,6 +3,8 @@
 //! Degrees are reduced mod 360 without rounding before they become radians, so that multiples of 90° give exactly 0 and ±1
 //! however large they are. What is left is at most 45°; it becomes radians in two parts, and libm does the rest.
 
+use std::ops::Neg;
+
 use super::Angle;
 
 /// π/180 rounded to an f64, and what is left of it: together they are good to 107 bits.
@@ -70,9 +72,17 @@ pub fn atan2(y: f64, x: f64) -> Angle {
     Angle::from_radians(libm::atan2(y, x))
 }
 
-/// Sine and cosine of an angle in degrees. Every step up to the radians is exact: a remainder is, and so is a difference
-/// to 90 of a number between 45 and 90 (Sterbenz).
+/// Sine and cosine of an angle in degrees.
 fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let (rest, quarters) = reduced(degrees);
+    let (sine, cosine) = turned(sin_cos_up_to_45(rest), quarters);
+    // The sign of a zero would show in atan2; adding 0 takes it away.
+    (sine + 0.0, cosine + 0.0)
+}
+
+/// What is left of an angle in degrees, 45 at most, beside so many quarter turns. Every step is exact: a remainder is, and so is a difference to 90 of
+/// a number between 45 and 90 (Sterbenz).
+pub(super) fn reduced(degrees: f64) -> (f64, f64) {
     let within_turn = degrees % 360.0;
     let mut rest = within_turn % 90.0;
     let mut quarters = (within_turn - rest) / 90.0;
@@ -83,15 +93,17 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
         rest += 90.0;
         quarters -= 1.0;
     }
-    let (s, c) = sin_cos_up_to_45(rest);
-    let (sine, cosine) = match quarters.rem_euclid(4.0) as u8 {
-        0 => (s, c),
-        1 => (c, -s),
-        2 => (-s, -c),
-        _ => (-c, s),
-    };
-    // The sign of a zero would show in atan2; adding 0 takes it away.
-    (sine + 0.0, cosine + 0.0)
+    (rest, quarters)
+}
+
+/// Sine and cosine after so many quarter turns more.
+pub(super) fn turned<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
+    match quarters.rem_euclid(4.0) as u8 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
 }
 
 fn sin_cos_up_to_45(degrees: f64) -> (f64, f64) {

@@ -65,6 +65,19 @@ pub enum Fastest {
 }
 
 impl Needed {
+    /// What was measured at a point that is enough.
+    fn of_point(point: &Point, is_at_most: bool) -> Self {
+        Self {
+            per_pixel: point.per_pixel as f64,
+            factor: None,
+            seconds: point.seconds(),
+            spread: spread(&point.times),
+            is_extrapolated: false,
+            is_at_most,
+            sag: 0.0,
+        }
+    }
+
     /// The time may be so many times as long or as short: the samples' factor and half of the spread.
     fn doubt(&self) -> f64 {
         let samples = match self.is_unknown() {
@@ -120,15 +133,7 @@ impl Series {
         let curve = self.curve();
         let first = *curve.first()?;
         if first.error() <= error {
-            return Some(Needed {
-                per_pixel: first.per_pixel as f64,
-                factor: None,
-                seconds: first.seconds(),
-                spread: spread(&first.times),
-                is_extrapolated: false,
-                is_at_most: first.per_pixel > 1,
-                sag: 0.0,
-            });
+            return Some(Needed::of_point(first, first.per_pixel > 1));
         }
         let enough = curve.iter().position(|point| point.error() <= error);
         let (a, b) = match enough {
@@ -146,15 +151,7 @@ impl Series {
         let x = x_a + share * (x_b - x_a);
         // No error at all has no logarithm, and no line goes there: its samples are enough, and fewer may be, too.
         if b.error() == 0.0 {
-            return Some(Needed {
-                per_pixel: b.per_pixel as f64,
-                factor: None,
-                seconds: b.seconds(),
-                spread: spread(&b.times),
-                is_extrapolated: false,
-                is_at_most: b.per_pixel > a.per_pixel + 1,
-                sag: 0.0,
-            });
+            return Some(Needed::of_point(b, b.per_pixel > a.per_pixel + 1));
         }
         let exact = libm::exp(x);
         if slope >= 0.0 || !exact.is_finite() {
