@@ -10,6 +10,8 @@
 //! And each pixel is a mean of what it would be with a single sample, at each of some places, with the same weights in all pixels. Such weights
 //! are found in some pixels, and make the others, too: [`find`]. Errors that are independent from pixel to pixel cannot be foretold at all.
 
+use std::sync::atomic::Ordering;
+
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -17,10 +19,11 @@ use super::{
     Case, Verdict,
     bias::SIGMAS,
     fit::Problem,
-    noise::{self, Noise},
+    noise,
+    seen::{PLACES, place},
     size,
 };
-use crate::{area::Area, film::Film, render::RenderError, tracer::World};
+use crate::{area::Area, film::Film, render::RenderError};
 
 /// A mistake that leaves less than this of the difference is none that samples make, √(1/7).
 ///
@@ -34,12 +37,12 @@ pub const LEFT: f64 = 0.378;
 const EXPECTED: f64 = 3.0;
 
 /// Whether a mistake, of which a picture would have noise beside it, would show itself where one colour should be seen, and nothing is wrong there.
-/// `variance` is that of one sample with the mistake.
-pub fn is_belied(case: &Case, made: &Film, variance: &Film, noise: Noise) -> bool {
-    if case.strays.pixels > 0 {
+/// `variance` is that of one sample with the mistake, and so many are in each pixel.
+pub fn is_belied(case: &Case, made: &Film, variance: &Film, samples: f64) -> bool {
+    if case.is_beyond_samples() {
         return false;
     }
-    let samples = noise.samples.max(1.0);
+    let samples = samples.max(1.0);
     let right = case.full.exact.pixels().iter().zip(case.variance.pixels());
     let wrong = made.pixels().iter().zip(variance.pixels());
     let expected =
@@ -69,19 +72,21 @@ fn seen(right: DVec3, wrong: DVec3, variance: &[f64; 3], samples: f64) -> f64 {
     }
 }
 
-/// Places along each side of a pixel: as fine as the samples of which errors are seen at all, which are some hundreds.
-const PLACES: usize = 16;
-
 /// So many pixels are looked at, at most: half of them for [`PLACES`]² weights, of which each has some four dozen numbers.
 const PIXELS: usize = 8192;
 
-/// What explains more than this of the squares in other pixels than those in which it was found is it, and need not be compared with anything else.
+/// What explains more than this of the squares in other pixels than those in which it was found is it.
 const MOST: f64 = 0.5;
 
-/// Samples at the same places in each pixel.
+/// Samples at the same places in each pixel that leave least of a difference.
+#[derive(Clone, Copy)]
 pub struct Alike {
-    /// The share of the squared difference that they explain, in pixels in which they were not looked for.
-    share: f64,
+    /// The share of the squared difference that they leave, in pixels in which they were not looked for.
+    left: f64,
+    /// That which the best displacement leaves there.
+    displaced: f64,
+    /// Whether they foretell errors that the displacement does not.
+    pub is_told: bool,
 }
 
 impl Alike {
@@ -92,8 +97,15 @@ impl Alike {
         verdict(difference, message, HELP.to_owned())
     }
 
-    pub fn explain_most(&self) -> bool {
-        self.share > MOST
+    /// Whether they are told, and explain most of the difference, and most of what a displacement leaves: with a camera that is off by a hundredth
+    /// of a pixel nothing is wrong where one colour should be seen, either.
+    pub fn is_all(&self) -> bool {
+        self.is_told && self.left < (1.0 - MOST) * self.displaced.min(1.0)
+    }
+
+    /// Whether they leave less than a mistake does, which leaves this share of the squared difference.
+    pub fn leave_less(&self, left: f64) -> bool {
+        self.left < left
     }
 }
 
@@ -112,13 +124,13 @@ pub fn verdict(difference: f64, message: &str, help: String) -> Verdict {
     }
 }
 
-/// The samples of a picture, if they are at the same places in each pixel: if they foretell its errors, and better than any small displacement
-/// of all of it.
+/// The samples of a picture, if they may be at the same places in each pixel: those that foretell its errors best. They are told if they do
+/// so better than any small displacement of all of it.
 pub fn find(case: &Case) -> Result<Option<Alike>, RenderError> {
-    if case.strays.pixels > 0 {
+    if case.is_beyond_samples() {
         return Ok(None);
     }
-    let pixels = pixels(case);
+    let pixels = pixels(case)?;
     // Every other one: neighbours are about the same.
     let [known, others] =
         [0, 1].map(|first| -> Vec<_> { pixels.iter().skip(first).step_by(2).collect() });
@@ -126,22 +138,22 @@ pub fn find(case: &Case) -> Result<Option<Alike>, RenderError> {
         return Ok(None);
     };
     let field = Field::nearest(&known);
-    let (mut sum, mut own, mut left, mut all) = (0.0, 0.0, 0.0, 0.0);
+    let (mut sum, mut own) = (0.0, 0.0);
+    let [mut all, mut left, mut left_by_field] = [0.0; 3];
     for pixel in others {
         let foretold = pixel.with(&weights);
         let displaced = field.of(pixel);
-        for channel in 0..3 {
-            let error = pixel.error[channel];
-            all += error * error;
-            left += (error - foretold[channel]) * (error - foretold[channel]);
-        }
+        all += pixel.error.length_squared();
+        left += (pixel.error - foretold).length_squared();
+        left_by_field += (pixel.error - displaced).length_squared();
         let change = (foretold - displaced).dot(pixel.error - displaced);
         sum += change;
         own += change * change;
     }
-    let is_told = own > 0.0 && sum > SIGMAS * own.sqrt();
-    Ok(is_told.then(|| Alike {
-        share: 1.0 - left / all,
+    Ok((all > 0.0).then(|| Alike {
+        left: left / all,
+        displaced: left_by_field / all,
+        is_told: own > 0.0 && sum > SIGMAS * own.sqrt(),
     }))
 }
 
@@ -158,42 +170,33 @@ struct Pixel {
 }
 
 /// Some pixels of several colours, all over the picture.
-fn pixels(case: &Case) -> Vec<Pixel> {
-    let (a, exact) = (&case.full.a, &case.full.exact);
+fn pixels(case: &Case) -> Result<Vec<Pixel>, RenderError> {
+    let (a, exact, cancel) = (&case.full.a, &case.full.exact, case.control.cancel);
     let [width, height] = size(a);
-    let whole = Area::whole(width, height).iter();
-    let mixed: Vec<_> = whole
-        .zip(case.variance.pixels())
-        .filter(|(_, variance)| !noise::is_flat(variance))
-        .map(|(at, _)| at)
-        .collect();
-    let step = mixed.len().div_ceil(PIXELS).max(1);
-    let world = World::new(&case.full.scene);
-    let colors: Vec<_> = (world.palette().iter())
-        .map(|color| DVec3::from(color.to_linear()))
-        .collect();
+    let mixed = || {
+        let whole = Area::whole(width, height).iter();
+        let pixels = whole.zip(case.variance.pixels());
+        pixels.filter(|(_, variance)| !noise::is_flat(variance))
+    };
+    let step = mixed().count().div_ceil(PIXELS).max(1);
+    let some: Vec<_> = mixed().step_by(step).map(|(at, _)| at).collect();
+    let seen = case.seen();
     let middle = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
-    mixed
-        .par_iter()
-        .step_by(step)
-        .map(|&(x, y)| {
-            let right = DVec3::from(exact.pixel(x, y));
-            let sample = |place| colors[world.slot_at(x, y, offset(place))] - right;
-            let off: Vec<_> = (0..PLACES * PLACES).map(sample).collect();
-            Pixel {
-                at: DVec2::new(f64::from(x), f64::from(y)) - middle,
-                error: DVec3::from(a.pixel(x, y)) - right,
-                slopes: slopes(&off),
-                off,
-            }
+    let pixel = |(x, y): (u32, u32)| {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let right = DVec3::from(exact.pixel(x, y));
+        let sample = |index| seen.at([x, y], place(index)) - right;
+        let off: Vec<_> = (0..PLACES * PLACES).map(sample).collect();
+        Ok(Pixel {
+            at: DVec2::new(f64::from(x), f64::from(y)) - middle,
+            error: DVec3::from(a.pixel(x, y)) - right,
+            slopes: slopes(&off),
+            off,
         })
-        .collect()
-}
-
-/// A place in a pixel, from its centre.
-fn offset(place: usize) -> DVec2 {
-    let along = |at: usize| (at as f64 + 0.5) / PLACES as f64 - 0.5;
-    DVec2::new(along(place % PLACES), along(place / PLACES))
+    };
+    some.into_par_iter().map(pixel).collect()
 }
 
 impl Pixel {
@@ -208,8 +211,8 @@ impl Pixel {
 fn slopes(off: &[DVec3]) -> [DVec3; 2] {
     let mean = 1.0 / off.len() as f64;
     let places = off.iter().enumerate();
-    places.fold([DVec3::ZERO; 2], |[x, y], (place, off)| {
-        let by = offset(place) * mean;
+    places.fold([DVec3::ZERO; 2], |[x, y], (index, off)| {
+        let by = place(index) * mean;
         [x + *off * by.x, y + *off * by.y]
     })
 }
@@ -234,6 +237,9 @@ fn nearest(pixels: &[&Pixel]) -> Option<Vec<f64>> {
     Problem::of_products(half.collect()).solved(DAMPING)
 }
 
+/// Displacements that change the same pixels alike but for this share are told apart no more: a millionth of what they change is left then.
+const SAME: f64 = 1e-6;
+
 /// A small displacement of all of a picture, as a camera that is off makes it: to the right and down, and so much more of both for each pixel
 /// to the right of its middle, and below it.
 struct Field([f64; 6]);
@@ -250,7 +256,7 @@ impl Field {
             }
         }
         let mut field = [0.0; 6];
-        if let Some(solution) = problem.solved(0.0) {
+        if let Some(solution) = problem.solved(SAME) {
             field.copy_from_slice(&solution);
         }
         Self(field)

@@ -8,7 +8,8 @@ use std::cell::{Cell, OnceCell};
 use glam::DVec3;
 
 use super::{
-    FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE, alike,
+    FEW, HOPE, Idea, LEFT, Make, Off, SMALL_HOPE,
+    alike::{self, Alike},
     bias::{Errors, SIGMAS},
     choice::{self, Explanation},
     evidence,
@@ -16,7 +17,9 @@ use super::{
     level::{self, Level},
     noise::{self, Noise},
     objects::{self, Slope},
-    order, size,
+    order,
+    seen::{self, Seen},
+    size,
 };
 use crate::{
     area::Area,
@@ -47,6 +50,9 @@ pub struct Case<'a> {
     pub variance: Film,
     /// What the objects change when they are moved a little.
     pub slopes: OnceCell<Vec<Slope>>,
+    /// What single samples see.
+    seen: OnceCell<Seen>,
+    is_beyond_samples: OnceCell<bool>,
     pub view: View,
     /// A mistake was passed over of which too few pixels tell.
     pub is_thin: Cell<bool>,
@@ -54,8 +60,8 @@ pub struct Case<'a> {
     pub may_be_noise: Cell<bool>,
     /// A mistake was passed over that would show itself where one colour should be seen, and nothing is wrong there.
     pub is_belied: Cell<bool>,
-    /// Samples at the same places in all pixels foretell the errors.
-    pub is_alike: Cell<bool>,
+    /// The samples at the same places in all pixels that leave least, where some may have made the picture.
+    pub alike: Cell<Option<Alike>>,
     pub control: Control<'a>,
 }
 
@@ -99,11 +105,13 @@ impl<'a> Case<'a> {
             tiny,
             variance,
             slopes: OnceCell::new(),
+            seen: OnceCell::new(),
+            is_beyond_samples: OnceCell::new(),
             view: View::of(scene),
             is_thin: Cell::new(false),
             may_be_noise: Cell::new(false),
             is_belied: Cell::new(false),
-            is_alike: Cell::new(false),
+            alike: Cell::new(None),
             control,
         })
     }
@@ -232,8 +240,10 @@ impl<'a> Case<'a> {
         if !is_nearer || !self.explains(make, &made, left)? {
             return Ok(None);
         }
-        let is_enough =
-            sigmas > SIGMAS || evidence::is_enough(&self.full.a, &self.full.exact, &made);
+        // A curve changes all pixels of several colours, and something else may be wrong in a few that add up to more.
+        let is_of_light = matches!(make, Make::Light(_) | Make::Turned(..) | Make::Curved(..));
+        let is_enough = !is_of_light && sigmas > SIGMAS
+            || evidence::is_enough(&self.full.a, &self.full.exact, &made);
         if !is_enough {
             self.is_thin.set(true);
         }
@@ -312,6 +322,16 @@ impl<'a> Case<'a> {
         Ok(self.slopes.get().map_or(&[], Vec::as_slice))
     }
 
+    /// What single samples see.
+    pub fn seen(&self) -> &Seen {
+        self.seen.get_or_init(|| Seen::of(&self.full.scene))
+    }
+
+    /// Whether no samples make the picture, wherever they are.
+    pub fn is_beyond_samples(&self) -> bool {
+        *self.is_beyond_samples.get_or_init(|| seen::is_beyond(self))
+    }
+
     /// Whether what looks like noise adds up to something.
     pub fn is_biased(
         &self,
@@ -333,7 +353,7 @@ impl<'a> Case<'a> {
     /// Whether what a mistake makes leaves little of the difference, or nothing but roundings or noise.
     pub fn explains(&self, make: &Make, made: &Film, left: f64) -> Result<bool, RenderError> {
         if left < LEFT * self.difference {
-            return Ok(true);
+            return Ok(!self.is_excused(left) && !self.is_belied_by(make, made)?);
         }
         // The mistake may be small, and the rest rounding.
         if self.is_rounding(made, evidence::APART) {
@@ -350,11 +370,13 @@ impl<'a> Case<'a> {
                     || !self.is_biased(&self.full.a, made, &variance, noise)?;
                 // What noise leaves of a mistake it shows where one colour should be seen; and what samples foretell needs no mistake.
                 let is_belied = is_named
-                    && (self.may_be_places(left) || alike::is_belied(self, made, &variance, noise));
+                    && (self.may_be_places(left)
+                        || self.is_excused(left)
+                        || alike::is_belied(self, made, &variance, noise.samples));
                 if is_belied {
                     self.is_belied.set(true);
                 }
-                is_named && !is_belied && !self.is_alike.get()
+                is_named && !is_belied && !self.is_alike()
             }
             None => false,
         })
@@ -363,7 +385,36 @@ impl<'a> Case<'a> {
     /// Whether samples at the same places in all pixels may do as much as a mistake that leaves so much: nothing is wrong where one colour
     /// should be seen, and not enough is explained.
     fn may_be_places(&self, left: f64) -> bool {
-        self.strays.pixels == 0 && left > alike::LEFT * self.difference
+        left > alike::LEFT * self.difference && !self.is_beyond_samples()
+    }
+
+    /// Whether samples at the same places leave less than a mistake does.
+    fn is_excused(&self, left: f64) -> bool {
+        let share = left / self.difference;
+        let alike = self.alike.get();
+        alike.is_some_and(|alike| alike.leave_less(share * share))
+    }
+
+    /// Whether samples at the same places in all pixels foretell the errors.
+    pub fn is_alike(&self) -> bool {
+        self.alike.get().is_some_and(|alike| alike.is_told)
+    }
+
+    /// Whether a mistake that leaves little would show itself where one colour should be seen, and nothing is wrong there: as when samples at
+    /// the same places have their middle beside the pixel's.
+    fn is_belied_by(&self, make: &Make, made: &Film) -> Result<bool, RenderError> {
+        if self.is_beyond_samples() {
+            return Ok(false);
+        }
+        let Some(variance) = self.variance_of(make, made)? else {
+            return Ok(false);
+        };
+        let samples = noise::samples(&self.full.a, made, &variance);
+        let is_belied = alike::is_belied(self, made, &variance, samples);
+        if is_belied {
+            self.is_belied.set(true);
+        }
+        Ok(is_belied)
     }
 
     /// Whether nothing need be wrong with the picture: it is right but for roundings, or may have noise.
@@ -381,7 +432,7 @@ impl<'a> Case<'a> {
         let one_sample = variances().flatten().map(|one| one.max(0.0)).sum::<f64>();
         let channels = 3.0 * self.variance.pixels().len() as f64;
         let is_little = self.difference * self.difference * channels <= one_sample;
-        let may_be_samples = self.strays.pixels == 0 && flat >= evidence::FEWEST && is_little;
+        let may_be_samples = flat >= evidence::FEWEST && is_little && !self.is_beyond_samples();
         may_be_samples || self.is_belied.get() && self.may_be_right()
     }
 
@@ -396,13 +447,26 @@ impl<'a> Case<'a> {
 
     /// The noise in which alone the picture differs from what a mistake makes, and the variance of one sample.
     fn noise_in(&self, make: &Make, made: &Film) -> Result<Option<(Film, Noise)>, RenderError> {
-        let (a, control) = (&self.full.a, &self.control);
+        let a = &self.full.a;
         if let Make::Scene(scene) | Make::Object(scene, _) = make
             && noise::has_strays(a, made, scene, |light| light)
         {
             return Ok(None);
         }
-        let variance = match make {
+        let Some(variance) = self.variance_of(make, made)? else {
+            return Ok(None);
+        };
+        let Some(variance) = noise::beside_edges(a, made, &variance)? else {
+            return Ok(None);
+        };
+        let noise = noise::judge(a, made, &variance);
+        Ok(noise.map(|noise| (variance, noise)))
+    }
+
+    /// The variance of one sample in each pixel of what a mistake makes; none of a curve or of single samples.
+    fn variance_of(&self, make: &Make, made: &Film) -> Result<Option<Film>, RenderError> {
+        let control = &self.control;
+        Ok(Some(match make {
             Make::Film(make) => make(&self.variance)?,
             Make::Is(_, variance) => variance.clone(),
             Make::Scene(scene) => noise::variance(scene, made, control)?,
@@ -417,12 +481,7 @@ impl<'a> Case<'a> {
                 self.full.where_floor(*holds, &other, &self.variance)?
             }
             _ => return Ok(None),
-        };
-        let Some(variance) = noise::beside_edges(a, made, &variance)? else {
-            return Ok(None);
-        };
-        let noise = noise::judge(a, made, &variance);
-        Ok(noise.map(|noise| (variance, noise)))
+        }))
     }
 
     /// The variance of one sample in each pixel, with one shape changed.

@@ -17,7 +17,6 @@ use crate::{
     area::Area,
     film::{Film, Tolerance, compare, rmse},
     render::{self, RenderError},
-    tracer::World,
 };
 
 /// The same samples in each pixel.
@@ -61,31 +60,33 @@ impl Cells {
     }
 
     /// What they make of a part of the picture.
-    fn picture(&self, case: &Case, world: &World, part: Area) -> Result<Film, RenderError> {
+    fn picture(&self, case: &Case, part: Area) -> Result<Film, RenderError> {
         match self.corner {
             None => {
                 let sampling = level::grid(&case.full.scene, self.samples);
-                render::render(world, &sampling, part, &case.control)
+                render::render(case.seen().world(), &sampling, part, &case.control)
             }
-            Some(corner) => corner.picture(case, world, part),
+            Some(corner) => corner.picture(case, part),
         }
     }
 }
 
 impl Corner {
-    fn picture(&self, case: &Case, world: &World, part: Area) -> Result<Film, RenderError> {
-        let colors = world.palette().iter().map(|color| color.to_linear());
-        let colors: Vec<_> = colors.map(DVec3::from).collect();
+    fn picture(&self, case: &Case, part: Area) -> Result<Film, RenderError> {
         let cells: Vec<_> = Area::whole(self.side, self.side)
             .iter()
             .map(|(column, row)| self.offset(column, row))
             .collect();
         let (exact, variance, cancel) = (&case.full.exact, &case.variance, case.control.cancel);
+        let seen = case.seen();
         let pixel = |x: u32, y: u32| {
-            if noise::is_flat(&variance.pixel(x, y)) {
+            // A sample on a pixel's side may see what its neighbour does.
+            let is_one_color =
+                noise::is_flat(&variance.pixel(x, y)) && !noise::is_beside_another(exact, [x, y]);
+            if is_one_color {
                 return exact.pixel(x, y);
             }
-            let samples = cells.iter().map(|cell| colors[world.slot_at(x, y, *cell)]);
+            let samples = cells.iter().map(|cell| seen.at([x, y], *cell));
             (samples.sum::<DVec3>() / cells.len() as f64).to_array()
         };
         let row = |row: u32| -> Result<Vec<_>, RenderError> {
@@ -126,8 +127,7 @@ impl Corner {
 /// The samples of a pixel, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up, and
 /// grids of as many rows and columns there make the same.
 pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
-    if case.strays.pixels > 0 {
-        // Where one colour is seen all samples see it.
+    if case.is_beyond_samples() {
         return Ok(None);
     }
     let (a, exact) = (&case.full.a, &case.full.exact);
@@ -144,39 +144,44 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
     let is_near = |a: &Film, made: &Film, enough: f64| {
         rmse(a, made) < enough || compare(a, made, tolerance).is_ok_and(|found| found.is_equal())
     };
-    let world = World::new(&case.full.scene);
-    let mut found = Vec::new();
+    let whole = Area::whole(width, height);
+    let (mut found, mut best) = (Vec::new(), None::<(f64, usize, Film)>);
     for cells in Cells::all() {
         // Some rows tell which grid it may be.
-        let there = cells.picture(case, &world, band)?;
+        let there = cells.picture(case, band)?;
         if !is_near(&a_there, &there, enough) {
             continue;
         }
-        let made = cells.picture(case, &world, Area::whole(width, height))?;
+        let made = cells.picture(case, whole)?;
         if is_near(a, &made, LEFT * case.difference) {
-            found.push((rmse(a, &made), cells, made));
+            let left = rmse(a, &made);
+            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
+                best = Some((left, found.len(), made));
+            }
+            found.push(cells);
         }
     }
-    found.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let Some((left, cells, made)) = found.first() else {
+    let Some((left, at, made)) = best else {
         return Ok(None);
     };
-    let is_told = evidence::is_enough(a, exact, made);
-    if !is_told && *left >= LEFT * case.difference {
+    let cells = found.remove(at);
+    let is_told = evidence::is_enough(a, exact, &made);
+    if !is_told && left >= LEFT * case.difference {
         // Within a step of it is within a step of much.
         return Ok(None);
     }
     let corner = |cells: &Cells| cells.corner.map(|corner| corner.name());
-    // Those that cannot be told from it.
-    let others = found[1..].iter();
-    let others: Vec<_> = others
-        .filter(|(_, _, other)| !evidence::is_enough(a, other, made))
-        .map(|(_, cells, _)| corner(cells))
-        .collect();
-    let is_known = others.iter().all(|other| *other == corner(cells));
+    let (mut is_known, mut is_only) = (true, true);
+    for other in found {
+        // It may not be told from the best one.
+        if !evidence::is_enough(a, &other.picture(case, whole)?, &made) {
+            is_only = false;
+            is_known &= corner(&other) == corner(&cells);
+        }
+    }
     Ok(Some(Grid {
-        samples: others.is_empty().then_some(cells.samples),
-        corner: corner(cells).filter(|_| is_known),
+        samples: is_only.then_some(cells.samples),
+        corner: corner(&cells).filter(|_| is_known),
         is_told,
     }))
 }

@@ -6,7 +6,7 @@
 //!
 //! Mistakes of the whole picture are in `whole` and `gray`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
 //! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` and `alike` know samples whose errors are
-//! not independent, `truncated` bytes that are not rounded, `rounded` numbers that are coarser than their file, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
+//! not independent, `seen` what no samples make, `truncated` bytes that are not rounded, `rounded` numbers that are coarser than their file, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
 //! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `light` undoes curves. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
@@ -29,6 +29,7 @@ mod order;
 mod pairs;
 mod rounded;
 mod search;
+mod seen;
 mod shift;
 mod truncated;
 mod whole;
@@ -163,7 +164,7 @@ pub fn scene(
             Some(verdict) => with_nothing_in_sight(&case, verdict)?,
             None => likely(&case)?,
         };
-        let may_be_noise = case.may_be_noise.get() || case.may_be_alike();
+        let may_be_noise = case.may_be_noise.get() || case.is_alike() || case.may_be_alike();
         Ok(Grade {
             is_thin: likely.is_empty() && (case.is_thin.get() || case.may_be_noise.get()),
             may_be_noise: likely.is_empty() && may_be_noise,
@@ -184,17 +185,18 @@ fn likely(case: &Case) -> Result<Vec<Verdict>, RenderError> {
         true => None,
         false => alike::find(case)?,
     };
-    let alike = alike.filter(|_| case.may_be_right());
+    let is_told = alike.as_ref().is_some_and(Alike::is_all);
     let verdict = |alike: &Alike| vec![alike.verdict(case.difference)];
     if let Some(alike) = &alike
-        && alike.explain_most()
+        && is_told
+        && case.may_be_right()
     {
         return Ok(verdict(alike));
     }
-    case.is_alike.set(alike.is_some());
+    case.alike.set(alike);
     let found = mistakes(case)?;
-    Ok(match (&alike, found.is_empty()) {
-        (Some(alike), true) => verdict(alike),
+    Ok(match &alike {
+        Some(alike) if is_told && found.is_empty() => verdict(alike),
         _ => found,
     })
 }
@@ -335,8 +337,9 @@ fn numbers(case: &Case, pairs: Option<&Pairs>) -> Result<Vec<Verdict>, RenderErr
         return Ok(verdicts(found));
     }
     // A camera that is off in several ways is seen all over the picture. What noise may have done is nobody's fault.
+    let needs_no_mistake = case.may_be_noise.get() || !case.is_beyond_samples();
     if found.is_empty()
-        && !case.may_be_noise.get()
+        && !needs_no_mistake
         && let Some(verdict) = objects::confined(case)?
     {
         return Ok(vec![verdict]);
@@ -359,7 +362,7 @@ fn numbers(case: &Case, pairs: Option<&Pairs>) -> Result<Vec<Verdict>, RenderErr
     let starts: Vec<_> = single.starts.into_iter().chain(several.starts).collect();
     let any = camera::any(case, &starts)?;
     found = case.best_of(found, any.into_iter().collect())?;
-    match found.is_empty() && !case.may_be_noise.get() {
+    match found.is_empty() && !needs_no_mistake {
         true => Ok(objects::reaching_out(case)?.into_iter().collect()),
         false => and_beside(case, found),
     }

@@ -51,7 +51,7 @@ const CHANCE: f64 = 1e-3;
 
 /// More than so many samples beside an edge that is known as well as they tell of it are no chance where one is expected: by Poisson, one
 /// in a million.
-const STRAYS: usize = 8;
+pub const STRAYS: usize = 8;
 
 /// Light that is rounded to a step of 1/255 has errors of the variance 1/255²/12, as n samples have of which one has 12·255² n times as much: of
 /// so many, if two colours are a tenth of the way from black to white apart, 0.1²/4, and of more if they are farther.
@@ -201,6 +201,14 @@ fn possible_through(shown: [&Film; 2], means: [&Film; 2], variance: &Film) -> Op
     })
 }
 
+/// How many samples leave as much of what a picture should be, if it is noise.
+pub fn samples(a: &Film, exact: &Film, variance: &Film) -> f64 {
+    let mut size = Size::default();
+    let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
+    pixels.for_each(|((p, q), variance)| size.add(p, q, variance));
+    size.samples()
+}
+
 /// Whether all pixels of one colour have it.
 pub fn are_flat_pixels_right(a: &Film, exact: &Film, variance: &Film) -> bool {
     let pixels = a.pixels().iter().zip(exact.pixels()).zip(variance.pixels());
@@ -218,10 +226,14 @@ pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> 
     let whole = Area::whole(a.width(), a.height());
     whole.iter().any(|(x, y)| {
         let (p, q) = (a.pixel(x, y), exact.pixel(x, y));
-        is_off((&p, &q))
-            && colors.contains(&bits(&q))
-            && around(exact, [x, y]).all(|(x, y)| bits(&exact.pixel(x, y)) == bits(&q))
+        is_off((&p, &q)) && colors.contains(&bits(&q)) && !is_beside_another(exact, [x, y])
     })
+}
+
+/// Whether a pixel has another neighbour than itself.
+pub fn is_beside_another(film: &Film, [x, y]: [u32; 2]) -> bool {
+    let own = bits(&film.pixel(x, y));
+    around(film, [x, y]).any(|(x, y)| bits(&film.pixel(x, y)) != own)
 }
 
 /// The variance of samples where the place of edges is known to a part of a pixel only: in pixels of one colour that are off it is that

@@ -36,7 +36,7 @@ pub struct Needed {
     pub factor: Option<f64>,
     /// Seconds.
     pub seconds: f64,
-    /// How far the measured times spread from which these seconds are: (greatest − least) / median.
+    /// How far the measured times spread from which these seconds are: (greatest − least) / median; infinite if that is not known.
     pub spread: f64,
     /// Whether it lies beyond what was measured.
     pub is_extrapolated: bool,
@@ -66,12 +66,12 @@ pub enum Fastest {
 
 impl Needed {
     /// What was measured at a point that is enough.
-    fn of_point(point: &Point, is_at_most: bool) -> Self {
+    fn of_point(series: &Series, point: &Point, is_at_most: bool) -> Self {
         Self {
             per_pixel: point.per_pixel as f64,
             factor: None,
             seconds: point.seconds(),
-            spread: spread(&point.times),
+            spread: series.time_spread(point),
             is_extrapolated: false,
             is_at_most,
             sag: 0.0,
@@ -133,7 +133,7 @@ impl Series {
         let curve = self.curve();
         let first = *curve.first()?;
         if first.error() <= error {
-            return Some(Needed::of_point(first, first.per_pixel > 1));
+            return Some(Needed::of_point(self, first, first.per_pixel > 1));
         }
         let enough = curve.iter().position(|point| point.error() <= error);
         let (a, b) = match enough {
@@ -151,7 +151,7 @@ impl Series {
         let x = x_a + share * (x_b - x_a);
         // No error at all has no logarithm, and no line goes there: its samples are enough, and fewer may be, too.
         if b.error() == 0.0 {
-            return Some(Needed::of_point(b, b.per_pixel > a.per_pixel + 1));
+            return Some(Needed::of_point(self, b, b.per_pixel > a.per_pixel + 1));
         }
         let exact = libm::exp(x);
         if slope >= 0.0 || !exact.is_finite() {
@@ -211,6 +211,17 @@ impl Series {
         Some(log_error(&like.rmse)? * runs.sqrt())
     }
 
+    /// How far the times of a point spread. Of a single run that is as much as of any point with several, and unknown, which is any
+    /// number, if there is none.
+    fn time_spread(&self, point: &Point) -> f64 {
+        if point.times.len() > 1 {
+            return spread(&point.times);
+        }
+        let several = self.points.iter().filter(|point| point.times.len() > 1);
+        let spreads = several.map(|point| spread(&point.times));
+        spreads.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
     /// The time of a number of samples, and its spread: on the straight line between the points on either side, beyond the last one
     /// with the slope of that through the first and the last, but in proportion at most, and not much less than that whatever a noisy machine says.
     pub(super) fn seconds_at(&self, per_pixel: f64) -> Option<(f64, f64)> {
@@ -229,14 +240,14 @@ impl Series {
                     false => most,
                 };
                 let seconds = last.seconds() + rate * (per_pixel - samples(last));
-                (seconds, spread(&last.times))
+                (seconds, self.time_spread(last))
             }
-            Some(0) => (first.seconds(), spread(&first.times)),
+            Some(0) => (first.seconds(), self.time_spread(first)),
             Some(next) => {
                 let (low, high) = (curve[next - 1], curve[next]);
                 let share = (per_pixel - samples(low)) / (samples(high) - samples(low));
                 let seconds = low.seconds() + share * (high.seconds() - low.seconds());
-                (seconds, spread(&low.times).max(spread(&high.times)))
+                (seconds, self.time_spread(low).max(self.time_spread(high)))
             }
         })
     }

@@ -323,3 +323,50 @@ fn planes_at_another_depth_are_named() {
         assert!(message.contains(says), "{set}: {message}");
     }
 }
+
+/// Near the horizon no pixel has one colour, so that none is plainly wrong; and what is dark there adds up to as much as a curve brightens all edges.
+#[test]
+fn rays_that_end_before_the_horizon_are_neither_noise_nor_gamma() {
+    let folder = folder();
+    let level = ["image.width=320", "image.height=180", "camera.roll=0deg"];
+    let level: Vec<_> = level.iter().flat_map(|set| ["--set", set]).collect();
+    for (sets, says) in [
+        (
+            ["camera.far=300", "sampler.method=jittered"],
+            "as if far were 30",
+        ),
+        (
+            ["camera.far=1000", "sampler.method=regular"],
+            "as if far were ",
+        ),
+        (
+            ["camera.far=2000", "sampler.method=exact"],
+            "as if far were 20",
+        ),
+    ] {
+        let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        render(
+            &folder,
+            &[&["-o", "b.png"], sets.as_slice(), &level].concat(),
+        );
+        let found = json(&folder, &[&["b.png", "a.scn"], level.as_slice()].concat());
+        let first = &found["likely"][0];
+        assert_eq!(first["mistake"], "far", "{sets:?}: {found:#}");
+        let message = first["message"].as_str().unwrap();
+        assert!(message.contains(says), "{sets:?}: {message}");
+    }
+}
+
+/// As samples at the same places in all pixels may be, and as no single sample shows where one colour is seen.
+#[test]
+fn a_hundredth_of_a_pixel_without_noise_is_no_noise() {
+    let folder = folder();
+    let size = ["--set", "image.width=240", "--set", "image.height=136"];
+    let set = ["--set", "camera.lookat=(0.201, 0.8, 0)"];
+    render(&folder, &[&["-o", "b.png"], size.as_slice(), &set].concat());
+    let found = json(&folder, &[&["b.png", "a.scn"], size.as_slice()].concat());
+    let first = &found["likely"][0];
+    assert_eq!(first["mistake"], "lookat", "{found:#}");
+    let message = first["message"].as_str().unwrap();
+    assert!(message.contains("its x were 0.201 "), "{message}");
+}

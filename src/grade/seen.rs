@@ -1,0 +1,113 @@
+//! What single samples see of a pixel.
+//!
+//! A mean of samples lies between the colours that they see, channel by channel. Where a picture does not, no samples made it, however they hang
+//! together: a far plane that cuts rows of squares off at the horizon, of which no pixel has one colour, shows itself so.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{Case, noise, size};
+use crate::{area::Area, scene::Scene, tracer::World};
+
+/// Places along each side of a pixel: as fine as the samples of which errors are seen at all, which are some hundreds.
+pub const PLACES: usize = 16;
+
+/// So many pixels of several colours are looked at, at most, all over the picture.
+const PIXELS: usize = 2048;
+
+/// A scene whose single samples are asked for.
+pub struct Seen {
+    world: World,
+    /// The colours of its palette, in linear light.
+    colors: Vec<DVec3>,
+    /// What a channel is beyond the colours that are seen at the places, if a sample sees one that is at none of them: a colour with a share
+    /// below 1/256 of the pixel, of which hardly more than one sample in 16 is.
+    margin: DVec3,
+}
+
+impl Seen {
+    pub fn of(scene: &Scene) -> Self {
+        let world = World::new(scene);
+        let colors = world.palette().iter().map(|color| color.to_linear());
+        let colors: Vec<_> = colors.map(DVec3::from).collect();
+        let [low, high] = range(colors.iter().copied());
+        Self {
+            world,
+            colors,
+            margin: (high - low) / PLACES as f64,
+        }
+    }
+
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The light of a sample at an offset from a pixel's centre.
+    pub fn at(&self, [x, y]: [u32; 2], offset: DVec2) -> DVec3 {
+        self.colors[self.world.slot_at(x, y, offset)]
+    }
+
+    /// The least and the greatest light of each channel that samples see in a pixel and on its sides.
+    fn range(&self, pixel: [u32; 2]) -> [DVec3; 2] {
+        let inside = (0..PLACES * PLACES).map(place);
+        range(inside.chain(sides()).map(|offset| self.at(pixel, offset)))
+    }
+
+    /// Whether no samples at the places make a pixel, but for roundings and a margin in each channel.
+    fn is_beyond(&self, pixel: [u32; 2], light: &[f64; 3], margin: DVec3) -> bool {
+        let [low, high] = self.range(pixel);
+        let nearest = DVec3::from(*light).clamp(low - margin, high + margin);
+        noise::is_off((light, &nearest.to_array()))
+    }
+}
+
+/// A place in a pixel, from its centre: the middle of one of [`PLACES`]² cells.
+pub fn place(index: usize) -> DVec2 {
+    let along = |at: usize| (at as f64 + 0.5) / PLACES as f64 - 0.5;
+    DVec2::new(along(index % PLACES), along(index / PLACES))
+}
+
+/// Places on a pixel's sides, among them its corners.
+fn sides() -> impl Iterator<Item = DVec2> {
+    (0..=PLACES).flat_map(|index| {
+        let along = index as f64 / PLACES as f64 - 0.5;
+        [-0.5, 0.5]
+            .into_iter()
+            .flat_map(move |side| [DVec2::new(along, side), DVec2::new(side, along)])
+    })
+}
+
+fn range(colors: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+    colors.fold(
+        [DVec3::INFINITY, DVec3::NEG_INFINITY],
+        |[low, high], color| [low.min(color), high.max(color)],
+    )
+}
+
+/// Whether a picture is such that no samples make it: some pixel of one colour, on whose sides there is no other, has another one, or
+/// pixels of several colours are beyond all of them, and more than chance has it.
+pub fn is_beyond(case: &Case) -> bool {
+    let (a, exact) = (&case.full.a, &case.full.exact);
+    let [width, height] = size(a);
+    let is_off = |x, y| noise::is_off((&a.pixel(x, y), &exact.pixel(x, y)));
+    let is_flat = |x, y| noise::is_flat(&case.variance.pixel(x, y));
+    let whole = || Area::whole(width, height).iter();
+    let seen = case.seen();
+    if case.strays.pixels > 0
+        && whole().any(|(x, y)| {
+            is_flat(x, y)
+                && is_off(x, y)
+                && (!noise::is_beside_another(exact, [x, y])
+                    || seen.is_beyond([x, y], &a.pixel(x, y), DVec3::ZERO))
+        })
+    {
+        return true;
+    }
+    let mixed = || whole().filter(|&(x, y)| is_off(x, y) && !is_flat(x, y));
+    let step = mixed().count().div_ceil(PIXELS).max(1);
+    let some: Vec<_> = mixed().step_by(step).collect();
+    let beyond = some
+        .par_iter()
+        .filter(|(x, y)| seen.is_beyond([*x, *y], &a.pixel(*x, *y), seen.margin));
+    beyond.count() > noise::STRAYS
+}
