@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::World;
 use crate::{
-    math::{Ball, Big, Double, Real},
+    math::{Ball, Big, Double, Real, exact::Plane},
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
@@ -53,6 +53,11 @@ impl<T: Real> Frame<T> {
             camera,
         }
     }
+
+    #[cfg(test)]
+    pub(super) fn prepared(&self) -> usize {
+        self.kept.iter().filter_map(OnceLock::get).count()
+    }
 }
 
 /// A precision that the world is held in.
@@ -97,19 +102,28 @@ impl Numbers {
         }
     }
 
-    /// The axis that a flat part lies across, and where.
-    pub(super) fn across_axis(&self, part: Part) -> Option<(usize, f64)> {
-        match (self, part) {
-            (Self::Other(shape), Part::Plane(index)) => match **shape {
-                Shape::Box(scene::Cuboid { min, max, .. }) => {
-                    let (axis, is_upper) = (usize::from(index / 2), index % 2 == 1);
-                    Some((axis, if is_upper { max[axis] } else { min[axis] }))
-                }
-                Shape::Checkerboard(scene::Checkerboard { y, .. }) => Some((1, y)),
-                Shape::Sphere(_) | Shape::Triangle(_) => None,
+    /// The plane of a flat part.
+    pub(super) fn plane(&self, part: Part) -> Option<Plane> {
+        let (Self::Other(shape), Part::Plane(index)) = (self, part) else {
+            return None;
+        };
+        Some(match **shape {
+            Shape::Sphere(_) => return None,
+            Shape::Triangle(scene::Triangle {
+                normal, centroid, ..
+            }) => Plane {
+                normal,
+                point: centroid,
             },
-            _ => None,
-        }
+            Shape::Box(scene::Cuboid { min, max, .. }) => Plane {
+                normal: DVec3::AXES[usize::from(index / 2)],
+                point: if index % 2 == 1 { max } else { min },
+            },
+            Shape::Checkerboard(scene::Checkerboard { y, .. }) => Plane {
+                normal: DVec3::Y,
+                point: DVec3::Y * y,
+            },
+        })
     }
 
     /// The object in one precision.
