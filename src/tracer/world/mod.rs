@@ -2,6 +2,7 @@
 
 mod colors;
 mod crowd;
+mod kept;
 mod level;
 mod order;
 mod ray;
@@ -17,6 +18,7 @@ use rayon::prelude::*;
 
 use self::{
     colors::Colors,
+    kept::Kept,
     level::{Frame, Numbers},
 };
 use super::{
@@ -78,10 +80,6 @@ struct Nearest<T: Real> {
     crossing: Crossing<T>,
 }
 
-/// So many objects are kept in the higher precisions once they were asked for: all that people write by hand. Others are prepared each time
-/// and so take no memory.
-const KEPT: usize = 1 << 12;
-
 /// With fewer objects it takes no longer to prepare them than to start threads for it.
 const MANY: usize = 1 << 10;
 
@@ -95,9 +93,8 @@ impl World {
     /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
     pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
-        let few = scene.objects.len().min(KEPT);
-        let double = Frame::new(&basis, scene, reach, few);
-        let fast = Frame::new(&basis, scene, reach, 0);
+        let double = Frame::new(&basis, scene, reach, Kept::new(scene.objects.len()));
+        let fast = Frame::new(&basis, scene, reach, Kept::none());
         let grid = Grid::new(&fast.camera.window);
         let prepare = |(index, object): (usize, &scene::Object)| {
             let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
@@ -116,7 +113,7 @@ impl World {
         // Before the rest, which finds room where this had lists that are gone.
         let hierarchy = Hierarchy::new(grid, items, threads.as_ref());
         Self {
-            big: Frame::new(&basis, scene, reach, few),
+            big: Frame::new(&basis, scene, reach, Kept::new(scene.objects.len())),
             basis,
             numbers: scene.objects.iter().map(Numbers::new).collect(),
             objects,
