@@ -294,6 +294,41 @@ fn what_is_seen_in_a_part_is_live_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
+/// Of objects in one plane nearly every sample point asks whether they are: were they prepared for it, there would be as much to do for a point
+/// as for a scene where they are too many to be kept.
+#[test]
+fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
+    let eye = dvec3(3.0, 3.5, 8.0);
+    let mut shapes = vec![
+        board(0.0, 0.25),
+        cuboid(dvec3(-2.0, -1.0, -1.0), dvec3(2.0, 0.0, 1.0)),
+    ];
+    let mut random = Random(5);
+    for _ in 0..200 {
+        // In y = 0, y = −z and z = 0.3 x, as whole numbers of 64ths and with normals of several lengths.
+        let [a, b] = [0, 1].map(|_| (random.below(256) as f64 - 128.0) / 64.0);
+        let length = random.below(9) as f64 - 4.5;
+        for (at, normal) in [
+            (dvec3(a, 0.0, b), DVec3::Y),
+            (dvec3(a, b, -b), dvec3(0.0, 1.0, 1.0)),
+            (dvec3(5.0 * a, b, 1.5 * a), dvec3(3.0, 0.0, -10.0)),
+        ] {
+            shapes.push(triangle(at, normal * length, dvec3(1.0, 1.25, 1.5)));
+        }
+    }
+    let scene = scene(camera(eye, DVec3::ZERO), &shapes);
+    let world = World::new(&scene);
+    let mut together = 0;
+    for _ in 0..2000 {
+        let (x, y, offset) = random.point();
+        let point = world.fast.camera.sample_point(x, y, offset);
+        together += usize::from(world.candidates(&point).len() > 2);
+        world.slot_at(x, y, offset);
+    }
+    assert!(together > 1000, "{together} points with several objects");
+    assert_eq!(world.prepared(), 0);
+}
+
 #[test]
 fn very_many_objects() {
     // Enough that several threads divide them, all over the picture and many in one place.

@@ -173,6 +173,44 @@ fn scenes_of_all_kinds() {
     assert!(colors > 300 * 30, "{colors}");
 }
 
+/// Triangles that lie in one tilted plane or on the board and overlap, more than are kept in higher precisions.
+#[test]
+fn very_many_in_one_plane() {
+    let mut random = Random(141);
+    let mut place = || (random.bits() % 512) as f64 / 64.0 - 4.0;
+    // Of each plane by several normals. The tilted one is y = −z/3, the other the board's.
+    let mut shapes: Vec<_> = (0..4000)
+        .map(|index| {
+            let (a, b) = (place(), place());
+            let length = f64::from(index % 5 + 1);
+            match index % 2 {
+                0 => triangle(dvec3(a, b / 2.0, -1.5 * b), dvec3(0.0, 3.0, 1.0) * length),
+                _ => triangle(dvec3(a, 0.0, b), DVec3::Y * length),
+            }
+        })
+        .collect();
+    shapes.push(floor());
+    let eye = dvec3(1.0, 4.0, 9.0);
+    let resized = |shapes: &[Shape]| {
+        let mut scene = scene(camera(eye, DVec3::ZERO), shapes);
+        (scene.image.width, scene.image.height) = (24, 16);
+        with_samples(&scene, Method::Jittered, Count::PerPixel(4))
+    };
+    let few = resized(&shapes);
+    assert!(compare(&few, "4000 in two planes") > 100);
+    // Once more each, with other normals: what comes first in the file is seen.
+    shapes.extend_from_within(..4000);
+    for shape in &mut shapes[4001..] {
+        if let Shape::Triangle(triangle) = shape {
+            triangle.normal *= 3.0;
+        }
+    }
+    let many = resized(&shapes);
+    compare(&many, "8000 in two planes");
+    let plain = |scene: &Scene| part(scene, whole(scene), 1, Way::OneByOne).0;
+    assert_eq!(plain(&few).pixels(), plain(&many).pixels());
+}
+
 #[test]
 fn crowds_of_all_kinds() {
     let mut random = Random(31);

@@ -1,12 +1,15 @@
 //! The camera and the objects in each precision.
 
-use std::{ops::Deref, sync::OnceLock};
+use std::{ops::Deref, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
-use super::World;
+use super::{
+    World,
+    kept::{Kept, Prepared},
+};
 use crate::{
-    math::{Ball, Big, Double, Real},
+    math::{Ball, Big, Double, Real, exact::Plane},
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
@@ -30,14 +33,14 @@ pub enum Numbers {
 #[derive(Debug)]
 pub struct Frame<T: Real> {
     pub camera: Camera<T>,
-    /// The first objects, each filled in when it is first asked for.
-    kept: Vec<OnceLock<Box<Object<T>>>>,
+    /// Of the objects those that were asked for last.
+    kept: Kept<T>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
 }
 
 impl<T: Real> Frame<T> {
-    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: usize) -> Self {
+    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: Kept<T>) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
         // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
@@ -49,9 +52,14 @@ impl<T: Real> Frame<T> {
         Self {
             near: (near > 0.0).then(|| clip(near)),
             far: far.map(clip),
-            kept: (0..kept).map(|_| OnceLock::new()).collect(),
+            kept,
             camera,
         }
+    }
+
+    #[cfg(test)]
+    pub(super) fn prepared(&self) -> usize {
+        self.kept.len()
     }
 }
 
@@ -62,19 +70,16 @@ pub trait Level: Real {
     /// An object in this precision, prepared when it is asked for.
     fn object(world: &World, index: usize) -> Held<'_, Self> {
         let Frame { camera, kept, .. } = Self::frame(world);
-        let made = || Box::new(world.numbers[index].object(camera));
-        match kept.get(index) {
-            Some(kept) => Held::Kept(kept.get_or_init(made)),
-            None => Held::Made(made()),
-        }
+        let prepare = || world.numbers[index].object(camera);
+        Held::Shared(kept.object(index, prepare))
     }
 }
 
-/// An object that is kept, or was made for the one who asks.
+/// An object that is always there, or one that was prepared when it was asked for.
 #[derive(Debug)]
 pub enum Held<'a, T: Real> {
-    Kept(&'a Object<T>),
-    Made(Box<Object<T>>),
+    Always(&'a Object<T>),
+    Shared(Arc<Prepared<T>>),
 }
 
 impl<T: Real> Deref for Held<'_, T> {
@@ -83,8 +88,8 @@ impl<T: Real> Deref for Held<'_, T> {
     #[inline]
     fn deref(&self) -> &Object<T> {
         match self {
-            Self::Kept(object) => object,
-            Self::Made(object) => object,
+            Self::Always(object) => object,
+            Self::Shared(prepared) => &prepared.object,
         }
     }
 }
@@ -97,19 +102,28 @@ impl Numbers {
         }
     }
 
-    /// The axis that a flat part lies across, and where.
-    pub(super) fn across_axis(&self, part: Part) -> Option<(usize, f64)> {
-        match (self, part) {
-            (Self::Other(shape), Part::Plane(index)) => match **shape {
-                Shape::Box(scene::Cuboid { min, max, .. }) => {
-                    let (axis, is_upper) = (usize::from(index / 2), index % 2 == 1);
-                    Some((axis, if is_upper { max[axis] } else { min[axis] }))
-                }
-                Shape::Checkerboard(scene::Checkerboard { y, .. }) => Some((1, y)),
-                Shape::Sphere(_) | Shape::Triangle(_) => None,
+    /// The plane of a flat part.
+    pub(super) fn plane(&self, part: Part) -> Option<Plane> {
+        let (Self::Other(shape), Part::Plane(index)) = (self, part) else {
+            return None;
+        };
+        Some(match **shape {
+            Shape::Sphere(_) => return None,
+            Shape::Triangle(scene::Triangle {
+                normal, centroid, ..
+            }) => Plane {
+                normal,
+                point: centroid,
             },
-            _ => None,
-        }
+            Shape::Box(scene::Cuboid { min, max, .. }) => Plane {
+                normal: DVec3::AXES[usize::from(index / 2)],
+                point: if index % 2 == 1 { max } else { min },
+            },
+            Shape::Checkerboard(scene::Checkerboard { y, .. }) => Plane {
+                normal: DVec3::Y,
+                point: DVec3::Y * y,
+            },
+        })
     }
 
     /// The object in one precision.
@@ -129,7 +143,7 @@ impl Level for f64 {
 
     #[inline]
     fn object(world: &World, index: usize) -> Held<'_, Self> {
-        Held::Kept(&world.objects[index])
+        Held::Always(&world.objects[index])
     }
 }
 

@@ -2,7 +2,9 @@
 
 mod colors;
 mod crowd;
+mod kept;
 mod level;
+mod order;
 mod ray;
 
 pub use self::ray::Hit;
@@ -16,12 +18,12 @@ use rayon::prelude::*;
 
 use self::{
     colors::Colors,
+    kept::Kept,
     level::{Frame, Numbers},
 };
 use super::{
     camera::{Basis, Direction, Point},
-    crossing::{Crossing, Part},
-    form::Form,
+    crossing::Crossing,
     hierarchy::{Descent, Grid, Hierarchy, Item, Nearness},
     object::Object,
     outlook::Live,
@@ -78,10 +80,6 @@ struct Nearest<T: Real> {
     crossing: Crossing<T>,
 }
 
-/// So many objects are kept in the higher precisions once they were asked for: all that people write by hand. Others are prepared each time,
-/// which costs little beside what is done with them, and so take no memory.
-const KEPT: usize = 1 << 12;
-
 /// With fewer objects it takes no longer to prepare them than to start threads for it.
 const MANY: usize = 1 << 10;
 
@@ -95,9 +93,8 @@ impl World {
     /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
     pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
-        let few = scene.objects.len().min(KEPT);
-        let double = Frame::new(&basis, scene, reach, few);
-        let fast = Frame::new(&basis, scene, reach, 0);
+        let double = Frame::new(&basis, scene, reach, Kept::new(scene.objects.len()));
+        let fast = Frame::new(&basis, scene, reach, Kept::none());
         let grid = Grid::new(&fast.camera.window);
         let prepare = |(index, object): (usize, &scene::Object)| {
             let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
@@ -116,7 +113,7 @@ impl World {
         // Before the rest, which finds room where this had lists that are gone.
         let hierarchy = Hierarchy::new(grid, items, threads.as_ref());
         Self {
-            big: Frame::new(&basis, scene, reach, few),
+            big: Frame::new(&basis, scene, reach, Kept::new(scene.objects.len())),
             basis,
             numbers: scene.objects.iter().map(Numbers::new).collect(),
             objects,
@@ -264,6 +261,12 @@ impl World {
     #[cfg(test)]
     pub(super) fn double_camera(&self) -> &super::camera::Camera<Double> {
         &self.double.camera
+    }
+
+    /// How many objects were prepared in the higher precisions and kept.
+    #[cfg(test)]
+    pub(super) fn prepared(&self) -> usize {
+        self.double.prepared() + self.big.prepared()
     }
 
     /// How much memory it takes by object, spheres alone being in it and none of them kept in a higher precision.
@@ -430,86 +433,6 @@ impl World {
             return Ok(None);
         }
         Ok(Some(chosen))
-    }
-
-    /// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their computed values.
-    #[inline]
-    fn order<T: Real>(
-        &self,
-        (i, a): (usize, &Crossing<T>),
-        (j, b): (usize, &Crossing<T>),
-    ) -> Result<Ordering, Doubt> {
-        let order = a.inverse_depth.compare(&b.inverse_depth);
-        match order {
-            Err(Doubt) if self.is_same_surface((i, a.part), (j, b.part)) => Ok(Ordering::Equal),
-            _ => order,
-        }
-    }
-
-    /// Compares the inverse depth of a crossing with that of the near or the far plane.
-    #[inline]
-    fn order_to_clip<T: Real>(
-        &self,
-        index: usize,
-        crossing: &Crossing<T>,
-        clip: &Form<T>,
-        r: &Direction<T>,
-    ) -> Result<Ordering, Doubt> {
-        let order = crossing.inverse_depth.compare(&clip.at(r));
-        if order.is_ok() {
-            return order;
-        }
-        // A surface that lies in one of the two planes and is in doubt about the other would need them to be equal.
-        let at = (index, crossing.part);
-        if self.is_in_clip::<Double>(at) && self.is_in_clip::<Big>(at) {
-            return Ok(Ordering::Equal);
-        }
-        order
-    }
-
-    /// Whether two parts of objects are one surface: planes with the same form, or the same side of equal spheres.
-    #[cold]
-    fn is_same_surface(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
-        match (&self.numbers[i], &self.numbers[j]) {
-            (Numbers::Sphere(center, radius), Numbers::Sphere(other_center, other_radius)) => {
-                a == b && center == other_center && radius == other_radius
-            }
-            _ => self.is_one_plane((i, a), (j, b)),
-        }
-    }
-
-    /// Whether two flat parts of objects lie in one plane: by their coordinates across an axis, or by their forms to the last bit.
-    pub(super) fn is_one_plane(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
-        match (
-            self.numbers[i].across_axis(a),
-            self.numbers[j].across_axis(b),
-        ) {
-            (Some(a), Some(b)) => a == b,
-            // Planes that are hundreds of bits apart need to be asked for more; to prepare them for it takes time.
-            _ => {
-                self.is_one_form::<Double>((i, a), (j, b))
-                    && self.is_one_form::<Big>((i, a), (j, b))
-            }
-        }
-    }
-
-    fn is_one_form<T: Level>(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
-        let (first, second) = (T::object(self, i), T::object(self, j));
-        match (first.plane(a), second.plane(b)) {
-            (Some(a), Some(b)) => a.equals(b),
-            _ => false,
-        }
-    }
-
-    /// Whether a flat part of an object lies in the near or in the far plane.
-    #[cold]
-    fn is_in_clip<T: Level>(&self, (index, part): (usize, Part)) -> bool {
-        let frame = T::frame(self);
-        let object = T::object(self, index);
-        let clips = [&frame.near, &frame.far];
-        object
-            .plane(part)
-            .is_some_and(|plane| clips.into_iter().flatten().any(|clip| plane.equals(clip)))
     }
 
     #[inline]

@@ -1,0 +1,89 @@
+//! Which of two crossings is nearer, and where they are in one surface, that none is.
+//!
+//! Computed depths of one surface are in doubt at every sample point, and forms take long to prepare. So planes are compared by the numbers of
+//! the scene.
+
+use std::cmp::Ordering;
+
+use super::{Level, Numbers, World};
+use crate::{
+    math::{Big, Double, Doubt, Real},
+    tracer::{
+        camera::Direction,
+        crossing::{Crossing, Part},
+        form::Form,
+    },
+};
+
+impl World {
+    /// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their computed values.
+    #[inline]
+    pub(super) fn order<T: Real>(
+        &self,
+        (i, a): (usize, &Crossing<T>),
+        (j, b): (usize, &Crossing<T>),
+    ) -> Result<Ordering, Doubt> {
+        let order = a.inverse_depth.compare(&b.inverse_depth);
+        match order {
+            Err(Doubt) if self.is_same_surface((i, a.part), (j, b.part)) => Ok(Ordering::Equal),
+            _ => order,
+        }
+    }
+
+    /// Compares the inverse depth of a crossing with that of the near or the far plane.
+    #[inline]
+    pub(super) fn order_to_clip<T: Real>(
+        &self,
+        index: usize,
+        crossing: &Crossing<T>,
+        clip: &Form<T>,
+        r: &Direction<T>,
+    ) -> Result<Ordering, Doubt> {
+        let order = crossing.inverse_depth.compare(&clip.at(r));
+        if order.is_ok() {
+            return order;
+        }
+        // A surface that lies in one of the two planes and is in doubt about the other would need them to be equal.
+        let at = (index, crossing.part);
+        // Planes that are hundreds of bits apart need to be asked for more; to prepare them for it takes time.
+        if self.is_in_clip::<Double>(at) && self.is_in_clip::<Big>(at) {
+            return Ok(Ordering::Equal);
+        }
+        order
+    }
+
+    /// Whether two parts of objects are one surface: parts of one plane, or the same side of equal spheres.
+    #[cold]
+    fn is_same_surface(&self, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
+        match (&self.numbers[i], &self.numbers[j]) {
+            (Numbers::Sphere(center, radius), Numbers::Sphere(other_center, other_radius)) => {
+                a == b && center == other_center && radius == other_radius
+            }
+            _ => self.is_one_plane((i, a), (j, b)),
+        }
+    }
+
+    /// Whether two flat parts of objects lie in one plane, by the numbers of the scene and without rounding: forms need not be prepared for it,
+    /// and where surfaces lie in one plane it is asked at every sample point.
+    pub(in crate::tracer) fn is_one_plane(
+        &self,
+        (i, a): (usize, Part),
+        (j, b): (usize, Part),
+    ) -> bool {
+        match (self.numbers[i].plane(a), self.numbers[j].plane(b)) {
+            (Some(a), Some(b)) => a.equals(&b),
+            _ => false,
+        }
+    }
+
+    /// Whether a flat part of an object lies in the near or in the far plane.
+    #[cold]
+    fn is_in_clip<T: Level>(&self, (index, part): (usize, Part)) -> bool {
+        let frame = T::frame(self);
+        let object = T::object(self, index);
+        let clips = [&frame.near, &frame.far];
+        object
+            .plane(part)
+            .is_some_and(|plane| clips.into_iter().flatten().any(|clip| plane.equals(clip)))
+    }
+}
