@@ -123,7 +123,9 @@ fn make(
 ) -> Result<Option<Instant>, Trouble> {
     check_text(&args.scene, &bytes)?;
     let input = Input::of(&args.scene, bytes, &args.overrides);
-    let reading = scene::read(&input.sources);
+    let Ok(reading) = scene::read_unless(&input.sources, is_stale) else {
+        return Ok(None);
+    };
     screen.say(&input.report(&reading));
     let Some(scene) = reading.scene else {
         return Ok(None);
