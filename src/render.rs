@@ -29,6 +29,7 @@ use self::{
 };
 use crate::{
     area::Area,
+    cancel::Cancelled,
     exact::{self, Integrator},
     film::{self, Encoder, Film, TooLarge},
     math::Vectors,
@@ -98,6 +99,12 @@ pub enum RenderError {
     /// It was not wanted any more.
     #[error("interrupted")]
     Cancelled,
+}
+
+impl From<Cancelled> for RenderError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }
 
 /// A computed picture, and how far it may be from the true one.

@@ -168,7 +168,7 @@ fn with_sketch(
     screen: &mut Screen,
 ) -> Result<Picture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let world = World::new(scene);
+    let world = World::new_unless(scene, is_stale)?;
     let Some(side) = screen.side(whole) else {
         return picture(scene, &world, whole, keep, is_stale);
     };

@@ -1,4 +1,4 @@
-//! What nobody wants any more is given up: reading a long text, in each way that there is to read one.
+//! What nobody wants any more is given up: reading a long text, in each way that there is to read one, and preparing many objects.
 
 use std::{
     fmt::Write,
@@ -15,6 +15,7 @@ use pinhole::{
     scene,
     source::{Source, SourceId, Sources},
     syntax,
+    tracer::World,
 };
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
@@ -90,6 +91,22 @@ fn a_reading_is_given_up_whichever_way_it_goes() {
 }
 
 #[test]
+fn the_preparation_of_objects_is_given_up() {
+    let mut scene = scene::read(&sources(&spheres(1))).scene.expect("a scene");
+    let one = scene.objects[0].clone();
+    scene.objects = (0..200_000).map(|_| one.clone()).collect();
+    for (index, object) in (0u32..).zip(&mut scene.objects) {
+        if let scene::Shape::Sphere(sphere) = &mut object.shape {
+            let [x, y] = [index % 447, index / 447].map(f64::from);
+            sphere.center = glam::DVec3::new(x - 223.0, y - 223.0, -400.0);
+        }
+    }
+    check("a world", |cancel| World::new_unless(&scene, cancel));
+    let unwanted = World::new_unless(&scene, &AtomicBool::new(true));
+    assert_eq!(unwanted.err(), Some(Cancelled));
+}
+
+#[test]
 fn what_is_unwanted_from_the_start_is_not_begun() {
     let text = format!("// Spheres.\n{}", spheres(100));
     let sources = sources(&text);
@@ -125,4 +142,7 @@ fn what_is_wanted_is_the_same() {
     let plain = scene::read(&sources);
     assert_eq!(reading.diagnostics, plain.diagnostics);
     assert_eq!(reading.scene, plain.scene);
+    let scene = plain.scene.expect("a scene");
+    let world = World::new_unless(&scene, &cancel).expect("a world");
+    assert_eq!(world.len(), scene.objects.len());
 }
