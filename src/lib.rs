@@ -25,6 +25,7 @@
 //!   resolved.
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
+//! - Who has no more use for a result sets a flag, and all of these are given up soon after it: [`cancel`].
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
@@ -33,6 +34,7 @@
 //!   to editors in the Language Server Protocol, and `preview` tells when a file has changed.
 
 pub mod area;
+pub mod cancel;
 pub mod color;
 pub mod diagnostic;
 pub mod explain;

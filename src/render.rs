@@ -29,6 +29,7 @@ use self::{
 };
 use crate::{
     area::Area,
+    cancel::Cancelled,
     exact::{self, Integrator},
     film::{self, Encoder, Film, TooLarge},
     math::Vectors,
@@ -98,6 +99,12 @@ pub enum RenderError {
     /// It was not wanted any more.
     #[error("interrupted")]
     Cancelled,
+}
+
+impl From<Cancelled> for RenderError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }
 
 /// A computed picture, and how far it may be from the true one.
@@ -490,6 +497,8 @@ impl<P: film::Pixel> Frame<'_, P> {
         };
         self.sampling
             .place(vectors, [x, y], samples, first..end, points);
+        // One by one, each may take its time.
+        let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
             Trace::Together(..) => self.world.count(
                 pixel,
@@ -499,17 +508,17 @@ impl<P: film::Pixel> Frame<'_, P> {
                 |slot, samples| counts.add(slot, samples),
             ),
             Trace::Among(live) => {
-                for offset in points.iter() {
+                for offset in wanted {
                     counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
                 }
             }
             Trace::InCrowd(crowd) => {
-                for offset in points.iter() {
+                for offset in wanted {
                     counts.add(self.world.slot_in_crowd(x, y, offset, crowd), 1);
                 }
             }
             Trace::OneByOne => {
-                for offset in points.iter() {
+                for offset in wanted {
                     counts.add(self.world.slot_at(x, y, offset), 1);
                 }
             }

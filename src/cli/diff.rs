@@ -178,7 +178,7 @@ fn exact(scene: &Scene, cancel: &AtomicBool) -> Result<Exact, RenderError> {
             },
             cancel,
         };
-        render::render_exact(&World::new(scene), whole, &control)
+        render::render_exact(&World::new_unless(scene, cancel)?, whole, &control)
     })
 }
 

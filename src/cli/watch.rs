@@ -123,7 +123,9 @@ fn make(
 ) -> Result<Option<Instant>, Trouble> {
     check_text(&args.scene, &bytes)?;
     let input = Input::of(&args.scene, bytes, &args.overrides);
-    let reading = scene::read(&input.sources);
+    let Ok(reading) = scene::read_unless(&input.sources, is_stale) else {
+        return Ok(None);
+    };
     screen.say(&input.report(&reading));
     let Some(scene) = reading.scene else {
         return Ok(None);
@@ -166,7 +168,7 @@ fn with_sketch(
     screen: &mut Screen,
 ) -> Result<Picture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let world = World::new(scene);
+    let world = World::new_unless(scene, is_stale)?;
     let Some(side) = screen.side(whole) else {
         return picture(scene, &world, whole, keep, is_stale);
     };

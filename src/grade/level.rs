@@ -143,7 +143,8 @@ impl<'a> Level<'a> {
             Make::Light(curve) => Ok(map(&self.exact, curve.to)?),
             Make::Turned(turn, curve) => Ok(turned(&self.exact, *turn, *curve)?),
             Make::Scene(scene) if self.factor == 1 => {
-                Ok(render::render_exact(&World::new(scene), self.part, control)?.film)
+                let world = World::new_unless(scene, control.cancel)?;
+                Ok(render::render_exact(&world, self.part, control)?.film)
             }
             Make::Scene(scene) => self.picture(&self.sized(scene), control),
             Make::Object(scene, shapes) => self.with_object(scene, shapes, control),
@@ -188,7 +189,8 @@ impl<'a> Level<'a> {
             Make::Curved(scene, curve) => (scene, Some(curve)),
             _ => return Ok(None),
         };
-        let made = render::render_exact(&World::new(scene), part, control)?.film;
+        let world = World::new_unless(scene, control.cancel)?;
+        let made = render::render_exact(&world, part, control)?.film;
         Ok(Some(match curve {
             Some(curve) => map(&made, curve.to)?,
             None => made,
@@ -221,7 +223,8 @@ impl<'a> Level<'a> {
         let Some(part) = View::of(&scene).extents(shapes) else {
             return Ok(None);
         };
-        let changed = render::render_exact(&World::new(&scene), part, control)?;
+        let world = World::new_unless(&scene, control.cancel)?;
+        let changed = render::render_exact(&world, part, control)?;
         Ok(Some((part, changed.film)))
     }
 
@@ -249,7 +252,8 @@ impl<'a> Level<'a> {
             true => {
                 let whole = Area::whole(scene.image.width, scene.image.height);
                 let sampling = grid(scene, SAMPLES);
-                render::render(&World::new(scene), &sampling, whole, control)
+                let world = World::new_unless(scene, control.cancel)?;
+                render::render(&world, &sampling, whole, control)
             }
             false => exact(scene, control),
         }
@@ -299,7 +303,7 @@ impl<'a> Level<'a> {
 
 /// One sample in each pixel, at an offset from its centre.
 pub fn sampled(scene: &Scene, offset: DVec2, control: &Control) -> Result<Film, RenderError> {
-    let world = World::new(scene);
+    let world = World::new_unless(scene, control.cancel)?;
     let colors: Vec<_> = world
         .palette()
         .iter()

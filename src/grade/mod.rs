@@ -441,7 +441,8 @@ fn size(film: &Film) -> [u32; 2] {
 /// The exact picture of a scene.
 fn exact(scene: &Scene, control: &Control) -> Result<Film, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    Ok(render::render_exact(&World::new(scene), whole, control)?.film)
+    let world = World::new_unless(scene, control.cancel)?;
+    Ok(render::render_exact(&world, whole, control)?.film)
 }
 
 impl Idea {

@@ -28,7 +28,7 @@ mod value;
 
 pub use eval::{example_call, predefined};
 pub use examples::example_beside;
-pub use lower::{read, read_in_parts, survey};
+pub use lower::{read, read_in_parts, read_unless, survey};
 pub use survey::{Parts, Survey};
 pub use value::Value;
 

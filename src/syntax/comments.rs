@@ -3,9 +3,10 @@
 //! In: a text. Out: the places of comments, and of values that would make every recursion after this one too deep. They
 //! are found by walking the text once, without recursion. The rest is the parser's.
 
-use std::ops::Range;
+use std::{ops::Range, sync::atomic::AtomicBool};
 
 use super::foreign::{self, Lets};
+use crate::cancel;
 
 /// Parentheses, signs and calls nest at most this deep.
 pub const NESTING_LIMIT: usize = 256;
@@ -65,8 +66,11 @@ pub struct Deep {
     pub value: Range<usize>,
 }
 
-/// Walks a text that starts with items (a file), or with a value (a `--set` argument's).
-pub fn walk(text: &str, start: Start) -> Walk {
+/// So many bytes are walked before anybody is asked whether that is still wanted: a fraction of a millisecond.
+const STRIDE: usize = 1 << 16;
+
+/// Walks a text that starts with items (a file), or with a value (a `--set` argument's). Cancelled, it stops on the way.
+pub fn walk(text: &str, start: Start, cancel: &AtomicBool) -> Walk {
     let mut nesting = Nesting {
         operand_may_follow: start == Start::Value,
         ..Nesting::default()
@@ -74,8 +78,14 @@ pub fn walk(text: &str, start: Start) -> Walk {
     let mut found = Walk::default();
     let mut lets = Lets::of(text);
     let bytes = text.as_bytes();
-    let mut at = 0;
+    let (mut at, mut asked) = (0, 0);
     while let Some(&byte) = bytes.get(at) {
+        if at >= asked {
+            if cancel::is_set(cancel) {
+                break;
+            }
+            asked = at + STRIDE;
+        }
         let next = bytes.get(at + 1).copied();
         let foreign = match (byte, next) {
             (b'#', _) | (b'-', Some(b'-')) if start == Start::Items && !nesting.quote_before => {

@@ -27,7 +27,7 @@ pub mod tree;
 pub use comments::NESTING_LIMIT;
 pub use error::Problem;
 pub use junk::{is_unit, missing_field, missing_operator, shorten};
-pub use parser::{parse, parse_in_parts, parse_value};
+pub use parser::{parse, parse_in_parts, parse_unless, parse_value};
 pub use tree::Tree;
 
 use crate::source::Span;

@@ -4,6 +4,7 @@ mod answers;
 #[cfg(feature = "report")]
 mod browser;
 mod camera;
+mod cancel;
 mod cli;
 mod culling;
 mod diagnostics;

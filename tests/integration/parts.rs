@@ -2,7 +2,11 @@
 //!
 //! Parts of a single byte are taken apart at every brace, so that small texts have many.
 
-use std::{fs, path::Path, sync::LazyLock};
+use std::{
+    fs,
+    path::Path,
+    sync::{LazyLock, atomic::AtomicBool},
+};
 
 use pinhole::{
     scene,
@@ -35,7 +39,8 @@ fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
     let sources = Sources::new(Source::from_text("test.scn", text)).with_sets(sets);
     let whole = syntax::parse(&sources.file, SourceId::File);
     let mut items = Vec::new();
-    let in_parts = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |part| {
+    let (file, wanted) = (&sources.file, AtomicBool::new(false));
+    let in_parts = syntax::parse_in_parts(file, SourceId::File, bytes, &wanted, |part| {
         items.extend(part);
         true
     });

@@ -15,7 +15,7 @@ use std::{
 
 use tempfile::TempDir;
 
-use crate::{interrupt::long_pixel, program::command};
+use crate::{cancel::spheres, interrupt::long_pixel, program::command};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -304,6 +304,34 @@ fn what_is_superseded_is_cancelled_within_a_pixel() {
     let start = Instant::now();
     assert_eq!(watch.end().code(), Some(130));
     assert!(start.elapsed() < Duration::from_millis(900));
+    assert_eq!(watch.names(), ["a.png", "a.scn"]);
+}
+
+/// A text that takes seconds to read, and of which something is said then.
+fn long_text() -> String {
+    format!("{}sphere {{ radus 2 }}", spheres(400_000))
+}
+
+#[test]
+fn what_is_superseded_is_not_read_to_its_end() {
+    let watch = Watch::start(&scene("red"), &[]);
+    watch.wait_for(RED);
+    watch.save(&long_text());
+    thread::sleep(Duration::from_millis(300));
+    watch.save(&scene("blue"));
+    watch.wait_for(BLUE);
+    watch.wait("it says so", || watch.count("after the save") == 1);
+    assert_eq!(watch.count("error"), 0, "{}", watch.said());
+}
+
+#[test]
+fn ctrl_c_ends_a_reading_too() {
+    let mut watch = Watch::start(&scene("red"), &[]);
+    watch.wait_for(RED);
+    watch.save(&long_text());
+    thread::sleep(Duration::from_millis(300));
+    assert_eq!(watch.end().code(), Some(130));
+    assert_eq!(watch.count("error"), 0, "{}", watch.said());
     assert_eq!(watch.names(), ["a.png", "a.scn"]);
 }
 

@@ -428,7 +428,7 @@ pub(super) fn run(
     };
     let (width, height) = (scene.image.width, scene.image.height);
     let started = Instant::now();
-    let world = World::new(scene);
+    let world = World::new_unless(scene, control.cancel)?;
     let sampling = Sampling::new(&sampler, width, height);
     let (film, rays) = render_and_count(&world, &sampling, Area::whole(width, height), control)?;
     let seconds = started.elapsed().as_secs_f64();
@@ -446,7 +446,8 @@ pub(super) fn run(
 pub(super) fn computed(scene: &Scene, control: &Control) -> Result<(Exact, f64), RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let started = Instant::now();
-    let exact = render_exact(&World::new(scene), whole, control)?;
+    let world = World::new_unless(scene, control.cancel)?;
+    let exact = render_exact(&world, whole, control)?;
     Ok((exact, started.elapsed().as_secs_f64()))
 }
 

@@ -29,6 +29,9 @@ impl<'s> Lowering<'s> {
     pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
+            if !self.is_wanted() {
+                break;
+            }
             self.missing_fields(block);
         }
         let one = |kind| blocks.iter().find(|block| block.row.kind == kind);
@@ -47,6 +50,9 @@ impl<'s> Lowering<'s> {
         };
         let mut objects = std::mem::take(&mut self.objects);
         for block in blocks.iter().filter(|block| block.row.is_object) {
+            if !self.is_wanted() {
+                break;
+            }
             objects.extend(self.object(block));
         }
         if !self.has_objects && self.bad.is_empty() && !self.cut {

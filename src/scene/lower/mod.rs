@@ -13,9 +13,12 @@ mod reading;
 mod typing;
 mod words;
 
-pub use reading::{read, read_in_parts, survey};
+pub use reading::{read, read_in_parts, read_unless, survey};
 
-use std::collections::{HashMap, hash_map::Entry};
+use std::{
+    collections::{HashMap, hash_map::Entry},
+    sync::atomic::AtomicBool,
+};
 
 use self::words::{mentions, missing_value, unknown_field};
 use super::{
@@ -28,6 +31,7 @@ use super::{
     value::Value,
 };
 use crate::{
+    cancel,
     diagnostic::Diagnostic,
     source::{SourceId, Sources, Span},
     suggest,
@@ -39,6 +43,8 @@ use crate::{
 
 struct Lowering<'s> {
     sources: &'s Sources,
+    /// Once it is set, the rest is left out.
+    cancel: &'s AtomicBool,
     /// Whether an unclosed comment took the end of the text.
     cut: bool,
     names: Names<'s>,
@@ -97,9 +103,15 @@ struct Given {
 }
 
 impl<'s> Lowering<'s> {
-    fn new(sources: &'s Sources, overrides: Vec<Override<'s>>, names: Names<'s>) -> Self {
+    fn new(
+        sources: &'s Sources,
+        overrides: Vec<Override<'s>>,
+        names: Names<'s>,
+        cancel: &'s AtomicBool,
+    ) -> Self {
         Self {
             sources,
+            cancel,
             cut: false,
             names,
             sets_by_name: overrides.iter().any(overriding::is_by_name),
@@ -123,12 +135,19 @@ impl<'s> Lowering<'s> {
     /// Makes sense of the next items of the file.
     fn items(&mut self, items: &[Item<'s>]) {
         for item in items {
+            if !self.is_wanted() {
+                return;
+            }
             match item {
                 Item::Definition(definition) => self.definition(definition),
                 Item::Block(block) => self.block(block),
                 Item::Bad(span) => self.bad.push(self.sources.text(*span)),
             }
         }
+    }
+
+    fn is_wanted(&self) -> bool {
+        !cancel::is_set(self.cancel)
     }
 
     fn definition(&mut self, definition: &Definition<'s>) {

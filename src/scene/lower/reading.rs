@@ -1,10 +1,11 @@
 //! From the text to the tree, and on to the scene: in parts side by side where all is well, and as a whole.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, sync::atomic::AtomicBool};
 
 use super::Lowering;
 use crate::{
-    diagnostic::{self, Diagnostic, Fix},
+    cancel::{self, Cancelled},
+    diagnostic::{self, Diagnostic, Fix, Fixable},
     scene::{
         Reading,
         eval::{Names, predefined},
@@ -20,21 +21,39 @@ use crate::{
 
 /// Reads a scene: parses the file and the overrides, and makes of them what they mean.
 pub fn read(sources: &Sources) -> Reading {
-    /// A part is long enough to be worth its hand-over, and so short that many are at work at once.
-    const PART: usize = 1 << 16;
     read_in_parts(sources, PART)
 }
 
-/// The same with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
+/// The same, given up soon after the flag is set.
+///
+/// # Errors
+///
+/// The flag is set.
+pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Cancelled> {
+    let reading = read_as_far(sources, PART, cancel);
+    cancel::unless_set(cancel, reading)
+}
+
+/// A part is long enough to be worth its hand-over, and so short that many are at work at once, and that soon none is when nobody
+/// wants them.
+const PART: usize = 1 << 16;
+
+/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
 /// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes of
 /// syntax, or with one whose report tells of the whole file, is read again as a whole.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
+    read_as_far(sources, bytes, &cancel::NEVER)
+}
+
+/// The same or, cancelled, something of no use.
+fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading {
     let mut diagnostics = Vec::new();
     let overrides = overrides::read(sources, &mut diagnostics);
-    let mut lowering = Lowering::new(sources, overrides.clone(), Names::default());
+    let mut lowering = Lowering::new(sources, overrides.clone(), Names::default(), cancel);
     if !lowering.sets_by_name {
         lowering.keep_last_overrides(&[]);
-        let all = syntax::parse_in_parts(&sources.file, SourceId::File, bytes, |items| {
+        let file = &sources.file;
+        let all = syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |items| {
             lowering.items(&items);
             !lowering.names.were_asked_early()
         });
@@ -44,8 +63,8 @@ pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
             return lowering.reading();
         }
     }
-    let parsed = syntax::parse(&sources.file, SourceId::File);
-    let mut reading = whole(sources, &parsed, overrides, diagnostics).reading();
+    let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
+    let mut reading = whole(sources, &parsed, overrides, diagnostics, cancel).reading();
     prove_fixes(sources, &mut reading.diagnostics);
     reading
 }
@@ -55,7 +74,7 @@ pub fn survey(sources: &Sources) -> Survey<'_> {
     let mut diagnostics = Vec::new();
     let overrides = overrides::read(sources, &mut diagnostics);
     let parsed = syntax::parse(&sources.file, SourceId::File);
-    let lowering = whole(sources, &parsed, overrides, diagnostics);
+    let lowering = whole(sources, &parsed, overrides, diagnostics, &cancel::NEVER);
     let (parts, mut diagnostics, names) = lowering.finish();
     prove_fixes(sources, &mut diagnostics);
     Survey {
@@ -125,8 +144,8 @@ fn diagnostics_with(sources: &Sources, fix: &Fix) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let overrides = overrides::read(&sources, &mut found);
     let parsed = syntax::parse(&sources.file, SourceId::File);
-    let (_, diagnostics, _) = whole(&sources, &parsed, overrides, found).finish();
-    diagnostics
+    let lowering = whole(&sources, &parsed, overrides, found, &cancel::NEVER);
+    lowering.finish().1
 }
 
 /// Makes sense of the tree of a whole file; `diagnostics` are those of the overrides' syntax.
@@ -134,15 +153,14 @@ fn whole<'s>(
     sources: &'s Sources,
     parsed: &syntax::Parsed<'s>,
     overrides: Vec<Override<'s>>,
-    mut diagnostics: Vec<Diagnostic>,
+    diagnostics: Vec<Diagnostic>,
+    cancel: &'s AtomicBool,
 ) -> Lowering<'s> {
-    let problems = parsed.problems.iter();
-    let mut found: Vec<_> = problems.map(|p| Diagnostic::fixable(p, sources)).collect();
-    found.append(&mut diagnostics);
     let tree = &parsed.tree;
     let names = Names::new(definitions(tree), names_of_objects(tree));
-    let mut lowering = Lowering::new(sources, overrides, names);
-    lowering.found = found;
+    let mut lowering = Lowering::new(sources, overrides, names, cancel);
+    lowering.found = lowering.diagnostics(&parsed.problems).collect();
+    lowering.found.extend(diagnostics);
     lowering.cut = parsed.cut.is_some();
     lowering.keep_last_overrides(&tree.items);
     lowering.items(&tree.items);
@@ -169,13 +187,17 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        let problems = self.problems.iter();
-        diagnostics.extend(problems.map(|p| Diagnostic::fixable(p, self.sources)));
-        let slips = self.slips.iter();
-        diagnostics.extend(slips.map(|p| Diagnostic::fixable(p, self.sources)));
+        diagnostics.extend(self.diagnostics(&self.problems));
+        diagnostics.extend(self.diagnostics(&self.slips));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
+    }
+
+    /// What is said of some problems.
+    fn diagnostics<P: Fixable>(&self, problems: &[P]) -> impl Iterator<Item = Diagnostic> {
+        let wanted = problems.iter().take_while(|_| self.is_wanted());
+        wanted.map(|problem| Diagnostic::fixable(problem, self.sources))
     }
 }
 

@@ -14,7 +14,7 @@ mod values;
 
 pub use parts::parse_in_parts;
 
-use std::{borrow::Cow, collections::BTreeMap, ops::Range, thread};
+use std::{borrow::Cow, collections::BTreeMap, ops::Range, sync::atomic::AtomicBool, thread};
 
 use pest::{Parser as _, iterators::Pair};
 
@@ -26,6 +26,7 @@ use super::{
     tree::{Item, Name, Tree, Value, ValueKind},
 };
 use crate::{
+    cancel,
     diagnostic::Diagnostic,
     source::{Source, SourceId, Span},
 };
@@ -35,9 +36,14 @@ const STACK: usize = 64 << 20;
 
 /// Parses a file.
 pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
+    parse_unless(source, id, &cancel::NEVER)
+}
+
+/// The same, or, cancelled, as much of the file as was read until then.
+pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
     with_stack(|| {
-        let (mut parser, walk) = Parser::of_source(source, id, source.bom_len());
-        parser.pieces(source.text().len());
+        let (mut parser, walk) = Parser::of_source(source, id, source.bom_len(), cancel);
+        parser.pieces(source.text().len(), cancel);
         parser.finish(walk)
     })
 }
@@ -46,7 +52,7 @@ pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
 /// without a name.
 pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Problem>) {
     with_stack(|| {
-        let (mut parser, walk) = Parser::of_source(source, id, start);
+        let (mut parser, walk) = Parser::of_source(source, id, start, &cancel::NEVER);
         let value = parser.whole_value();
         (value, parser.finish(walk).problems)
     })
@@ -93,13 +99,18 @@ type Pairs<'p> = Pair<'p, Rule>;
 
 impl<'s> Parser<'s> {
     /// Reads from an offset on, what the walk over the text found left out.
-    fn of_source(source: &'s Source, id: SourceId, start: usize) -> (Self, Walk) {
+    fn of_source(
+        source: &'s Source,
+        id: SourceId,
+        start: usize,
+        cancel: &AtomicBool,
+    ) -> (Self, Walk) {
         let text = source.text();
         let first = match id {
             SourceId::File => Start::Items,
             SourceId::Set(_) => Start::Value,
         };
-        let mut walk = comments::walk(text.get(start..).unwrap_or_default(), first);
+        let mut walk = comments::walk(text.get(start..).unwrap_or_default(), first, cancel);
         walk.shift(start);
         let foreign = walk.foreign.iter();
         let foreign: Vec<_> = foreign.map(|(sign, end)| sign.start..*end).collect();
@@ -231,10 +242,11 @@ impl<'s> Parser<'s> {
         }
     }
 
-    /// Reads piece after piece up to the first that ends at an offset or behind it; answers whether one ends there.
-    fn pieces(&mut self, end: usize) -> bool {
+    /// Reads piece after piece up to the first that ends at an offset or behind it, or until it is cancelled; answers whether one
+    /// ends there.
+    fn pieces(&mut self, end: usize, cancel: &AtomicBool) -> bool {
         let read = std::mem::take(&mut self.read);
-        while self.base < end {
+        while self.base < end && !cancel::is_set(cancel) {
             let rest = read.get(self.base..).unwrap_or_default();
             // The junk rules take everything but white space: there is always a piece, or the end.
             let mut length = 0;

@@ -17,6 +17,7 @@ use std::{
 
 use super::{Parser, STACK};
 use crate::{
+    cancel,
     source::{Source, SourceId},
     syntax::{
         comments::{self, Start},
@@ -29,18 +30,20 @@ use crate::{
 const MOST_THREADS: usize = 8;
 
 /// Parses a file in parts of at least so many bytes, and hands over the items of each in their order. Answers whether all went
-/// well; otherwise the file has mistakes, is short, or `each` wanted no more, and what was handed over does not count.
+/// well; otherwise the file has mistakes, is short, `each` wanted no more, or it was cancelled, and what was handed over does not
+/// count.
 pub fn parse_in_parts<'s>(
     source: &'s Source,
     id: SourceId,
     bytes: usize,
+    cancel: &AtomicBool,
     mut each: impl FnMut(Vec<Item<'s>>) -> bool,
 ) -> bool {
     let text = source.text();
     if text.len() / 2 < bytes {
         return false;
     }
-    let parts = parts(source, bytes);
+    let parts = parts(source, bytes, cancel);
     if parts.is_empty() {
         return false;
     }
@@ -51,7 +54,7 @@ pub fn parse_in_parts<'s>(
         while !stopped.load(Ordering::Relaxed) {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(part) = parts.get(index) else { break };
-            let items = Parser::of_part(text, id, part.clone());
+            let items = Parser::of_part(text, id, part.clone(), cancel);
             if found.send((index, items)).is_err() {
                 break;
             }
@@ -72,7 +75,7 @@ pub fn parse_in_parts<'s>(
             let Some(items) = items else { break };
             early.insert(index, items);
             while let Some(items) = early.remove(&done) {
-                if !each(items) {
+                if cancel::is_set(cancel) || !each(items) {
                     stopped.store(true, Ordering::Relaxed);
                     return false;
                 }
@@ -85,10 +88,11 @@ pub fn parse_in_parts<'s>(
 }
 
 /// The parts of a text; none if something was found that is a mistake or hides one.
-fn parts(source: &Source, bytes: usize) -> Vec<Range<usize>> {
+fn parts(source: &Source, bytes: usize, cancel: &AtomicBool) -> Vec<Range<usize>> {
     let text = source.text();
     let start = source.bom_len();
-    let mut walk = comments::walk(text.get(start..).unwrap_or_default(), Start::Items);
+    let rest = text.get(start..).unwrap_or_default();
+    let mut walk = comments::walk(rest, Start::Items, cancel);
     walk.shift(start);
     if walk.unclosed
         || !walk.foreign.is_empty()
@@ -111,9 +115,14 @@ fn parts(source: &Source, bytes: usize) -> Vec<Range<usize>> {
 
 impl<'s> Parser<'s> {
     /// The items of a part, if it holds no mistake and ends with a piece.
-    fn of_part(text: &'s str, id: SourceId, part: Range<usize>) -> Option<Vec<Item<'s>>> {
+    fn of_part(
+        text: &'s str,
+        id: SourceId,
+        part: Range<usize>,
+        cancel: &AtomicBool,
+    ) -> Option<Vec<Item<'s>>> {
         let mut parser = Self::new(text, id, part.start);
-        let ends = parser.pieces(part.end);
+        let ends = parser.pieces(part.end, cancel);
         (ends && parser.problems.is_empty()).then_some(parser.items)
     }
 }

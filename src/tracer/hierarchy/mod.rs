@@ -13,6 +13,8 @@ mod grid;
 mod search;
 mod tree;
 
+use std::sync::atomic::AtomicBool;
+
 use self::{grid::Rectangle, search::Search, tree::Tree};
 use super::{camera::Direction, cover::Patch};
 use crate::threads::Threads;
@@ -28,11 +30,16 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// A hierarchy over some objects, built by some threads, or by this one alone.
-    pub fn new(grid: Grid, items: Vec<Item>, threads: Option<&Threads>) -> Self {
+    /// A hierarchy over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
+    pub fn new(
+        grid: Grid,
+        items: Vec<Item>,
+        threads: Option<&Threads>,
+        cancel: &AtomicBool,
+    ) -> Self {
         let tree = match threads {
-            Some(threads) => threads.install(|| Tree::of_many(items)),
-            None => Tree::of(items),
+            Some(threads) => threads.install(|| Tree::of_many(items, cancel)),
+            None => Tree::of(items, cancel),
         };
         Self { grid, tree }
     }

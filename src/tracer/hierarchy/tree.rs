@@ -1,10 +1,11 @@
 //! The cells of a hierarchy, and the objects listed in them.
 
-use std::cmp::Reverse;
+use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
 use rayon::prelude::*;
 
 use super::grid::{Item, LEVELS, Nearness, Rectangle};
+use crate::cancel;
 
 /// A cell with no more objects is not divided.
 const FEW: usize = 32;
@@ -63,14 +64,14 @@ fn units_of(level: u32, part: u8) -> (u32, u32) {
 }
 
 impl Tree {
-    /// The tree of all cells.
-    pub(super) fn of(items: Vec<Item>) -> Self {
-        Self::new(Place::ROOT, items)
+    /// The tree of all cells. Cancelled, it lacks some of the items.
+    pub(super) fn of(items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        Self::new(Place::ROOT, items, cancel)
     }
 
     /// The same, by several threads.
-    pub(super) fn of_many(items: Vec<Item>) -> Self {
-        Self::by_threads(Place::ROOT, items)
+    pub(super) fn of_many(items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        Self::by_threads(Place::ROOT, items, cancel)
     }
 
     /// How many bytes it takes.
@@ -80,20 +81,23 @@ impl Tree {
     }
 
     /// The tree of a cell.
-    fn new(place: Place, items: Vec<Item>) -> Self {
+    fn new(place: Place, items: Vec<Item>, cancel: &AtomicBool) -> Self {
         // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
         let mut stack = items;
         let mut tree = Self::empty();
-        tree.divide(0, place, &mut stack, 0);
+        tree.divide(0, place, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
         tree.entries.shrink_to_fit();
         tree
     }
 
     /// The tree of a cell, by several threads.
-    fn by_threads(place: Place, items: Vec<Item>) -> Self {
+    fn by_threads(place: Place, items: Vec<Item>, cancel: &AtomicBool) -> Self {
         if items.len() <= MANY || place.level == 0 {
-            return Self::new(place, items);
+            return Self::new(place, items, cancel);
+        }
+        if cancel::is_set(cancel) {
+            return Self::empty();
         }
         let mut tree = Self::empty();
         let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
@@ -105,7 +109,7 @@ impl Tree {
         });
         drop((own, below));
         let quarters = quarters.into_par_iter();
-        let quarters = quarters.map(|(place, items)| Self::by_threads(place, items));
+        let quarters = quarters.map(|(place, items)| Self::by_threads(place, items, cancel));
         tree.join(quarters.collect());
         tree
     }
@@ -118,7 +122,17 @@ impl Tree {
     }
 
     /// Fills a cell and all below it with the items from `start` on.
-    fn divide(&mut self, cell: usize, place: Place, stack: &mut Vec<Item>, start: usize) {
+    fn divide(
+        &mut self,
+        cell: usize,
+        place: Place,
+        stack: &mut Vec<Item>,
+        start: usize,
+        cancel: &AtomicBool,
+    ) {
+        if cancel::is_set(cancel) {
+            return;
+        }
         if stack.len() - start <= FEW || place.level == 0 {
             return self.list(cell, place, &stack[start..]);
         }
@@ -139,7 +153,7 @@ impl Tree {
                 }
             }
             let child = quarters + quarter as usize;
-            self.divide(child, below, stack, end);
+            self.divide(child, below, stack, end, cancel);
             stack.truncate(end);
             self.cells[cell].nearest = self.cells[cell].nearest.max(self.cells[child].nearest);
         }

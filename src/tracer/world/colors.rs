@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::{
     color::Color,
-    scene::{self, Scene, Shape},
+    scene::{self, Shape},
 };
 
 /// The colours of the objects.
@@ -20,7 +20,7 @@ pub(super) struct Colors {
 
 impl Colors {
     /// The distinct colours of all objects in file order with the background behind them, and the places of the objects' among them.
-    pub(super) fn new(scene: &Scene) -> Self {
+    pub(super) fn new(objects: &[scene::Object], background: Color) -> Self {
         let mut palette = Vec::new();
         let mut places = HashMap::new();
         let mut place = |color: Color| {
@@ -46,8 +46,8 @@ impl Colors {
                 (pairs.len() - 1) as u32
             })
         };
-        let of_objects = scene.objects.iter().map(pair).collect();
-        palette.push(scene.image.background);
+        let of_objects = objects.iter().map(pair).collect();
+        palette.push(background);
         Self {
             palette,
             pairs,

@@ -5,6 +5,7 @@ mod crowd;
 mod kept;
 mod level;
 mod order;
+mod prepare;
 mod ray;
 
 pub use self::ray::Hit;
@@ -14,25 +15,21 @@ pub(super) use self::level::{Held, Level};
 use std::cmp::Ordering;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use self::{
     colors::Colors,
-    kept::Kept,
     level::{Frame, Numbers},
 };
 use super::{
     camera::{Basis, Direction, Point},
     crossing::Crossing,
-    hierarchy::{Descent, Grid, Hierarchy, Item, Nearness},
+    hierarchy::{Descent, Hierarchy, Nearness},
     object::Object,
     outlook::Live,
 };
 use crate::{
     color::Color,
     math::{Big, Double, Doubt, Real},
-    scene::{self, Scene},
-    threads::Threads,
 };
 
 /// The scene prepared for one picture: made once, then asked at any sample point from any thread.
@@ -80,50 +77,7 @@ struct Nearest<T: Real> {
     crossing: Crossing<T>,
 }
 
-/// With fewer objects it takes no longer to prepare them than to start threads for it.
-const MANY: usize = 1 << 10;
-
 impl World {
-    /// Prepares a scene for the sample points of its picture.
-    pub fn new(scene: &Scene) -> Self {
-        let size = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height));
-        Self::reaching(scene, size / 2.0)
-    }
-
-    /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
-    pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
-        let basis = Basis::new(&scene.camera, &scene.image);
-        let double = Frame::new(&basis, scene, reach, Kept::new(scene.objects.len()));
-        let fast = Frame::new(&basis, scene, reach, Kept::none());
-        let grid = Grid::new(&fast.camera.window);
-        let prepare = |(index, object): (usize, &scene::Object)| {
-            let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
-            (object, extent.and_then(|extent| grid.item(index, &extent)))
-        };
-        let threads = threads_for(scene.objects.len());
-        let (mut objects, mut items) = (Vec::new(), Vec::new());
-        match &threads {
-            Some(threads) => threads.install(|| {
-                let prepared = scene.objects.par_iter().enumerate().map(prepare);
-                prepared.unzip_into_vecs(&mut objects, &mut items);
-            }),
-            None => (objects, items) = scene.objects.iter().enumerate().map(prepare).unzip(),
-        }
-        let items: Vec<Item> = items.into_iter().flatten().collect();
-        // Before the rest, which finds room where this had lists that are gone.
-        let hierarchy = Hierarchy::new(grid, items, threads.as_ref());
-        Self {
-            big: Frame::new(&basis, scene, reach, Kept::new(scene.objects.len())),
-            basis,
-            numbers: scene.objects.iter().map(Numbers::new).collect(),
-            objects,
-            hierarchy,
-            fast,
-            double,
-            colors: Colors::new(scene),
-        }
-    }
-
     /// The camera's axes.
     pub fn basis(&self) -> &Basis {
         &self.basis
@@ -442,9 +396,4 @@ impl World {
             Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],
         }
     }
-}
-
-/// Threads to prepare so many objects; none if they are few, or if the system starts none.
-fn threads_for(objects: usize) -> Option<Threads> {
-    (objects >= MANY).then(|| Threads::new(None).ok()).flatten()
 }

@@ -1,0 +1,148 @@
+//! What nobody wants any more is given up: reading a long text, in each way that there is to read one, and preparing many objects.
+
+use std::{
+    fmt::Write,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Instant,
+};
+
+use pinhole::{
+    cancel::Cancelled,
+    scene,
+    source::{Source, SourceId, Sources},
+    syntax,
+    tracer::World,
+};
+
+const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
+
+/// A text of many spheres, 55 bytes each.
+pub fn spheres(count: usize) -> String {
+    let mut text = CAMERA.to_owned();
+    for index in 0..count {
+        let (x, y) = (index % 173, index / 173);
+        let _ = writeln!(
+            text,
+            "sphere {{ center ({x}, {y}, -9.5)  radius 0.25  color olive }}"
+        );
+    }
+    text
+}
+
+fn sources(text: &str) -> Sources {
+    Sources::new(Source::from_text("long.scn", text))
+}
+
+/// Does something to the end, and has it given up at two early moments by another thread: what is left then takes at least three quarters of
+/// the time, and it has to end long before that is done.
+#[track_caller]
+fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
+    let start = Instant::now();
+    assert!(work(&AtomicBool::new(false)).is_ok(), "{what}");
+    let whole = start.elapsed();
+    for moment in [whole / 16, whole / 4] {
+        let cancel = AtomicBool::new(false);
+        let set = OnceLock::new();
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                thread::sleep(moment);
+                cancel.store(true, Ordering::Relaxed);
+                set.get_or_init(Instant::now);
+            });
+            assert!(work(&cancel).is_err(), "{what}: it was over too soon");
+        });
+        let end = Instant::now();
+        let took = end.duration_since(*set.wait());
+        assert!(took < whole / 2, "{what}: {took:?} of {whole:?}");
+    }
+}
+
+#[test]
+fn a_reading_is_given_up_whichever_way_it_goes() {
+    let good = spheres(40_000);
+    let mut lets = CAMERA.to_owned();
+    for index in 0..60_000 {
+        let _ = writeln!(lets, "let a_{index} = 1 + 2 * {index}");
+    }
+    let texts = [
+        ("in parts", good.clone(), ""),
+        (
+            "without braces",
+            format!("{lets}sphere {{ center (0, 0, 0) }}"),
+            "",
+        ),
+        ("as a whole", format!("{good}sphere {{ radus 2 }}"), ""),
+        ("with many mistakes", good.replace("radius", "radus"), ""),
+        (
+            "with an argument",
+            format!("{good}sphere Ball {{ center (0, 0, 0) }}"),
+            "Ball.radius=2",
+        ),
+    ];
+    for (what, text, set) in texts {
+        let sets = Some(set).filter(|set| !set.is_empty());
+        let sources = sources(&text).with_sets(sets);
+        check(what, |cancel| scene::read_unless(&sources, cancel));
+    }
+}
+
+#[test]
+fn the_preparation_of_objects_is_given_up() {
+    let mut scene = scene::read(&sources(&spheres(1))).scene.expect("a scene");
+    let one = scene.objects[0].clone();
+    scene.objects = (0..200_000).map(|_| one.clone()).collect();
+    for (index, object) in (0u32..).zip(&mut scene.objects) {
+        if let scene::Shape::Sphere(sphere) = &mut object.shape {
+            let [x, y] = [index % 447, index / 447].map(f64::from);
+            sphere.center = glam::DVec3::new(x - 223.0, y - 223.0, -400.0);
+        }
+    }
+    check("a world", |cancel| World::new_unless(&scene, cancel));
+    let unwanted = World::new_unless(&scene, &AtomicBool::new(true));
+    assert_eq!(unwanted.err(), Some(Cancelled));
+}
+
+#[test]
+fn what_is_unwanted_from_the_start_is_not_begun() {
+    let text = format!("// Spheres.\n{}", spheres(100));
+    let sources = sources(&text);
+    let cancel = AtomicBool::new(true);
+    let parsed = syntax::parse_unless(&sources.file, SourceId::File, &cancel);
+    assert_eq!(parsed, syntax::Parsed::default());
+    let unwanted = syntax::parse_in_parts(&sources.file, SourceId::File, 1, &cancel, |_| {
+        unreachable!("nothing is handed over")
+    });
+    assert!(!unwanted);
+    let reading = scene::read_unless(&sources, &cancel);
+    assert_eq!(reading.err(), Some(Cancelled));
+}
+
+#[test]
+fn what_is_wanted_no_more_on_the_way_ends_there() {
+    let sources = sources(&spheres(100));
+    let cancel = AtomicBool::new(false);
+    let mut handed = 0;
+    let all = syntax::parse_in_parts(&sources.file, SourceId::File, 1, &cancel, |_| {
+        handed += 1;
+        cancel.store(true, Ordering::Relaxed);
+        true
+    });
+    assert_eq!((all, handed), (false, 1));
+}
+
+#[test]
+fn what_is_wanted_is_the_same() {
+    let sources = sources(&spheres(2_000));
+    let cancel = AtomicBool::new(false);
+    let reading = scene::read_unless(&sources, &cancel).expect("a reading");
+    let plain = scene::read(&sources);
+    assert_eq!(reading.diagnostics, plain.diagnostics);
+    assert_eq!(reading.scene, plain.scene);
+    let scene = plain.scene.expect("a scene");
+    let world = World::new_unless(&scene, &cancel).expect("a world");
+    assert_eq!(world.len(), scene.objects.len());
+}
