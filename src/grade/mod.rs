@@ -4,10 +4,12 @@
 //! best first; none, if none does. A mistake is a function: of the exact picture, or of the scene, whose exact picture is then made. It is
 //! named only if the picture that it makes leaves a small part of the difference, or nothing but sampling noise.
 //!
-//! Mistakes of the whole picture are in `whole` and `gray`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in `order`, of samples in `noise` and
-//! `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` and `alike` know samples whose errors are
-//! not independent, `seen` what no samples make, `truncated` bytes that are not rounded, `rounded` numbers that are coarser than their file, `bias` errors that add up to something. `case` tries mistakes, `evidence` says how many pixels it takes to name
-//! one, and `choice` which of several it is. `pairs` finds two mistakes at once. `light` undoes curves. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
+//! Mistakes of the whole picture are in `whole` and `gray`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in
+//! `order`, of samples in `noise` and `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` and
+//! `alike` know samples whose errors are not independent, `seen` what no samples make, `truncated` bytes that are not rounded, `rounded` numbers
+//! that are coarser than their file, `bias` errors that add up to something. `case` tries mistakes, `explained` says whether one explains the
+//! difference, `evidence` how many pixels it takes to name one, and `choice` which of several it is. `pairs` finds two mistakes at once. `light`
+//! undoes curves. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
 //! difference, and how far it is off there.
 
 mod alike;
@@ -17,6 +19,7 @@ mod camera;
 mod case;
 mod choice;
 mod evidence;
+mod explained;
 mod extent;
 mod fit;
 mod fixed;
