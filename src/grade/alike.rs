@@ -110,7 +110,7 @@ impl Alike {
 }
 
 /// The way out for all of them.
-pub const HELP: &str = "nothing is wrong with the scene or the camera; samples that lie elsewhere in each pixel (jittered, sobol) come closer";
+pub const HELP: &str = "nothing says that the scene or the camera is wrong; samples that lie elsewhere in each pixel (jittered, sobol) come closer";
 
 /// What is said of samples at the same places.
 pub fn verdict(difference: f64, message: &str, help: String) -> Verdict {

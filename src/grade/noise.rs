@@ -451,7 +451,7 @@ impl Noise {
                     ""
                 }
             ),
-            help: "nothing is wrong with the scene or the camera; more samples, or better placed ones (jittered, sobol), come closer; a \
+            help: "nothing says that the scene or the camera is wrong; more samples, or better placed ones (jittered, sobol), come closer; a \
                    `--tolerance` in steps lets noise pass"
                 .to_owned(),
             rmse: Some(difference),
