@@ -39,7 +39,9 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     }
     let cancel = interrupt.watch();
     let started = Instant::now();
-    let world = World::new(&scene);
+    let Ok(world) = World::new_unless(&scene, cancel) else {
+        return Ok(Status::Interrupted);
+    };
     let picture = match picture(&scene, &world, part, output.keep(), cancel) {
         Ok(picture) => picture,
         Err(RenderError::Cancelled) => return Ok(Status::Interrupted),

@@ -3,9 +3,10 @@
 //! Their errors hang together: an edge seems displaced by a part of a pixel in all pixels through which it goes alike, so that what looks for
 //! sums of errors takes them for a camera that is off by as much. Two things tell them apart.
 //!
-//! Where one colour should be seen all samples see it, wherever they are, and no pixel is wrong. An edge that is really off by δ misses a share
-//! of about δ/2 of each of δ L more pixels beside L of its own, which one of n samples each shows in n L δ²/2 of them. Errors add up beyond six
-//! deviations where 4 L n δ² is more than 36, and then these are 4.5: [`is_belied`] asks whether none is there of those that a mistake makes.
+//! Where one colour should be seen all samples see it, but for one at a corner where an edge runs along the pixel's side (`seen`). An edge that is
+//! really off by δ misses a share of about δ/2 of each of δ L more pixels beside L of its own, which one of n samples each shows in n L δ²/2 of
+//! them. Errors add up beyond six deviations where 4 L n δ² is more than 36, and then these are 4.5: [`is_belied`] asks whether those are missing
+//! that a mistake makes.
 //!
 //! And each pixel is a mean of what it would be with a single sample, at each of some places, with the same weights in all pixels. Such weights
 //! are found in some pixels, and make the others, too: [`find`]. Errors that are independent from pixel to pixel cannot be foretold at all.
@@ -33,10 +34,10 @@ use crate::{area::Area, film::Film, render::RenderError};
 /// which is as much as n of them leave by themselves.
 pub const LEFT: f64 = 0.378;
 
-/// Where so many pixels are expected and none is there, it is no chance: by Poisson one in twenty, as with all mistakes, ln 20.
+/// Where so many more pixels are expected than are there, it is no chance: by Poisson one in twenty, as with all mistakes, ln 20.
 const EXPECTED: f64 = 3.0;
 
-/// Whether a mistake, of which a picture would have noise beside it, would show itself where one colour should be seen, and nothing is wrong there.
+/// Whether a mistake, of which a picture would have noise beside it, would show itself where one colour should be seen, in more pixels than do.
 /// `variance` is that of one sample with the mistake, and so many are in each pixel.
 pub fn is_belied(case: &Case, made: &Film, variance: &Film, samples: f64) -> bool {
     if case.is_beyond_samples() {
@@ -45,14 +46,15 @@ pub fn is_belied(case: &Case, made: &Film, variance: &Film, samples: f64) -> boo
     let samples = samples.max(1.0);
     let right = case.full.exact.pixels().iter().zip(case.variance.pixels());
     let wrong = made.pixels().iter().zip(variance.pixels());
-    let expected =
-        right.zip(wrong).map(
-            |((right, own), (wrong, variance))| match noise::is_flat(own) {
-                true => seen(DVec3::from(*right), DVec3::from(*wrong), variance, samples),
-                false => 0.0,
-            },
-        );
-    expected.sum::<f64>() > EXPECTED
+    let pixels = case.full.a.pixels().iter().zip(right).zip(wrong);
+    let missing = pixels.map(|((is, (right, own)), (wrong, variance))| {
+        // Where it is wrong it may have shown itself.
+        match noise::is_flat(own) && !noise::is_off((is, right)) {
+            true => seen(DVec3::from(*right), DVec3::from(*wrong), variance, samples),
+            false => 0.0,
+        }
+    });
+    missing.sum::<f64>() > EXPECTED
 }
 
 /// How many of some samples see something else in a pixel than its one colour, one at most, if one would be seen.

@@ -57,7 +57,7 @@ pub struct Case<'a> {
     pub is_thin: Cell<bool>,
     /// Noise would make the difference, though too few pixels tell of it to say so.
     pub may_be_noise: Cell<bool>,
-    /// A mistake was passed over that would show itself where one colour should be seen, and nothing is wrong there.
+    /// A mistake was passed over that would show itself in more pixels where one colour should be seen.
     pub is_belied: Cell<bool>,
     /// The samples at the same places in all pixels that leave least, where some may have made the picture.
     pub alike: Cell<Option<Alike>>,
@@ -239,8 +239,16 @@ impl<'a> Case<'a> {
         if !is_nearer || !self.explains(make, &made, left)? {
             return Ok(None);
         }
-        // A curve changes all pixels of several colours, and something else may be wrong in a few that add up to more.
+        // A curve changes all pixels of several colours, and something else may be wrong in a few that add up to more, of which no curve makes
+        // what they are, or that lie in a row.
         let is_of_light = matches!(make, Make::Light(_) | Make::Turned(..) | Make::Curved(..));
+        if is_of_light
+            && left > HOPE * self.difference
+            && (self.is_beyond_samples()
+                || Errors::new(&self.full.a, &made)?.is_picture_moved(&made, None))
+        {
+            return Ok(None);
+        }
         let is_enough = !is_of_light && sigmas > SIGMAS
             || evidence::is_enough(&self.full.a, &self.full.exact, &made);
         if !is_enough {

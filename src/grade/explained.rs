@@ -47,8 +47,8 @@ impl Case<'_> {
         })
     }
 
-    /// Whether samples at the same places in all pixels may do as much as a mistake that leaves so much: nothing is wrong where one colour
-    /// should be seen, and not enough is explained.
+    /// Whether samples at the same places in all pixels may do as much as a mistake that leaves so much: they may have made the picture, and not
+    /// enough is explained.
     fn may_be_places(&self, left: f64) -> bool {
         left > alike::LEFT * self.difference && !self.is_beyond_samples()
     }
@@ -65,8 +65,8 @@ impl Case<'_> {
         self.alike.get().is_some_and(|alike| alike.is_told)
     }
 
-    /// Whether a mistake that leaves little would show itself where one colour should be seen, and nothing is wrong there: as when samples at
-    /// the same places have their middle beside the pixel's.
+    /// Whether a mistake that leaves little would show itself in more pixels where one colour should be seen: as when samples at the same places
+    /// have their middle beside the pixel's.
     fn is_belied_by(&self, make: &Make, made: &Film) -> Result<bool, RenderError> {
         if self.is_beyond_samples() {
             return Ok(false);
@@ -89,8 +89,8 @@ impl Case<'_> {
             || noise::possible(a, exact, &self.variance).is_some()
     }
 
-    /// Whether samples that hang together may be all that is wrong: where one colour should be seen, as it is in some pixels, nothing is, and the
-    /// others are no farther off than a sample each leaves them; or a mistake was passed over that they belie.
+    /// Whether samples that hang together may be all that is wrong: there are pixels of one colour, no more of them are wrong than samples make so,
+    /// and all is no farther off than a sample in each pixel leaves it; or a mistake was passed over that they belie.
     pub fn may_be_alike(&self) -> bool {
         let variances = || self.variance.pixels().iter();
         let flat = variances().filter(|one| noise::is_flat(one)).count() as u64;

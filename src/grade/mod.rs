@@ -167,9 +167,12 @@ pub fn scene(
             Some(verdict) => with_nothing_in_sight(&case, verdict)?,
             None => likely(&case)?,
         };
-        let may_be_noise = case.may_be_noise.get() || case.is_alike() || case.may_be_alike();
+        // Noise that few pixels tell of is one thing, and samples at the same places, which many may tell of, another.
+        let is_few = case.may_be_noise.get();
+        let may_be_noise = is_few || case.is_alike() || case.may_be_alike();
+        let is_thin = is_few || case.is_thin.get() && !may_be_noise;
         Ok(Grade {
-            is_thin: likely.is_empty() && (case.is_thin.get() || case.may_be_noise.get()),
+            is_thin: likely.is_empty() && is_thin,
             may_be_noise: likely.is_empty() && may_be_noise,
             likely,
         })

@@ -230,7 +230,7 @@ pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> 
     })
 }
 
-/// Whether a pixel has another neighbour than itself.
+/// Whether a pixel has a neighbour of another light.
 pub fn is_beside_another(film: &Film, [x, y]: [u32; 2]) -> bool {
     let own = bits(&film.pixel(x, y));
     around(film, [x, y]).any(|(x, y)| bits(&film.pixel(x, y)) != own)

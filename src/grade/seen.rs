@@ -84,30 +84,79 @@ fn range(colors: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     )
 }
 
-/// Whether a picture is such that no samples make it: some pixel of one colour, on whose sides there is no other, has another one, or
-/// pixels of several colours are beyond all of them, and more than chance has it.
+/// Whether a picture is such that no samples make it: pixels of one colour have another one that no sample at a corner explains, or pixels of
+/// several colours are beyond all of them, and more than chance has it.
 pub fn is_beyond(case: &Case) -> bool {
     let (a, exact) = (&case.full.a, &case.full.exact);
     let [width, height] = size(a);
-    let is_off = |x, y| noise::is_off((&a.pixel(x, y), &exact.pixel(x, y)));
-    let is_flat = |x, y| noise::is_flat(&case.variance.pixel(x, y));
+    let is_off = |&(x, y): &(u32, u32)| noise::is_off((&a.pixel(x, y), &exact.pixel(x, y)));
+    let is_flat = |&(x, y): &(u32, u32)| noise::is_flat(&case.variance.pixel(x, y));
     let whole = || Area::whole(width, height).iter();
     let seen = case.seen();
-    if case.strays.pixels > 0
-        && whole().any(|(x, y)| {
-            is_flat(x, y)
-                && is_off(x, y)
-                && (!noise::is_beside_another(exact, [x, y])
-                    || seen.is_beyond([x, y], &a.pixel(x, y), DVec3::ZERO))
-        })
-    {
-        return true;
+    if case.strays.pixels > 0 {
+        let is_beside = |&(x, y): &(u32, u32)| noise::is_beside_another(exact, [x, y]);
+        if whole().any(|at| is_flat(&at) && is_off(&at) && !is_beside(&at)) {
+            return true;
+        }
+        let (wrong, right): (Vec<_>, Vec<_>) = whole()
+            .filter(|at| is_flat(at) && is_beside(at))
+            .partition(is_off);
+        if !CORNERS
+            .iter()
+            .any(|corner| explains(case, corner, &wrong, &right))
+        {
+            return true;
+        }
     }
-    let mixed = || whole().filter(|&(x, y)| is_off(x, y) && !is_flat(x, y));
+    let mixed = || whole().filter(|at| is_off(at) && !is_flat(at));
     let step = mixed().count().div_ceil(PIXELS).max(1);
     let some: Vec<_> = mixed().step_by(step).collect();
     let beyond = some
         .par_iter()
         .filter(|(x, y)| seen.is_beyond([*x, *y], &a.pixel(*x, *y), seen.margin));
     beyond.count() > noise::STRAYS
+}
+
+/// A pixel's corners. Of sets of samples that begin at 0, as Hammersley's does, one is at one of them, and so sees what is beyond an edge that
+/// runs along a side.
+const CORNERS: [DVec2; 4] = [
+    DVec2::new(-0.5, -0.5),
+    DVec2::new(0.5, -0.5),
+    DVec2::new(-0.5, 0.5),
+    DVec2::new(0.5, 0.5),
+];
+
+/// What lies on an edge is seen on either side of it by programs that round; this is more than they do, in pixels, and less than anything that
+/// is seen.
+const ROUNDED: f64 = 1e-7;
+
+/// A sample at a corner is seen wherever something else is, but for what lies on an edge there: in more than half as many pixels, as an edge
+/// that is off along one of a box's sides has along two.
+const MOST: f64 = 0.75;
+
+/// Whether a sample at a corner makes those pixels of one colour wrong that are, and would make few of those wrong that are right.
+fn explains(case: &Case, corner: &DVec2, wrong: &[(u32, u32)], right: &[(u32, u32)]) -> bool {
+    let (a, exact, seen) = (&case.full.a, &case.full.exact, case.seen());
+    // On an edge, or on one side of it.
+    let beside = CORNERS.map(|way| *corner + way * (2.0 * ROUNDED));
+    let places = || beside.into_iter().chain([*corner]);
+    let is_made = |&(x, y): &(u32, u32)| {
+        let colors = places().map(|place| seen.at([x, y], place));
+        let [low, high] = range(colors.chain([DVec3::from(exact.pixel(x, y))]));
+        let light = a.pixel(x, y);
+        let nearest = DVec3::from(light).clamp(low, high);
+        !noise::is_off((&light, &nearest.to_array()))
+    };
+    if !wrong.iter().all(is_made) {
+        return false;
+    }
+    places().any(|place| {
+        let shows = |&&(x, y): &&(u32, u32)| {
+            let other = seen.at([x, y], place).to_array();
+            noise::is_off((&other, &exact.pixel(x, y)))
+        };
+        let [shown, missing] =
+            [wrong, right].map(|pixels| pixels.iter().filter(shows).count() as f64);
+        shown > 0.0 && shown >= MOST * (shown + missing)
+    })
 }

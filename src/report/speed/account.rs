@@ -46,7 +46,7 @@ pub fn account(measurements: &[Measurement]) -> String {
          nothing that was measured tells which. Of single runs nothing is known (?), nor of regular, whose grid falls into step with the lines of a picture, so that its \
          errors fall by leaps.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within × and ÷ of the samples \
-         and half of the spread of the times.</li>\n\
+         and half of the spread of the times. That of a single run is the largest of the method's others; where there is none nothing is known of it.</li>\n\
          </ul>\n</section>\n"
     )
 }

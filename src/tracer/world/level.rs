@@ -1,12 +1,10 @@
 //! The camera and the objects in each precision.
 
-use std::{ops::Deref, sync::Arc};
-
 use glam::{DVec2, DVec3};
 
 use super::{
     World,
-    kept::{Kept, Prepared},
+    kept::{Held, Kept},
 };
 use crate::{
     math::{Ball, Big, Double, Real, exact::Plane},
@@ -33,7 +31,7 @@ pub enum Numbers {
 #[derive(Debug)]
 pub struct Frame<T: Real> {
     pub camera: Camera<T>,
-    /// Of the objects those that were asked for last.
+    /// The objects that were asked for, of many the last.
     kept: Kept<T>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
@@ -71,26 +69,7 @@ pub trait Level: Real {
     fn object(world: &World, index: usize) -> Held<'_, Self> {
         let Frame { camera, kept, .. } = Self::frame(world);
         let prepare = || world.numbers[index].object(camera);
-        Held::Shared(kept.object(index, prepare))
-    }
-}
-
-/// An object that is always there, or one that was prepared when it was asked for.
-#[derive(Debug)]
-pub enum Held<'a, T: Real> {
-    Always(&'a Object<T>),
-    Shared(Arc<Prepared<T>>),
-}
-
-impl<T: Real> Deref for Held<'_, T> {
-    type Target = Object<T>;
-
-    #[inline]
-    fn deref(&self) -> &Object<T> {
-        match self {
-            Self::Always(object) => object,
-            Self::Shared(prepared) => &prepared.object,
-        }
+        kept.object(index, prepare)
     }
 }
 

@@ -10,7 +10,7 @@ mod ray;
 
 pub use self::ray::Hit;
 
-pub(super) use self::level::{Held, Level};
+pub(super) use self::{kept::Held, level::Level};
 
 use std::cmp::Ordering;
 

@@ -54,7 +54,7 @@ impl World {
         let basis = Basis::new(&scene.camera, &scene.image);
         let count = scene.objects.len();
         let double = Frame::new(&basis, scene, reach, Kept::new(count));
-        let fast = Frame::new(&basis, scene, reach, Kept::none());
+        let fast = Frame::new(&basis, scene, reach, Kept::None);
         let grid = Grid::new(&fast.camera.window);
         let prepare = |index: usize, object: &scene::Object| {
             let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);

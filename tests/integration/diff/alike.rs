@@ -16,6 +16,14 @@ use super::{
 };
 use crate::exact::{example, examples, read};
 
+/// Boxes whose edges lie along pixels' sides, and a ball.
+const STEPS: &str = "image { background navy }
+camera { eye (0, 0, 20) lookat (0, 0, 0) view_height 9 d 20 }
+box One { min (-5, -3, -1) max (-1, 2, 0) color orange }
+box Other { min (1, -2, -1) max (6, 1, 0) color teal }
+sphere { center (3, 2, 1) radius 1 color olive }
+";
+
 /// Some samples in a pixel, from its left and upper edge.
 type Set = (String, Vec<DVec2>);
 
@@ -174,6 +182,29 @@ fn nobody_is_blamed_for_samples_at_the_same_places_in_all_pixels() {
         "{} of {pictures} pictures:\n{blamed}",
         blamed.lines().count()
     );
+}
+
+/// Programs that round see what is on an edge on one side of it or on the other.
+#[test]
+fn nobody_is_blamed_for_what_is_seen_on_an_edge() {
+    let subject = Subject::new(&read(STEPS), [160, 90]);
+    for (right, down) in [(-1e-12, -1e-12), (1e-12, -1e-12), (-1e-12, 1e-12)] {
+        let (set, mut samples) = hammersley(16);
+        for sample in &mut samples {
+            *sample += DVec2::new(right, down);
+        }
+        let found = subject.graded(&picture(subject.scene(), &samples)).unwrap();
+        let accused = found
+            .likely
+            .first()
+            .filter(|first| first.mistake != "noise");
+        let words = accused.map(|first| &first.message);
+        assert_eq!(words, None, "{set}, {right} {down}");
+        assert!(
+            found.may_be_noise || !found.likely.is_empty(),
+            "{set}, {right} {down}"
+        );
+    }
 }
 
 #[test]

@@ -181,3 +181,23 @@ fn an_object_that_is_not_in_the_scene_is_nobody_elses_fault() {
         assert!(message.starts_with(&expected), "{message}");
     }
 }
+
+/// What is seen beyond an edge along a pixel's side is what a sample at the corner sees. No single corner sees it on all sides of a box.
+#[test]
+fn what_grows_beyond_the_sides_of_pixels_is_no_sample() {
+    let folder = folder();
+    let scene = "image { width 96 height 64 }
+camera { eye (0, 0, 10) lookat (0, 0, 0) view_height 64 d 10 }
+box Plate { min (-20, -10, -1) max (10, 20, 0) color orange }
+";
+    fs::write(folder.path().join("a.scn"), scene).unwrap();
+    for (set, method) in [("camera.d=10.1", "exact"), ("camera.d=10.1", "jittered")] {
+        let method = format!("sampler.method={method}");
+        render(&folder, &["-o", "b.png", "--set", set, "--set", &method]);
+        let found = json(&folder, &["b.png", "a.scn"]);
+        let first = &found["likely"][0];
+        let mistakes = ["distance", "object_place", "object_size", "eye"];
+        let mistake = first["mistake"].as_str().unwrap_or("none");
+        assert!(mistakes.contains(&mistake), "{method}: {found:#}");
+    }
+}
