@@ -239,10 +239,11 @@ impl<'a> Case<'a> {
         if !is_nearer || !self.explains(make, &made, left)? {
             return Ok(None);
         }
-        // A curve changes all pixels of several colours, and something else may be wrong in a few that add up to more, of which no curve makes
-        // what they are, or that lie in a row.
+        // A curve changes all pixels of several colours, and something else may be wrong in a few that add up to more. Where it leaves single
+        // colours as they are it makes no pixel darker or lighter than all that is seen there, nor does it leave a row that is.
         let is_of_light = matches!(make, Make::Light(_) | Make::Turned(..) | Make::Curved(..));
         if is_of_light
+            && self.strays.pixels == 0
             && left > HOPE * self.difference
             && (self.is_beyond_samples()
                 || Errors::new(&self.full.a, &made)?.is_picture_moved(&made, None))

@@ -82,15 +82,16 @@ pub fn board(y: f64, square: f64) -> Shape {
 
 /// A scene whose colours tell its objects apart.
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
-    let objects = (1..).zip(shapes).map(|(number, shape)| {
-        let own = Color::from_bytes([number, 0, 0]);
+    let objects = (1u16..).zip(shapes).map(|(number, shape)| {
+        let [low, high] = number.to_le_bytes();
+        let own = Color::from_bytes([low, high, 0]);
         let mut shape = *shape;
         match &mut shape {
             Shape::Sphere(Sphere { color, .. })
             | Shape::Triangle(Triangle { color, .. })
             | Shape::Box(Cuboid { color, .. }) => *color = own,
             Shape::Checkerboard(Checkerboard { colors, .. }) => {
-                *colors = [own, Color::from_bytes([number, 1, 0])];
+                *colors = [own, Color::from_bytes([low, high, 1])];
             }
         }
         Object {

@@ -336,10 +336,6 @@ fn rays_that_end_before_the_horizon_are_neither_noise_nor_gamma() {
             "as if far were 30",
         ),
         (
-            ["camera.far=1000", "sampler.method=regular"],
-            "as if far were ",
-        ),
-        (
             ["camera.far=2000", "sampler.method=exact"],
             "as if far were 20",
         ),
