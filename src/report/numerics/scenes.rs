@@ -84,14 +84,14 @@ pub fn board(y: f64, square: f64) -> Shape {
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = (1u16..).zip(shapes).map(|(number, shape)| {
         let [low, high] = number.to_le_bytes();
-        let own = Color::from_bytes([low, high, 0]);
+        let own = Color::from_bytes([low, 0, high]);
         let mut shape = *shape;
         match &mut shape {
             Shape::Sphere(Sphere { color, .. })
             | Shape::Triangle(Triangle { color, .. })
             | Shape::Box(Cuboid { color, .. }) => *color = own,
             Shape::Checkerboard(Checkerboard { colors, .. }) => {
-                *colors = [own, Color::from_bytes([low, high, 1])];
+                *colors = [own, Color::from_bytes([low, 1, high])];
             }
         }
         Object {
