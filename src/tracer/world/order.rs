@@ -1,7 +1,7 @@
 //! Which of two crossings is nearer, and where they are in one surface, that none is.
 //!
-//! Computed depths of one surface are in doubt at every sample point, and forms take long to prepare. So planes are compared by the numbers of
-//! the scene.
+//! Computed depths of one surface are in doubt at every sample point, and forms take long to prepare. So objects' planes are compared by the
+//! numbers of the scene.
 
 use std::cmp::Ordering;
 
