@@ -33,6 +33,13 @@ const FORMS: f64 = 2.0;
 /// whose forms are all evaluated.
 const PAID: f64 = 0.5;
 
+/// The objects of which a crowd is made have so many forms or more.
+const OF_AN_OBJECT: f64 = 3.0;
+
+/// In a part that one board fills no more samples than these are traced in less time than it takes to see whether each quarter shows but one
+/// square.
+const A_QUARTERING: f64 = 4.0;
+
 /// What a board shows in several pixels is worth knowing from so many samples a pixel on.
 const A_CHECK: f64 = 3.0;
 
@@ -99,7 +106,17 @@ impl Budget {
 
     /// Whether candidates with so many forms, whose bounds are known, are prepared for the samples of a pixel, to trace them together.
     pub fn is_for_forms(self, forms: usize) -> bool {
-        forms as f64 <= FORMS * PAID * self.most_in_a_pixel()
+        forms as f64 <= self.most_forms()
+    }
+
+    /// In a pixel no more objects of a crowd than these can have so few forms.
+    pub fn most_in_a_crowd(self) -> usize {
+        (self.most_forms() / OF_AN_OBJECT) as usize
+    }
+
+    /// Whether it is worth to know in which quarters of a part that one board fills but one square is seen.
+    pub fn is_for_quarters(self, area: Area) -> bool {
+        self.samples * area.pixels() as f64 > A_QUARTERING
     }
 
     /// Whether what a board shows in several pixels is worth knowing.
@@ -122,6 +139,10 @@ impl Budget {
             samples: self.samples * (1.0 + AN_OBJECT * asked as f64 / rays),
             is_probed: true,
         }
+    }
+
+    fn most_forms(self) -> f64 {
+        FORMS * PAID * self.most_in_a_pixel()
     }
 
     fn most_in_a_pixel(self) -> f64 {

@@ -220,7 +220,7 @@ impl<'a> Quartering<'a> {
         if crowd.len() > most.max(budget.most(area)) {
             return false;
         }
-        let few = SCANNED.max(budget.most(Area::pixel(0, 0)));
+        let few = SCANNED.max(budget.most_in_a_crowd());
         crowd.len() <= few
             || self.world.is_met_by(area.middle(), crowd, few)
             || crowd.len() <= budget.most(area)
@@ -266,6 +266,10 @@ impl<'a> Quartering<'a> {
                 && let Some(flow) = self.world.checks(area, live, visit)
             {
                 return flow;
+            }
+            if !budget.is_for_quarters(area) {
+                let among = Among::Live(live);
+                return visit(Part::Plain { area, among }, None);
             }
             // What hides all else in the whole does so in its quarters.
             return area.quarters().try_for_each(|quarter| {
