@@ -105,6 +105,12 @@ impl Alike {
         self.is_told && self.left < (1.0 - MOST) * self.displaced.min(1.0)
     }
 
+    /// Whether they foretell nothing: all is left, or more, in the pixels in which they were not looked for. Samples at the same places leave less
+    /// there, and independent errors as much and what the weights add to them.
+    pub fn is_refuted(&self) -> bool {
+        self.left >= 1.0
+    }
+
     /// Whether they leave less than a mistake does, which leaves this share of the squared difference.
     pub fn leave_less(&self, left: f64) -> bool {
         self.left < left

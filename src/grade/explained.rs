@@ -48,9 +48,10 @@ impl Case<'_> {
     }
 
     /// Whether samples at the same places in all pixels may do as much as a mistake that leaves so much: they may have made the picture, and not
-    /// enough is explained.
+    /// enough is explained. Those that foretell nothing have not.
     fn may_be_places(&self, left: f64) -> bool {
-        left > alike::LEFT * self.difference && !self.is_beyond_samples()
+        let is_refuted = self.alike.get().is_some_and(|alike| alike.is_refuted());
+        left > alike::LEFT * self.difference && !is_refuted && !self.is_beyond_samples()
     }
 
     /// Whether samples at the same places leave less than a mistake does.
