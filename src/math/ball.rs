@@ -56,6 +56,11 @@ impl<T: Real> Ball<T> {
         Self::rounded(T::from_big(x), T::Radius::ZERO)
     }
 
+    /// a / b, rounded once.
+    pub fn quotient(a: f64, b: f64) -> Self {
+        Self::rounded(T::quotient(a, b), T::Radius::ZERO)
+    }
+
     /// The size of its middle.
     pub fn size(&self) -> T::Radius {
         self.mid.magnitude()

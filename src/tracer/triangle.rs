@@ -158,12 +158,15 @@ fn plane<T: Real>(camera: &Camera<T>, shape: &scene::Triangle) -> (Ball3<T>, Bal
     let normal = shape.normal.to_array();
     let greatest = shape.normal.abs().max_element();
     let pivot = normal.into_iter().find(|x| x.abs() == greatest);
-    let pivot = Big::from_f64(pivot.unwrap_or(1.0));
+    let pivot = pivot.unwrap_or(1.0);
     let terms = [0, 1, 2]
         .map(|i| &Exact::difference(shape.centroid[i], camera.eye[i]) * &Exact::new(normal[i]));
     let h = &(&terms[0] + &terms[1]) + &terms[2];
-    let n = normal.map(|x| Ball::from_big(&Big::from_f64(x).over(&pivot)));
-    let height = h.to_big().over(&pivot).scaled(camera.exponent);
+    let n = normal.map(|x| Ball::quotient(x, pivot));
+    let height = h
+        .to_big()
+        .over(&Big::from_f64(pivot))
+        .scaled(camera.exponent);
     (n, Ball::from_big(&height), h.sign())
 }
 
