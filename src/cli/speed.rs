@@ -11,7 +11,7 @@ use pinhole::{
     film,
     render::{Control, RenderError},
     report::speed::{
-        self, Checks, Measurement, Plan, Request, Subject, against_samples, against_time, to_csv,
+        self, Measurement, Plan, Request, Subject, Tries, against_samples, against_time, to_csv,
         to_json,
     },
     scene::{Method, Scene},
@@ -166,9 +166,9 @@ fn measure(
         counted(nanoseconds, &control, |control| {
             speed::measure_further(runs, &plan, control, &mut measured)
         })?;
-        let checks = Checks::new(&plan, &measured);
-        counted(checks.total(), &control, |control| {
-            checks.run(&mut measured, control)
+        let tries = Tries::new(&plan, &measured);
+        counted(tries.total(), &control, |control| {
+            tries.run(&mut measured, control)
         })?;
         Ok(measured)
     });

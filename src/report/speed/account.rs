@@ -35,16 +35,17 @@ pub fn account(measurements: &[Measurement]) -> String {
          of the n runs’ squared errors. The greater one counts (as the Particle Data Group scales errors). But a curve that bends has no one slope, \
          however well the mean one is known: so the ± is no less than the greatest difference between b and the slope between any two points of the chart, tried ones among them, \
          of which one has at least twice the samples of the other. JSON has all three. Nothing is said of the slope beyond these points.</li>\n\
-         <li><b>What an error takes</b> is where the line through the logarithms comes down to it between the measured points on either side, \
-         rounded up to a whole number of samples, for multi_jittered to one whose grid is near a square; its time lies on the straight line between the same. Where no point comes down to it, the line goes on \
-         through the last point and another with at most half its samples, and the answer is marked as extrapolated; its time goes on with the slope of the line from the first point to the last. Where the samples are left to the program \
-         and time is left, answers are tried up to three times, the fastest methods first: in a single run, which is a further point, a tenth more samples are taken than is extrapolated; \
-         and after that those between two points, where the line between them may be off by more than a hundredth. \
-         × and ÷ is twice the standard error by those of the two points’ errors, |1 − s|·e<sub>1</sub> + s·e<sub>2</sub> by the slope between them, at 1 − s of the first and s of the second in logarithms (all tries have one seed, and are wrong together), \
-         and with it, by the root of the sum of both squares, what the truth may be off from that line. Between two points that is what it may sag: 0.8·(x₂ − x)(x − x₁), 0.38 half-way between a count and four \
-         times as many. Beyond the last it is the greatest difference to what comes out if errors fall further on by any slope between other points, as above, or by −1/2, which is that of independent samples, or, where samples are spread evenly, by −3/4: \
-         nothing that was measured tells which. Of single runs nothing is known (?), nor of regular, whose grid falls into step with the lines of a picture, so that its \
-         errors fall by leaps.</li>\n\
+         <li><b>What an error takes</b> is first where the line through the logarithms comes down to it between the planned points on either side, and its time lies on the straight \
+         line between the same. Where no point comes down to it, the line goes on through the last point and another with at most half its samples, and its time with the slope of the line from the first point to the last. Where the samples are left \
+         to the program and time is left, that is tried, the shortest renders first: single runs, each with the next seed after those of all runs before it, take as many samples as the answer says, and up to a fifth more and fewer. \
+         The answer moves to where the tries within a factor of e<sup>0.3</sup> of it lie by the slope of that line (the root of the mean of their squared errors counts, each moved along the slope to the middle of their counts), until there are six. \
+         What rests on fewer than three and lies beyond all planned points is marked as extrapolated.</li>\n\
+         <li><b>× and ÷</b> is said of renders: 19 of 20 with so many times as many samples leave no more than the error, and those with so many times as few no less, in the mean of squares (a single one of a picture with few pixels on edges may hit it by luck). Of k tries, 3 or more, it is Student’s quantile for k − 1 times the deviation of the logarithms of their errors, moved as above, \
+         times √(1 + 1/k), by the slope; and with it, by the root of the sum of squares, the way from their middle to the answer. One or two tries know nothing of that: the deviation is that of the runs of the last planned point, and a count may differ from the next by 0.38. \
+         Without tries it is the standard error by those of the two points’ errors, |1 − s|·e<sub>1</sub> + s·e<sub>2</sub> (runs of one seed are wrong together), at 1 − s of the first and s of the second in logarithms, and the deviation of a run, by the slope and with Student’s quantile for \
+         as many runs; and with it what the truth may be off from that line. Between two points that is what it may sag: 0.8·((x₂ − x₁)/2)², 0.38 between a count and four times as many. \
+         Beyond the last it is the greatest difference to what comes out if errors fall further on by any slope between other points, as above, or by −1/2, which is that of independent samples, or, where samples are spread evenly, by −3/4: \
+         nothing that was measured tells which. Of single runs nothing is known (?), nor, untried, of jittered and multi_jittered, whose grids suit some counts better than the next, nor of regular, whose grid falls into step with the lines of a picture.</li>\n\
          <li><b>The fastest method</b> is named together with all whose time may be the same, within × and ÷ of the samples \
          and half of the spread of the times. That of a single run is the largest of the method's others; where there is none nothing is known of it.</li>\n\
          </ul>\n</section>\n"

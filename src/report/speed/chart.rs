@@ -63,7 +63,17 @@ struct Chart {
 struct Line {
     look: Look,
     label: String,
+    /// Those that the line goes through.
     points: Vec<(f64, f64)>,
+    /// Single tries, which have a marker each.
+    tries: Vec<(f64, f64)>,
+}
+
+impl Line {
+    /// All that has a marker.
+    fn marked(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.points.iter().chain(&self.tries).copied()
+    }
 }
 
 /// The chart of error against time. The exact method, whose error is off the scale, is a vertical line.
@@ -78,7 +88,7 @@ pub fn against_time(measured: &Measurement) -> String {
     });
     let times = lines
         .iter()
-        .flat_map(|line| line.points.iter().map(|point| point.0));
+        .flat_map(|line| line.marked().map(|point| point.0));
     let x_ticks = Ticks::round(times.chain(exact.iter().map(|exact| exact.0)));
     let summary = exact
         .as_ref()
@@ -113,7 +123,7 @@ pub fn against_samples(measured: &Measurement) -> String {
         },
     );
     let rungs: Vec<_> = measured.rungs.iter().map(|&rung| rung as f64).collect();
-    let samples = lines.iter().flat_map(|line| line.points.iter());
+    let samples = lines.iter().flat_map(Line::marked);
     let most = samples.map(|point| point.0).fold(0.0, f64::max);
     draw(&Chart {
         title: "Error against samples, with the slopes".to_owned(),
@@ -138,15 +148,16 @@ fn lines(
 ) -> Vec<Line> {
     let line = |at: usize| {
         let series = &measured.series[at];
-        let mut points = series.curve();
         // An error of 0 has no place on a logarithmic axis.
-        points.retain(|point| point.error() > 0.0);
+        let place = |point: &Point| Some((x(point), point.error())).filter(|&(_, y)| y > 0.0);
         Line {
             look: Look::of(series.method),
             label: label(measured, at),
-            points: points
+            points: series.points.iter().filter_map(place).collect(),
+            tries: series
+                .tries
                 .iter()
-                .map(|point| (x(point), point.error()))
+                .filter_map(|it| place(&it.point))
                 .collect(),
         }
     };
@@ -160,7 +171,7 @@ fn lines(
 fn y_ticks(measured: &Measurement, lines: &[Line]) -> Ticks {
     let errors: Vec<_> = lines
         .iter()
-        .flat_map(|line| line.points.iter().map(|point| point.1))
+        .flat_map(|line| line.marked().map(|point| point.1))
         .collect();
     let (low, high) = ends(errors.iter().copied());
     let near = |&&wanted: &&f64| wanted > low / 30.0 && wanted < high * 30.0;
@@ -256,7 +267,8 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
         .collect();
     for (line, places) in chart.lines.iter().zip(&lines) {
         line.look.line(&area, places)?;
-        for &place in places {
+        let tries = line.tries.iter().map(|&(x, y)| place(x, y));
+        for place in places.iter().copied().chain(tries) {
             line.look.marker(&area, place)?;
         }
     }

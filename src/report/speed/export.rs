@@ -8,9 +8,9 @@ use sha2::{Digest, Sha256};
 use super::{
     fit::median,
     measure::{Measurement, Point, Series},
-    needed::Check,
     notes::{FACTOR, notes, spread, verdicts},
     table::{AT_MOST, RATE, RAYS, SLOPE},
+    tried::Try,
 };
 
 /// A row for each method and number of samples, after a row of names. Times are in seconds, errors in linear light. Rows of samples that were
@@ -27,7 +27,7 @@ pub fn to_csv(measured: &Measurement) -> String {
         for point in &series.points {
             let _ = writeln!(text, "{},{slope},{slope_error},,", columns(series, point));
         }
-        for Check { wanted, point } in &series.checks {
+        for Try { wanted, point, .. } in &series.tries {
             let _ = writeln!(text, "{},,,,{wanted}", columns(series, point));
         }
     }
@@ -117,7 +117,7 @@ fn of_series(measured: &Measurement, series: &Series) -> Value {
     let errors = measured.errors.iter();
     let needed = errors.map(|&error| match measured.needed(series, error) {
         None => {
-            json!({"error": error, "per_pixel": null, "at_most": null, "factor": null, "time": null, "extrapolated": null, "tried": null})
+            json!({"error": error, "per_pixel": null, "at_most": null, "factor": null, "time": null, "extrapolated": null, "tries": []})
         }
         Some(needed) => json!({
             "error": error,
@@ -126,14 +126,16 @@ fn of_series(measured: &Measurement, series: &Series) -> Value {
             "factor": needed.factor,
             "time": needed.seconds,
             "extrapolated": needed.is_extrapolated,
-            "tried": series.check(error).map(
-                |Check { point, .. }| json!({
+            "rests_on_tries": needed.tries,
+            "tries": series.tries_for(error).map(
+                |Try { seed, point, .. }| json!({
                     "per_pixel": point.per_pixel,
+                    "seed": seed,
                     "time": point.seconds(),
                     "rmse": point.error(),
                     "largest_error": point.largest,
                 }),
-            ),
+            ).collect::<Vec<_>>(),
         }),
     });
     json!({

@@ -19,10 +19,29 @@ pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The root of the mean of the squares; NaN of no values.
+/// The root of the mean of the squares; NaN of no values. Of equal values it is that value, to the bit.
 pub fn root_mean_square(values: &[f64]) -> f64 {
-    let squares: f64 = values.iter().map(|value| value * value).sum();
-    (squares / values.len() as f64).sqrt()
+    let greatest = values
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    if greatest == 0.0 && !values.is_empty() {
+        return 0.0;
+    }
+    let squares: f64 = values.iter().map(|value| square(value / greatest)).sum();
+    greatest * (squares / values.len() as f64).sqrt()
+}
+
+/// So many standard errors are exceeded once in 20 times, if a deviation comes from a sum of squares with so many degrees of freedom: quantiles
+/// of Student's distribution at 0.975 ("Student" 1908, "The probable error of a mean"; NIST/SEMATECH e-Handbook of Statistical Methods, section 1.3.6.7.2). Infinite for none, and
+/// as of ten for more.
+pub fn certainty(freedom: usize) -> f64 {
+    const QUANTILES: [f64; 10] = [
+        12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+    ];
+    match freedom.checked_sub(1) {
+        None => f64::INFINITY,
+        Some(at) => QUANTILES[at.min(QUANTILES.len() - 1)],
+    }
 }
 
 /// The standard error of the logarithm of the root mean square of some independent values, by the spread of their squares: with n squares, m

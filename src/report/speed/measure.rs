@@ -10,8 +10,8 @@ use std::{num::NonZero, ops::Range, sync::atomic::Ordering, time::Instant};
 use super::{
     Machine,
     fit::{Fit, log_error, median, root_mean_square},
-    needed::Check,
     plan::Plan,
+    tried::Try,
 };
 use crate::{
     area::Area,
@@ -84,8 +84,8 @@ pub struct Series {
     pub points: Vec<Point>,
     /// The picture of the first run with the number of samples that is shown.
     pub picture: Option<Film>,
-    /// What came of taking the samples that errors should take.
-    pub checks: Vec<Check>,
+    /// What came of taking about as many samples as errors should take.
+    pub tries: Vec<Try>,
 }
 
 /// What was measured of a method with a number of samples.
@@ -293,7 +293,7 @@ fn empty(plan: &Plan) -> Measurement {
             .map(|&rung| Point::new(rung, pixels))
             .collect(),
         picture: None,
-        checks: Vec::new(),
+        tries: Vec::new(),
     });
     // Enough samples for the methods to differ, few enough for the eye to see it.
     let shown = plan.rungs.iter().find(|&&rung| rung >= 16);

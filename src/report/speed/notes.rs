@@ -12,9 +12,14 @@ use crate::scene::Method;
 /// Times of the same work that spread by more than this share of their median, from the least to the greatest, are called noisy.
 pub const NOISY: f64 = 0.2;
 
+/// Where tries at counts between the planned ones left so many times as much as the line says, a note tells.
+const UNLIKE: f64 = 1.1;
+
 /// What the factor of what an error takes means.
-pub(super) const FACTOR: &str = "two standard errors, and how far the line may be off: between two points as much as it may sag, and of what is extrapolated \
-     as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, nor of regular, whose grid falls into step with the picture, nor where fewer samples were not measured (≤).";
+pub(super) const FACTOR: &str = "19 renders of 20 with so many times as many samples leave no more than the error, and renders with so many times as few no less, in the mean of squares. It comes from how much the \
+     tries differ, each of which has a seed and mostly a count of its own; without tries, from how much runs of one count do, and how far the line may be off: between two points as much as it may sag, \
+     and of what is extrapolated as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, \
+     nor of regular, whose grid falls into step with the picture, nor without tries of jittered and multi_jittered, whose grids suit some counts better than the next, nor where fewer samples were not measured (≤).";
 
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
@@ -141,6 +146,7 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes.extend(noise(measured));
     notes.extend(drift(measured));
     notes.extend(extrapolation(measured));
+    notes.extend(unlike_counts(measured));
     let bound = measured.reference.root_mean_square_bound();
     let errors = measured.errors.iter().copied();
     for wanted in errors.filter(|&wanted| !measured.tells(wanted)) {
@@ -203,6 +209,22 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
     };
     let is_asked = !(measured.errors.is_empty() || measured.series.is_empty());
     is_asked.then(|| format!("{goes_on}× and ÷: {FACTOR}"))
+}
+
+/// The planned counts are those that most methods like best: what tries left at others.
+fn unlike_counts(measured: &Measurement) -> Option<String> {
+    let unlike = measured.series.iter().filter_map(|series| {
+        let (least, greatest) = series.beside_line()?;
+        (greatest > UNLIKE).then(|| format!("{} {least:.2} to {greatest:.2}", series.method.name()))
+    });
+    let unlike: Vec<_> = unlike.collect();
+    (!unlike.is_empty()).then(|| {
+        format!(
+            "Powers of 4 suit some methods better than other counts do, and slopes are of them alone. At counts between them, single tries left so many times what the \
+             straight line between the two says: {}.",
+            unlike.join(", ")
+        )
+    })
 }
 
 /// Of how many combinations of method and samples the times are noisy, the exact method's among them.

@@ -66,11 +66,9 @@ fn charts(measured: &Measurement) -> String {
     let is_tried = measured
         .series
         .iter()
-        .any(|series| !series.checks.is_empty());
+        .any(|series| !series.tries.is_empty());
     let tried = match is_tried {
-        true => {
-            " Points at other numbers of samples than the axis names are single runs that try what an error takes."
-        }
+        true => " Markers off the lines are single runs that try what an error takes.",
         false => "",
     };
     format!(
@@ -224,7 +222,7 @@ fn needs(measured: &Measurement) -> String {
     let is_tried = measured
         .series
         .iter()
-        .any(|series| !series.checks.is_empty());
+        .any(|series| !series.tries.is_empty());
     let cell = |series: &Series, wanted: f64| {
         let needed = measured.needed(series, wanted);
         let mark = |text: String| match needed.is_some_and(|needed| needed.is_extrapolated) {
@@ -240,8 +238,7 @@ fn needs(measured: &Measurement) -> String {
         let time = needed.map(|needed| mark(time(&needed)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];
         if is_tried {
-            let tried = series.check(wanted).map(|check| tried(&check.point));
-            cells.push(tried.unwrap_or_else(none));
+            cells.push(tried(series, wanted).unwrap_or_else(none));
         }
         cells
     };
@@ -270,7 +267,7 @@ fn needs(measured: &Measurement) -> String {
                 format!("samples for {wanted}"),
                 format!("time for {wanted}"),
             ];
-            names.extend(is_tried.then(|| "tried: samples, error, time".to_owned()));
+            names.extend(is_tried.then(|| "tries: samples, errors".to_owned()));
             names
         })
         .collect();
@@ -278,8 +275,8 @@ fn needs(measured: &Measurement) -> String {
         return String::new();
     }
     table(
-        "What an error takes: samples per pixel by the lines between the points, × and ÷ two standard errors and how far the truth may be from these lines, and their time. A star marks what lies \
-         beyond the measured range; where an answer was tried, the last column is what the last try left of the error.",
+        "What an error takes: samples per pixel by the lines between the points, or by tries with about as many, and the factor up to which that holds for 19 renders of 20; and their time. A star marks what lies \
+         beyond the measured range; the last column is what tries left of the error.",
         &names,
         rows,
         exact,

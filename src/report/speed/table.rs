@@ -7,6 +7,7 @@ use super::{
     measure::{Measurement, Point, Series},
     needed::Needed,
     notes::{NOISY, has_empty_pixels, notes, spread, verdicts},
+    ticks::ends,
 };
 use crate::{numbers, scene::Method, suggest};
 
@@ -149,9 +150,8 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
                     true => "  extrapolated",
                     false => "",
                 };
-                let tried = series.check(wanted).map_or(String::new(), |check| {
-                    format!("  tried: {}", tried(&check.point))
-                });
+                let tried =
+                    tried(series, wanted).map_or(String::new(), |tried| format!("  {tried}"));
                 writeln!(
                     text,
                     "{name:16}{:>9}{:>8}{:>9}{extrapolated}{tried}",
@@ -170,14 +170,27 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
     text
 }
 
-/// What came of a single run.
-pub(super) fn tried(point: &Point) -> String {
-    format!(
-        "{} left {} in {}",
-        count(point.per_pixel as f64),
-        error(point.error()),
-        seconds(point.seconds())
-    )
+/// What came of the tries for an error, if there are any.
+pub(super) fn tried(series: &Series, wanted: f64) -> Option<String> {
+    let tries = || series.tries_for(wanted).map(|it| &it.point);
+    let tries_count = tries().count();
+    let counts = range(tries().map(|point| point.per_pixel as f64), count);
+    let errors = range(tries().map(Point::error), error);
+    let made = match tries_count {
+        1 => "1 try".to_owned(),
+        _ => format!("{tries_count} tries"),
+    };
+    (tries_count > 0).then(|| format!("{made}: {counts} left {errors}"))
+}
+
+/// The least and the greatest of some numbers.
+fn range(numbers: impl Iterator<Item = f64>, written: fn(f64) -> String) -> String {
+    let (least, greatest) = ends(numbers);
+    let [least, greatest] = [least, greatest].map(written);
+    match least == greatest {
+        true => least,
+        false => format!("{least} to {greatest}"),
+    }
 }
 
 /// A cell for each number of samples; `-` where nothing was measured.

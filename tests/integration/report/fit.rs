@@ -2,8 +2,8 @@
 
 use pinhole::{
     report::speed::{
-        Check, Point, Series,
-        fit::{Fit, log_error, median, quantile, root_mean_square},
+        Point, Series, Try,
+        fit::{Fit, certainty, log_error, median, quantile, root_mean_square},
     },
     scene::Method,
 };
@@ -64,7 +64,7 @@ fn series(points: &[(u64, f64, f64)]) -> Series {
         method: Method::Sobol,
         points: points.iter().map(point).collect(),
         picture: None,
-        checks: Vec::new(),
+        tries: Vec::new(),
     }
 }
 
@@ -74,47 +74,31 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     let needed = straight.needed(0.1414214).unwrap();
     assert_eq!((needed.per_pixel, needed.is_extrapolated), (8.0, false));
     assert!((needed.seconds - 5.0 / 3.0).abs() < 1e-12, "{needed:?}");
-    // Half-way between two: twice (½ + ½) · 0.01 by a slope of ½; and what the line may sag there, 0.8 of log 2 twice.
-    let (noise, sag) = (0.04, 0.8 * libm::log(2.0) * libm::log(2.0));
-    let factor = libm::exp(libm::hypot(noise, sag));
+    // Half-way between two, of two runs: Student's quantile of one degree of freedom times what a run differs from the next, √2 · 0.01, and with it
+    // (½ + ½) · 0.01, by a slope of ½; and what the line may sag, 0.8 of log 2 twice.
+    let noise = |line: f64| certainty(1) * libm::hypot(line, 2.0f64.sqrt() * 0.01) / 0.5;
+    let sag = 0.8 * libm::log(2.0) * libm::log(2.0);
+    let factor = libm::exp(libm::hypot(noise(0.01), sag));
     assert!((needed.factor.unwrap() - factor).abs() < 1e-6, "{needed:?}");
-    // As far beyond the last one: twice (1 + 2) · 0.01 by ½, and with a slope of −3/4 it would be 4/3 of log 2 in place of twice that; the
+    // Close to a point that may sag no less: what lies next to a count that a method likes is none.
+    let needed = straight.needed(0.1001).unwrap();
+    let beside = libm::exp(libm::hypot(noise(0.01), sag));
+    assert!((needed.factor.unwrap() - beside).abs() < 1e-3, "{needed:?}");
+    // As far beyond the last one: (1 + 2) · 0.01, and with a slope of −3/4 it would be 4/3 of log 2 in place of twice that; the
     // time on the line from the first to the last.
     let needed = straight.needed(0.0500001).unwrap();
     assert_eq!((needed.per_pixel, needed.is_extrapolated), (64.0, true));
     assert!((needed.seconds - 11.0).abs() < 1e-12, "{needed:?}");
-    let (noise, bend) = (0.12, 2.0 / 3.0 * libm::log(2.0));
-    let factor = libm::exp(libm::hypot(noise, bend));
+    let bend = 2.0 / 3.0 * libm::log(2.0);
+    let factor = libm::exp(libm::hypot(noise(0.03), bend));
     assert!((needed.factor.unwrap() - factor).abs() < 1e-5, "{needed:?}");
 
     // A line that flattens is followed where it ends, and doubted as far as the steepest slope is away: 1 here, by which half would do.
-    let mut bent = series(&[(1, 1.0, 0.4), (4, 1.0, 0.1), (16, 1.0, 0.05)]);
+    let bent = series(&[(1, 1.0, 0.4), (4, 1.0, 0.1), (16, 1.0, 0.05)]);
     let needed = bent.needed(0.0250001).unwrap();
     assert_eq!((needed.per_pixel, needed.seconds), (64.0, 1.75));
-    let factor = libm::exp(libm::hypot(0.12, libm::log(2.0)));
-    assert!((needed.factor.unwrap() - factor).abs() < 1e-5, "{needed:?}");
-    // What was tried is a point as well.
-    let tried = |per_pixel, error| Check {
-        wanted: 0.0250001,
-        point: Point {
-            rmse: vec![error],
-            times: vec![2.0],
-            ..series(&[(per_pixel, 2.0, error)]).points[0].clone()
-        },
-    };
-    bent.checks.push(tried(64, 0.03));
-    let needed = bent.needed(0.0250001).unwrap();
-    assert!(needed.is_extrapolated && needed.per_pixel > 64.0);
-    bent.checks.push(tried(100, 0.02));
-    let needed = bent.needed(0.0250001).unwrap();
-    assert!(!needed.is_extrapolated && (64.0..100.0).contains(&needed.per_pixel));
-    assert!(needed.factor.unwrap() > libm::exp(0.01) && needed.seconds == 2.0);
-    // A grid wants counts that are nearly squares: not 7 rows of one.
-    let mut grid = series(&[(1, 1.0, 0.4), (16, 1.0, 0.1)]);
-    grid.method = Method::MultiJittered;
-    for (error, count) in [(0.1513, 9.0), (0.13, 12.0), (0.11, 16.0), (0.4 / 6.2, 42.0)] {
-        assert_eq!(grid.needed(error).unwrap().per_pixel, count, "{error}");
-    }
+    let factor = libm::exp(libm::hypot(noise(0.03), libm::log(2.0)));
+    assert!((needed.factor.unwrap() - factor).abs() < 1e-4, "{needed:?}");
     // Where more samples do not help nothing is promised.
     assert_eq!(series(&[(1, 1.0, 0.4), (4, 1.0, 0.4)]).needed(0.1), None);
     // No error at all is one that is small enough, and fewer samples that were not measured may leave none, either.
@@ -127,6 +111,88 @@ fn what_an_error_takes_lies_between_the_points_on_either_side() {
     }
 }
 
+/// A series with single runs that tried 0.025: the straight line says that it takes 256 samples.
+fn tried(tries: &[(u64, f64)]) -> Series {
+    let mut series = series(&[(1, 0.5, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)]);
+    let to_try = |&(per_pixel, error): &(u64, f64)| Try {
+        wanted: 0.025,
+        seed: 0,
+        point: Point {
+            rmse: vec![error],
+            times: vec![per_pixel as f64 / 100.0],
+            per_pixel,
+            ..series.points[0].clone()
+        },
+    };
+    series.tries = tries.iter().map(to_try).collect();
+    series
+}
+
+#[test]
+fn tries_say_where_an_error_lies() {
+    // The truth is 399.5 samples and a slope of ½: a single try finds it, and is doubted: by what runs of a point differ, √2 · 0.01 of the logarithm and that
+    // of the mean of one; by what a count may differ from the next; and by the way from the try to the answer.
+    let error = |samples: f64| 0.025 * (399.5 / samples).sqrt();
+    let one = tried(&[(256, error(256.0))]).needed(0.025).unwrap();
+    assert_eq!((one.per_pixel, one.tries), (400.0, 1));
+    assert!(
+        one.is_extrapolated && (one.seconds - 4.0).abs() < 1e-12,
+        "{one:?}"
+    );
+    let render = certainty(1) * 2.0f64.sqrt() * 0.01 * 2.0f64.sqrt() / 0.5;
+    let doubt = libm::hypot(render, libm::hypot(0.38, libm::log(400.0 / 256.0)));
+    assert!(
+        (libm::log(one.factor.unwrap()) - doubt).abs() < 1e-3,
+        "{one:?}"
+    );
+    // Three near it tell how much one differs from the next: with squares of 1 + q, 1 and 1 − q, moved along the slope, the deviation of the logarithm is q/2.
+    let q = 0.08;
+    let counts = [(360u64, 1.0 + q), (400, 1.0), (444, 1.0 - q)];
+    let mut tries = vec![(256, error(256.0))];
+    tries.extend(counts.map(|(n, square): (u64, f64)| (n, error(n as f64) * square.sqrt())));
+    let three = tried(&tries).needed(0.025).unwrap();
+    assert_eq!((three.per_pixel, three.tries), (400.0, 3));
+    assert!(!three.is_extrapolated);
+    let doubt = certainty(2) * q / 2.0 * (4.0f64 / 3.0).sqrt() / 0.5;
+    assert!(
+        (libm::log(three.factor.unwrap()) - doubt).abs() < 1e-4,
+        "{three:?}"
+    );
+    // Of tries that are alike the answer is as sure as it is near to them.
+    let alike = tried(&[400, 400, 400].map(|n| (n, 0.0250001)))
+        .needed(0.025)
+        .unwrap();
+    assert!(
+        alike.factor.unwrap() < 1.0001 && alike.per_pixel == 401.0,
+        "{alike:?}"
+    );
+    // One that hit the exact picture by luck is doubted, and does not lead astray.
+    let mut tries = vec![(256, 1e-9)];
+    for count in [64, 200, 220, 270, 330, 300, 360] {
+        tries.push((count, error(count as f64)));
+        let lucky = tried(&tries).needed(0.025).unwrap();
+        let off = (lucky.per_pixel / 399.5).max(399.5 / lucky.per_pixel);
+        assert!(lucky.factor.unwrap() > off, "{lucky:?}");
+    }
+}
+
+#[test]
+fn counts_beside_those_that_a_grid_likes_are_not_known_untried() {
+    for method in [Method::Jittered, Method::MultiJittered, Method::Regular] {
+        let mut grid = series(&[(1, 1.0, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)]);
+        grid.method = method;
+        assert_eq!(grid.needed(0.15).unwrap().factor, None);
+        let mut once = tried(&[(256, 0.03)]);
+        once.method = method;
+        assert_eq!(once.needed(0.025).unwrap().factor, None);
+        // Tries at several counts tell, but not of one that falls into step with the picture.
+        let mut often = tried(&[(230, 0.026), (256, 0.025), (280, 0.024)]);
+        often.method = method;
+        let factor = often.needed(0.025).unwrap().factor;
+        assert_eq!(factor.is_none(), method == Method::Regular);
+    }
+}
+
 #[test]
 fn two_points_know_nothing_of_a_bend() {
     // The slope is −3/4, and may be −1/2 further on.
@@ -134,14 +200,17 @@ fn two_points_know_nothing_of_a_bend() {
     let needed = two.needed(0.0125).unwrap();
     assert!(needed.is_extrapolated);
     let more = libm::log(0.1 / 0.0125) * (2.0 - 4.0 / 3.0);
-    let factor = needed.factor.unwrap();
-    assert!(factor >= libm::exp(more), "{needed:?}");
-    assert!(factor < 1.05 * libm::exp(more), "{needed:?}");
+    let noise = |line: f64, slope| certainty(1) * libm::hypot(line, 2.0f64.sqrt() * 0.01) / slope;
+    let factor = libm::exp(libm::hypot(noise(0.03, 0.75), more));
+    assert!((needed.factor.unwrap() - factor).abs() < 1e-9, "{needed:?}");
     // Of independent samples theory knows: −1/2, and not −3/4.
     let mut random = series(&[(1, 1.0, 0.4), (16, 2.0, 0.1)]);
     random.method = Method::Random;
     let factor = random.needed(0.05).unwrap().factor.unwrap();
-    assert!(factor < 1.2, "{factor}");
+    assert!(
+        (factor - libm::exp(noise(0.02, 0.5))).abs() < 1e-9,
+        "{factor}"
+    );
     // Nor do single runs know of noise: there is no factor, and no method is said to be the fastest by it.
     let mut single = two;
     for point in &mut single.points {
@@ -150,12 +219,6 @@ fn two_points_know_nothing_of_a_bend() {
     }
     let needed = single.needed(0.0125).unwrap();
     assert_eq!((needed.factor, needed.is_extrapolated), (None, true));
-    // Nor is it known of a grid, which falls into step with the picture, however close it was tried.
-    let mut grid = series(&[(1, 1.0, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)]);
-    grid.method = Method::Regular;
-    assert_eq!(grid.needed(0.05).unwrap().factor, None);
-    assert_eq!(grid.needed(0.15).unwrap().factor, None);
-    assert_eq!(grid.needed(0.1999).unwrap().factor, None);
     // A curve that once rose may do so again.
     let rising = series(&[(1, 1.0, 0.1), (4, 1.0, 0.2), (16, 2.0, 0.1)]);
     assert_eq!(rising.needed(0.05).unwrap().factor, None);
@@ -176,8 +239,9 @@ fn a_slopes_uncertainty_covers_all_slopes_of_its_curve() {
     assert!(bend > fit.residual_error.unwrap() && bend > fit.measured_error.unwrap());
     assert_eq!(fit.slope_error, fit.bend);
     // … and, where more samples are tried, of none at all.
-    bent.checks.push(Check {
+    bent.tries.push(Try {
         wanted: 0.01,
+        seed: 0,
         point: series(&[(256, 1.0, 0.025)]).points[0].clone(),
     });
     let tried = bent.fit().unwrap();
@@ -187,8 +251,8 @@ fn a_slopes_uncertainty_covers_all_slopes_of_its_curve() {
         "{tried:?}"
     );
     // What lies close to another point shows its noise rather than a slope.
-    bent.checks[0].point.per_pixel = 65;
-    bent.checks[0].point.rmse = vec![0.03];
+    bent.tries[0].point.per_pixel = 65;
+    bent.tries[0].point.rmse = vec![0.03];
     let close = bent.fit().unwrap();
     assert!(close.slope_error.unwrap() < 0.4, "{close:?}");
 }
@@ -214,4 +278,9 @@ fn quantiles_lie_between_values() {
     assert_eq!(median(&[7.0]), 7.0);
     assert!(median(&[]).is_nan());
     assert_eq!(root_mean_square(&[3.0, 4.0, 0.0, 0.0]), 2.5);
+    assert_eq!(
+        (root_mean_square(&[0.0]), root_mean_square(&[0.1; 7])),
+        (0.0, 0.1)
+    );
+    assert!(root_mean_square(&[]).is_nan());
 }

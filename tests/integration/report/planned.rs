@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use pinhole::{
     film::Recipe,
     render::Control,
-    report::speed::{self, Checks, Plan, Request, Subject, measure},
+    report::speed::{self, Plan, Request, Subject, Tries, measure},
     scene::{self, Method, Scene},
     source::{Source, Sources},
 };
@@ -117,35 +117,33 @@ fn answers_are_tried_where_time_is_left() {
     };
     let between = (before.error() * last.error()).sqrt();
     let line = sobol().unwrap().needed(between).unwrap();
-    assert!(!line.is_extrapolated && line.sag > 0.05, "{line:?}");
+    assert!(!line.is_extrapolated && line.tries == 0, "{line:?}");
     measured.errors.push(between);
-    let checks = Checks::new(&plan, &measured);
-    assert!(checks.total() > 0);
-    checks.run(&mut measured, &control).unwrap();
+    let tries = Tries::new(&plan, &measured);
+    assert!(tries.total() > 0);
+    tries.run(&mut measured, &control).unwrap();
     let sobol = measured
         .series
         .iter()
-        .find(|series| series.method == Method::Sobol);
-    // A tenth more than the line said; or another try after that.
-    let first = &sobol.unwrap().checks[0];
-    assert_eq!(first.wanted, 2e-4);
-    assert!(first.point.per_pixel as f64 >= 1.1 * needed.per_pixel);
-    let needed = sobol.unwrap().needed(2e-4).unwrap();
-    let most = sobol.unwrap().curve().last().unwrap().per_pixel;
-    assert!(
-        !needed.is_extrapolated && needed.per_pixel <= most as f64,
-        "{needed:?}"
-    );
-    // Between two points, what the line says is taken, until a point is close.
-    let needed = sobol.unwrap().needed(between).unwrap();
-    let tries: Vec<_> = sobol.unwrap().checks.iter().collect();
-    let tries: Vec<_> = tries.iter().filter(|it| it.wanted == between).collect();
-    assert_eq!(tries[0].point.per_pixel as f64, line.per_pixel);
-    assert!(needed.sag <= 0.01 || tries.len() == 3, "{needed:?}");
-    assert!(needed.sag < line.sag, "{needed:?}");
-    let check = sobol.unwrap().check(2e-4).unwrap();
+        .find(|series| series.method == Method::Sobol)
+        .unwrap();
+    // What the line says comes first, between two points and beyond the last; then what tries say.
+    for (wanted, line) in [(2e-4, needed), (between, line)] {
+        let first = sobol.tries_for(wanted).next().unwrap();
+        let off = first.point.per_pixel as f64 - line.per_pixel;
+        assert!((-1.0..=1.0).contains(&off), "{off}");
+        let needed = sobol.needed(wanted).unwrap();
+        assert!(needed.tries >= 6 && !needed.is_extrapolated, "{needed:?}");
+        assert!(needed.factor.unwrap() < 3.0, "{needed:?}");
+    }
+    // Each has a seed of its own, which no planned run has.
+    let mut seeds: Vec<_> = sobol.tries.iter().map(|it| it.seed).collect();
+    seeds.dedup();
+    assert_eq!(seeds.len(), sobol.tries.len());
+    assert_eq!(seeds[0], measured.seed + measured.runs);
     let text = speed::table(&measured);
-    assert!(text.contains("  tried: "), "{text}");
+    assert!(text.contains(" tries: "), "{text}");
+    let check = sobol.tries_for(2e-4).next().unwrap();
     let rmse = check.point.error();
     let json = &speed::to_json(&measured)["methods"];
     let sobol = json
@@ -153,15 +151,59 @@ fn answers_are_tried_where_time_is_left() {
         .unwrap()
         .iter()
         .find(|method| method["method"] == "sobol");
-    assert_eq!(sobol.unwrap()["needed"][0]["tried"]["rmse"], rmse);
+    assert_eq!(sobol.unwrap()["needed"][0]["tries"][0]["rmse"], rmse);
     // What the charts draw has a row.
     let csv = speed::to_csv(&measured);
     let mut tried = csv.lines().filter(|line| line.ends_with(",0.0002"));
     let row = format!("sobol,{},", check.point.per_pixel);
-    assert!(tried.next_back().unwrap().starts_with(&row), "{csv}");
+    assert!(tried.next().unwrap().starts_with(&row), "{csv}");
     assert!(
         speed::page(&[measured])
             .unwrap()
-            .contains("tried: samples, error, time")
+            .contains("tries: samples, errors")
     );
+}
+
+#[test]
+fn renders_keep_what_the_factor_says() {
+    let (subject, mut scene) = small();
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let error = 0.01;
+    let methods = vec![Method::Random, Method::MultiJittered, Method::Hammersley];
+    let mut request = Request {
+        methods,
+        samples: Vec::new(),
+        runs: Some(3),
+        errors: vec![error],
+        budget: std::time::Duration::from_secs(60),
+        threads: None,
+    };
+    let plan = Plan::new(&subject, &scene, &request, &control).unwrap();
+    let mut measured = measure(&plan, &control).unwrap();
+    Tries::new(&plan, &measured)
+        .run(&mut measured, &control)
+        .unwrap();
+    // Others' seeds than those that it was found with.
+    scene.sampler.seed += 1_000_000;
+    request.runs = Some(40);
+    for series in &measured.series {
+        let needed = series.needed(error).unwrap();
+        let factor = needed.factor.unwrap();
+        assert!(needed.tries >= 6 && factor < 4.0, "{needed:?}");
+        let [few, many] = [needed.per_pixel / factor, needed.per_pixel * factor];
+        request.methods = vec![series.method];
+        request.samples = vec![few as u64, many.ceil() as u64];
+        let plan = Plan::new(&subject, &scene, &request, &control).unwrap();
+        let ends = measure(&plan, &control).unwrap();
+        let [few, many] = ends.series[0].points.as_slice() else {
+            panic!("{:?}", ends.series);
+        };
+        assert!(few.error() >= error, "{:?} {needed:?}", series.method);
+        let kept = many.rmse.iter().filter(|&&left| left <= error).count();
+        assert!(kept >= 38, "{:?} {needed:?} {kept}", series.method);
+    }
 }
