@@ -44,6 +44,9 @@ const TOP: i32 = 44;
 
 const SMALL: f64 = 15.0;
 
+/// A letter of a small text is about so wide.
+const LETTER: i32 = 7;
+
 /// What a chart shows.
 struct Chart {
     title: String,
@@ -321,7 +324,8 @@ fn draw_exact<DB: DrawingBackend>(
     } else {
         rows.start + 14
     };
-    let (side, dx) = match x - columns.start > 230 {
+    let width = LETTER * label.chars().count() as i32;
+    let (side, dx) = match x - columns.start > width + 10 {
         true => (HPos::Right, -10),
         false => (HPos::Left, 10),
     };

@@ -218,18 +218,29 @@ fn ranged(times: &[f64]) -> String {
     }
 }
 
+/// A table for each error that is asked for.
 fn needs(measured: &Measurement) -> String {
-    let is_tried = measured
-        .series
-        .iter()
-        .any(|series| !series.tries.is_empty());
-    let cell = |series: &Series, wanted: f64| {
+    let caption = "What an error takes: samples per pixel by the lines between the points, or by tries with about as many, and the factor up to which that holds for \
+                   19 renders of 20; and their time. A star marks what lies beyond the measured range; the last column is what tries left of the error.";
+    let errors = measured.errors.iter().enumerate();
+    let tables = errors.map(|(at, &wanted)| {
+        let same = format!("The same for an error of {}.", error(wanted));
+        let caption = if at == 0 { caption } else { &same };
+        needs_for(measured, wanted, caption)
+    });
+    tables.collect()
+}
+
+fn needs_for(measured: &Measurement, wanted: f64, caption: &str) -> String {
+    let is_tried = |series: &Series| series.tries_for(wanted).next().is_some();
+    let is_tried = measured.series.iter().any(is_tried);
+    let none = || "–".to_owned();
+    let cells = |series: &Series| {
         let needed = measured.needed(series, wanted);
         let mark = |text: String| match needed.is_some_and(|needed| needed.is_extrapolated) {
             true => format!("{text}*"),
             false => text,
         };
-        let none = || "–".to_owned();
         let samples = needed.map(|needed| match doubt(&needed) {
             _ if needed.is_at_most => samples(&needed),
             Some(doubt) => mark(format!("{} × ÷ {doubt}", samples(&needed))),
@@ -237,50 +248,20 @@ fn needs(measured: &Measurement) -> String {
         });
         let time = needed.map(|needed| mark(time(&needed)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];
-        if is_tried {
-            cells.push(tried(series, wanted).unwrap_or_else(none));
-        }
+        cells.extend(is_tried.then(|| tried(series, wanted).unwrap_or_else(none)));
         cells
     };
-    let rows = measured.series.iter().map(|series| {
-        let row = measured
-            .errors
-            .iter()
-            .flat_map(|&wanted| cell(series, wanted));
-        (series.method.name(), row.collect())
-    });
+    let rows = measured.series.iter();
+    let rows = rows.map(|series| (series.method.name(), cells(series)));
     let exact = measured.exact.as_ref().map(|_| {
+        let time = measured.exact_seconds(wanted).map_or_else(none, seconds);
         let tried = if is_tried { "<td></td>" } else { "" };
-        let cell = |&wanted: &f64| {
-            let time = measured.exact_seconds(wanted);
-            let time = time.map_or_else(|| "–".to_owned(), seconds);
-            format!("<td>–</td><td>{time}</td>{tried}")
-        };
-        measured.errors.iter().map(cell).collect()
+        format!("<td>–</td><td>{time}</td>{tried}")
     });
-    let names: Vec<_> = measured
-        .errors
-        .iter()
-        .flat_map(|&wanted| {
-            let wanted = error(wanted);
-            let mut names = vec![
-                format!("samples for {wanted}"),
-                format!("time for {wanted}"),
-            ];
-            names.extend(is_tried.then(|| "tries: samples, errors".to_owned()));
-            names
-        })
-        .collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    table(
-        "What an error takes: samples per pixel by the lines between the points, or by tries with about as many, and the factor up to which that holds for 19 renders of 20; and their time. A star marks what lies \
-         beyond the measured range; the last column is what tries left of the error.",
-        &names,
-        rows,
-        exact,
-    )
+    let asked = error(wanted);
+    let mut names = vec![format!("samples for {asked}"), format!("time for {asked}")];
+    names.extend(is_tried.then(|| "tries: samples, errors".to_owned()));
+    table(caption, &names, rows, exact)
 }
 
 fn rung_names(measured: &Measurement) -> Vec<String> {
