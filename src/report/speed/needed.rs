@@ -4,7 +4,7 @@ use super::{
     fit::median,
     ladder::Found,
     measure::{Measurement, Point, Series},
-    tried::{FEWEST_TRIES, LEAPING},
+    tried::FEWEST_TRIES,
 };
 use crate::scene::Method;
 
@@ -14,8 +14,8 @@ pub struct Needed {
     /// Samples per pixel.
     pub per_pixel: f64,
     /// How far it may be off as a factor, 1 or more: 19 times of 20, a render with so many times as many samples leaves no more than
-    /// the error, and renders with so many times as few leave no less, in the mean of squares. None where it was not computed, or nothing is
-    /// known of that.
+    /// the error, and renders with so many times as few leave no less, in the mean of squares. 1 where these very samples were measured, and
+    /// there are no fewer; none where nothing is known of that.
     pub factor: Option<f64>,
     /// Seconds.
     pub seconds: f64,
@@ -25,8 +25,6 @@ pub struct Needed {
     pub is_extrapolated: bool,
     /// Whether fewer may do: of fewer none were measured, or none between those that leave an error and these, which leave none.
     pub is_at_most: bool,
-    /// Whether it was computed, from a line or from tries: else these very samples were measured.
-    pub is_computed: bool,
     /// On how many tries it rests; 0 if on the line between the planned points.
     pub tries: usize,
 }
@@ -42,31 +40,31 @@ pub enum Fastest {
 
 impl Needed {
     /// What was measured at a point that is enough.
-    pub(super) fn of_point(series: &Series, point: &Point, is_at_most: bool) -> Self {
+    pub(super) fn of_point(
+        series: &Series,
+        point: &Point,
+        is_at_most: bool,
+        is_sure: bool,
+    ) -> Self {
         Self {
             per_pixel: point.per_pixel as f64,
-            factor: None,
+            factor: (is_sure && !is_at_most).then_some(1.0),
             seconds: point.seconds(),
             spread: series.time_spread(point),
             is_extrapolated: false,
             is_at_most,
-            is_computed: false,
             tries: 0,
         }
     }
 
     /// The time may be so many times as long or as short: the samples' factor and half of the spread.
     fn doubt(&self) -> f64 {
-        let samples = match self.is_unknown() {
-            true => f64::INFINITY,
-            false => self.factor.unwrap_or(1.0),
-        };
-        samples * (1.0 + self.spread / 2.0)
+        self.factor.unwrap_or(f64::INFINITY) * (1.0 + self.spread / 2.0)
     }
 
-    /// Whether nothing is known of how far it may be off: it was computed from points that do not tell, or fewer were not measured.
+    /// Whether nothing is known of how far it may be off: it was computed from points that do not tell, was measured too seldom, or fewer were not.
     pub(super) fn is_unknown(&self) -> bool {
-        self.factor.is_none() && (self.is_computed || self.is_at_most)
+        self.factor.is_none()
     }
 }
 
@@ -85,10 +83,7 @@ impl Series {
         let tries = tried.near.len();
         let is_extrapolated = line.is_extrapolated && tries < FEWEST_TRIES;
         let (x, doubt) = match tries {
-            0 => (
-                line.x,
-                line.doubt.filter(|_| !LEAPING.contains(&self.method)),
-            ),
+            0 => (line.x, line.doubt),
             _ => (tried.x, self.doubt(&tried, &line)),
         };
         let per_pixel = libm::exp(x).ceil();
@@ -106,7 +101,6 @@ impl Series {
             spread,
             is_extrapolated,
             is_at_most: false,
-            is_computed: true,
             tries,
         })
     }
@@ -137,7 +131,7 @@ impl Measurement {
         }
         let is_first = |series: &Series| {
             let first = series.points.first();
-            first.is_some_and(|point| point.error() <= error)
+            first.is_some_and(|point| series.keeps(point, error))
         };
         if self.series.len() > 1 && self.series.iter().all(is_first) {
             return Some(Fastest::All);

@@ -17,9 +17,9 @@ const UNLIKE: f64 = 1.1;
 
 /// What the factor of what an error takes means.
 pub(super) const FACTOR: &str = "19 renders of 20 with so many times as many samples leave no more than the error, and renders with so many times as few no less, in the mean of squares. It comes from how much the \
-     tries differ, each of which has a seed and mostly a count of its own; without tries, from how much runs of one count do, and how far the line may be off: between two points as much as it may sag, \
-     and of what is extrapolated as much as by the slope between any other two points, by −1/2, or by −3/4 where samples are spread evenly. It is not known (?) of single runs, \
-     nor of regular, whose grid falls into step with the picture, nor without tries of jittered and multi_jittered, whose grids suit some counts better than the next, nor where fewer samples were not measured (≤).";
+     tries differ, each of which has a seed and mostly a count of its own; without tries, of random and scatter, from how much runs of one count do, and how far the line may be off: between two points as much as it may sag, \
+     and of what is extrapolated as much as by the slope between any other two points or by −1/2. It is not known (?) without tries of the other methods, which like powers of two, or squares, better than counts beside them, \
+     nor of regular, whose grid falls into step with the picture, nor where the fewest that were measured are enough (≤) or may be so by luck.";
 
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
@@ -72,8 +72,9 @@ fn all(measured: &Measurement, wanted: f64) -> String {
         _ => format!("an error of {} or less", error(wanted)),
     };
     format!(
-        "every sampled method has {error} with {} per pixel already, so that none is the fastest to come there",
-        plural(fewest, "sample")
+        "every sampled method had {error} with {} per pixel already, in {}, so that none is the fastest to come there",
+        plural(fewest, "sample"),
+        plural(measured.rounds() as u64, "run")
     )
 }
 

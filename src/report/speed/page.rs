@@ -241,10 +241,9 @@ fn needs_for(measured: &Measurement, wanted: f64, caption: &str) -> String {
             true => format!("{text}*"),
             false => text,
         };
-        let samples = needed.map(|needed| match doubt(&needed) {
-            _ if needed.is_at_most => samples(&needed),
-            Some(doubt) => mark(format!("{} × ÷ {doubt}", samples(&needed))),
-            None => mark(samples(&needed)),
+        let samples = needed.map(|needed| match needed.is_at_most {
+            true => samples(&needed),
+            false => mark(format!("{} × ÷ {}", samples(&needed), doubt(&needed))),
         });
         let time = needed.map(|needed| mark(time(&needed)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];

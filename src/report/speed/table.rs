@@ -156,7 +156,7 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
                     text,
                     "{name:16}{:>9}{:>8}{:>9}{extrapolated}{tried}",
                     samples(&needed),
-                    doubt(&needed).unwrap_or_default(),
+                    doubt(&needed),
                     time(&needed),
                 )
             }
@@ -272,12 +272,12 @@ pub(super) fn time(needed: &Needed) -> String {
     }
 }
 
-/// How far what an error takes may be off, as a factor; nothing of what was not computed from several points.
-pub(super) fn doubt(needed: &Needed) -> Option<String> {
+/// How far what an error takes may be off, as a factor.
+pub(super) fn doubt(needed: &Needed) -> String {
     match needed.factor {
-        Some(factor) if factor < 100.0 => Some(significant(factor, 3)),
-        Some(factor) => Some(format!("{factor:.0e}")),
-        None => needed.is_unknown().then(|| "?".to_owned()),
+        Some(factor) if factor < 100.0 => significant(factor, 3),
+        Some(factor) => format!("{factor:.0e}"),
+        None => "?".to_owned(),
     }
 }
 

@@ -17,13 +17,6 @@ const NEAR: f64 = 0.3;
 /// A few tries move an answer by no more than e to this: a single one may have hit the exact picture by luck.
 const STRIDE: f64 = 1.4;
 
-/// What a count takes may differ from what others do by e to this: a few tries do not tell. As much as a line between powers of four may sag.
-const ALONE: f64 = 0.38;
-
-/// Samples on a grid suit some counts better than those next to them, and fall into step with the lines of a picture: the errors of these methods leap from
-/// a count to the next. Where they were not tried nothing is known of them.
-pub(super) const LEAPING: [Method; 3] = [Method::Regular, Method::Jittered, Method::MultiJittered];
-
 /// Samples taken because an error should take about so many.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Try {
@@ -100,17 +93,16 @@ impl Series {
             1 => None,
             _ => Some(surely(&alike(&tried.near, tried.middle, line.slope))?),
         };
-        let (differs, off) = match k < FEWEST_TRIES {
-            false => (theirs?, 0.0),
+        let differs = match k < FEWEST_TRIES {
+            false => theirs?,
             // As much as runs of the last planned point differ besides: two tries may be alike by luck.
             true => {
-                let is_known = !LEAPING.contains(&self.method);
-                let runs = &self.points.last().filter(|_| is_known)?.rmse;
-                (surely(runs)?.max(theirs.unwrap_or(0.0)), ALONE)
+                let last = self.points.last().filter(|_| self.is_independent())?;
+                surely(&last.rmse)?.max(theirs.unwrap_or(0.0))
             }
         };
         let render = differs * (1.0 + 1.0 / k as f64).sqrt() / line.slope.abs();
-        let doubt = libm::hypot(render, libm::hypot(tried.x - tried.middle, off));
+        let doubt = libm::hypot(render, tried.x - tried.middle);
         Some(doubt).filter(|_| self.method != Method::Regular)
     }
 

@@ -94,7 +94,7 @@ fn people_get_a_table() {
         "note: What is extrapolated",
         "note: scatter",
         "the slope (*) has the errors of those in it",
-        "the fastest sampled method",
+        "which sampled method is the fastest is not known",
         "million samples/s: all samples by the time that they take, traced or not",
         "million rays/s: those of the samples that are traced",
         "slope: of the line through the logarithms of samples and error; ± covers",
@@ -192,12 +192,12 @@ fn programs_get_json_and_errors_fall() {
         assert_eq!(needed[1]["at_most"], false, "{name}");
         assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
         assert_eq!(needed[1]["extrapolated"], false);
-        assert_eq!(needed[1]["factor"], Value::Null);
+        assert_eq!(needed[1]["factor"], 1.0, "{name}");
         assert_eq!(needed[2]["extrapolated"], true, "{name}");
-        // Nothing is known of a grid that falls into step with the picture, nor, untried, of those that suit some counts better than others.
+        // Untried, nothing is known of samples that know of each other.
         let factor = needed[2]["factor"].as_f64();
-        let leaps = ["regular", "jittered", "multi_jittered"].contains(&name);
-        assert_eq!(factor.is_none(), leaps, "{name}");
+        let is_independent = ["random", "scatter"].contains(&name);
+        assert_eq!(factor.is_some(), is_independent, "{name}");
         assert!(factor.is_none_or(|factor| factor > 2.0), "{name}");
         // Whoever says how many samples are taken gets no others.
         assert_eq!(needed[2]["tries"], serde_json::json!([]));
@@ -315,7 +315,7 @@ fn a_picture_of_one_colour_has_no_error() {
     );
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        text.contains("; every sampled method has no error at all with 1 sample per pixel already, so that none is the fastest"),
+        text.contains("; every sampled method had no error at all with 1 sample per pixel already, in 1 run, so that none is the fastest"),
         "{text}"
     );
     parsed(&read(&folder, "out/index.html"));
