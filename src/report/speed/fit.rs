@@ -61,8 +61,8 @@ pub fn log_error(values: &[f64]) -> Option<f64> {
 ///
 /// With k points, x̄ and ȳ their means (of the logarithms) and S = Σ(x − x̄)², the slope is b = Σ(x − x̄)(y − ȳ) / S and its standard
 /// error √(Σr² / (k − 2) / S), r being the residuals: Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
-/// That takes the residuals for independent and alike. But a few points may lie on a line by luck. So where standard errors e of the
-/// ln y are known, the slope has at least the error that they give it, √(Σ(x − x̄)²e²) / S: of the two the greater one counts. That is the rule by
+/// That takes the residuals for independent and alike. But a few points may lie on a line by luck. So where points are measured, standard errors e of the
+/// ln y have to be known, and the slope has at least the error that they give it, √(Σ(x − x̄)²e²) / S: of the two the greater one counts. That is the rule by
 /// which the Particle Data Group scales the errors of means, up where points scatter more than their own errors say and never down (Review of
 /// Particle Physics 2024, section 5.2.2 of its introduction).
 ///
@@ -72,7 +72,7 @@ pub fn log_error(values: &[f64]) -> Option<f64> {
 pub struct Fit {
     /// The exponent b of y ∝ x^b.
     pub slope: f64,
-    /// How far it may be off, if there are more points than two: the greatest one of the three below.
+    /// How far it may be off, if there are more points than two, and their errors are known if they were measured: the greatest one of the three below.
     pub slope_error: Option<f64>,
     /// The standard error that the residuals give it.
     pub residual_error: Option<f64>,
@@ -134,7 +134,8 @@ impl Fit {
         })
     }
 
-    /// The same line, where the standard error of each ln y is known. Nothing is changed if it is not known of all points.
+    /// The same line, where the standard error of each ln y is known. If it is not known of all points, neither is how far the slope may be off: the
+    /// residuals alone may be small by luck.
     pub fn of_measured(points: &[(f64, f64)], errors: &[Option<f64>]) -> Option<Self> {
         let fit = Self::of(points)?;
         let part = |(&(x, _), error): (&(f64, f64), &Option<f64>)| {
@@ -145,7 +146,8 @@ impl Fit {
         Some(Self {
             slope_error: fit
                 .residual_error
-                .map(|error| error.max(measured_error.unwrap_or(0.0))),
+                .zip(measured_error)
+                .map(|(a, b)| a.max(b)),
             measured_error,
             ..fit
         })

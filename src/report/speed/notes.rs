@@ -187,11 +187,12 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Whether the line through a method's errors goes through some of pictures in which more than a thousandth of the pixels has no sample: with n
+/// Whether there is a line through a method's errors, and it goes through some of pictures in which more than a thousandth of the pixels has no sample: with n
 /// that fall anywhere, a share of about exp(−n).
 pub(super) fn has_empty_pixels(series: &Series) -> bool {
     let few = |point: &Point| libm::exp(-(point.per_pixel as f64)) > 1e-3;
-    series.method == Method::Scatter && series.points.iter().any(few)
+    let is_there = series.method == Method::Scatter && series.fit().is_some();
+    is_there && series.points.iter().any(few)
 }
 
 fn extrapolation(measured: &Measurement) -> Option<String> {

@@ -13,7 +13,7 @@ use crate::{numbers, scene::Method, suggest};
 
 /// What a slope's error means.
 pub(super) const SLOPE: &str = "of the line through the logarithms of samples and error; ± covers its standard error and the slope between any \
-     two points, tried ones among them, of which one has at least twice the samples of the other. More samples than these may have another one.";
+     two points, tried ones among them, of which one has at least twice the samples of the other. Nothing is known of it from single runs. More samples than these may have another one.";
 
 /// What the rates mean.
 pub(super) const RATE: &str = "all samples by the time that they take, traced or not.";

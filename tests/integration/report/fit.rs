@@ -41,7 +41,12 @@ fn points_on_a_line_by_luck_have_the_uncertainty_of_their_runs() {
     assert!(fit.residual_error.unwrap() < 1e-14);
     // One point of which nothing is known; and residuals that say more.
     let errors = [Some(0.1), None, Some(0.1), Some(0.1)];
-    assert_eq!(Fit::of_measured(&points, &errors), Fit::of(&points));
+    let fit = Fit::of_measured(&points, &errors).unwrap();
+    assert_eq!(
+        (fit.slope_error, fit.bent(&[-0.2]).slope_error),
+        (None, None)
+    );
+    assert_eq!(fit.residual_error, Fit::of(&points).unwrap().residual_error);
     let bent = [(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)];
     let fit = Fit::of_measured(&bent, &[Some(1e-3); 4]).unwrap();
     assert_eq!(fit.slope_error, fit.residual_error);
