@@ -95,8 +95,12 @@ pub struct Board {
     pub odd: bool,
 }
 
-/// As many objects as lie above each other in pictures that people make. Of more it takes too long to compare each two.
+/// As many objects as lie above each other in pictures that people make. Of more it takes too long to compare each two: only the nearest is compared
+/// with the others.
 const FEW: usize = 8;
+
+/// Heights of checkerboards are certain to be told apart in each precision if they differ by this factor, whatever their rounding.
+const APART: f64 = 1.0 + 1e-12;
 
 /// The error of a line's form from which on double-double was not enough.
 pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
@@ -216,17 +220,49 @@ impl World {
     /// Removes flat objects that lie behind another flat one all over the patch, though their depths there overlap, or in
     /// the same plane as one that comes before them in the file.
     fn drop_covered(&self, patch: &Patch, live: &mut Vec<Live>) {
+        let drop_behind = |front: usize, live: &mut Vec<Live>| {
+            live.retain(|back| {
+                back.object == front || back.is_cut() || !self.covers(front, back.object, patch)
+            });
+        };
+        let may_cover = |live: &&Live| live.is_whole && !live.is_cut();
         if live.len() > FEW {
-            return;
-        }
-        for front in live.clone() {
-            if front.is_whole && !front.is_cut() {
-                live.retain(|back| {
-                    back.object == front.object
-                        || back.is_cut()
-                        || !self.covers(front.object, back.object, patch)
-                });
+            self.drop_boards_behind(live);
+            // Of layers the nearest one hides all others.
+            let fronts = live.iter().filter(may_cover);
+            let nearest =
+                |a: &&Live, b: &&Live| a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
+            let nearest = fronts.max_by(nearest);
+            if let Some(front) = nearest.map(|live| live.object) {
+                drop_behind(front, live);
             }
+        }
+        if live.len() <= FEW {
+            for front in live.clone().iter().filter(may_cover) {
+                drop_behind(front.object, live);
+            }
+        }
+    }
+
+    /// Removes checkerboards that lie behind another one, above or below the eye: whatever ray meets them meets that one, too, and nearer, also
+    /// where the horizon crosses the patch.
+    fn drop_boards_behind(&self, live: &mut Vec<Live>) {
+        for is_above in [false, true] {
+            let height = |live: &Live| {
+                let height = self.board_height(live.object)?;
+                ((height > 0.0) == is_above).then_some(height.abs())
+            };
+            let fronts = live.iter().filter(|live| !live.is_cut());
+            let fronts = fronts.filter_map(|live| Some((height(live)?, live.object)));
+            let nearest = fronts.min_by(|(a, i), (b, j)| a.total_cmp(b).then(i.cmp(j)));
+            let Some((nearest, front)) = nearest else {
+                continue;
+            };
+            live.retain(|back| match height(back) {
+                // Heights that are hardly apart may count as equal.
+                Some(height) => back.object == front || back.is_cut() || height <= nearest * APART,
+                None => true,
+            });
         }
     }
 

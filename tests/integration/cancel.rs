@@ -11,7 +11,9 @@ use std::{
 };
 
 use pinhole::{
+    area::Area,
     cancel::Cancelled,
+    render::{Control, render_exact},
     scene,
     source::{Source, SourceId, Sources},
     syntax,
@@ -59,6 +61,28 @@ fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Syn
         let took = end.duration_since(*set.wait());
         assert!(took < whole / 2, "{what}: {took:?} of {whole:?}");
     }
+}
+
+#[test]
+fn an_exact_pixel_is_given_up_while_it_is_cut() {
+    // All outlines lie within a millionth of a pixel, so that cutting it does not tell them apart.
+    let mut text =
+        "image { width 2 height 2 } camera { eye (0, 2, 0) direction (0, 0, -1) d 1.5 }\n"
+            .to_owned();
+    for index in 0..40 {
+        let radius = 2.0 + 1e-7 * f64::from(index);
+        let _ = writeln!(text, "sphere {{ center (0, 2, -5) radius {radius} }}");
+    }
+    let scene = scene::read(&sources(&text)).scene.unwrap();
+    let world = World::new(&scene);
+    check("an exact picture", |cancel| {
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel,
+        };
+        render_exact(&world, Area::whole(2, 2), &control).map_err(|_| Cancelled)
+    });
 }
 
 #[test]

@@ -18,8 +18,8 @@ use self::{
 use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
 use crate::area::Area;
 
-/// A part with so many candidates is cut by their bounds alone, without a look at most of them. Fewer may well be large, or slivers of
-/// whose bounds they fill but a small part.
+/// A part with so many candidates is cut by their bounds alone, without a look at most of them, unless the bounds of the first ones hold most
+/// of it. Fewer may well be large, or slivers of whose bounds they fill but a small part.
 const CROWD: usize = 32;
 
 /// So many bounds are looked at in less time than it takes to go down the hierarchy, whose lists have up to 32 in their last cell.
@@ -183,7 +183,17 @@ impl<'a> Quartering<'a> {
                     budget.is_for_forms(self.world.forms(objects))
                 }
             }
-            _ => crowd.len() < CROWD && budget.is_for_a_look(area, crowd.len()),
+            _ => {
+                let is_large = match crowd.get(..CROWD) {
+                    None => true,
+                    Some(first) => self.world.is_hardly_cut(area, first),
+                };
+                if is_large && !budget.is_for_a_look(area, crowd.len()) {
+                    // Rays ask them all.
+                    budget = budget.probed(self.world, area);
+                }
+                is_large && budget.is_for_a_look(area, crowd.len())
+            }
         };
         if is_for_a_look {
             let mut live = take(&mut room.live, depth);

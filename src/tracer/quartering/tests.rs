@@ -44,6 +44,68 @@ fn thousand_spheres(depth: f64) -> String {
     text
 }
 
+/// Large triangles in planes behind each other, in any order, before the first of which nothing lies.
+fn triangles_in_layers(count: usize) -> String {
+    let mut text = String::new();
+    for index in 0..count {
+        let depth = 10.0 + (index * 37 % count) as f64 / 64.0;
+        let _ = write!(
+            text,
+            "triangle {{ centroid (0, 0, -{depth}) normal (0.3, 0.2, 1) sides (400, 400, 400) }} "
+        );
+    }
+    text
+}
+
+/// Boards below each other and above each other, of one colour each, in any order; the horizon lies in the picture.
+fn boards_in_layers(count: usize) -> String {
+    let mut text = String::new();
+    for index in 0..count {
+        let height = 1.0 + (index * 37 % count) as f64 / 64.0;
+        let sign = if index % 2 == 0 { "" } else { "-" };
+        let _ = write!(
+            text,
+            "checkerboard {{ y {sign}{height} colors (teal, teal) }} "
+        );
+    }
+    text
+}
+
+#[test]
+fn layers_cost_what_is_seen_of_them_however_many_they_are() {
+    for count in [9, 31, 32, 33, 101, 1001] {
+        for layers in [triangles_in_layers(count), boards_in_layers(count)] {
+            let world = World::new(&read(&layers));
+            for samples in [4.0, 16.0, f64::INFINITY] {
+                let quartering = match samples.is_finite() {
+                    // Of a thousand, rays ask few, the nearest first.
+                    true if count > 1000 => continue,
+                    true => Quartering::for_samples(&world, samples),
+                    false => Quartering::new(&world),
+                };
+                let mut room = Room::default();
+                for tile in Area::whole(SIZE, SIZE).tiles(16) {
+                    let flow = quartering.parts(tile, &mut room, &mut |part| {
+                        let few = match part {
+                            Part::Flat { .. } => 0,
+                            Part::Open { live, .. } => live.len(),
+                            Part::Plain { among, .. } => match among {
+                                Among::All => usize::MAX,
+                                Among::Crowd(crowd) => crowd.len(),
+                                Among::Live(live) => live.len(),
+                            },
+                        };
+                        // At the horizon the nearest one below and the nearest one above.
+                        assert!(few <= 2, "{count}, {samples} samples: {part:?}");
+                        ControlFlow::Continue(())
+                    });
+                    assert!(flow.is_continue());
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn what_a_wall_hides_is_not_found() {
     let wall = "box { min (-9, -9, -5) max (9, 9, -4) }";

@@ -88,6 +88,17 @@ impl World {
         rectangle.is_some_and(|rectangle| crowd.iter().any(|item| item.may_fill(&rectangle)))
     }
 
+    /// Whether bounds of a crowd meet more than half of the quarters of a part of the picture, in the mean: to cut by them does not tell objects apart.
+    pub fn is_hardly_cut(&self, part: Area, crowd: &[Item]) -> bool {
+        let met = |quarter: Area| {
+            let patch = Patch::new(&self.fast.camera, quarter);
+            let rectangle = self.hierarchy.rectangle(&patch);
+            let met = |rectangle| crowd.iter().filter(|item| item.meets(&rectangle)).count();
+            rectangle.map_or(0, met)
+        };
+        part.quarters().map(met).sum::<usize>() > 2 * crowd.len()
+    }
+
     /// What [`slot_at`](World::slot_at) answers in a part of the picture with this crowd.
     #[inline]
     pub fn slot_in_crowd(&self, x: u32, y: u32, offset: DVec2, crowd: &[Item]) -> usize {

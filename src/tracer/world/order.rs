@@ -8,6 +8,7 @@ use std::cmp::Ordering;
 use super::{Level, Numbers, World};
 use crate::{
     math::{Big, Double, Doubt, Real},
+    scene::{Checkerboard, Shape},
     tracer::{
         camera::Direction,
         crossing::{Crossing, Part},
@@ -73,6 +74,17 @@ impl World {
         match (self.numbers[i].plane(a), self.numbers[j].plane(b)) {
             (Some(a), Some(b)) => a.equals(&b),
             _ => false,
+        }
+    }
+
+    /// How far above the eye a checkerboard lies, rounded once; none if the object is none.
+    pub(in crate::tracer) fn board_height(&self, index: usize) -> Option<f64> {
+        match &self.numbers[index] {
+            Numbers::Other(shape) => match **shape {
+                Shape::Checkerboard(Checkerboard { y, .. }) => Some(y - self.fast.camera.eye.y),
+                _ => None,
+            },
+            Numbers::Sphere(..) => None,
         }
     }
 
