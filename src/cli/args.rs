@@ -149,11 +149,11 @@ roll, colours averaged without decoding them, an object in the wrong place, too 
 
 JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
 a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be judged, as the exact picture's bound is too \
-large there), tolerance (in steps), equal, likely [{mistake, message, help, rmse, explains, off {right, down, \
-outwards}}] with the best explanation first, thin (whether a simple mistake or noise would explain it, of which too few \
+large there), tolerance (in steps), equal, likely [{mistake, message, help, rmse, explains, sure, off {right, \
+down, outwards}}] with the best explanation first, thin (whether a simple mistake or noise would explain it, of which too few \
 pixels tell), may_be_noise (whether noise would: then nothing need be wrong); rmse is what an explanation leaves, explains its \
-share of the squared difference, 0 to 1, and off is by how many pixels an object is off: its middle, and its outline, away from \
-there. Of pictures of different sizes rmse, largest, beyond and undecided are null.
+share of the squared difference, 0 to 1, sure whether that is no less than what it leaves, and off is by how many pixels an object is \
+off: its middle, and its outline, away from there. Of pictures of different sizes rmse, largest, beyond and undecided are null.
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
 

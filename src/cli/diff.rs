@@ -9,7 +9,7 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grade::{self, Grade},
+    grade::{self, Grade, Verdict},
     numbers::{grouped, short},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
@@ -316,14 +316,22 @@ impl Report {
             }
         }
         for (place, verdict) in self.grade.likely.iter().enumerate() {
-            let word = if place == 0 { "likely" } else { "or" };
+            let word = match (place, is_sure(verdict)) {
+                (0, true) => "likely",
+                (0, false) => "perhaps",
+                _ => "or",
+            };
             writeln!(out)?;
             writeln!(out, "{word:<9} {}", verdict.message)?;
             if let Some(explains) = verdict.explains {
                 writeln!(
                     out,
-                    "          explains {} % of the squared difference",
-                    percent(explains)
+                    "          explains {} % of the squared difference{}",
+                    percent(explains),
+                    match is_sure(verdict) {
+                        true => "",
+                        false => "; most of it is something else, as samples are",
+                    }
                 )?;
             }
             writeln!(out, "          help: {}", verdict.help)?;
@@ -380,6 +388,7 @@ impl Report {
                 "help": verdict.help,
                 "rmse": verdict.rmse,
                 "explains": verdict.explains,
+                "sure": is_sure(verdict),
                 "off": verdict.off.map(|off| json!({
                     "right": off.right,
                     "down": off.down,
@@ -429,6 +438,11 @@ fn round(steps: f64) -> String {
 /// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
+}
+
+/// Whether an explanation explains at least as much as it leaves. One that does not may be true, and yet what is left may be all that there is.
+fn is_sure(verdict: &Verdict) -> bool {
+    verdict.explains.is_none_or(|share| share >= 0.5)
 }
 
 /// Three significant digits.
