@@ -259,6 +259,34 @@ fn crowds_of_all_kinds() {
 }
 
 #[test]
+fn layers_near_and_far() {
+    for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
+        let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
+        for index in 0..count {
+            // In no order, and one of three a second time, which is not seen.
+            let place = f64::from(index * 37 % count);
+            let height = 1.0 + apart * (place - place % 3.0 % 2.0);
+            let sign = if index % 2 == 0 { "-" } else { "" };
+            let (odd, even) = (index % 200, index * 7 % 200);
+            text += &format!(
+                "checkerboard {{ y {sign}{height} square 0.7 colors (rgb({odd}, 0, 0), rgb(0, {even}, 9)) }}\n"
+            );
+            text += &format!(
+                "triangle {{ centroid (0, 0, -{height}) normal (0.3, 0.2, 1) sides (3, 3, 3) color rgb(9, {odd}, {even}) }}\n"
+            );
+        }
+        let mut all = read(&text);
+        for (near, far) in [(0.0, None), (5.3, Some(40.0)), (5.0, Some(8.0))] {
+            (all.camera.near, all.camera.far) = (near, far);
+            for n in [1, 4, 16] {
+                let all = with_samples(&all, Method::Jittered, Count::PerPixel(n));
+                compare(&all, &format!("{count} layers {apart} apart, {near}: {n}"));
+            }
+        }
+    }
+}
+
+#[test]
 fn objects_as_small_as_pixels() {
     // Of so many nothing is known before they are traced one by one, and few of them are in the way of all samples of a pixel.
     let mut random = Random(12);
