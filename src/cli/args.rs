@@ -152,7 +152,7 @@ a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be ju
 large there), tolerance (in steps), equal, likely [{mistake, message, help, rmse, explains, sure, off {right, \
 down, outwards}}] with the best explanation first, thin (whether a simple mistake or noise would explain it, of which too few \
 pixels tell), may_be_noise (whether noise would: then nothing need be wrong); rmse is what an explanation leaves, explains its \
-share of the squared difference, 0 to 1, sure whether that is no less than what it leaves, and off is by how many pixels an object is \
+share of the squared difference, 0 to 1, sure whether that share is a half or more, and off is by how many pixels an object is \
 off: its middle, and its outline, away from there. Of pictures of different sizes rmse, largest, beyond and undecided are null.
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";

@@ -330,7 +330,7 @@ impl Report {
                     percent(explains),
                     match is_sure(verdict) {
                         true => "",
-                        false => "; most of it is something else, as samples are",
+                        false => "; the rest is more, and something else",
                     }
                 )?;
             }
@@ -440,7 +440,7 @@ fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }
 
-/// Whether an explanation explains at least as much as it leaves. One that does not may be true, and yet what is left may be all that there is.
+/// Whether an explanation explains at least as much as it leaves. If not, what is left may be the cause of all.
 fn is_sure(verdict: &Verdict) -> bool {
     verdict.explains.is_none_or(|share| share >= 0.5)
 }

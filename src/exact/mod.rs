@@ -295,7 +295,7 @@ impl<'a> Integrator<'a> {
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
-        // Nobody looks at what comes of it then.
+        // What comes of a picture that was given up is thrown away.
         if cancel.load(Ordering::Relaxed) {
             return Shares::default();
         }

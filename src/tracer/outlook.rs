@@ -99,7 +99,7 @@ pub struct Board {
 /// with the others.
 const FEW: usize = 8;
 
-/// Heights of checkerboards are certain to be told apart in each precision if they differ by this factor, whatever their rounding.
+/// Heights of checkerboards above or below the eye that differ by this factor are in this order, whatever their rounding.
 const APART: f64 = 1.0 + 1e-12;
 
 /// The error of a line's form from which on double-double was not enough.
@@ -228,11 +228,14 @@ impl World {
         let may_cover = |live: &&Live| live.is_whole && !live.is_cut();
         if live.len() > FEW {
             self.drop_boards_behind(live);
-            // Of layers the nearest one hides all others.
-            let fronts = live.iter().filter(may_cover);
-            let nearest =
-                |a: &&Live, b: &&Live| a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
-            let nearest = fronts.max_by(nearest);
+            // Of layers the nearest one hides all others; in one plane that is the first.
+            let is_flat =
+                |live: &&Live| !matches!(*f64::object(self, live.object), Object::Sphere(_));
+            let fronts = live.iter().filter(may_cover).filter(is_flat);
+            let nearest = fronts.max_by(|a, b| {
+                let nearer = a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
+                nearer.then(b.object.cmp(&a.object))
+            });
             if let Some(front) = nearest.map(|live| live.object) {
                 drop_behind(front, live);
             }
@@ -249,7 +252,9 @@ impl World {
     fn drop_boards_behind(&self, live: &mut Vec<Live>) {
         for is_above in [false, true] {
             let height = |live: &Live| {
-                let height = self.board_height(live.object)?;
+                // Numbers of the scene lie farther away in memory than what is prepared of them.
+                let is_board = matches!(*f64::object(self, live.object), Object::Checkerboard(_));
+                let height = is_board.then(|| self.board_height(live.object))??;
                 ((height > 0.0) == is_above).then_some(height.abs())
             };
             let fronts = live.iter().filter(|live| !live.is_cut());
@@ -259,7 +264,7 @@ impl World {
                 continue;
             };
             live.retain(|back| match height(back) {
-                // Heights that are hardly apart may count as equal.
+                // Heights that are hardly apart may be rounded otherwise, or be one.
                 Some(height) => back.object == front || back.is_cut() || height <= nearest * APART,
                 None => true,
             });

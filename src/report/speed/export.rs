@@ -117,7 +117,7 @@ fn of_series(measured: &Measurement, series: &Series) -> Value {
     let errors = measured.errors.iter();
     let needed = errors.map(|&error| match measured.needed(series, error) {
         None => {
-            json!({"error": error, "per_pixel": null, "at_most": null, "factor": null, "time": null, "extrapolated": null, "tries": []})
+            json!({"error": error, "per_pixel": null, "at_most": null, "factor": null, "time": null, "extrapolated": null, "rests_on_tries": 0, "tries": []})
         }
         Some(needed) => json!({
             "error": error,

@@ -14,8 +14,8 @@ pub struct Needed {
     /// Samples per pixel.
     pub per_pixel: f64,
     /// How far it may be off as a factor, 1 or more: 19 times of 20, a render with so many times as many samples leaves no more than
-    /// the error, and renders with so many times as few leave no less, in the mean of squares. 1 where these very samples were measured, and
-    /// there are no fewer; none where nothing is known of that.
+    /// the error, and renders with so many times as few leave no less, in the mean of squares. 1 where these very samples were measured, are
+    /// not enough by luck, and one fewer are too few or none; none where nothing is known of that.
     pub factor: Option<f64>,
     /// Seconds.
     pub seconds: f64,

@@ -17,9 +17,9 @@ const UNLIKE: f64 = 1.1;
 
 /// What the factor of what an error takes means.
 pub(super) const FACTOR: &str = "19 renders of 20 with so many times as many samples leave no more than the error, and renders with so many times as few no less, in the mean of squares. It comes from how much the \
-     tries differ, each of which has a seed and mostly a count of its own; without tries, of random and scatter, from how much runs of one count do, and how far the line may be off: between two points as much as it may sag, \
-     and of what is extrapolated as much as by the slope between any other two points or by −1/2. It is not known (?) without tries of the other methods, which like powers of two, or squares, better than counts beside them, \
-     nor of regular, whose grid falls into step with the picture, nor where the fewest that were measured are enough (≤) or may be so by luck.";
+     tries differ, each of which has a seed and mostly a count of its own; with fewer than three tries, of random and scatter, from how much runs of one count do, too, and without any from how far the line may be off: between two points as much as it may sag, \
+     and of what is extrapolated as much as by the slope between any other two points or by −1/2. It is not known (?) with fewer than three tries of the other methods, which like powers of two, or squares, better than counts beside them, \
+     nor of regular, whose grid falls into step with the picture, unless these very samples were measured; nor where the fewest that were measured are enough and more than one (≤), or may be so by luck.";
 
 /// A machine whose last round took so much more or less time than its first, in the median, is said to have changed.
 const DRIFT: f64 = 0.1;
@@ -127,7 +127,7 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
                 .to_owned(),
         );
     } else if measured.interrupted && measured.is_measured() {
-        notes.push("Incomplete: it was interrupted while predictions were tried.".to_owned());
+        notes.push("Incomplete: it was interrupted while answers were tried.".to_owned());
     } else if measured.interrupted {
         notes.push(format!(
             "Incomplete: it was interrupted in run {} of {}.",
@@ -215,7 +215,9 @@ fn extrapolation(measured: &Measurement) -> Option<String> {
 
 /// The planned counts are those that most methods like best: what tries left at others.
 fn unlike_counts(measured: &Measurement) -> Option<String> {
-    let unlike = measured.series.iter().filter_map(|series| {
+    // Independent samples do not care how many they are: theirs would be noise.
+    let others = measured.series.iter().filter(|it| !it.is_independent());
+    let unlike = others.filter_map(|series| {
         let (least, greatest) = series.beside_line()?;
         (greatest > UNLIKE).then(|| format!("{} {least:.2} to {greatest:.2}", series.method.name()))
     });

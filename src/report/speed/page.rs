@@ -221,7 +221,7 @@ fn ranged(times: &[f64]) -> String {
 /// A table for each error that is asked for.
 fn needs(measured: &Measurement) -> String {
     let caption = "What an error takes: samples per pixel by the lines between the points, or by tries with about as many, and the factor up to which that holds for \
-                   19 renders of 20; and their time. A star marks what lies beyond the measured range; the last column is what tries left of the error.";
+                   19 renders of 20; and their time. A star marks what lies beyond the measured range; where answers were tried, the last column is what that left of the error.";
     let errors = measured.errors.iter().enumerate();
     let tables = errors.map(|(at, &wanted)| {
         let same = format!("The same for an error of {}.", error(wanted));
@@ -241,10 +241,8 @@ fn needs_for(measured: &Measurement, wanted: f64, caption: &str) -> String {
             true => format!("{text}*"),
             false => text,
         };
-        let samples = needed.map(|needed| match needed.is_at_most {
-            true => samples(&needed),
-            false => mark(format!("{} × ÷ {}", samples(&needed), doubt(&needed))),
-        });
+        let samples =
+            needed.map(|needed| mark(format!("{} × ÷ {}", samples(&needed), doubt(&needed))));
         let time = needed.map(|needed| mark(time(&needed)));
         let mut cells = vec![samples.unwrap_or_else(none), time.unwrap_or_else(none)];
         cells.extend(is_tried.then(|| tried(series, wanted).unwrap_or_else(none)));

@@ -42,7 +42,7 @@ const RUNS: (u64, u64) = (3, 9);
 /// So much of the time left is planned: the rest is for comparing, drawing and estimates that were too low.
 const PLANNED: f64 = 0.9;
 
-/// The same where the samples are chosen: the rest is for trying what was extrapolated, too.
+/// The same where the samples are chosen: the rest is for tries, too.
 const PLANNED_CHOICE: f64 = 0.7;
 
 /// What the user asks for.

@@ -11,10 +11,10 @@ use crate::scene::Method;
 /// So many tries near an answer tell how much one render differs from the next.
 pub(super) const FEWEST_TRIES: usize = 3;
 
-/// A try is near an answer if it has e to this many times as many or as few samples, or one more or less than that.
+/// A try is near a place if the logarithms of their samples are no farther apart than this, or its samples no more than one farther.
 const NEAR: f64 = 0.3;
 
-/// A few tries move an answer by no more than e to this: a single one may have hit the exact picture by luck.
+/// The logarithm of an answer lies no farther than this from the middle of the tries that it rests on: a single one may have hit the exact picture by luck.
 const STRIDE: f64 = 1.4;
 
 /// Samples taken because an error should take about so many.
@@ -34,7 +34,7 @@ pub(super) struct Tried<'a> {
     pub(super) x: f64,
     /// ln of how many the tries near it have, in the mean.
     pub(super) middle: f64,
-    /// The tries near it.
+    /// The tries near the place before the last of them, or that one if none was: those that it rests on.
     pub(super) near: Vec<&'a Point>,
 }
 

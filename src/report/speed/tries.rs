@@ -24,8 +24,8 @@ const WANTED: usize = 6;
 /// No more than so many are made for an error, near or not.
 const MOST_TRIES: usize = 12;
 
-/// The counts that are tried, one after the other: e to this many times the answer.
-const SPREAD: [f64; 6] = [0.0, 0.1, -0.1, 0.2, -0.2, 0.05];
+/// The counts that are tried, one after the other: the logarithms of what the answer is multiplied with.
+const SPREAD: [f64; WANTED] = [0.0, 0.1, -0.1, 0.2, -0.2, 0.05];
 
 /// The renders that are to be made.
 #[derive(Debug)]
@@ -53,8 +53,8 @@ impl Render {
 
     /// How long it takes until the tries tell anything.
     fn until_told(&self) -> f64 {
-        let made = WANTED - self.missing;
-        self.seconds * FEWEST_TRIES.saturating_sub(made).max(1) as f64
+        let near = WANTED - self.missing;
+        self.seconds * FEWEST_TRIES.saturating_sub(near).max(1) as f64
     }
 }
 
@@ -141,14 +141,12 @@ fn renders(measured: &Measurement) -> Vec<Render> {
         let series = &measured.series[at];
         let tried = series.approach(wanted).filter(|_| measured.tells(wanted))?;
         let made = series.tries_for(wanted).count();
-        // One that only happens to be the last is not near.
+        // If none is near, the last one counts, which led to the place.
         let near = tried.near.len();
         if near >= WANTED || made >= MOST_TRIES {
             return None;
         }
-        let per_pixel = libm::exp(tried.x + SPREAD[near % SPREAD.len()])
-            .round()
-            .max(1.0);
+        let per_pixel = libm::exp(tried.x + SPREAD[near]).round().max(1.0);
         if per_pixel * measured.reference.bounds.len() as f64 > MOST {
             return None;
         }

@@ -84,7 +84,16 @@ fn layers_cost_what_is_seen_of_them_however_many_they_are() {
                     false => Quartering::new(&world),
                 };
                 let mut room = Room::default();
-                for tile in Area::whole(SIZE, SIZE).tiles(16) {
+                // A column and a row of pixels are cut as well.
+                let column = Area {
+                    width: 1,
+                    ..Area::whole(SIZE, SIZE)
+                };
+                let row = Area {
+                    height: 1,
+                    ..Area::whole(SIZE, SIZE)
+                };
+                for tile in Area::whole(SIZE, SIZE).tiles(16).chain([column, row]) {
                     let flow = quartering.parts(tile, &mut room, &mut |part| {
                         let few = match part {
                             Part::Flat { .. } => 0,

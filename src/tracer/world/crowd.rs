@@ -96,7 +96,11 @@ impl World {
             let met = |rectangle| crowd.iter().filter(|item| item.meets(&rectangle)).count();
             rectangle.map_or(0, met)
         };
-        part.quarters().map(met).sum::<usize>() > 2 * crowd.len()
+        // A part of one row or column has two.
+        let (quarters, met) = part.quarters().fold((0, 0), |(count, sum), quarter| {
+            (count + 1, sum + met(quarter))
+        });
+        2 * met > quarters * crowd.len()
     }
 
     /// What [`slot_at`](World::slot_at) answers in a part of the picture with this crowd.
