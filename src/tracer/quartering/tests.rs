@@ -84,16 +84,7 @@ fn layers_cost_what_is_seen_of_them_however_many_they_are() {
                     false => Quartering::new(&world),
                 };
                 let mut room = Room::default();
-                // A column and a row of pixels are cut as well.
-                let column = Area {
-                    width: 1,
-                    ..Area::whole(SIZE, SIZE)
-                };
-                let row = Area {
-                    height: 1,
-                    ..Area::whole(SIZE, SIZE)
-                };
-                for tile in Area::whole(SIZE, SIZE).tiles(16).chain([column, row]) {
+                for tile in Area::whole(SIZE, SIZE).tiles(16) {
                     let flow = quartering.parts(tile, &mut room, &mut |part| {
                         let few = match part {
                             Part::Flat { .. } => 0,
@@ -111,6 +102,34 @@ fn layers_cost_what_is_seen_of_them_however_many_they_are() {
                     assert!(flow.is_continue());
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn bounds_that_hold_a_part_hardly_cut_it_be_it_one_pixel_high() {
+    let whole = Area::whole(SIZE, SIZE);
+    let middle = SIZE / 2;
+    let row = Area {
+        y: middle,
+        height: 1,
+        ..whole
+    };
+    let column = Area {
+        x: middle,
+        width: 1,
+        ..whole
+    };
+    let mut crowd = Vec::new();
+    for (objects, is_hardly) in [
+        (triangles_in_layers(40), true),
+        (thousand_spheres(3.0), false),
+    ] {
+        let world = World::new(&read(&objects));
+        for part in [whole, row, column] {
+            assert!(world.crowd_in(part, 1 << 20, &mut crowd));
+            assert!(!crowd.is_empty());
+            assert_eq!(world.is_hardly_cut(part, &crowd), is_hardly, "{part:?}");
         }
     }
 }

@@ -88,7 +88,8 @@ impl World {
         rectangle.is_some_and(|rectangle| crowd.iter().any(|item| item.may_fill(&rectangle)))
     }
 
-    /// Whether bounds of a crowd meet more than half of the quarters of a part of the picture, in the mean: to cut by them does not tell objects apart.
+    /// Whether bounds of a crowd meet one of the quarters of a part of the picture and more than a third of the others, in the mean: to cut by them does
+    /// not tell objects apart.
     pub fn is_hardly_cut(&self, part: Area, crowd: &[Item]) -> bool {
         let met = |quarter: Area| {
             let patch = Patch::new(&self.fast.camera, quarter);
@@ -100,7 +101,7 @@ impl World {
         let (quarters, met) = part.quarters().fold((0, 0), |(count, sum), quarter| {
             (count + 1, sum + met(quarter))
         });
-        2 * met > quarters * crowd.len()
+        3 * met > (quarters + 2) * crowd.len()
     }
 
     /// What [`slot_at`](World::slot_at) answers in a part of the picture with this crowd.
