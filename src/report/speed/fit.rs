@@ -165,6 +165,6 @@ impl Fit {
     }
 }
 
-fn square(number: f64) -> f64 {
+pub(super) fn square(number: f64) -> f64 {
     number * number
 }

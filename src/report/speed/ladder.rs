@@ -1,7 +1,7 @@
 //! What the planned points say of an error: where the line through them comes down to it, and in what time.
 
 use super::{
-    fit::{certainty, log_error},
+    fit::{certainty, log_error, square},
     measure::{Point, Series},
     needed::Needed,
     notes::spread,
@@ -91,7 +91,7 @@ impl Series {
             let needed = Needed::of_point(self, b, is_at_most, true);
             return Some(Found::Point(needed));
         }
-        let [x_a, x_b] = [a, b].map(|point| libm::log(point.per_pixel as f64));
+        let [x_a, x_b] = [a, b].map(ln_samples);
         let [y_a, y_b] = [a, b].map(|point| libm::log(point.error()));
         let slope = (y_b - y_a) / (x_b - x_a);
         if slope >= 0.0 {
@@ -215,10 +215,6 @@ impl Series {
 /// ln of how many samples a point has.
 pub(super) fn ln_samples(point: &Point) -> f64 {
     libm::log(point.per_pixel as f64)
-}
-
-fn square(number: f64) -> f64 {
-    number * number
 }
 
 /// Whether a point has at most half the samples of another: what lies nearer tells more of noise than of a slope.
