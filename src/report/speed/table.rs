@@ -172,18 +172,18 @@ fn needs(measured: &Measurement, wanted: f64) -> String {
 
 /// What came of the tries for an error, if there are any.
 pub(super) fn tried(series: &Series, wanted: f64) -> Option<String> {
-    let tries = || series.tries_for(wanted).map(|it| &it.point);
-    let tries_count = tries().count();
-    let counts = range(tries().map(|point| point.per_pixel as f64), count);
-    let errors = range(tries().map(Point::error), error);
-    let made = match tries_count {
+    let tries: Vec<&Point> = series.tries_for(wanted).map(|it| &it.point).collect();
+    let made = match tries.len() {
+        0 => return None,
         1 => "1 try".to_owned(),
-        _ => format!("{tries_count} tries"),
+        many => format!("{many} tries"),
     };
-    (tries_count > 0).then(|| format!("{made}: {counts} left {errors}"))
+    let counts = range(tries.iter().map(|point| point.per_pixel as f64), count);
+    let errors = range(tries.iter().map(|point| point.error()), error);
+    Some(format!("{made}: {counts} left {errors}"))
 }
 
-/// The least and the greatest of some numbers.
+/// The least and the greatest of some numbers (at least one).
 fn range(numbers: impl Iterator<Item = f64>, written: fn(f64) -> String) -> String {
     let (least, greatest) = ends(numbers);
     let [least, greatest] = [least, greatest].map(written);
