@@ -1,6 +1,6 @@
 //! Whether culling is ever slower than tracing one by one: `cargo bench --bench sweep`. See README.md beside this file.
 //!
-//! Scenes of five kinds, with few and many objects, small and large, in pictures of few and many pixels with few and many samples.
+//! Scenes of eight kinds, with few and many objects, small and large, in pictures of few and many pixels with few and many samples.
 
 mod clock;
 mod spheres;
@@ -31,15 +31,21 @@ enum Kind {
     Mixed,
     /// Boards, which have no end.
     Boards,
+    /// Triangles that hide each other, nearly.
+    Layers,
+    /// Triangles at one place.
+    Equal,
 }
 
-const KINDS: [Kind; 6] = [
+const KINDS: [Kind; 8] = [
     Kind::Spheres,
     Kind::Slivers,
     Kind::Triangles,
     Kind::Boxes,
     Kind::Mixed,
     Kind::Boards,
+    Kind::Layers,
+    Kind::Equal,
 ];
 const COUNTS: [usize; 7] = [3, 30, 300, 3_000, 12_000, 20_000, 100_000];
 /// The pictures' widths.
@@ -147,11 +153,16 @@ fn pictures(
     wanted: &dyn Fn(&str) -> bool,
     visit: &mut dyn FnMut(String, &Scene, &World),
 ) {
-    // Mixed, every tenth covers a hundred times as much.
-    let larger = if let Kind::Mixed = kind { 11.0 } else { 1.0 };
-    let layers = larger * count as f64 * size * size;
-    if layers > 300.0 || matches!(kind, Kind::Boards) && count > 30 {
-        // A ray would meet hundreds of objects; and boards are in every ray's way.
+    let apart = count as f64 * size * size;
+    let layers = match kind {
+        // Every tenth covers a hundred times as much.
+        Kind::Mixed => 11.0 * apart,
+        // All are in a ray's way.
+        Kind::Boards | Kind::Layers | Kind::Equal => count as f64,
+        Kind::Spheres | Kind::Slivers | Kind::Triangles | Kind::Boxes => apart,
+    };
+    if layers > 300.0 {
+        // A ray would meet hundreds of objects.
         return;
     }
     let mut scene = None;
@@ -231,6 +242,7 @@ fn control() -> Control<'static> {
 /// So many objects of a size, all over the picture and at distances from 5 to 50.
 fn scene_text(kind: Kind, count: usize, size: f64) -> String {
     let mut random = Random(1);
+    let side = 5.0 * size;
     let mut text =
         String::from("camera { eye (0, 0, 0)  direction (0, 0, -1)  d 2  view_height 2 }\n");
     for index in 0..count {
@@ -270,6 +282,14 @@ fn scene_text(kind: Kind, count: usize, size: f64) -> String {
                 text,
                 "checkerboard {{ y {}  square {size}  colors (#{color:03x}, white) }}",
                 a * 3.0
+            ),
+            Kind::Layers => writeln!(
+                text,
+                "triangle {{ centroid (0, 0, -{depth})  normal (0, 0, 1)  sides ({size}, {size}, {size})  color #{color:03x} }}",
+            ),
+            Kind::Equal => writeln!(
+                text,
+                "triangle {{ centroid (0, 0, -5)  normal (0.3, 0, 1)  sides ({side}, {side}, {side})  color #{color:03x} }}",
             ),
         };
     }
