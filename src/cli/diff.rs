@@ -9,7 +9,7 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grade::{self, Grade, Verdict},
+    grade::{self, Grade},
     numbers::{grouped, short},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
@@ -316,7 +316,7 @@ impl Report {
             }
         }
         for (place, verdict) in self.grade.likely.iter().enumerate() {
-            let word = match (place, is_sure(verdict)) {
+            let word = match (place, verdict.is_sure()) {
                 (0, true) => "likely",
                 (0, false) => "perhaps",
                 _ => "or",
@@ -328,7 +328,7 @@ impl Report {
                     out,
                     "          explains {} % of the squared difference{}",
                     percent(explains),
-                    match is_sure(verdict) {
+                    match verdict.is_sure() {
                         true => "",
                         false => "; the rest is more, and something else",
                     }
@@ -388,7 +388,7 @@ impl Report {
                 "help": verdict.help,
                 "rmse": verdict.rmse,
                 "explains": verdict.explains,
-                "sure": is_sure(verdict),
+                "sure": verdict.is_sure(),
                 "off": verdict.off.map(|off| json!({
                     "right": off.right,
                     "down": off.down,
@@ -438,11 +438,6 @@ fn round(steps: f64) -> String {
 /// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
-}
-
-/// Whether an explanation explains at least as much as it leaves. If not, what is left may be the cause of all.
-fn is_sure(verdict: &Verdict) -> bool {
-    verdict.explains.is_none_or(|share| share >= 0.5)
 }
 
 /// Three significant digits.

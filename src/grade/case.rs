@@ -17,7 +17,7 @@ use super::{
     level::{self, Level},
     noise::{self, Noise},
     objects::{self, Slope},
-    seen::{self, Seen},
+    seen::{self, Origin, Seen},
     size,
 };
 use crate::{
@@ -51,7 +51,7 @@ pub struct Case<'a> {
     pub slopes: OnceCell<Vec<Slope>>,
     /// What single samples see.
     seen: OnceCell<Seen>,
-    is_beyond_samples: OnceCell<bool>,
+    origin: OnceCell<Origin>,
     pub view: View,
     /// A mistake was passed over of which too few pixels tell.
     pub is_thin: Cell<bool>,
@@ -105,7 +105,7 @@ impl<'a> Case<'a> {
             variance,
             slopes: OnceCell::new(),
             seen: OnceCell::new(),
-            is_beyond_samples: OnceCell::new(),
+            origin: OnceCell::new(),
             view: View::of(scene),
             is_thin: Cell::new(false),
             may_be_noise: Cell::new(false),
@@ -335,9 +335,14 @@ impl<'a> Case<'a> {
         self.seen.get_or_init(|| Seen::of(&self.full.scene))
     }
 
-    /// Whether no samples make the picture, wherever they are.
+    /// What may have made the picture, beside mistakes.
+    pub fn origin(&self) -> Origin {
+        *self.origin.get_or_init(|| seen::origin(self))
+    }
+
+    /// Whether a mistake is likelier than samples: those on pixels' sides excuse it only where none explains most of the difference.
     pub fn is_beyond_samples(&self) -> bool {
-        *self.is_beyond_samples.get_or_init(|| seen::is_beyond(self))
+        self.origin() != Origin::Samples
     }
 
     /// Whether what looks like noise adds up to something.

@@ -11,6 +11,7 @@ use super::{
     evidence, level,
     noise::{self, Noise},
     objects::Near,
+    seen::Origin,
     size,
 };
 use crate::{
@@ -23,103 +24,121 @@ use crate::{
 pub struct Grid {
     /// How many they are; none if several numbers of them make the picture.
     pub samples: Option<u64>,
-    /// Which corner of each of its cells they are at, if they are not in their middles.
-    pub corner: Option<&'static str>,
+    /// Where in a pixel they are; in their cells' middles if several places make the picture.
+    place: Place,
     /// Whether enough pixels tell of it.
     pub is_told: bool,
 }
 
-/// So many samples in a grid, in its cells' middles or at a corner of each.
+/// So many samples in a grid.
 #[derive(Clone, Copy)]
 struct Cells {
     samples: u64,
-    corner: Option<Corner>,
+    place: Place,
 }
 
-/// A corner of a grid's cells, whose offset from a pixel's left and upper edge is a number of cells.
-#[derive(Clone, Copy)]
-struct Corner {
-    /// The grid's rows and columns.
-    side: u32,
-    is_lower: bool,
+/// Where in a pixel the samples of a grid are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// In the middles of its cells.
+    Middles,
+    /// At a corner of each of its cells.
+    Corners { is_right: bool, is_lower: bool },
+    /// From side to side.
+    Ends,
 }
+
+/// The corners of a cell: whether they are right ones, and lower ones.
+const CORNERS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
 
 impl Cells {
     fn all() -> impl Iterator<Item = Self> {
         let middles = GRIDS.into_iter().map(|samples| Self {
             samples,
-            corner: None,
+            place: Place::Middles,
         });
-        let corners = (2..=SIDE).flat_map(|side| {
-            [false, true].map(|is_lower| Self {
-                samples: u64::from(side * side),
-                corner: Some(Corner { side, is_lower }),
-            })
+        let corners = CORNERS.map(|[is_right, is_lower]| Place::Corners { is_right, is_lower });
+        let others = (2..=SIDE).flat_map(move |side| {
+            corners
+                .into_iter()
+                .chain([Place::Ends])
+                .map(move |place| Self {
+                    samples: u64::from(side * side),
+                    place,
+                })
         });
-        middles.chain(corners)
+        middles.chain(others)
     }
 
     /// What they make of a part of the picture.
     fn picture(&self, case: &Case, part: Area) -> Result<Film, RenderError> {
-        match self.corner {
-            None => {
-                let sampling = level::grid(&case.full.scene, self.samples);
-                render::render(case.seen().world(), &sampling, part, &case.control)
-            }
-            Some(corner) => corner.picture(case, part),
+        if self.place == Place::Middles {
+            let sampling = level::grid(&case.full.scene, self.samples);
+            return render::render(case.seen().world(), &sampling, part, &case.control);
         }
+        let side = self.samples.isqrt() as u32;
+        let cells = Area::whole(side, side).iter();
+        let offsets: Vec<_> = cells.map(|cell| self.place.offset(side, cell)).collect();
+        picture(case, part, &offsets)
     }
 }
 
-impl Corner {
-    fn picture(&self, case: &Case, part: Area) -> Result<Film, RenderError> {
-        let cells: Vec<_> = Area::whole(self.side, self.side)
-            .iter()
-            .map(|(column, row)| self.offset(column, row))
-            .collect();
-        let (exact, variance, cancel) = (&case.full.exact, &case.variance, case.control.cancel);
-        let seen = case.seen();
-        let pixel = |x: u32, y: u32| {
-            // A sample on a pixel's side may see what its neighbour does.
-            let is_one_color =
-                noise::is_flat(&variance.pixel(x, y)) && !noise::is_beside_another(exact, [x, y]);
-            if is_one_color {
-                return exact.pixel(x, y);
-            }
-            let samples = cells.iter().map(|cell| seen.at([x, y], *cell));
-            (samples.sum::<DVec3>() / cells.len() as f64).to_array()
+/// What samples at these offsets from each pixel's centre make of a part of the picture.
+fn picture(case: &Case, part: Area, offsets: &[DVec2]) -> Result<Film, RenderError> {
+    let (exact, variance, cancel) = (&case.full.exact, &case.variance, case.control.cancel);
+    let seen = case.seen();
+    let pixel = |x: u32, y: u32| {
+        // A sample on a pixel's side may see what its neighbour does.
+        let is_one_color =
+            noise::is_flat(&variance.pixel(x, y)) && !noise::is_beside_another(exact, [x, y]);
+        if is_one_color {
+            return exact.pixel(x, y);
+        }
+        let samples = offsets.iter().map(|offset| seen.at([x, y], *offset));
+        (samples.sum::<DVec3>() / offsets.len() as f64).to_array()
+    };
+    let row = |row: u32| -> Result<Vec<_>, RenderError> {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let columns = 0..part.width;
+        Ok(columns
+            .map(|column| pixel(part.x + column, part.y + row))
+            .collect())
+    };
+    let rows = (0..part.height).into_par_iter().map(row);
+    let rows: Vec<_> = rows.collect::<Result<_, _>>()?;
+    Ok(Film::from_fn(part.width, part.height, |x, y| {
+        rows[y as usize][x as usize]
+    })?)
+}
+
+impl Place {
+    /// The offset of a cell's sample from the pixel's centre.
+    fn offset(self, side: u32, (column, row): (u32, u32)) -> DVec2 {
+        // As far along as a sample may be: what is beyond a side is the next pixel's.
+        let within = |place: f64| (place - 0.5).min(0.5f64.next_down());
+        let along = |cell: u32, is_end: bool| match self {
+            Self::Ends => within(f64::from(cell) / f64::from(side - 1)),
+            _ => within(f64::from(cell + u32::from(is_end)) / f64::from(side)),
         };
-        let row = |row: u32| -> Result<Vec<_>, RenderError> {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
-            }
-            let columns = 0..part.width;
-            Ok(columns
-                .map(|column| pixel(part.x + column, part.y + row))
-                .collect())
+        let [is_right, is_lower] = match self {
+            Self::Corners { is_right, is_lower } => [is_right, is_lower],
+            _ => [false; 2],
         };
-        let rows = (0..part.height).into_par_iter().map(row);
-        let rows: Vec<_> = rows.collect::<Result<_, _>>()?;
-        Ok(Film::from_fn(part.width, part.height, |x, y| {
-            rows[y as usize][x as usize]
-        })?)
+        DVec2::new(along(column, is_right), along(row, is_lower))
     }
 
-    /// That of a cell, from the pixel's centre.
-    fn offset(&self, column: u32, row: u32) -> DVec2 {
-        let along = |cell: u32| f64::from(cell) / f64::from(self.side) - 0.5;
-        let down = match self.is_lower {
-            // Counted from below; as far down as a sample may be, as the edge itself is the next pixel's.
-            true => (-along(row)).min(0.5f64.next_down()),
-            false => along(row),
-        };
-        DVec2::new(along(column), down)
-    }
-
-    fn name(&self) -> &'static str {
-        match self.is_lower {
-            true => "lower left",
-            false => "upper left",
+    /// The name of a corner.
+    fn corner(self) -> Option<&'static str> {
+        match self {
+            Self::Corners { is_right, is_lower } => Some(match [is_right, is_lower] {
+                [false, false] => "upper left",
+                [false, true] => "lower left",
+                [true, false] => "upper right",
+                [true, true] => "lower right",
+            }),
+            _ => None,
         }
     }
 }
@@ -127,7 +146,7 @@ impl Corner {
 /// The samples of a pixel, if they are a grid, the same one in each pixel. Where an edge is parallel to the picture's, its errors add up, and
 /// grids of as many rows and columns there make the same.
 pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
-    if case.is_beyond_samples() {
+    if case.origin() == Origin::Mistakes {
         return Ok(None);
     }
     let (a, exact) = (&case.full.a, &case.full.exact);
@@ -170,18 +189,21 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
         // Within a step of it is within a step of much.
         return Ok(None);
     }
-    let corner = |cells: &Cells| cells.corner.map(|corner| corner.name());
     let (mut is_known, mut is_only) = (true, true);
     for other in found {
         // It may not be told from the best one.
         if !evidence::is_enough(a, &other.picture(case, whole)?, &made) {
             is_only = false;
-            is_known &= corner(&other) == corner(&cells);
+            is_known &= other.place == cells.place;
         }
     }
     Ok(Some(Grid {
         samples: is_only.then_some(cells.samples),
-        corner: corner(&cells).filter(|_| is_known),
+        place: if is_known {
+            cells.place
+        } else {
+            Place::Middles
+        },
         is_told,
     }))
 }
@@ -191,20 +213,21 @@ impl Grid {
     pub fn verdict(&self, difference: f64) -> Verdict {
         let samples = self.samples;
         let samples = samples.map_or("a few".to_owned(), |samples| samples.to_string());
-        let (rest, help) = match self.corner {
-            None => (
-                "so that edges along rows and columns are displaced by a part of a pixel"
-                    .to_owned(),
-                alike::HELP.to_owned(),
+        let (rest, help) = match (self.place, self.place.corner()) {
+            (Place::Ends, _) => (
+                "from side to side, so that what is on a pixel's sides is taken for it and its neighbours alike".to_owned(),
+                format!("the middle of cell i of n is at (i + 0.5)/n, not at i/(n - 1); {}", alike::HELP),
             ),
-            Some(corner) => (
+            (_, Some(corner)) => (
                 format!(
                     "at the {corner} corners of its cells, so that all edges are displaced by half of a cell"
                 ),
-                format!(
-                    "the middle of cell i of n is at (i + 0.5)/n, not at i/n; {}",
-                    alike::HELP
-                ),
+                format!("the middle of cell i of n is at (i + 0.5)/n, not at i/n; {}", alike::HELP),
+            ),
+            (_, None) => (
+                "so that edges along rows and columns are displaced by a part of a pixel"
+                    .to_owned(),
+                alike::HELP.to_owned(),
             ),
         };
         let message = format!(

@@ -56,6 +56,7 @@ use self::{
     choice::{Explanation, RIVAL, ROUNDING},
     order::Order,
     pairs::Pairs,
+    seen::Origin,
 };
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
@@ -85,6 +86,13 @@ pub struct Verdict {
     pub explains: Option<f64>,
     /// How far the object is off in the picture, if one is.
     pub off: Option<Off>,
+}
+
+impl Verdict {
+    /// Whether it explains at least as much as it leaves. If not, what is left may be the cause of all.
+    pub fn is_sure(&self) -> bool {
+        self.explains.is_none_or(|share| share >= 0.5)
+    }
 }
 
 /// What is found.
@@ -203,6 +211,11 @@ fn likely(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     let found = mistakes(case)?;
     Ok(match &alike {
         Some(alike) if is_told && found.is_empty() => verdict(alike),
+        // All that edges along pixels' sides are off may be due to samples there: where nothing explains most of it, and beside what does.
+        _ if case.origin() == Origin::OnSides => {
+            let sure = found.into_iter().filter(Verdict::is_sure);
+            sure.chain([seen::verdict(case.difference)]).collect()
+        }
         _ => found,
     })
 }

@@ -219,7 +219,7 @@ pub fn are_flat_pixels_right(a: &Film, exact: &Film, variance: &Film) -> bool {
 
 /// Whether a pixel has another colour than the one which is seen there and all around in the picture of a scene, taken through a curve.
 /// Noise has no such pixel, and it is known without the variance. Numbers that were looked for are known to a part of a pixel only,
-/// so that pixels beside others of another colour do not count.
+/// so that pixels beside others of another colour do not count, nor those at the picture's edge.
 pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> f64) -> bool {
     let colors = colors(scene).into_iter();
     let colors: HashSet<_> = colors.map(|color| bits(&color.map(&curve))).collect();
@@ -230,10 +230,13 @@ pub fn has_strays(a: &Film, exact: &Film, scene: &Scene, curve: impl Fn(f64) -> 
     })
 }
 
-/// Whether a pixel has a neighbour of another light.
+/// Whether a pixel has a neighbour of another light, or may have one beyond the picture's edge.
 pub fn is_beside_another(film: &Film, [x, y]: [u32; 2]) -> bool {
     let own = bits(&film.pixel(x, y));
-    around(film, [x, y]).any(|(x, y)| bits(&film.pixel(x, y)) != own)
+    let is_outermost = |at: u32, size: u32| at == 0 || at + 1 == size;
+    is_outermost(x, film.width())
+        || is_outermost(y, film.height())
+        || around(film, [x, y]).any(|(x, y)| bits(&film.pixel(x, y)) != own)
 }
 
 /// The variance of samples where the place of edges is known to a part of a pixel only: in pixels of one colour that are off it is that
@@ -463,20 +466,16 @@ impl Noise {
 
 /// One sample in each pixel, always at the same place.
 pub fn ideas() -> Vec<Idea> {
-    let places = [
-        (DVec2::ZERO, "sample_at_center", "centre"),
-        (
-            DVec2::new(-0.5, -0.5),
-            "sample_at_corner",
-            "top left corner",
-        ),
-        // As far down as a sample may be: the corner itself is the next pixel's.
-        (
-            DVec2::new(-0.5, 0.5f64.next_down()),
-            "sample_at_corner",
-            "bottom left corner",
-        ),
+    // As far to the right and down as a sample may be: the side itself is the next pixel's.
+    let end = 0.5f64.next_down();
+    let corners = [
+        (DVec2::new(-0.5, -0.5), "top left corner"),
+        (DVec2::new(-0.5, end), "bottom left corner"),
+        (DVec2::new(end, -0.5), "top right corner"),
+        (DVec2::new(end, end), "bottom right corner"),
     ];
+    let corners = corners.map(|(offset, place)| (offset, "sample_at_corner", place));
+    let middle = (DVec2::ZERO, "sample_at_center", "centre");
     let idea = |(offset, mistake, place): (DVec2, &'static str, &str)| {
         Idea {
         mistake,
@@ -488,5 +487,5 @@ pub fn ideas() -> Vec<Idea> {
         make: Make::Sample(offset),
     }
     };
-    places.into_iter().map(idea).collect()
+    [middle].into_iter().chain(corners).map(idea).collect()
 }

@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::{Case, noise, size};
+use super::{Case, Verdict, alike, noise, size};
 use crate::{area::Area, scene::Scene, tracer::World};
 
 /// Places along each side of a pixel: as fine as the samples of which errors are seen at all, which are some hundreds.
@@ -14,6 +14,25 @@ pub const PLACES: usize = 16;
 
 /// So many pixels of several colours are looked at, at most, all over the picture.
 const PIXELS: usize = 2048;
+
+/// What lies on an edge is seen on either side of it by programs that round; this is more than they do, in pixels, and less than anything that
+/// is seen.
+const ROUNDED: f64 = 1e-7;
+
+/// No more of a pixel's samples than this are on those of its sides that have something else beyond: three of four at its corners.
+const ON_SIDES: f64 = 0.75;
+
+/// What may have made a picture of a scene, beside mistakes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Samples: all that is off has several colours, or what a sample at one of a pixel's corners sees.
+    Samples,
+    /// Samples on pixels' sides only, as it is off where edges run along these. What is on an edge programs that round see on one side of it or on
+    /// the other, in some rows so and in others not.
+    OnSides,
+    /// No samples, wherever they are.
+    Mistakes,
+}
 
 /// A scene whose single samples are asked for.
 pub struct Seen {
@@ -53,12 +72,22 @@ impl Seen {
         range(inside.chain(sides()).map(|offset| self.at(pixel, offset)))
     }
 
-    /// Whether no samples at the places make a pixel, but for roundings and a margin in each channel.
-    fn is_beyond(&self, pixel: [u32; 2], light: &[f64; 3], margin: DVec3) -> bool {
+    /// Whether no samples at the places make a pixel of several colours, but for roundings.
+    fn is_beyond(&self, pixel: [u32; 2], light: &[f64; 3]) -> bool {
         let [low, high] = self.range(pixel);
-        let nearest = DVec3::from(*light).clamp(low - margin, high + margin);
-        noise::is_off((light, &nearest.to_array()))
+        is_outside(light, [low - self.margin, high + self.margin])
     }
+
+    /// The least and the greatest light that samples on a pixel's sides see, or what is seen all over the pixel.
+    fn on_sides(&self, pixel: [u32; 2], own: DVec3) -> [DVec3; 2] {
+        let beyond = sides().map(|offset| self.at(pixel, offset));
+        range(beyond.chain([own]))
+    }
+}
+
+fn is_outside(light: &[f64; 3], [low, high]: [DVec3; 2]) -> bool {
+    let nearest = DVec3::from(*light).clamp(low, high);
+    noise::is_off((light, &nearest.to_array()))
 }
 
 /// A place in a pixel, from its centre: the middle of one of [`PLACES`]² cells.
@@ -67,13 +96,18 @@ pub fn place(index: usize) -> DVec2 {
     DVec2::new(along(index % PLACES), along(index / PLACES))
 }
 
-/// Places on a pixel's sides, among them its corners.
+/// Places on a pixel's sides, among them its corners, as they may be seen by programs that round: a little outside. A little inside is what the
+/// places in it see.
 fn sides() -> impl Iterator<Item = DVec2> {
     (0..=PLACES).flat_map(|index| {
         let along = index as f64 / PLACES as f64 - 0.5;
-        [-0.5, 0.5]
-            .into_iter()
-            .flat_map(move |side| [DVec2::new(along, side), DVec2::new(side, along)])
+        // At a corner all four pixels that meet there may be seen.
+        let beside = [1.0 - 2.0 * ROUNDED, 1.0 + 2.0 * ROUNDED].map(|times| along * times);
+        beside.into_iter().flat_map(|along| {
+            [-0.5 - ROUNDED, 0.5 + ROUNDED]
+                .into_iter()
+                .flat_map(move |side| [DVec2::new(along, side), DVec2::new(side, along)])
+        })
     })
 }
 
@@ -84,37 +118,47 @@ fn range(colors: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     )
 }
 
-/// Whether a picture is such that no samples make it: pixels of one colour have another one that no sample at a corner explains, or pixels of
-/// several colours are beyond all of them, and more than chance has it.
-pub fn is_beyond(case: &Case) -> bool {
-    let (a, exact) = (&case.full.a, &case.full.exact);
+/// What may have made a picture. No samples have, where pixels of one colour have another one that samples on their sides do not explain, or pixels
+/// of several colours are beyond all of them, and more than chance has it.
+pub fn origin(case: &Case) -> Origin {
+    let (a, exact, seen) = (&case.full.a, &case.full.exact, case.seen());
     let [width, height] = size(a);
     let is_off = |&(x, y): &(u32, u32)| noise::is_off((&a.pixel(x, y), &exact.pixel(x, y)));
     let is_flat = |&(x, y): &(u32, u32)| noise::is_flat(&case.variance.pixel(x, y));
     let whole = || Area::whole(width, height).iter();
-    let seen = case.seen();
-    if case.strays.pixels > 0 {
-        let is_beside = |&(x, y): &(u32, u32)| noise::is_beside_another(exact, [x, y]);
-        if whole().any(|at| is_flat(&at) && is_off(&at) && !is_beside(&at)) {
-            return true;
-        }
-        let (wrong, right): (Vec<_>, Vec<_>) = whole()
-            .filter(|at| is_flat(at) && is_beside(at))
-            .partition(is_off);
-        if !CORNERS
-            .iter()
-            .any(|corner| explains(case, corner, &wrong, &right))
-        {
-            return true;
-        }
-    }
     let mixed = || whole().filter(|at| is_off(at) && !is_flat(at));
     let step = mixed().count().div_ceil(PIXELS).max(1);
     let some: Vec<_> = mixed().step_by(step).collect();
     let beyond = some
         .par_iter()
-        .filter(|(x, y)| seen.is_beyond([*x, *y], &a.pixel(*x, *y), seen.margin));
-    beyond.count() > noise::STRAYS
+        .filter(|(x, y)| seen.is_beyond([*x, *y], &a.pixel(*x, *y)));
+    if beyond.count() > noise::STRAYS {
+        return Origin::Mistakes;
+    }
+    if case.strays.pixels == 0 {
+        return Origin::Samples;
+    }
+    let is_beside = |&(x, y): &(u32, u32)| noise::is_beside_another(exact, [x, y]);
+    let flat = whole().filter(|at| is_flat(at) && (is_off(at) || is_beside(at)));
+    let (wrong, right): (Vec<_>, Vec<_>) = flat.partition(is_off);
+    let mut strays = 0;
+    for &(x, y) in &wrong {
+        let own = DVec3::from(exact.pixel(x, y));
+        let ends = seen.on_sides([x, y], own);
+        if is_outside(&a.pixel(x, y), ends.map(|end| own.lerp(end, ON_SIDES))) {
+            // Where edges meet at a pixel's corner a program that rounds may see what is behind them all.
+            strays += 1;
+            let is_other = |end: &DVec3| noise::is_off((&end.to_array(), &own.to_array()));
+            if !ends.iter().any(is_other) || strays > noise::STRAYS {
+                return Origin::Mistakes;
+            }
+        }
+    }
+    let mut corners = CORNERS.iter();
+    match corners.any(|corner| explains(case, corner, &wrong, &right)) {
+        true => Origin::Samples,
+        false => Origin::OnSides,
+    }
 }
 
 /// A pixel's corners. Of sets of samples that begin at 0, as Hammersley's does, one is at one of them, and so sees what is beyond an edge that
@@ -125,10 +169,6 @@ const CORNERS: [DVec2; 4] = [
     DVec2::new(-0.5, 0.5),
     DVec2::new(0.5, 0.5),
 ];
-
-/// What lies on an edge is seen on either side of it by programs that round; this is more than they do, in pixels, and less than anything that
-/// is seen.
-const ROUNDED: f64 = 1e-7;
 
 /// A sample at a corner is seen wherever something else is, but for what lies on an edge there: in more than half as many pixels, as an edge
 /// that is off along one of a box's sides has along two.
@@ -159,4 +199,11 @@ fn explains(case: &Case, corner: &DVec2, wrong: &[(u32, u32)], right: &[(u32, u3
             [wrong, right].map(|pixels| pixels.iter().filter(shows).count() as f64);
         shown > 0.0 && shown >= MOST * (shown + missing)
     })
+}
+
+/// What is said of samples on pixels' sides.
+pub fn verdict(difference: f64) -> Verdict {
+    let message = "the picture is wrong only where colours meet, and where edges run along pixels' sides, as it is with samples on these: what is \
+                   on an edge is seen on one side of it or on the other";
+    alike::verdict(difference, message, alike::HELP.to_owned())
 }

@@ -10,6 +10,7 @@ mod pairs;
 mod pictures;
 mod right;
 mod samples;
+mod ties;
 
 use std::{fs, path::Path, process::Output};
 

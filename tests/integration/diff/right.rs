@@ -122,6 +122,10 @@ impl Subject {
         &self.scene
     }
 
+    pub fn exact(&self) -> &Film {
+        &self.exact.film
+    }
+
     /// What is said of a picture's bytes, if they differ by more than rounding.
     pub fn graded(&self, means: &Film) -> Option<Grade> {
         let cancel = AtomicBool::new(false);
