@@ -25,6 +25,7 @@ use crate::math::Vectors;
 pub use self::{
     local::{Conic, Here, Local},
     mesh::Checks,
+    squares::Tiling,
 };
 
 /// Fewer samples than this are not worth the preparation.

@@ -15,7 +15,12 @@ use self::{
     budget::{Budget, FEW},
     trust::Trust,
 };
-use super::{hierarchy::Item, outlook::Live, pixel::Checks, world::World};
+use super::{
+    hierarchy::Item,
+    outlook::Live,
+    pixel::{Checks, Tiling},
+    world::World,
+};
 use crate::area::Area;
 
 /// A part with so many candidates is cut by their bounds alone, without a look at most of them, unless the bounds of the first ones hold most
@@ -249,7 +254,8 @@ impl<'a> Quartering<'a> {
         room: &mut Room,
         visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if let Some(slot) = self.only_slot(area, live) {
+        let view = self.view(area, live);
+        if let View::One(slot) = view {
             return visit(Part::Flat { area, slot }, None);
         }
         if live.len() > budget.most(area) {
@@ -277,7 +283,8 @@ impl<'a> Quartering<'a> {
             {
                 return flow;
             }
-            if !budget.is_for_quarters(area) {
+            let is_dust = view == View::Dust && budget.is_limited();
+            if is_dust || !budget.is_for_quarters(area) {
                 let among = Among::Live(live);
                 return visit(Part::Plain { area, among }, None);
             }
@@ -312,23 +319,36 @@ impl<'a> Quartering<'a> {
         flow
     }
 
-    /// The only colour in an area, if it is certain that there is but one.
-    fn only_slot(&self, area: Area, live: &[Live]) -> Option<usize> {
+    /// What is seen in an area of which these may be.
+    fn view(&self, area: Area, live: &[Live]) -> View {
         let world = self.world;
         match live {
-            [] => Some(world.background()),
+            [] => View::One(world.background()),
             [only] if only.is_whole => {
                 let [first, second] = world.slots(only.object);
                 if first == second {
-                    Some(first)
-                } else {
-                    let odd = world.only_square(area, only.object)?;
-                    Some(if odd { second } else { first })
+                    return View::One(first);
+                }
+                match world.tiling(area, only.object) {
+                    Tiling::One { odd } => View::One(if odd { second } else { first }),
+                    Tiling::Several => View::Several,
+                    Tiling::Dust => View::Dust,
                 }
             }
-            _ => None,
+            _ => View::Several,
         }
     }
+}
+
+/// What is seen in an area.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum View {
+    /// One colour, which is certain.
+    One(usize),
+    /// Several, perhaps.
+    Several,
+    /// Squares of one board, several in nearly each pixel.
+    Dust,
 }
 
 /// A part of which nothing is known.
