@@ -143,7 +143,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        0.0 => "exactly its true mean".to_owned(),
+        // No mean of several colours, and so without an error beyond that of the colour's own numbers.
+        0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
     let mut text = format!("exact: every channel is {mean}; {rounding}\n");

@@ -51,7 +51,7 @@ impl About {
         match mistake {
             "mirrored" | "upside_down" | "turned_180" => Self::Turn,
             "channels" => Self::Order,
-            "not_encoded" | "encoded_twice" | "gamma_22" => Self::Light,
+            "not_encoded" | "encoded_twice" | "gamma_22" | "gamma_2" => Self::Light,
             // A negated up vector is a roll by 180 degrees.
             "roll" | "roll_sign" | "roll_ignored" | "roll_unit" | "up_negated" => Self::Roll,
             "distance" | "field_of_view" | "view_height_ignored" | "distance_ignored" => Self::Lens,

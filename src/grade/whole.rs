@@ -77,6 +77,12 @@ const POWER: Curve = Curve {
     back: |light| libm::pow(linear_to_srgb(light).max(0.0), 2.2),
 };
 
+/// The same with a square root.
+const ROOT: Curve = Curve {
+    to: |light| srgb_to_linear(light.max(0.0).sqrt()),
+    back: |light| linear_to_srgb(light).max(0.0) * linear_to_srgb(light).max(0.0),
+};
+
 /// What may be turned: a word for programs, one for people, the way out, and how.
 const TURNS: [(&str, &str, &str, Turn); 3] = [
     (
@@ -137,7 +143,7 @@ fn said_of_turn(how: &str) -> String {
 }
 
 /// What may have happened to the light: a word for programs, one for people, the way out, and the curve.
-const CURVES: [(&str, &str, &str, Curve); 3] = [
+const CURVES: [(&str, &str, &str, Curve); 4] = [
     (
         "not_encoded",
         "the colours are too dark: linear light was written where sRGB is expected",
@@ -161,6 +167,12 @@ const CURVES: [(&str, &str, &str, Curve); 3] = [
         "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
         "use the curve of sRGB: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
         POWER,
+    ),
+    (
+        "gamma_2",
+        "the colours were encoded with the square root, the power 1/2, which is not the curve of sRGB",
+        "use the curve of sRGB: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055",
+        ROOT,
     ),
 ];
 
@@ -229,7 +241,7 @@ pub fn curves(scene: &Scene) -> Vec<Idea> {
     ideas
 }
 
-fn lights() -> [Idea; 3] {
+fn lights() -> [Idea; 4] {
     CURVES.map(|(mistake, message, help, curve)| light(mistake, message, help, curve))
 }
 

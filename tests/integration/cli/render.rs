@@ -251,7 +251,7 @@ fn a_picture_of_one_colour_is_exactly_right() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(
         told.ends_with(
-            "\nexact: every channel is exactly its true mean; the 8-bit rounding of every pixel is certain\n"
+            "\nexact: every channel is its pixel's only colour; the 8-bit rounding of every pixel is certain\n"
         ),
         "{told}"
     );

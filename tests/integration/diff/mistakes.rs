@@ -92,12 +92,14 @@ fn a_power_in_place_of_the_curve_is_named() {
     let folder = folder();
     render(&folder, &["-o", "a.exr"]);
     let light = open(&folder, "a.exr").to_rgb32f();
-    let picture = ImageBuffer::from_fn(96, 64, |x, y| {
-        let byte = |light: f32| (255.0 * libm::pow(f64::from(light), 1.0 / 2.2)).round() as u8;
-        Rgb(light.get_pixel(x, y).0.map(byte))
-    });
-    save(&folder, "b.png", picture);
-    assert_eq!(mistake(&folder), "gamma_22");
+    for (power, expected) in [(1.0 / 2.2, "gamma_22"), (0.5, "gamma_2")] {
+        let picture = ImageBuffer::from_fn(96, 64, |x, y| {
+            let byte = |light: f32| (255.0 * libm::pow(f64::from(light), power)).round() as u8;
+            Rgb(light.get_pixel(x, y).0.map(byte))
+        });
+        save(&folder, "b.png", picture);
+        assert_eq!(mistake(&folder), expected);
+    }
 }
 
 #[test]
@@ -487,15 +489,23 @@ fn one_size_that_is_wrong_is_named() {
 #[test]
 fn a_power_that_bytes_were_taken_through_is_named() {
     let folder = folder();
-    let mut picture = open(&folder, "a.png").to_rgb8();
-    for pixel in picture.pixels_mut() {
-        pixel.0 = pixel.0.map(|byte| {
-            let light = pinhole::color::srgb_to_linear(f64::from(byte) / 255.0);
-            (255.0 * libm::pow(light, 1.0 / 2.2)).round() as u8
-        });
+    for (sampler, power, expected) in [
+        ("exact", 1.0 / 2.2, "gamma_22"),
+        ("exact", 0.5, "gamma_2"),
+        ("jittered", 0.5, "gamma_2"),
+    ] {
+        let method = format!("sampler.method={sampler}");
+        render(&folder, &["-o", "b.png", "--set", &method]);
+        let mut picture = open(&folder, "b.png").to_rgb8();
+        for pixel in picture.pixels_mut() {
+            pixel.0 = pixel.0.map(|byte| {
+                let light = pinhole::color::srgb_to_linear(f64::from(byte) / 255.0);
+                (255.0 * libm::pow(light, power)).round() as u8
+            });
+        }
+        save(&folder, "b.png", picture);
+        assert_eq!(mistake(&folder), expected, "{sampler}");
     }
-    save(&folder, "b.png", picture);
-    assert_eq!(mistake(&folder), "gamma_22");
 }
 
 #[test]
