@@ -1,19 +1,15 @@
-//! How many rays a second, method by method: `cargo bench`. See README.md beside this file.
+//! What placing points, threads and files take of what the plain path takes, method by method: `cargo bench --bench render`. See README.md
+//! beside this file.
 
 use std::{
-    env,
-    hint::black_box,
-    num::NonZero,
-    sync::atomic::AtomicBool,
-    thread,
-    time::{Duration, Instant},
+    env, hint::black_box, io::Cursor, num::NonZero, sync::atomic::AtomicBool, thread, time::Instant,
 };
 
 use glam::DVec2;
 use pinhole::{
     area::Area,
     film::{Film, Recipe, write_exr, write_png},
-    render::{Control, render},
+    render::{Control, Way, render_in_a_way},
     sampling::Sampling,
     scene::{Count, Method, Scene},
     tracer::World,
@@ -26,7 +22,7 @@ const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
 const PER_PIXEL: u64 = 16;
 
-/// Each number is the best of so many runs: whatever else the machine does only makes them slower.
+/// Each time is the least of so many: whatever else the machine does only makes them longer.
 const RUNS: usize = 5;
 
 fn main() {
@@ -36,49 +32,69 @@ fn main() {
     }
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
     println!("figure 9.9, {WIDTH} × {HEIGHT} pixels, {PER_PIXEL} samples each");
+    println!("plain: every sample on its own, on one thread; the least of {RUNS} times, in turns");
     println!(
-        "                    points alone    rendered, 1 thread    rendered, {threads} threads"
+        "                points placed,          rendered on 1 thread,   on {threads} threads,"
+    );
+    println!(
+        "                part of plain's time    times as fast as plain  times as fast as on 1"
     );
     for method in Method::SAMPLED {
         let scene = figure::figure(WIDTH, HEIGHT, method, Count::PerPixel(PER_PIXEL));
-        let points = best(|| points(&scene));
-        let [one, all] = [1, threads].map(|threads| best(|| picture(&scene, threads)));
+        let [plain, points, one, all] = least([
+            &mut || {
+                black_box(picture(&scene, 1, Way::OneByOne));
+            },
+            &mut || {
+                black_box(points(&scene));
+            },
+            &mut || {
+                black_box(picture(&scene, 1, Way::Culled));
+            },
+            &mut || {
+                black_box(picture(&scene, threads, Way::Culled));
+            },
+        ]);
         println!(
-            "{:14} {:>17} {:>21} {:>22}",
+            "{:14} {:>21.3} {:>25.1} {:>22.2}",
             method.name(),
-            rate(points),
-            rate(one),
-            rate(all)
+            points / plain,
+            plain / one,
+            one / all,
         );
     }
     let scene = figure::figure(WIDTH, HEIGHT, Method::Random, Count::PerPixel(PER_PIXEL));
-    let film = picture(&scene, threads);
+    let film = picture(&scene, threads, Way::Culled);
     let recipe = Recipe {
         scene: String::new(),
         overrides: Vec::new(),
         crop: None,
     };
-    let png = best(|| write_png(&film, &recipe, &mut Vec::new()));
-    let exr = best(|| write_exr(&film, std::io::Cursor::new(Vec::new())));
-    println!("encoded as PNG in {png:.0?}, as EXR in {exr:.0?}");
+    let [plain, png, exr] = least([
+        &mut || {
+            black_box(picture(&scene, 1, Way::OneByOne));
+        },
+        &mut || write_png(&film, &recipe, &mut Vec::new()).expect("a list takes all bytes"),
+        &mut || write_exr(&film, Cursor::new(Vec::new())).expect("a list takes all bytes"),
+    ]);
+    println!(
+        "its files, part of the time of random on the plain path: PNG {:.3}, EXR {:.3}",
+        png / plain,
+        exr / plain
+    );
 }
 
-/// The shortest time that something took.
-fn best<T>(mut what: impl FnMut() -> T) -> Duration {
-    (0..RUNS)
-        .map(|_| {
+/// The least seconds that each of these took, in turns.
+fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
+    let mut least = [f64::INFINITY; N];
+    for _ in 0..RUNS {
+        for (least, what) in least.iter_mut().zip(&mut what) {
             let start = Instant::now();
-            black_box(what());
-            start.elapsed()
-        })
-        .min()
-        .unwrap_or_default()
-}
-
-fn rate(time: Duration) -> String {
-    let samples = u64::from(WIDTH) * u64::from(HEIGHT) * PER_PIXEL;
-    let millions = samples as f64 / time.as_secs_f64() / 1e6;
-    format!("{millions:.1} million/s")
+            what();
+            *least = least.min(start.elapsed().as_secs_f64());
+        }
+    }
+    least
 }
 
 /// Places all points, and does no more with them than must be.
@@ -96,7 +112,7 @@ fn points(scene: &Scene) -> f64 {
     sum.element_sum()
 }
 
-fn picture(scene: &Scene, threads: usize) -> Film {
+fn picture(scene: &Scene, threads: usize, way: Way) -> Film {
     let control = Control {
         threads: NonZero::new(threads),
         progress: &|_| {},
@@ -104,5 +120,6 @@ fn picture(scene: &Scene, threads: usize) -> Film {
     };
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     let part = Area::whole(WIDTH, HEIGHT);
-    render(&World::new(scene), &sampling, part, &control).expect("there is memory for it")
+    let world = World::new(scene);
+    render_in_a_way(&world, &sampling, part, &control, way).expect("there is memory for it")
 }

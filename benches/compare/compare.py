@@ -88,7 +88,8 @@ def compare(options, scene, folder):
 
 def figure(options, scene, sets, size):
     """Each way has a name, the command for a picture, and whether it starts without anything that an earlier run has compiled."""
-    for method, samples in [("multi_jittered", 16), ("multi_jittered", 48), ("multi_jittered", 64), ("sobol", 16), ("sobol", 64)]:
+    counts = {"hammersley": [16, 46, 64], "multi_jittered": [16, 48, 64], "sobol": [16, 48, 64]}
+    for method, samples in [(method, samples) for method in counts for samples in counts[method]]:
         chosen = [f"sampler.method={method}", f"sampler.per_pixel={samples}"]
         yield f"Pinhole, {method}, {samples}", pinhole(options, scene, sets, chosen), False
     yield "Pinhole, exact", pinhole(options, scene, sets, ["sampler.method=exact"]), False

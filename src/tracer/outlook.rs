@@ -97,7 +97,7 @@ pub struct Board {
 
 /// As many objects as lie above each other in pictures that people make. Of more it takes too long to compare each two: only the nearest is compared
 /// with the others.
-const FEW: usize = 8;
+const LAYERS: usize = 8;
 
 /// Heights of checkerboards above or below the eye that differ by this factor are in this order, whatever their rounding.
 const APART: f64 = 1.0 + 1e-12;
@@ -130,7 +130,7 @@ impl World {
     pub fn live_in(&self, spot: Spot, among: &[Live], out: &mut Vec<Live>) {
         let patch = Patch::of_spot(&self.fast.camera, spot);
         self.live_among(&patch, among.iter().map(|live| live.object), out);
-        if out.len() > FEW {
+        if out.len() > LAYERS {
             self.drop_behind_middle(spot, &patch, out);
         }
     }
@@ -226,7 +226,7 @@ impl World {
             });
         };
         let may_cover = |live: &&Live| live.is_whole && !live.is_cut();
-        if live.len() > FEW {
+        if live.len() > LAYERS {
             self.drop_boards_behind(live);
             // Of layers the nearest one hides all others; in one plane that is the first.
             let is_flat =
@@ -240,7 +240,7 @@ impl World {
                 drop_behind(front, live);
             }
         }
-        if live.len() <= FEW {
+        if live.len() <= LAYERS {
             for front in live.clone().iter().filter(may_cover) {
                 drop_behind(front.object, live);
             }

@@ -4,8 +4,8 @@ use crate::math::{Double, Real};
 
 use super::super::curve::{Conic, Curve, Line};
 
-/// So few curves are not looked through.
-const FEW: usize = 8;
+/// Fewer curves than these are not sorted to find those that are equal.
+const CURVES_WORTH_SORTING: usize = 8;
 
 /// Lines are one if no factor of their forms differs by more than a few roundings.
 const SAME_LINE: f64 = 4.0 * f64::UNIT;
@@ -26,7 +26,7 @@ struct Scaled<'a> {
 
 /// Leaves one of the curves that are equal. What it is off is as much as it was of any of them.
 pub(super) fn merge(curves: &mut Vec<Curve>) {
-    if curves.len() < FEW {
+    if curves.len() < CURVES_WORTH_SORTING {
         return;
     }
     let mut rads: Vec<f64> = curves.iter().map(Curve::rad).collect();

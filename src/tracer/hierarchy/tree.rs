@@ -8,10 +8,10 @@ use super::grid::{Item, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
 /// A cell with no more objects is not divided.
-const FEW: usize = 32;
+const OBJECTS_A_CELL: usize = 32;
 
 /// A cell with more objects is divided by several threads.
-const MANY: usize = 1 << 14;
+const OBJECTS_A_THREAD: usize = 1 << 14;
 
 /// An object in a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,7 +93,7 @@ impl Tree {
 
     /// The tree of a cell, by several threads.
     fn by_threads(place: Place, items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        if items.len() <= MANY || place.level == 0 {
+        if items.len() <= OBJECTS_A_THREAD || place.level == 0 {
             return Self::new(place, items, cancel);
         }
         if cancel::is_set(cancel) {
@@ -133,7 +133,7 @@ impl Tree {
         if cancel::is_set(cancel) {
             return;
         }
-        if stack.len() - start <= FEW || place.level == 0 {
+        if stack.len() - start <= OBJECTS_A_CELL || place.level == 0 {
             return self.list(cell, place, &stack[start..]);
         }
         stack[start..].sort_by_key(|item| !place.keeps(item));

@@ -10,7 +10,7 @@ use super::{
 use crate::math::{ROUND, UP, Vectors};
 
 /// So many samples are evaluated at a time.
-pub(super) const CHUNK: usize = 64;
+pub(super) const CHUNK_SAMPLES: usize = 64;
 
 /// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1, its second colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
@@ -20,22 +20,22 @@ pub(super) const DOUBT: f64 = -1.0;
 #[derive(Debug)]
 pub(super) struct Lanes {
     /// What is seen so far.
-    pub(super) seen: [f64; CHUNK],
+    pub(super) seen: [f64; CHUNK_SAMPLES],
     /// How deep that lies.
-    nearest: [f64; CHUNK],
+    nearest: [f64; CHUNK_SAMPLES],
     /// How certainly a surface is hit.
-    margin: [f64; CHUNK],
+    margin: [f64; CHUNK_SAMPLES],
     /// What is seen of it.
-    shown: [f64; CHUNK],
+    shown: [f64; CHUNK_SAMPLES],
     /// Its inverse depth.
-    depth: [f64; CHUNK],
+    depth: [f64; CHUNK_SAMPLES],
     /// The product of signs.
-    sign: [f64; CHUNK],
+    sign: [f64; CHUNK_SAMPLES],
 }
 
 impl Default for Lanes {
     fn default() -> Self {
-        let zeros = [0.0; CHUNK];
+        let zeros = [0.0; CHUNK_SAMPLES];
         Self {
             seen: zeros,
             nearest: zeros,
@@ -111,7 +111,13 @@ impl Pixel {
 impl Surface {
     /// Which colour each sample shows that hits it.
     #[inline(always)]
-    fn show(&self, lines: &[Line], points: At, sign: &mut [f64; CHUNK], shown: &mut [f64; CHUNK]) {
+    fn show(
+        &self,
+        lines: &[Line],
+        points: At,
+        sign: &mut [f64; CHUNK_SAMPLES],
+        shown: &mut [f64; CHUNK_SAMPLES],
+    ) {
         let shown = &mut shown[..points[0].len()];
         match &self.pattern {
             Pattern::Plain(code) => shown.fill(*code),
@@ -133,7 +139,7 @@ fn between(
     lines: &[Line],
     [even, odd]: [f64; 2],
     [x, y]: At,
-    sign: &mut [f64; CHUNK],
+    sign: &mut [f64; CHUNK_SAMPLES],
     shown: &mut [f64],
 ) {
     let side = |value: f64| {

@@ -15,7 +15,7 @@ mod squares;
 use glam::DVec2;
 
 use self::{
-    lanes::{BACKGROUND, CHUNK, DOUBT, Lanes},
+    lanes::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Lanes},
     local::Line,
     squares::Squares,
 };
@@ -29,7 +29,7 @@ pub use self::{
 };
 
 /// Fewer samples than this are not worth the preparation.
-const FEW: usize = 2;
+const SAMPLES_WORTH_PREPARING: usize = 2;
 
 /// A pixel's objects, prepared for many samples. Kept from pixel to pixel for its room.
 #[derive(Debug, Default)]
@@ -140,14 +140,14 @@ impl World {
             let offset = DVec2::new(x[index], y[index]);
             self.slot_among(pixel.x, pixel.y, offset, pixel.live.iter())
         };
-        if pixel.is_hard || samples < FEW {
+        if pixel.is_hard || samples < SAMPLES_WORTH_PREPARING {
             (0..samples).for_each(|index| count(alone(pixel, index), 1));
             return;
         }
         self.may_see(pixel);
-        let chunks = x.chunks(CHUNK).zip(y.chunks(CHUNK));
-        for (first, (x, y)) in (0..samples).step_by(CHUNK).zip(chunks) {
-            let length = CHUNK.min(samples - first);
+        let chunks = x.chunks(CHUNK_SAMPLES).zip(y.chunks(CHUNK_SAMPLES));
+        for (first, (x, y)) in (0..samples).step_by(CHUNK_SAMPLES).zip(chunks) {
+            let length = CHUNK_SAMPLES.min(samples - first);
             pixel.chunk([x, y], length, vectors);
             if pixel.doubts > 0 {
                 for index in 0..length {

@@ -12,7 +12,7 @@ mod trust;
 use std::ops::ControlFlow;
 
 use self::{
-    budget::{Budget, FEW},
+    budget::{Budget, FEW_CANDIDATES},
     trust::Trust,
 };
 use super::{
@@ -25,7 +25,7 @@ use crate::area::Area;
 
 /// A part with so many candidates is cut by their bounds alone, without a look at most of them, unless the bounds of the first ones hold most
 /// of it. Fewer may well be large, or slivers of whose bounds they fill but a small part.
-const CROWD: usize = 32;
+const CROWD_CANDIDATES: usize = 32;
 
 /// So many bounds are looked at in less time than it takes to go down the hierarchy, whose lists have up to 32 in their last cell.
 const SCANNED: usize = 16;
@@ -189,7 +189,7 @@ impl<'a> Quartering<'a> {
                 }
             }
             _ => {
-                let is_large = match crowd.get(..CROWD) {
+                let is_large = match crowd.get(..CROWD_CANDIDATES) {
                     None => true,
                     Some(first) => self.world.is_hardly_cut(area, first),
                 };
@@ -262,7 +262,7 @@ impl<'a> Quartering<'a> {
             budget = budget.probed(self.world, area);
         }
         if live.len() > budget.most(area) {
-            let part = match live.len() <= FEW {
+            let part = match live.len() <= FEW_CANDIDATES {
                 true => Part::Plain {
                     area,
                     among: Among::Live(live),

@@ -3,8 +3,6 @@
 //! Bounds lie side by side in memory, objects anywhere. So a part with many is cut by bounds until few are left, and of these the objects
 //! themselves are asked.
 
-use std::hint::black_box;
-
 use glam::DVec2;
 
 use super::{Nearest, World};
@@ -15,12 +13,8 @@ use crate::{
         camera::Direction,
         cover::{Patch, Range},
         hierarchy::{Item, Nearness},
-        object::Object,
     },
 };
-
-/// So many objects stay in the nearest part of a processor's memory until they are needed.
-const NEARBY: usize = 128;
 
 impl World {
     /// All objects whose bounds meet a part of the picture and that are not behind one which fills it, the one that may be nearest first;
@@ -62,9 +56,6 @@ impl World {
             hidden = hidden.max(self.behind(item.object as usize, &patch, clips));
         }
         out.truncate(out.partition_point(|item| item.nearest > hidden));
-        if out.len() < NEARBY && among.len() >= NEARBY {
-            self.fetch(out);
-        }
     }
 
     /// About how many forms some objects have together.
@@ -146,15 +137,5 @@ impl World {
             Some(live) if live.is_whole => Nearness::below(live.inverse_depth.low),
             _ => Nearness::NONE,
         }
-    }
-
-    /// Asks for all objects of a crowd and for their colours, which are anywhere in memory, so that they come side by side and not one after
-    /// the other, each when a ray asks for it.
-    fn fetch(&self, crowd: &[Item]) {
-        let first = |item: &Item| match self.objects[item.object as usize] {
-            Object::EdgeOn => 0,
-            _ => self.slots(item.object as usize)[0],
-        };
-        black_box(crowd.iter().map(first).sum::<usize>());
     }
 }

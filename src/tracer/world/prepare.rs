@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// With fewer objects it takes no longer to prepare them than to start threads for it.
-const MANY: usize = 1 << 10;
+const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
 /// So many are prepared before anybody is asked whether that is still wanted: a few milliseconds.
 const BLOCK: usize = 1 << 13;
@@ -105,5 +105,7 @@ fn reach(scene: &Scene) -> DVec2 {
 
 /// Threads to prepare so many objects; none if they are few, or if the system starts none.
 fn threads_for(objects: usize) -> Option<Threads> {
-    (objects >= MANY).then(|| Threads::new(None).ok()).flatten()
+    (objects >= OBJECTS_WORTH_THREADS)
+        .then(|| Threads::new(None).ok())
+        .flatten()
 }

@@ -1,0 +1,112 @@
+//! A part of the picture without samples, and how far it may be from the true one.
+
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+use super::{Control, RenderError, TILE, finished, wanted};
+use crate::{
+    area::Area,
+    exact::{self, Integrator},
+    film::{self, Encoder, Film},
+    threads,
+    tracer::World,
+};
+
+/// A computed picture, and how far it may be from the true one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exact<P = [f64; 3]> {
+    /// Its means, or their bytes.
+    pub film: Film<P>,
+    /// For each pixel, row by row, how far each channel of its mean may be from the true one.
+    pub bounds: Vec<f32>,
+    /// How many pixels of the film are certain to be those of the true means: of light, those without any error.
+    pub certain: u64,
+}
+
+impl<P> Exact<P> {
+    /// The greatest of the bounds.
+    pub fn bound(&self) -> f64 {
+        f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
+    }
+
+    /// The root of the mean of their squares, which is no less than the root of the mean squared error of all pixels and channels.
+    pub fn root_mean_square_bound(&self) -> f64 {
+        let squares = self
+            .bounds
+            .iter()
+            .map(|&bound| f64::from(bound) * f64::from(bound));
+        (squares.sum::<f64>() / self.bounds.len().max(1) as f64).sqrt()
+    }
+}
+
+/// Computes a part of the picture, which lies in it, without samples; progress counts pixels.
+pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exact, RenderError> {
+    render_exact_as(world, part, control)
+}
+
+/// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
+pub fn render_exact_bytes(
+    world: &World,
+    part: Area,
+    control: &Control,
+) -> Result<Exact<[u8; 3]>, RenderError> {
+    render_exact_as(world, part, control)
+}
+
+fn render_exact_as<P: film::Pixel>(
+    world: &World,
+    part: Area,
+    control: &Control,
+) -> Result<Exact<P>, RenderError> {
+    let exact = Mutex::new(Exact {
+        film: Film::new(part.width, part.height)?,
+        bounds: vec![0f32; part.pixels() as usize],
+        certain: 0,
+    });
+    let integrator = Integrator::new(world);
+    let encoder = Encoder::new();
+    threads::install(control.threads, || {
+        wanted(part.tiles(TILE), control)
+            .par_bridge()
+            .for_each(|tile| {
+                let Some(pixels) = integrator.pixels(tile, control.cancel) else {
+                    return;
+                };
+                let bounds: Vec<f32> = pixels
+                    .iter()
+                    .map(|pixel| match pixel.bound {
+                        0.0 => 0.0,
+                        // Rounded up; light is from 0 to 1.
+                        bound => (bound as f32).next_up().min(1.0),
+                    })
+                    .collect();
+                // Most pixels are as the one before.
+                let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
+                let means: Vec<P> = pixels
+                    .iter()
+                    .map(|pixel| {
+                        if pixel.mean != before {
+                            (before, last) = (pixel.mean, P::of(pixel.mean, &encoder));
+                        }
+                        last
+                    })
+                    .collect();
+                let is_certain = |(pixel, bound): &(&exact::Pixel, &f32)| {
+                    P::is_certain(pixel.mean, f64::from(**bound), &encoder)
+                };
+                let certain = pixels.iter().zip(&bounds).filter(is_certain).count();
+                let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
+                exact.film.put(tile.within(part), &means);
+                let rows = bounds.chunks_exact(tile.width as usize);
+                for (y, row) in (tile.y..).zip(rows) {
+                    let start = part.index(tile.x, y);
+                    exact.bounds[start..start + row.len()].copy_from_slice(row);
+                }
+                exact.certain += certain as u64;
+                drop(exact);
+                (control.progress)(tile.pixels());
+            });
+    })?;
+    finished(exact, control)
+}

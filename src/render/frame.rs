@@ -1,0 +1,271 @@
+//! The tiles of a picture with samples.
+//!
+//! A pixel's samples are counted by colour, and counts know no order. Where it is certain that one colour is seen, samples are neither placed
+//! nor traced: the mean of equal colours is that colour. In the other pixels they are traced many at a time, and against those objects alone
+//! that may be seen there; or one by one, where to know more would cost more.
+
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use rayon::prelude::*;
+
+use super::{
+    Control,
+    tally::{Counts, Tally},
+    tile::{Samples, Tile},
+};
+use crate::{
+    area::Area,
+    film::{self, Encoder},
+    math::Vectors,
+    sampling::Sampling,
+    tracer::{Among, Checks, Item, Live, Part, Pixel, Quartering, Room, World},
+};
+
+/// Fewer samples than these are placed and looked at by the vectors that every processor has.
+const WIDE_SAMPLES: u64 = 8;
+
+/// A pixel's samples are taken so many at a time; a pixel with more is shared by the threads.
+const CHUNK_SAMPLES: u64 = 1 << 12;
+
+/// How samples are traced. All ways make the same picture, to the bit: the slower ones are there to be compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// None where one colour is certain, else many at a time, against what may be seen in their pixel, or one by one where to know that would
+    /// cost more.
+    Culled,
+    /// All of them, many at a time, against all objects.
+    Together,
+    /// The same by vectors that every processor of the kind has.
+    Narrow,
+    /// All of them, one by one, against the objects that the hierarchy knows on their way.
+    OneByOne,
+}
+
+impl Way {
+    /// What its loops are made of.
+    fn vectors(self) -> Vectors {
+        match self {
+            Self::Culled | Self::Together => Vectors::Widest,
+            Self::Narrow | Self::OneByOne => Vectors::Baseline,
+        }
+    }
+}
+
+/// What all tiles have in common.
+pub(super) struct Frame<'a, P> {
+    pub(super) world: &'a World,
+    pub(super) sampling: &'a Sampling,
+    /// Of the palette, in linear light.
+    pub(super) colors: &'a [[f64; 3]],
+    /// The same as the film has them.
+    pub(super) shown: &'a [P],
+    pub(super) encoder: &'a Encoder,
+    pub(super) control: &'a Control<'a>,
+    pub(super) way: Way,
+    /// How many samples were traced.
+    pub(super) rays: AtomicU64,
+    pub(super) quartering: Quartering<'a>,
+    /// All objects, for the ways that ask all of them.
+    pub(super) everything: Vec<Live>,
+}
+
+impl<P: film::Pixel> Frame<'_, P> {
+    /// The pixels of a tile, row by row; none once the render is cancelled.
+    pub(super) fn tile(&self, tile: Area, tally: &mut Tally<P>, room: &mut Room) -> Option<Vec<P>> {
+        let background = self.shown[self.world.background()];
+        let mut film = Tile {
+            area: tile,
+            samples: match self.sampling.same_count() {
+                Some(count) => Samples::Same(count),
+                None => Samples::Each(self.sampling.counts(tile)),
+            },
+            // A pixel without a sample shows the background.
+            pixels: vec![background; tile.pixels() as usize],
+            unreported: 0,
+            rays: 0,
+        };
+        let mut visit = |part: Part, checks: Option<&Checks>| match part {
+            Part::Flat { area, slot } => {
+                film.fill(area, self.shown[slot]);
+                self.go_on()
+            }
+            Part::Open { x, y, live } => {
+                self.pixel([x, y], Trace::Together(live, checks), &mut film, tally)
+            }
+            Part::Plain { area, among } => {
+                let trace = match among {
+                    Among::All => Trace::OneByOne,
+                    Among::Crowd(crowd) => Trace::InCrowd(crowd),
+                    Among::Live(live) => Trace::Among(live),
+                };
+                let mut pixels = area.iter();
+                pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
+            }
+        };
+        let flow = match self.way {
+            Way::Culled => self.quartering.parts_and_checks(tile, room, &mut visit),
+            Way::Together | Way::Narrow => tile.iter().try_for_each(|(x, y)| {
+                let live = &self.everything;
+                visit(Part::Open { x, y, live }, None)
+            }),
+            Way::OneByOne => visit(
+                Part::Plain {
+                    area: tile,
+                    among: Among::All,
+                },
+                None,
+            ),
+        };
+        (self.control.progress)(film.unreported);
+        self.rays.fetch_add(film.rays, Ordering::Relaxed);
+        flow.is_continue().then_some(film.pixels)
+    }
+
+    /// Whether anybody wants to see more.
+    fn go_on(&self) -> ControlFlow<()> {
+        match self.control.cancel.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Takes the samples of a pixel.
+    fn pixel(
+        &self,
+        [x, y]: [u32; 2],
+        trace: Trace,
+        film: &mut Tile<P>,
+        tally: &mut Tally<P>,
+    ) -> ControlFlow<()> {
+        let index = film.area.index(x, y);
+        let samples = film.samples.of(index);
+        if samples == 0 {
+            return self.go_on();
+        }
+        let trace = match trace {
+            // To prepare the pixel would take longer.
+            Trace::Together(live, _) if samples == 1 => Trace::Among(live),
+            _ => trace,
+        };
+        film.rays += samples;
+        if samples <= CHUNK_SAMPLES {
+            self.look([x, y], trace, &mut tally.pixel);
+            self.chunk(x, y, samples, 0, trace, tally);
+            film.unreported += samples;
+        } else {
+            self.many(x, y, samples, trace, tally);
+        }
+        let Tally { counts, means, .. } = tally;
+        film.pixels[index] = means.take(counts, self.colors, self.encoder);
+        self.go_on()
+    }
+
+    /// Prepares a pixel, where samples are traced together.
+    fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut Pixel) {
+        if let Trace::Together(live, checks) = trace {
+            self.world.look(at, live, checks, pixel);
+        }
+    }
+
+    /// All samples of a pixel that has many, on all threads.
+    fn many(&self, x: u32, y: u32, samples: u64, trace: Trace, tally: &mut Tally<P>) {
+        // A few thousand chunks at a time, so that what is gathered from the threads stays small.
+        const BATCH: u64 = CHUNK_SAMPLES << 10;
+        let mut first = 0;
+        while first < samples && !self.control.cancel.load(Ordering::Relaxed) {
+            let end = samples.min(first.saturating_add(BATCH));
+            let chunks = (end - first).div_ceil(CHUNK_SAMPLES);
+            let slots = self.colors.len();
+            let sums = (0..chunks)
+                .into_par_iter()
+                .fold(
+                    || {
+                        let mut tally = Tally::<P>::new(slots);
+                        self.look([x, y], trace, &mut tally.pixel);
+                        tally
+                    },
+                    |mut tally, chunk| {
+                        if !self.control.cancel.load(Ordering::Relaxed) {
+                            let first = first + chunk * CHUNK_SAMPLES;
+                            self.chunk(x, y, samples, first, trace, &mut tally);
+                        }
+                        tally
+                    },
+                )
+                .map(|tally| tally.counts)
+                .reduce(
+                    || Counts::new(0),
+                    |mut a, b| {
+                        if a.is_empty() {
+                            return b;
+                        }
+                        a.merge(&b);
+                        a
+                    },
+                );
+            tally.counts.merge(&sums);
+            (self.control.progress)(end - first);
+            first = end;
+        }
+    }
+
+    /// Counts up to [`CHUNK_SAMPLES`] samples of a pixel that has `samples`, from the one with index `first` on.
+    fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, trace: Trace, tally: &mut Tally<P>) {
+        let end = samples.min(first + CHUNK_SAMPLES);
+        let Tally {
+            counts,
+            pixel,
+            points,
+            ..
+        } = tally;
+        let vectors = match trace {
+            Trace::Together(..) if end - first >= WIDE_SAMPLES => self.way.vectors(),
+            // To choose others takes longer, and rays that are traced one by one afterwards are slower for it.
+            _ => Vectors::Baseline,
+        };
+        self.sampling
+            .place(vectors, [x, y], samples, first..end, points);
+        // One by one, each may take its time.
+        let wanted = points.iter().take_while(|_| self.go_on().is_continue());
+        match trace {
+            Trace::Together(..) => self.world.count(
+                pixel,
+                points.lanes(),
+                points.len(),
+                vectors,
+                |slot, samples| counts.add(slot, samples),
+            ),
+            Trace::Among(live) => {
+                for offset in wanted {
+                    counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
+                }
+            }
+            Trace::InCrowd(crowd) => {
+                for offset in wanted {
+                    counts.add(self.world.slot_in_crowd(x, y, offset, crowd), 1);
+                }
+            }
+            Trace::OneByOne => {
+                for offset in wanted {
+                    counts.add(self.world.slot_at(x, y, offset), 1);
+                }
+            }
+        }
+    }
+}
+
+/// How the samples of a pixel are traced.
+#[derive(Clone, Copy)]
+enum Trace<'a> {
+    /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where that is known.
+    Together(&'a [Live], Option<&'a Checks>),
+    /// One by one, against these.
+    Among(&'a [Live]),
+    /// One by one, against those of these whose bounds hold the ray.
+    InCrowd(&'a [Item]),
+    /// One by one, against the objects that the hierarchy knows on their way.
+    OneByOne,
+}

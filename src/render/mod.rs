@@ -1,0 +1,82 @@
+//! A world becomes a film: with samples, or exactly.
+//!
+//! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the means of its pixels. The part is
+//! cut into tiles, which the threads take as they come; neither the number of threads nor the tiles nor the part asked for can change a bit
+//! of a pixel.
+//!
+//! `sampled` renders with samples, whose tiles `frame` makes; `exact` renders without. What both have in common is here.
+
+mod exact;
+mod frame;
+mod sampled;
+mod tally;
+mod tile;
+
+use std::{
+    num::NonZero,
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use thiserror::Error;
+
+use crate::{area::Area, cancel::Cancelled, film::TooLarge};
+
+pub use self::{
+    exact::{Exact, render_exact, render_exact_bytes},
+    sampled::{render, render_and_count, render_bytes},
+};
+// For the tests and measurements that compare ways to render; no part of what the library is for.
+#[doc(hidden)]
+pub use self::{frame::Way, sampled::render_in_a_way};
+
+/// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
+const TILE: u32 = 64;
+
+/// How a render is watched, and by how many it is done.
+pub struct Control<'a> {
+    /// How many threads; as many as there are processors if this is `None`.
+    pub threads: Option<NonZero<usize>>,
+    /// Is told, from any thread, how many more samples are done, or how many more exact pixels.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+    /// Ends the render soon after it is set.
+    pub cancel: &'a AtomicBool,
+}
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// There is no memory for it.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
+    /// The system starts no threads.
+    #[error("cannot start threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// It was not wanted any more.
+    #[error("interrupted")]
+    Cancelled,
+}
+
+impl From<Cancelled> for RenderError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// Tiles as long as they are wanted: to hand out millions that nobody renders would take a second.
+fn wanted(
+    tiles: impl Iterator<Item = Area> + Send,
+    control: &Control,
+) -> impl Iterator<Item = Area> + Send {
+    tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
+}
+
+/// What was made, if it was wanted to the end.
+fn finished<T>(made: Mutex<T>, control: &Control) -> Result<T, RenderError> {
+    if control.cancel.load(Ordering::Relaxed) {
+        return Err(RenderError::Cancelled);
+    }
+    Ok(made.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
