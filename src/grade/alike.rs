@@ -40,7 +40,7 @@ const EXPECTED: f64 = 3.0;
 /// Whether a mistake, of which a picture would have noise beside it, would show itself where one colour should be seen, in more pixels than do.
 /// `variance` is that of one sample with the mistake, and so many are in each pixel.
 pub fn is_belied(case: &Case, made: &Film, variance: &Film, samples: f64) -> bool {
-    if case.is_beyond_samples() {
+    if case.is_likelier_a_mistake() {
         return false;
     }
     let samples = samples.max(1.0);
@@ -135,7 +135,7 @@ pub fn verdict(difference: f64, message: &str, help: String) -> Verdict {
 /// The samples of a picture, if they may be at the same places in each pixel: those that foretell its errors best. They are told if they do
 /// so better than any small displacement of all of it.
 pub fn find(case: &Case) -> Result<Option<Alike>, RenderError> {
-    if case.is_beyond_samples() {
+    if case.is_likelier_a_mistake() {
         return Ok(None);
     }
     let pixels = pixels(case)?;

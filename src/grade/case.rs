@@ -17,7 +17,8 @@ use super::{
     level::{self, Level},
     noise::{self, Noise},
     objects::{self, Slope},
-    seen::{self, Origin, Seen},
+    origin::{self, Origin},
+    seen::Seen,
     size,
 };
 use crate::{
@@ -245,7 +246,7 @@ impl<'a> Case<'a> {
         if is_of_light
             && self.strays.pixels == 0
             && left > HOPE * self.difference
-            && (self.is_beyond_samples()
+            && (self.is_likelier_a_mistake()
                 || Errors::new(&self.full.a, &made)?.is_picture_moved(&made, None))
         {
             return Ok(None);
@@ -335,13 +336,20 @@ impl<'a> Case<'a> {
         self.seen.get_or_init(|| Seen::of(&self.full.scene))
     }
 
-    /// What may have made the picture, beside mistakes.
-    pub fn origin(&self) -> Origin {
-        *self.origin.get_or_init(|| seen::origin(self))
+    /// Whether as many pixels are off as tell of something.
+    pub fn are_many_off(&self) -> bool {
+        let pairs = self.full.a.pixels().iter().zip(self.full.exact.pixels());
+        let off = pairs.filter(|pair| noise::is_off(*pair));
+        off.take(evidence::FEWEST as usize).count() == evidence::FEWEST as usize
     }
 
-    /// Whether a mistake is likelier than samples: those on pixels' sides excuse it only where none explains most of the difference.
-    pub fn is_beyond_samples(&self) -> bool {
+    /// What may have made the picture, beside mistakes.
+    pub fn origin(&self) -> Origin {
+        *self.origin.get_or_init(|| origin::origin(self))
+    }
+
+    /// Whether a mistake is looked for as if no samples had made the picture: those on pixels' sides are said beside it.
+    pub fn is_likelier_a_mistake(&self) -> bool {
         self.origin() != Origin::Samples
     }
 

@@ -51,7 +51,7 @@ impl Case<'_> {
     /// enough is explained. Those that foretell nothing have not.
     fn may_be_places(&self, left: f64) -> bool {
         let is_refuted = self.alike.get().is_some_and(|alike| alike.is_refuted());
-        left > alike::LEFT * self.difference && !is_refuted && !self.is_beyond_samples()
+        left > alike::LEFT * self.difference && !is_refuted && !self.is_likelier_a_mistake()
     }
 
     /// Whether samples at the same places leave less than a mistake does.
@@ -69,7 +69,7 @@ impl Case<'_> {
     /// Whether a mistake that leaves little would show itself in more pixels where one colour should be seen: as when samples at the same places
     /// have their middle beside the pixel's.
     fn is_belied_by(&self, make: &Make, made: &Film) -> Result<bool, RenderError> {
-        if self.is_beyond_samples() {
+        if self.is_likelier_a_mistake() {
             return Ok(false);
         }
         let Some(variance) = self.variance_of(make, made)? else {
@@ -98,7 +98,7 @@ impl Case<'_> {
         let one_sample = variances().flatten().map(|one| one.max(0.0)).sum::<f64>();
         let channels = 3.0 * self.variance.pixels().len() as f64;
         let is_little = self.difference * self.difference * channels <= one_sample;
-        let may_be_samples = flat >= evidence::FEWEST && is_little && !self.is_beyond_samples();
+        let may_be_samples = flat >= evidence::FEWEST && is_little && !self.is_likelier_a_mistake();
         may_be_samples || self.is_belied.get() && self.may_be_right()
     }
 

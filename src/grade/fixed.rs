@@ -11,7 +11,7 @@ use super::{
     evidence, level,
     noise::{self, Noise},
     objects::Near,
-    seen::Origin,
+    origin::Origin,
     size,
 };
 use crate::{
@@ -24,8 +24,8 @@ use crate::{
 pub struct Grid {
     /// How many they are; none if several numbers of them make the picture.
     pub samples: Option<u64>,
-    /// Where in a pixel they are; in their cells' middles if several places make the picture.
-    place: Place,
+    /// Where in a pixel they are; none if several places make the picture.
+    place: Option<Place>,
     /// Whether enough pixels tell of it.
     pub is_told: bool,
 }
@@ -49,7 +49,7 @@ enum Place {
 }
 
 /// The corners of a cell: whether they are right ones, and lower ones.
-const CORNERS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
+const OF_A_CELL: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
 
 impl Cells {
     fn all() -> impl Iterator<Item = Self> {
@@ -57,7 +57,7 @@ impl Cells {
             samples,
             place: Place::Middles,
         });
-        let corners = CORNERS.map(|[is_right, is_lower]| Place::Corners { is_right, is_lower });
+        let corners = OF_A_CELL.map(|[is_right, is_lower]| Place::Corners { is_right, is_lower });
         let others = (2..=SIDE).flat_map(move |side| {
             corners
                 .into_iter()
@@ -128,18 +128,15 @@ impl Place {
         };
         DVec2::new(along(column, is_right), along(row, is_lower))
     }
+}
 
-    /// The name of a corner.
-    fn corner(self) -> Option<&'static str> {
-        match self {
-            Self::Corners { is_right, is_lower } => Some(match [is_right, is_lower] {
-                [false, false] => "upper left",
-                [false, true] => "lower left",
-                [true, false] => "upper right",
-                [true, true] => "lower right",
-            }),
-            _ => None,
-        }
+/// The name of a cell's corner.
+fn corner(of_a_cell: [bool; 2]) -> &'static str {
+    match of_a_cell {
+        [false, false] => "upper left",
+        [false, true] => "lower left",
+        [true, false] => "upper right",
+        [true, true] => "lower right",
     }
 }
 
@@ -199,11 +196,7 @@ pub fn grid(case: &Case) -> Result<Option<Grid>, RenderError> {
     }
     Ok(Some(Grid {
         samples: is_only.then_some(cells.samples),
-        place: if is_known {
-            cells.place
-        } else {
-            Place::Middles
-        },
+        place: is_known.then_some(cells.place),
         is_told,
     }))
 }
@@ -213,22 +206,37 @@ impl Grid {
     pub fn verdict(&self, difference: f64) -> Verdict {
         let samples = self.samples;
         let samples = samples.map_or("a few".to_owned(), |samples| samples.to_string());
-        let (rest, help) = match (self.place, self.place.corner()) {
-            (Place::Ends, _) => (
-                "from side to side, so that what is on a pixel's sides is taken for it and its neighbours alike".to_owned(),
-                format!("the middle of cell i of n is at (i + 0.5)/n, not at i/(n - 1); {}", alike::HELP),
-            ),
-            (_, Some(corner)) => (
-                format!(
-                    "at the {corner} corners of its cells, so that all edges are displaced by half of a cell"
-                ),
-                format!("the middle of cell i of n is at (i + 0.5)/n, not at i/n; {}", alike::HELP),
-            ),
-            (_, None) => (
+        let (rest, not_at) = match self.place {
+            None | Some(Place::Middles) => (
                 "so that edges along rows and columns are displaced by a part of a pixel"
                     .to_owned(),
-                alike::HELP.to_owned(),
+                None,
             ),
+            Some(Place::Ends) => (
+                "from side to side, so that what is on a pixel's sides is counted in its neighbour as well"
+                    .to_owned(),
+                Some("i/(n - 1)"),
+            ),
+            Some(Place::Corners { is_right, is_lower }) => (
+                format!(
+                    "at the {} corners of its cells, so that all edges are displaced by half of a cell",
+                    corner([is_right, is_lower])
+                ),
+                Some(match [is_right, is_lower] {
+                    [false, false] => "i/n",
+                    [true, true] => "(i + 1)/n",
+                    _ => "i/n or (i + 1)/n",
+                }),
+            ),
+        };
+        let help = match not_at {
+            Some(place) => {
+                format!(
+                    "the middle of cell i of n is at (i + 0.5)/n, not at {place}; {}",
+                    alike::HELP
+                )
+            }
+            None => alike::HELP.to_owned(),
         };
         let message = format!(
             "the picture is that of {samples} samples in each pixel, a grid at the same places in all of them, {rest}"

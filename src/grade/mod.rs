@@ -6,7 +6,7 @@
 //!
 //! Mistakes of the whole picture are in `whole` and `gray`, of the camera in `camera`, of objects in `objects` and `board`, of what hides what in
 //! `order`, of samples in `noise` and `shift`. Numbers that are some others, a camera's or a checkerboard's, are looked for by `search`. `fixed` and
-//! `alike` know samples whose errors are not independent, `seen` what no samples make, `truncated` bytes that are not rounded, `rounded` numbers
+//! `alike` know samples whose errors are not independent, `seen` what single ones see, `origin` whether any may have made a picture, `truncated` bytes that are not rounded, `rounded` numbers
 //! that are coarser than their file, `bias` errors that add up to something. `case` tries mistakes, `explained` says whether one explains the
 //! difference, `evidence` how many pixels it takes to name one, and `choice` which of several it is. `pairs` finds two mistakes at once. `light`
 //! undoes curves. `level` makes pictures smaller, so that `fit` can afford to search, and `extent` says in which part of one an object can make a
@@ -29,6 +29,7 @@ mod light;
 mod noise;
 mod objects;
 mod order;
+mod origin;
 mod pairs;
 mod rounded;
 mod search;
@@ -55,8 +56,8 @@ use self::{
     case::Case,
     choice::{Explanation, RIVAL, ROUNDING},
     order::Order,
+    origin::Origin,
     pairs::Pairs,
-    seen::Origin,
 };
 
 /// A mistake explains a difference if it leaves less than this share of its root mean square: a twenty-fifth of the squares.
@@ -177,7 +178,10 @@ pub fn scene(
         };
         // Noise that few pixels tell of is one thing, and samples at the same places, which many may tell of, another.
         let is_few = case.may_be_noise.get();
-        let may_be_noise = is_few || case.is_alike() || case.may_be_alike();
+        let may_be_noise = is_few
+            || case.is_alike()
+            || case.may_be_alike()
+            || case.are_many_off() && case.origin() == Origin::Perhaps;
         let is_thin = is_few || case.is_thin.get() && !may_be_noise;
         Ok(Grade {
             is_thin: likely.is_empty() && is_thin,
@@ -209,15 +213,24 @@ fn likely(case: &Case) -> Result<Vec<Verdict>, RenderError> {
     }
     case.alike.set(alike);
     let found = mistakes(case)?;
-    Ok(match &alike {
-        Some(alike) if is_told && found.is_empty() => verdict(alike),
-        // All that edges along pixels' sides are off may be due to samples there: where nothing explains most of it, and beside what does.
-        _ if case.origin() == Origin::OnSides => {
-            let sure = found.into_iter().filter(Verdict::is_sure);
-            sure.chain([seen::verdict(case.difference)]).collect()
-        }
-        _ => found,
-    })
+    if let Some(alike) = &alike
+        && is_told
+        && found.is_empty()
+    {
+        return Ok(verdict(alike));
+    }
+    // Some pixels of one colour have not their own, but may have what samples on their sides see.
+    let may_be_on_sides = case.strays.pixels > 0
+        && case.are_many_off()
+        && matches!(case.origin(), Origin::Samples | Origin::OnSides);
+    if !may_be_on_sides {
+        return Ok(found);
+    }
+    // What explains most of it comes before that, and what does not after it.
+    let (mut found, unsure): (Vec<_>, Vec<_>) = found.into_iter().partition(Verdict::is_sure);
+    found.push(origin::verdict(case.difference));
+    found.extend(unsure);
+    Ok(found)
 }
 
 /// What is said of a picture of one colour. If it is the background's the camera may look past everything, as any that does makes the same
@@ -356,7 +369,7 @@ fn numbers(case: &Case, pairs: Option<&Pairs>) -> Result<Vec<Verdict>, RenderErr
         return Ok(verdicts(found));
     }
     // A camera that is off in several ways is seen all over the picture. What noise may have done is nobody's fault.
-    let needs_no_mistake = case.may_be_noise.get() || !case.is_beyond_samples();
+    let needs_no_mistake = case.may_be_noise.get() || !case.is_likelier_a_mistake();
     if found.is_empty()
         && !needs_no_mistake
         && let Some(verdict) = objects::confined(case)?

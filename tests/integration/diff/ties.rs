@@ -111,10 +111,12 @@ fn grid(side: u32) -> Vec<DVec2> {
     (0..side * side).map(point).collect()
 }
 
-/// A grid at the lower right corners of its cells.
-fn lower(side: u32) -> Vec<DVec2> {
-    let point = |i| DVec2::new(f64::from(i % side + 1), f64::from(i / side + 1)) / f64::from(side);
-    (0..side * side).map(point).collect()
+/// A grid at a corner of its cells, so many cells to the right of the left ones and below the upper ones.
+fn corners(side: u32, [right, lower]: [u32; 2]) -> Vec<DVec2> {
+    let point = |i| DVec2::new(f64::from(i % side + right), f64::from(i / side + lower));
+    (0..side * side)
+        .map(|i| point(i) / f64::from(side))
+        .collect()
 }
 
 #[test]
@@ -124,7 +126,10 @@ fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded() {
         ("hammersley 16", hammersley(16)),
         ("grid of 25", grid(5)),
         ("grid of 9", grid(3)),
-        ("lower corners of 4", lower(2)),
+        ("upper left corners of 4", corners(2, [0, 0])),
+        ("lower left corners of 4", corners(2, [0, 1])),
+        ("upper right corners of 4", corners(2, [1, 0])),
+        ("lower right corners of 4", corners(2, [1, 1])),
     ];
     let mut blamed = String::new();
     for (name, text, lookat, distance) in [
@@ -172,4 +177,46 @@ fn mistakes_along_pixels_sides_are_named() {
     let mut wrong = right.clone();
     wrong.camera.eye.y = 7.95;
     assert!(mistake(&exact(&wrong)).is_some_and(|mistake| mistake == "eye"));
+}
+
+/// Boxes that all begin and end at pixels' sides.
+const FLAT: &str = "image { background skyblue }
+camera { eye (0, 0, 4.5) lookat (0, 0, 0) d 2 }
+box A { min (-3, -1, -0.1) max (-1.5, 1, 0) color red }
+box B { min (-0.5, -1.5, -0.1) max (0.5, 1.5, 0) color gold }
+box C { min (1.5, -1, -0.1) max (3, 0.5, 0) color navy }
+box D { min (-1.25, -1.75, -0.1) max (-1.15, 1.75, 0) color white }
+";
+
+/// Whether samples are said to be all that is wrong with the exact picture of a scene some of whose boxes are changed.
+fn is_excused(change: impl Fn(&mut [&mut pinhole::scene::Cuboid])) -> bool {
+    let right = read(FLAT);
+    let mut wrong = right.clone();
+    let boxes = wrong
+        .objects
+        .iter_mut()
+        .map(|object| match &mut object.shape {
+            Shape::Box(cuboid) => cuboid,
+            _ => unreachable!("there are boxes only"),
+        });
+    change(&mut boxes.collect::<Vec<_>>());
+    let found = Subject::new(&right, SIZE)
+        .graded(Subject::new(&wrong, SIZE).exact())
+        .unwrap();
+    let is_noise = |likely: &pinhole::grade::Verdict| likely.mistake == "noise";
+    !found.likely.is_empty() && found.likely.iter().all(is_noise)
+}
+
+#[test]
+fn what_no_samples_can_see_is_not_excused_by_them() {
+    // A twentieth of a metre is a pixel. Three fifths of the samples would be on left sides, and as many on right ones.
+    assert!(!is_excused(|boxes| {
+        boxes[0].min.x += 0.03;
+        boxes[1].max.x += 0.03;
+        boxes[2].max.y -= 0.03;
+        boxes[3].min.x -= 0.03;
+    }));
+    // One edge of sixteen is off.
+    assert!(!is_excused(|boxes| boxes[1].max.x += 0.03));
+    assert!(!is_excused(|boxes| boxes[2].min.y -= 0.02));
 }
