@@ -3,7 +3,7 @@
 //! Their errors hang together: an edge seems displaced by a part of a pixel in all pixels through which it goes alike, so that what looks for
 //! sums of errors takes them for a camera that is off by as much. Two things tell them apart.
 //!
-//! Where one colour should be seen all samples see it, but for one at a corner where an edge runs along the pixel's side (`seen`). An edge that is
+//! Where one colour should be seen all samples see it, but for one at a corner where an edge runs along the pixel's side (`origin`). An edge that is
 //! really off by δ misses a share of about δ/2 of each of δ L more pixels beside L of its own, which one of n samples each shows in n L δ²/2 of
 //! them. Errors add up beyond six deviations where 4 L n δ² is more than 36, and then these are 4.5: [`is_belied`] asks whether those are missing
 //! that a mistake makes.

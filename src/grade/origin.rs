@@ -219,10 +219,8 @@ fn explains(case: &Case, corner: &DVec2, wrong: &[(u32, u32)], right: &[(u32, u3
     let places = || beside.into_iter().chain([*corner]);
     let is_made = |&(x, y): &(u32, u32)| {
         let colors = places().map(|place| seen.at([x, y], place));
-        let [low, high] = range(colors.chain([DVec3::from(exact.pixel(x, y))]));
-        let light = a.pixel(x, y);
-        let nearest = DVec3::from(light).clamp(low, high);
-        !noise::is_off((&light, &nearest.to_array()))
+        let ends = range(colors.chain([DVec3::from(exact.pixel(x, y))]));
+        !is_outside(&a.pixel(x, y), ends)
     };
     if !wrong.iter().all(is_made) {
         return false;

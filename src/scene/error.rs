@@ -586,9 +586,7 @@ impl Problem {
             more.push(span);
         }
     }
-}
 
-impl Problem {
     /// The value that it is about, if another value there could be right.
     pub fn place_of_value(&self) -> Option<Span> {
         match self {

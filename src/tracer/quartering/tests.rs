@@ -107,6 +107,28 @@ fn layers_cost_what_is_seen_of_them_however_many_they_are() {
 }
 
 #[test]
+fn squares_no_longer_than_pixels_are_not_asked_for_in_quarters() {
+    let part = Area {
+        x: 0,
+        y: SIZE - 16,
+        width: 16,
+        height: 16,
+    };
+    for (square, is_dust) in [("0.001", true), ("0.2", false)] {
+        let board = format!("checkerboard {{ y -1 square {square} }}");
+        let world = World::new(&read(&board));
+        let mut parts = 0;
+        let mut room = Room::default();
+        let flow = Quartering::for_samples(&world, 1.0).parts(part, &mut room, &mut |_| {
+            parts += 1;
+            ControlFlow::Continue(())
+        });
+        assert!(flow.is_continue());
+        assert_eq!(parts == 1, is_dust, "{square}: {parts} parts");
+    }
+}
+
+#[test]
 fn bounds_that_hold_a_part_hardly_cut_it_be_it_one_pixel_high() {
     let whole = Area::whole(SIZE, SIZE);
     let middle = SIZE / 2;
