@@ -11,7 +11,6 @@ use super::{
     edge,
     floor::{Fine, Floor},
     inverse::Inverse,
-    sides::Known,
 };
 use crate::{
     math::{Double, Real},
@@ -224,14 +223,9 @@ impl Board {
     }
 
     /// The integral of s(a)·s(b) over what a convex polygon shows of the floor, in square pixels; positive where the
-    /// squares are, however the polygon is oriented; or 0, with a bound on it, where squares are too small to be seen. Some of its sides may
-    /// be known, if it is a whole pixel. Once it is cancelled any sum will do.
-    pub(super) fn over(
-        &self,
-        polygon: &[DVec2],
-        known: Option<&mut Known>,
-        cancel: &AtomicBool,
-    ) -> Sum {
+    /// squares are, however the polygon is oriented; or 0, with a bound on it, where squares are too small to be seen. Once it is
+    /// cancelled any sum will do.
+    pub(super) fn over(&self, polygon: &[DVec2], cancel: &AtomicBool) -> Sum {
         let enough = self.care.enough(polygon);
         let next_to_nothing = || Sum {
             value: 0.0,
@@ -255,7 +249,7 @@ impl Board {
             .flatten();
         let mut sum = match close {
             Some(close) if close.bound <= coarse => close,
-            close => better(self.unchecked(polygon, known, cancel), close),
+            close => better(self.unchecked(polygon, cancel), close),
         };
         if sum.bound > enough && !is_coarse && !self.is_crowded(polygon) {
             sum = better(sum, closely::sum(self, polygon));
@@ -292,7 +286,7 @@ impl Board {
         (is_mean || is_nowhere).then_some(sum)
     }
 
-    fn unchecked(&self, polygon: &[DVec2], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
+    fn unchecked(&self, polygon: &[DVec2], cancel: &AtomicBool) -> Sum {
         let corners = self.visible(polygon);
         let first = match corners.first() {
             Some(first) if corners.len() > 2 => first,
@@ -300,7 +294,7 @@ impl Board {
         };
         let endless = corners.iter().any(|c| c.depth.is_infinite());
         if endless {
-            let mut sum = self.far_or_both(&corners, known, cancel);
+            let mut sum = self.far_or_both(&corners, cancel);
             let is_beside = |&at: &DVec2| {
                 let level = form(&self.below, at);
                 level > 0.0 && level <= self.horizon_off
@@ -328,7 +322,7 @@ impl Board {
         if squares(&corners).min(spans[0] * spans[1]) <= FEW {
             return cells::sum(self, &corners, cancel);
         }
-        self.far_or_both(&corners, known, cancel)
+        self.far_or_both(&corners, cancel)
     }
 
     /// What may be neglected of an edge that crosses so many lines, in square pixels.
@@ -350,18 +344,13 @@ impl Board {
     }
 
     /// Along the boundary where the board is far enough for it, square by square where it is not.
-    fn far_or_both(
-        &self,
-        corners: &[Corner],
-        known: Option<&mut Known>,
-        cancel: &AtomicBool,
-    ) -> Sum {
+    fn far_or_both(&self, corners: &[Corner], cancel: &AtomicBool) -> Sum {
         let [p, q] = self.fine.floor.slope;
         let depth = FAR * (p.abs() + q.abs());
         let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
         let furthest = corners.iter().fold(0.0, |m: f64, c| m.max(c.depth));
         if nearest >= depth {
-            return self.far(corners, known, cancel);
+            return self.far(corners, cancel);
         }
         if depth.min(furthest) > DEEP {
             let [near, behind] = self.split(corners, DEEP);
@@ -374,24 +363,23 @@ impl Board {
         }
         let [near, far] = self.split(corners, depth);
         let mut sum = cells::sum(self, &near, cancel);
-        sum.add(self.far(&far, known, cancel));
+        sum.add(self.far(&far, cancel));
         sum
     }
 
     /// Along the boundary; or, where corners as they are rounded do not tell m from a and b, as if it were near, but for next to nothing.
-    fn far(&self, corners: &[Corner], known: Option<&mut Known>, cancel: &AtomicBool) -> Sum {
-        let along = |corners: &[Corner], known| {
-            edge::sum(self, corners, known).within(corners.iter().map(|c| c.at))
-        };
+    fn far(&self, corners: &[Corner], cancel: &AtomicBool) -> Sum {
+        let along =
+            |corners: &[Corner]| edge::sum(self, corners).within(corners.iter().map(|c| c.at));
         let fits = self.displacement <= MISFIT;
-        let sum = fits.then(|| along(corners, known));
+        let sum = fits.then(|| along(corners));
         if let Some(sum) = sum.filter(|sum| !self.fine.is_needed || sum.bound <= GOOD_FAR) {
             return sum;
         }
         let [near, behind] = self.split(corners, NEXT_TO_NOTHING);
         let mut other = cells::sum(self, &near, cancel);
         other.add(match fits {
-            true => along(&behind, None),
+            true => along(&behind),
             false => Sum {
                 value: 0.0,
                 bound: measure(behind.iter().map(|c| c.at)).0.abs(),

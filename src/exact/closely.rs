@@ -216,7 +216,7 @@ mod tests {
             let board = board(degrees, height, focal, down);
             prop_assert!(finely::sum(&board, &PIXEL).is_none());
             for polygon in [&PIXEL[..], &PIXEL[1..]] {
-                let rounded = board.over(polygon, None, &AtomicBool::new(false));
+                let rounded = board.over(polygon, &AtomicBool::new(false));
                 let close = of_crowd(&board, polygon, &AtomicBool::new(false)).unwrap_or_default();
                 let off = (close.value - rounded.value).abs();
                 prop_assert!(close.bound > 0.0 && close.bound <= 4e-9, "{close:?}");

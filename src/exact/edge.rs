@@ -15,7 +15,6 @@ use super::board::{Board, Corner, Sum, UNIT, measure};
 use super::complex::turn_exactly;
 use super::euler::{waves, waves_at};
 use super::horizon;
-use super::sides::Known;
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
@@ -43,7 +42,7 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
 };
 
 /// The integral over a convex polygon of which every square is far away, which may reach to the horizon.
-pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Known>) -> Sum {
+pub(super) fn sum(board: &Board, corners: &[Corner]) -> Sum {
     if corners.len() < 3 {
         return Sum::default();
     }
@@ -60,12 +59,7 @@ pub(super) fn sum(board: &Board, corners: &[Corner], mut known: Option<&mut Know
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;
         if let Some(edge) = edge {
-            let (a, b) = (&corners[i], &corners[(i + 1) % corners.len()]);
-            let (near, far) = if a.depth <= b.depth { (a, b) } else { (b, a) };
-            let part = known
-                .as_mut()
-                .and_then(|known| known.sum(board, edge, [near, far]))
-                .unwrap_or_else(|| edge.integral(board, terms));
+            let part = edge.integral(board, terms);
             sum.value += edge.sign * part.value;
             sum.bound += part.bound;
             ends -= edge.potential;
@@ -210,7 +204,7 @@ impl Edge {
     }
 
     /// An edge from its near end to its far one, summed along b or along a.
-    pub(super) fn along(board: &Board, near: &Corner, far: &Corner, by_b: bool) -> Option<Self> {
+    fn along(board: &Board, near: &Corner, far: &Corner, by_b: bool) -> Option<Self> {
         let (c, t) = if by_b { (0, 1) } else { (1, 0) };
         let endless = far.depth.is_infinite();
         let exactly = |i: usize| match endless {
@@ -249,24 +243,6 @@ impl Edge {
             rise: rise / across.hi.abs(),
             sense: across.hi.signum(),
         })
-    }
-
-    /// Whether it is summed along b.
-    pub(super) fn is_by_b(&self) -> bool {
-        self.potential != 0.0
-    }
-
-    /// Its integral with as many terms as it needs by itself, and what they neglect in the bound.
-    pub(super) fn alone(self, board: &Board) -> Sum {
-        let nearest = self.depth;
-        let edge = [Some(self)];
-        let (terms, truncation) = terms(board, nearest, &edge, 1.0);
-        let mut sum = match &edge {
-            [Some(edge)] => edge.integral(board, terms),
-            _ => Sum::default(),
-        };
-        sum.bound += truncation;
-        sum
     }
 
     /// ρ ∫ s(c) dX from near to far.
@@ -323,7 +299,7 @@ impl Edge {
             s = self.climb * s + power;
             power *= self.slope;
         }
-        let across = usize::from(!self.is_by_b());
+        let across = usize::from(self.potential == 0.0);
         let Sum { value, bound } = board.floor.per_slope[across];
         let slope = board.floor.slope[across];
         let [off, size] = [self.climb - self.slope - self.rho * slope, self.rho * slope];

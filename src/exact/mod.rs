@@ -50,7 +50,6 @@ mod polygon;
 mod quadrature;
 mod region;
 mod resonance;
-mod sides;
 mod sliver;
 mod small;
 mod strip;
@@ -77,7 +76,6 @@ use self::{
     board::{Sum, UNIT},
     care::Care,
     region::{Regions, Shares},
-    sides::Sides,
     waiting::{BoardPixel, Waiting},
 };
 
@@ -160,7 +158,6 @@ struct Allowed {
 #[derive(Debug, Default)]
 struct Scratch {
     curves: Vec<Curve>,
-    sides: Sides,
 }
 
 impl Piece {
@@ -462,9 +459,9 @@ impl<'a> Integrator<'a> {
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
-        let Scratch { curves, sides, .. } = scratch;
+        let Scratch { curves } = scratch;
         self.world.curves(spot, live, cancel, curves);
-        let regions = Regions::new(self.world, spot, live, sides, care, cancel);
+        let regions = Regions::new(self.world, spot, live, care, cancel);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         if lines_alone {
             polygon::shares(curves, regions)

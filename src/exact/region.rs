@@ -12,12 +12,7 @@ use crate::{
     tracer::{self, Live, Spot, World},
 };
 
-use super::{
-    arc::Arc,
-    board::Board,
-    care::Care,
-    sides::{Known, Sides},
-};
+use super::{arc::Arc, board::Board, care::Care};
 
 /// How much of a spot each colour has.
 #[derive(Clone, Debug, Default)]
@@ -41,8 +36,6 @@ pub struct Regions<'a> {
     world: &'a World,
     spot: Spot,
     live: &'a [Live],
-    /// Sides of pixels that are known.
-    sides: &'a mut Sides,
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
     /// How closely boards are looked at.
@@ -76,7 +69,6 @@ impl<'a> Regions<'a> {
         world: &'a World,
         spot: Spot,
         live: &'a [Live],
-        sides: &'a mut Sides,
         care: Care,
         cancel: &'a AtomicBool,
     ) -> Self {
@@ -84,7 +76,6 @@ impl<'a> Regions<'a> {
             world,
             spot,
             live,
-            sides,
             boards: Vec::new(),
             care,
             shares: Shares::default(),
@@ -111,22 +102,7 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         };
         let checkered = &self.boards[at].1;
-        let world = self.world;
-        let mut known = Known {
-            sides: self.sides,
-            board: object,
-            x: self.spot.x,
-            y: self.spot.y,
-            odd: checkered.odd,
-            elsewhere: &|x, y| {
-                let Checkered { board, odd, .. } =
-                    Checkered::new(world, object, Spot::pixel(x, y))?;
-                Some((board, odd))
-            },
-        };
-        let is_pixel = self.spot.side == 1.0;
-        let known = is_pixel.then_some(&mut known);
-        let mut sum = checkered.board.over(region.polygon, known, self.cancel);
+        let mut sum = checkered.board.over(region.polygon, self.cancel);
         for (bulge, arc) in region.arcs {
             let sliver = checkered.board.sliver(arc, self.cancel);
             sum.value += bulge * sliver.value;

@@ -31,7 +31,7 @@ impl Board {
             sum: Sum::default(),
         };
         self.cut(arc, &mut chords);
-        chords.sum.add(self.over(&chords.points, None, cancel));
+        chords.sum.add(self.over(&chords.points, cancel));
         let area = arc.area();
         if chords.sum.value.is_finite() && chords.sum.bound < area {
             return chords.sum;

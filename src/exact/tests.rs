@@ -22,9 +22,9 @@ const PIXEL: [DVec2; 4] = [
 pub(super) static WANTED: AtomicBool = AtomicBool::new(false);
 
 impl Board {
-    /// The integral over a polygon of which no side is known.
+    /// The integral over a polygon that nobody cancels.
     pub(super) fn alone(&self, polygon: &[DVec2]) -> Sum {
-        self.over(polygon, None, &WANTED)
+        self.over(polygon, &WANTED)
     }
 }
 
