@@ -5,8 +5,7 @@ use std::{array, sync::atomic::AtomicBool};
 use glam::DVec2;
 
 use super::{
-    care::Care,
-    cells, closely,
+    cells,
     displaced::displacements,
     edge,
     floor::{Fine, Floor},
@@ -38,9 +37,10 @@ const FINITE_TAIL: f64 = 1e-10;
 /// A sum along the boundary with no greater bound than this is good enough.
 const GOOD_FAR: f64 = 1e-8;
 
-/// The same of a crowd of squares; and what displaces the boundary of a polygon, which is 4 long at most, by no more cannot make it worse.
+/// The same of a crowd of squares.
 const GOOD_CROWD: f64 = 4e-9;
-const COARSE: f64 = GOOD_CROWD / 4.0;
+/// A sum with no greater bound than this is not asked for in other ways.
+const FINE: f64 = 1e-12;
 
 /// Where roundings displace points by more than this, in pixels, edges and floor no longer fit each other.
 const MISFIT: f64 = 0.1;
@@ -113,8 +113,6 @@ pub(crate) struct Board {
     pub(super) horizon_off: f64,
     /// What may be neglected at the horizon, for an edge that runs into it, in square pixels.
     pub(super) tail: f64,
-    /// How closely it is looked at where roundings leave something in doubt.
-    pub(super) care: Care,
     /// How many times as much as of a pixel may be neglected of its spot, which is a small part of one.
     pub(super) leeway: f64,
 }
@@ -217,7 +215,6 @@ impl Board {
                 false => 0.0,
             },
             tail: 5e-10,
-            care: Care::Usual,
             leeway: 1.0,
         }
     }
@@ -226,7 +223,6 @@ impl Board {
     /// squares are, however the polygon is oriented; or 0, with a bound on it, where squares are too small to be seen. Once it is
     /// cancelled any sum will do.
     pub(super) fn over(&self, polygon: &[DVec2], cancel: &AtomicBool) -> Sum {
-        let enough = self.care.enough(polygon);
         let next_to_nothing = || Sum {
             value: 0.0,
             bound: self.most(polygon).min(self.most_aslant(polygon)),
@@ -237,30 +233,14 @@ impl Board {
         {
             return sum.within(polygon.iter().copied());
         }
-        // Where corners as they are rounded leave too much of a crowd in doubt, they would take long for nothing.
-        let good_crowd = GOOD_CROWD * self.leeway;
-        let coarse = match self.displacement > COARSE && self.is_crowded(polygon) {
-            true => self.blurred(polygon.iter().copied()),
-            false => 0.0,
-        };
-        let is_coarse = coarse > good_crowd;
-        let close = is_coarse
-            .then(|| closely::of_crowd(self, polygon, cancel))
-            .flatten();
-        let mut sum = match close {
-            Some(close) if close.bound <= coarse => close,
-            close => better(self.unchecked(polygon, cancel), close),
-        };
-        if sum.bound > enough && !is_coarse && !self.is_crowded(polygon) {
-            sum = better(sum, closely::sum(self, polygon));
-        }
+        let mut sum = self.unchecked(polygon, cancel);
         if self.fine.nudge > 0.0 {
             // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
             sum.bound += self.fine.nudge * self.blurred(polygon.iter().copied());
         }
-        if sum.bound > enough {
+        if sum.bound > FINE {
             let mut other = next_to_nothing();
-            if sum.bound.min(other.bound) > good_crowd {
+            if sum.bound.min(other.bound) > GOOD_CROWD * self.leeway {
                 other = better(other, self.along_diagonal(polygon, f64::INFINITY));
             }
             // Neither may be a number.
@@ -274,7 +254,7 @@ impl Board {
     fn of_tiny(&self, polygon: &[DVec2], nothing: Sum) -> Option<Sum> {
         let is_good =
             |sum: &Sum, crowd: f64| sum.bound <= crowd * self.leeway && self.is_crowded(polygon);
-        if nothing.bound <= Care::Great.enough(polygon) || is_good(&nothing, TINY_CROWD) {
+        if nothing.bound <= FINE || is_good(&nothing, TINY_CROWD) {
             return Some(nothing);
         }
         let is_flat = self.fine.nudge > 0.0;
@@ -329,8 +309,8 @@ impl Board {
     pub(super) fn tail(&self, lines: f64) -> f64 {
         match lines {
             ..=COUNTED => COUNTED_TAIL,
-            ..f64::INFINITY => FINITE_TAIL * self.leeway * self.care.part_neglected(),
-            _ => self.tail * self.leeway * self.care.part_neglected(),
+            ..f64::INFINITY => FINITE_TAIL * self.leeway,
+            _ => self.tail * self.leeway,
         }
     }
 

@@ -14,9 +14,7 @@
 //!    near (`cells`), very many rows at once (`block`), and along the region's boundary where it is far (`edge`). Sums over the
 //!    lines that a side crosses are sums of waves (`euler`): in `horizon` where lines never end, in `level` where the side hardly
 //!    recedes, and in `modes` at any distance; but along diagonals, where too many of those are in step, they go from one of their `kinks` to the
-//!    next. Where roundings of `f64` would leave too much in doubt, forms and corners are taken
-//!    in double-double (`closely`), up to the horizon, and near lines, which are few, one by one (`finely`); how long that may take is a
-//!    matter of `care`. Of squares too small to be seen it is told only how little they leave (`small`, `aslant`), and along a diagonal
+//!    next. Of squares too small to be seen it is told only how little they leave (`small`, `aslant`), and along a diagonal
 //!    what they do in the mean (`diagonal`).
 //!
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
@@ -27,9 +25,7 @@ mod aslant;
 mod block;
 mod board;
 mod bulk;
-mod care;
 mod cells;
-mod closely;
 mod complex;
 mod cutter;
 mod diagonal;
@@ -37,7 +33,6 @@ mod displaced;
 mod edge;
 mod euler;
 mod exponential;
-mod finely;
 mod floor;
 mod grid;
 mod groups;
@@ -74,15 +69,13 @@ use crate::{
 
 use self::{
     board::{Sum, UNIT},
-    care::Care,
     region::{Regions, Shares},
     waiting::{BoardPixel, Waiting},
 };
 
-/// A spot whose bound is no greater than this is not cut into quarters; nor one with so many squares, or the horizon, that of sums over them
-/// something is neglected, which quarters would neglect, too, and take five times as long.
-const ENOUGH: f64 = 1e-12;
-const ENOUGH_CROWDED: f64 = 9e-10;
+/// A spot whose bound is no greater than this, in area, is not cut into quarters: the error that ordinary views may have is 1e-9, roundings of sums
+/// included.
+const ENOUGH: f64 = 9e-10;
 /// Quarters are cut further only where they are off by more than this together: that takes as long again for each of them.
 const TOLERABLE: f64 = 1e-7;
 /// Pieces of a spot are quartered until that has taken so many times as long as the whole may: quarters of quarters of the one that holds a
@@ -249,7 +242,7 @@ impl<'a> Integrator<'a> {
             time: f64::INFINITY,
             whole: None,
         };
-        let Shares { by_slot, bound, .. } =
+        let Shares { by_slot, bound } =
             self.shares(Spot::pixel(x, y), live, allowed, scratch, cancel);
         // Of one colour it is that; else a mean of some, which parts of it may be known better than.
         let rounding = if by_slot.len() > 1 { 4.0 * UNIT } else { 0.0 };
@@ -320,38 +313,18 @@ impl<'a> Integrator<'a> {
             }
             return together;
         }
-        let mut with = |care, spot| Piece {
+        let mut with = |spot| Piece {
             spot,
-            shares: self.shares_at_once(spot, live, care, scratch, cancel),
+            shares: self.shares_at_once(spot, live, scratch, cancel),
             is_final: false,
         };
-        let mut care = Care::Usual;
-        let mut whole = with(care, spot);
-        let enough = match whole.shares.is_crowded {
-            true => ENOUGH_CROWDED,
-            false => ENOUGH,
-        };
-        if whole.shares.of_boards > enough {
-            let closer = match whole.shares.is_crowded {
-                true => Care::Many,
-                false => Care::Great,
-            };
-            let again = with(closer, spot);
-            let is_worth_it =
-                closer == Care::Great || again.shares.bound < 0.5 * whole.shares.bound;
-            if is_worth_it {
-                care = closer;
-            }
-            if again.shares.bound < whole.shares.bound {
-                whole = again;
-            }
-        }
+        let whole = with(spot);
         let off = |piece: &Piece| piece.bound(spot);
         let mut pieces = vec![whole];
         let mut effort = 0.0;
         while effort < MOST_EFFORT {
             let bound: f64 = pieces.iter().map(off).sum();
-            let enough = if effort == 0.0 { enough } else { TOLERABLE };
+            let enough = if effort == 0.0 { ENOUGH } else { TOLERABLE };
             if bound <= enough || cancel.load(Ordering::Relaxed) {
                 break;
             }
@@ -365,7 +338,7 @@ impl<'a> Integrator<'a> {
             };
             let before = off(worst);
             effort += 4.0 * (worst.spot.side / spot.side).min(1.0);
-            let quarters = worst.spot.quarters().map(|quarter| with(care, quarter));
+            let quarters = worst.spot.quarters().map(|quarter| with(quarter));
             let after: f64 = quarters.iter().map(off).sum();
             worst.is_final = after > 0.5 * before;
             if after < before {
@@ -447,7 +420,6 @@ impl<'a> Integrator<'a> {
         Shares {
             by_slot: vec![(slot, 1.0)],
             bound: 1.0,
-            ..Shares::default()
         }
     }
 
@@ -455,13 +427,12 @@ impl<'a> Integrator<'a> {
         &self,
         spot: Spot,
         live: &[Live],
-        care: Care,
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
         let Scratch { curves } = scratch;
         self.world.curves(spot, live, cancel, curves);
-        let regions = Regions::new(self.world, spot, live, care, cancel);
+        let regions = Regions::new(self.world, spot, live, cancel);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         if lines_alone {
             polygon::shares(curves, regions)

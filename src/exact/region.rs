@@ -12,7 +12,7 @@ use crate::{
     tracer::{self, Live, Spot, World},
 };
 
-use super::{arc::Arc, board::Board, care::Care};
+use super::{arc::Arc, board::Board};
 
 /// How much of a spot each colour has.
 #[derive(Clone, Debug, Default)]
@@ -21,10 +21,6 @@ pub struct Shares {
     pub by_slot: Vec<(usize, f64)>,
     /// How much area may be with the wrong colour.
     pub bound: f64,
-    /// How much of that boards leave, by what is not known of their squares.
-    pub of_boards: f64,
-    /// Whether very many squares are among it, or squares without end.
-    pub is_crowded: bool,
 }
 
 /// About so many pieces of a pixel may be looked at together: in one that is smaller than such a part of it as much may be neglected as in one of
@@ -38,8 +34,6 @@ pub struct Regions<'a> {
     live: &'a [Live],
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
-    /// How closely boards are looked at.
-    care: Care,
     shares: Shares,
     cancel: &'a AtomicBool,
 }
@@ -65,19 +59,12 @@ pub struct Region<'a> {
 
 impl<'a> Regions<'a> {
     /// For a spot in which no other objects are seen than some.
-    pub fn new(
-        world: &'a World,
-        spot: Spot,
-        live: &'a [Live],
-        care: Care,
-        cancel: &'a AtomicBool,
-    ) -> Self {
+    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], cancel: &'a AtomicBool) -> Self {
         Self {
             world,
             spot,
             live,
             boards: Vec::new(),
-            care,
             shares: Shares::default(),
             cancel,
         }
@@ -115,8 +102,6 @@ impl<'a> Regions<'a> {
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;
-        self.shares.of_boards += bound;
-        self.shares.is_crowded |= checkered.board.is_crowded(region.polygon);
     }
 
     /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
@@ -175,7 +160,6 @@ impl<'a> Regions<'a> {
             Some(at) => at,
             None => {
                 let mut checkered = Checkered::new(self.world, object, self.spot)?;
-                checkered.board.care = self.care;
                 let side = self.spot.side;
                 checkered.board.leeway = (PIECES * side * side).recip().max(1.0);
                 self.boards.push((object, checkered));
@@ -213,8 +197,6 @@ impl Shares {
             self.add(slot, area * share);
         }
         self.bound += area * part.bound;
-        self.of_boards += area * part.of_boards;
-        self.is_crowded |= part.is_crowded;
     }
 
     fn add(&mut self, slot: usize, area: f64) {
