@@ -37,11 +37,6 @@ const FINITE_TAIL: f64 = 1e-10;
 /// A sum along the boundary with no greater bound than this is good enough.
 const GOOD_FAR: f64 = 1e-8;
 
-/// The same of a crowd of squares.
-const GOOD_CROWD: f64 = 4e-9;
-/// A sum with no greater bound than this is not asked for in other ways.
-const FINE: f64 = 1e-12;
-
 /// Where roundings displace points by more than this, in pixels, edges and floor no longer fit each other.
 const MISFIT: f64 = 0.1;
 
@@ -50,16 +45,6 @@ const BESIDE: f64 = 1e-11;
 
 /// What is farther than this m is next to nothing of a pixel.
 const NEXT_TO_NOTHING: f64 = 1e9;
-
-/// Squares that are smaller than a pixel by this power of two may be too small to be seen.
-const TINY: i32 = 24;
-/// So little of a crowd of them is as good as nothing.
-const TINY_CROWD: f64 = 4e-10;
-/// Of one that is seen along a diagonal nothing else knows more than this in reasonable time, if its phase changes by less than that, ...
-const TINY_MEAN: f64 = 1e-7;
-const STILL: f64 = 1e-2;
-/// ... or forms are hardly independent. If squares are smaller than a pixel by this power of two there, they cannot be looked at at all.
-const COUNTLESS: i32 = 44;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -220,50 +205,14 @@ impl Board {
     }
 
     /// The integral of s(a)·s(b) over what a convex polygon shows of the floor, in square pixels; positive where the
-    /// squares are, however the polygon is oriented; or 0, with a bound on it, where squares are too small to be seen. Once it is
-    /// cancelled any sum will do.
+    /// squares are, however the polygon is oriented. Once it is cancelled any sum will do.
     pub(super) fn over(&self, polygon: &[DVec2], cancel: &AtomicBool) -> Sum {
-        let next_to_nothing = || Sum {
-            value: 0.0,
-            bound: self.most(polygon).min(self.most_aslant(polygon)),
-        };
-        let [of_a, of_b] = self.fine.floor.powers;
-        if of_a.max(of_b) >= TINY
-            && let Some(sum) = self.of_tiny(polygon, next_to_nothing())
-        {
-            return sum.within(polygon.iter().copied());
-        }
         let mut sum = self.unchecked(polygon, cancel);
         if self.fine.nudge > 0.0 {
             // What lies between the lines of both boards is in doubt, and that is less by as much as the nudge is than a rounding.
             sum.bound += self.fine.nudge * self.blurred(polygon.iter().copied());
         }
-        if sum.bound > FINE {
-            let mut other = next_to_nothing();
-            if sum.bound.min(other.bound) > GOOD_CROWD * self.leeway {
-                other = better(other, self.along_diagonal(polygon, f64::INFINITY));
-            }
-            // Neither may be a number.
-            let is_better = sum.value.is_finite() && sum.bound <= other.bound;
-            sum = if is_better { sum } else { other };
-        }
         sum.within(polygon.iter().copied())
-    }
-
-    /// What is known of squares too small to be seen at once, of which so little may be left; `None` if they should be looked at.
-    fn of_tiny(&self, polygon: &[DVec2], nothing: Sum) -> Option<Sum> {
-        let is_good =
-            |sum: &Sum, crowd: f64| sum.bound <= crowd * self.leeway && self.is_crowded(polygon);
-        if nothing.bound <= FINE || is_good(&nothing, TINY_CROWD) {
-            return Some(nothing);
-        }
-        let is_flat = self.fine.nudge > 0.0;
-        let most = if is_flat { f64::INFINITY } else { STILL };
-        let sum = better(nothing, self.along_diagonal(polygon, most));
-        let is_mean = sum.value != 0.0 && is_good(&sum, TINY_MEAN);
-        let [of_a, of_b] = self.fine.floor.powers;
-        let is_nowhere = is_flat && of_a.max(of_b) >= COUNTLESS;
-        (is_mean || is_nowhere).then_some(sum)
     }
 
     fn unchecked(&self, polygon: &[DVec2], cancel: &AtomicBool) -> Sum {
@@ -312,15 +261,6 @@ impl Board {
             ..f64::INFINITY => FINITE_TAIL * self.leeway,
             _ => self.tail * self.leeway,
         }
-    }
-
-    /// Whether a polygon shows the horizon, or more squares than one in which hardly anything is neglected.
-    pub(crate) fn is_crowded(&self, polygon: &[DVec2]) -> bool {
-        let mut levels = polygon.iter().map(|&at| form(&self.below, at));
-        let is_endless = levels.any(|level| level <= self.horizon_off);
-        // Of squares without number there is no count: then it is NaN.
-        let is_counted = |corners: &[Corner]| squares(corners) <= COUNTED;
-        is_endless || !is_counted(&self.visible(polygon))
     }
 
     /// Along the boundary where the board is far enough for it, square by square where it is not.
@@ -461,11 +401,6 @@ impl Board {
         }
         kept
     }
-}
-
-/// The sum of which more is known.
-fn better(sum: Sum, other: Option<Sum>) -> Sum {
-    other.filter(|other| other.bound < sum.bound).unwrap_or(sum)
 }
 
 /// How many squares a region meets along each axis.

@@ -43,10 +43,6 @@ pub(super) struct Floor {
     pub misfit: f64,
     /// Whether the floor is seen mirrored: the sign of det M.
     pub handed: f64,
-    /// K for squares as large as two powers of two, of which there are about as many in the picture as pixels. K itself may be out of the range
-    /// of numbers where squares are very small.
-    scaled_density: f64,
-    pub powers: [i32; 2],
 }
 
 impl Fine {
@@ -101,15 +97,6 @@ impl Fine {
         };
         (fine, inverse)
     }
-
-    /// K at most, unless the forms, and so K, have been changed on purpose; for squares as large as the floor's powers of two.
-    pub fn most_scaled_density(&self) -> f64 {
-        let uncertain = self.floor.uncertain;
-        match self.nudge == 0.0 && uncertain < 0.5 {
-            true => self.floor.scaled_density * (1.0 + 2.0 * uncertain),
-            false => f64::INFINITY,
-        }
-    }
 }
 
 impl Floor {
@@ -129,8 +116,6 @@ impl Floor {
             uncertain: inverse.det_off,
             misfit: inverse.det_misfit,
             handed: det.signum(),
-            scaled_density: 1.0 / det.abs(),
-            powers: [of_a, of_b],
         }
     }
 

@@ -21,14 +21,12 @@
 
 mod ahead;
 mod arc;
-mod aslant;
 mod block;
 mod board;
 mod bulk;
 mod cells;
 mod complex;
 mod cutter;
-mod diagonal;
 mod displaced;
 mod edge;
 mod euler;
@@ -46,7 +44,6 @@ mod quadrature;
 mod region;
 mod resonance;
 mod sliver;
-mod small;
 mod strip;
 mod sweep;
 #[cfg(test)]
