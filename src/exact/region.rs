@@ -1,18 +1,23 @@
 //! The regions of a spot, and what is seen in each.
+//!
+//! In: regions between boundaries, with a point in each. Out: how much of the spot each colour has, with a bound. One ray through the point says what is
+//! seen; a checkerboard is divided further by `checker` and `conic_segment`. The bound adds what those say, what was said to be in doubt, and by how much the
+//! regions together are not the whole spot.
 
-use std::{
-    mem,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::mem;
 
 use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{self, Live, Spot, World},
+    tracer::{Live, Spot, World},
 };
 
-use super::{arc::Arc, board::Board};
+use super::{budget::Budget, checker::Homography, conic_segment::Arc};
+
+/// Units of work of a region: for itself, and for each object that its ray may meet.
+const REGION_WORK: f64 = 4.0;
+const OBJECT_WORK: f64 = 0.5;
 
 /// How much of a spot each colour has.
 #[derive(Clone, Debug, Default)]
@@ -23,10 +28,6 @@ pub struct Shares {
     pub bound: f64,
 }
 
-/// About so many pieces of a pixel may be looked at together: in one that is smaller than such a part of it as much may be neglected as in one of
-/// those.
-const PIECES: f64 = 4.0;
-
 /// Collects the regions of one spot.
 pub struct Regions<'a> {
     world: &'a World,
@@ -35,11 +36,12 @@ pub struct Regions<'a> {
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
-    cancel: &'a AtomicBool,
+    /// What may still be computed of the pixel.
+    budget: &'a Budget<'a>,
 }
 
 struct Checkered {
-    board: Board,
+    board: Homography,
     odd: bool,
     /// How far its forms' values may be off, by the size of their terms.
     doubt: f64,
@@ -59,20 +61,20 @@ pub struct Region<'a> {
 
 impl<'a> Regions<'a> {
     /// For a spot in which no other objects are seen than some.
-    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], cancel: &'a AtomicBool) -> Self {
+    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], budget: &'a Budget<'a>) -> Self {
         Self {
             world,
             spot,
             live,
             boards: Vec::new(),
             shares: Shares::default(),
-            cancel,
+            budget,
         }
     }
 
-    /// Whether nobody wants the shares any more.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+    /// Whether nothing more should be computed.
+    pub fn is_given_up(&self) -> bool {
+        self.budget.is_spent()
     }
 
     /// Adds a region in which no boundary lies.
@@ -89,9 +91,9 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         };
         let checkered = &self.boards[at].1;
-        let mut sum = checkered.board.over(region.polygon, self.cancel);
+        let mut sum = checkered.board.over(region.polygon, self.budget);
         for (bulge, arc) in region.arcs {
-            let sliver = checkered.board.sliver(arc, self.cancel);
+            let sliver = checkered.board.sliver(arc, self.budget);
             sum.value += bulge * sliver.value;
             sum.bound += sliver.bound;
         }
@@ -107,6 +109,8 @@ impl<'a> Regions<'a> {
     /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
     /// each other than it tells; elsewhere in the region more may be known.
     fn seen(&mut self, region: &Region) -> Option<usize> {
+        self.budget
+            .charge(REGION_WORK + OBJECT_WORK * self.live.len() as f64);
         let at = |point| self.world.object_at(self.spot, point, self.live);
         let (seen, is_sure) = at(region.inside);
         // A point between two of a polygon lies in it, but not if an arc takes off from that.
@@ -159,9 +163,7 @@ impl<'a> Regions<'a> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
-                let mut checkered = Checkered::new(self.world, object, self.spot)?;
-                let side = self.spot.side;
-                checkered.board.leeway = (PIECES * side * side).recip().max(1.0);
+                let checkered = Checkered::new(self.world, object, self.spot)?;
                 self.boards.push((object, checkered));
                 self.boards.len() - 1
             }
@@ -171,18 +173,14 @@ impl<'a> Regions<'a> {
 }
 
 impl Checkered {
-    /// An object as a spot sees it, if it is a checkerboard; more closely where that is not enough.
+    /// An object as a spot sees it, if it is a checkerboard.
     fn new(world: &World, object: usize, spot: Spot) -> Option<Self> {
-        let of = |seen: tracer::Board| Self {
-            board: Board::of(&seen),
-            // From which square floors are counted is a matter of roundings, too.
+        let seen = world.board(object, spot)?;
+        Some(Self {
+            board: Homography::of(&seen),
             odd: seen.odd,
             doubt: seen.doubt(),
-        };
-        let checkered = of(world.board(object, spot)?);
-        let closely = || world.board_closely(object, spot).map(of);
-        let better = checkered.board.is_doubtful().then(closely).flatten();
-        Some(better.unwrap_or(checkered))
+        })
     }
 }
 
