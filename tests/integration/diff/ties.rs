@@ -10,6 +10,7 @@ use pinhole::{
 };
 
 use super::right::Subject;
+use crate::effort::{Effort, sampled_and_exhaustive};
 use crate::exact::read;
 
 /// All of it vanishes in the picture's middle.
@@ -119,8 +120,9 @@ fn corners(side: u32, [right, lower]: [u32; 2]) -> Vec<DVec2> {
         .collect()
 }
 
-#[test]
-fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded() {
+sampled_and_exhaustive!(nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded);
+
+fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded(effort: Effort) {
     let sets = [
         ("hammersley 4", hammersley(4)),
         ("hammersley 16", hammersley(16)),
@@ -132,13 +134,13 @@ fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded() {
         ("lower right corners of 4", corners(2, [1, 1])),
     ];
     let mut blamed = String::new();
-    for (name, text, lookat, distance) in [
+    for (name, text, lookat, distance) in effort.of([
         ("level", LEVEL, DVec3::new(0.5, 1.6, 0.0), 2.2),
         ("down", DOWN, DVec3::ZERO, 2.0),
-    ] {
+    ]) {
         let subject = Subject::new(&read(text), SIZE);
         let program = Program::new(subject.scene(), lookat, distance);
-        for (set, samples) in &sets {
+        for (set, samples) in effort.of(&sets) {
             let found = subject.graded(&program.picture(samples)).unwrap();
             let may_be_noise =
                 found.may_be_noise || (found.likely.iter()).any(|likely| likely.mistake == "noise");
@@ -208,6 +210,7 @@ fn is_excused(change: impl Fn(&mut [&mut pinhole::scene::Cuboid])) -> bool {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn what_no_samples_can_see_is_not_excused_by_them() {
     // A twentieth of a metre is a pixel. Three fifths of the samples would be on left sides, and as many on right ones.
     assert!(!is_excused(|boxes| {

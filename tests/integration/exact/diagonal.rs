@@ -2,6 +2,7 @@
 //! modes of rows are in step, too, so that bounds are used to the last.
 
 use super::*;
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// 1 − 2|φ| between −1 and 1, and of the period 2.
 fn triangle(phase: f64) -> f64 {
@@ -109,17 +110,18 @@ fn what_is_known_otherwise_is_within_the_bound() {
     }
 }
 
+sampled_and_exhaustive!(the_longest_lenses_end);
+
 /// Places and times so many that modes of lines do not end: something is known in the end, or nothing, but soon.
-#[test]
-fn the_longest_lenses_end() {
-    for text in [
+fn the_longest_lenses_end(effort: Effort) {
+    for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }
          checkerboard { square 136 colors (white, black) }",
         "camera { eye (5e-324, -1.333179750293108e17, 0) lookat (1.7976931348623157e308, -9.697327195529915e-14, 1.7976931348623157e308)
            up (7.287757695933216e92, -231448480128.88724, 5e-324) d 7.287757695933215e92
            near 1.1380496007412987e-202 far 1.7976931348623157e308 }
          checkerboard { y -241717738976317.66 square 2.2868347391406466e96 colors (red, olive) }",
-    ] {
+    ]) {
         let exact = exact(&read(&format!("image {{ width 2 height 2 }} sampler {{ method exact }} {text}")));
         assert!(exact.film.pixels().iter().flatten().all(|light| (0.0..=1.0).contains(light)));
     }

@@ -8,6 +8,7 @@ use pinhole::{
 
 use super::super::{exact, part, part_adds_up, read};
 use super::bound_at;
+use crate::effort::{Effort, sampled_and_exhaustive};
 use crate::tracer::Random;
 
 /// A board seen aslant in views of nearly 180 degrees: any pixel sees a strip of it that is narrower than a square.
@@ -84,11 +85,12 @@ fn up_to_a_hundred_thousand_squares_in_wide_views() {
     }
 }
 
+sampled_and_exhaustive!(columns_far_off_in_wide_views);
+
 /// At the horizon, thousands of columns off the middle of a wide view, what a pixel sees of the floor is a ray of it, but for one part in
 /// many millions.
-#[test]
-fn columns_far_off_in_wide_views() {
-    for (direction, roll, d, square, [width, height], [x, y]) in [
+fn columns_far_off_in_wide_views(effort: Effort) {
+    for (direction, roll, d, square, [width, height], [x, y]) in effort.of([
         (
             "(1, -0.4, 0.7)",
             0.0,
@@ -130,7 +132,7 @@ fn columns_far_off_in_wide_views() {
             [3000, 4000],
             [346, 1044],
         ),
-    ] {
+    ]) {
         let scene = read(&format!(
             "image {{ width {width} height {height} }}
              camera {{ eye (0.3, 0.8, 0.2) direction {direction} roll {roll}deg d {d} }}
@@ -176,11 +178,12 @@ fn wide_views_of_rows_out_of_step() {
     }
 }
 
+sampled_and_exhaustive!(wide_views_along_diagonals);
+
 /// Along the diagonals of a board, and where it goes on by such fractions as 3/5, no line is displaced much against the one before, or every fifth
 /// not: all modes are in step, and what lies between kinks is summed at once.
-#[test]
-fn wide_views_along_diagonals() {
-    for (eye, direction, rest, square) in [
+fn wide_views_along_diagonals(effort: Effort) {
+    for (eye, direction, rest, square) in effort.of([
         (
             "(4.87134, 18.40485726953807, 4.46713)",
             "(1, 0.71976775250559488, 1)",
@@ -205,7 +208,7 @@ fn wide_views_along_diagonals() {
             "roll 42.7528deg d 4.6458604893516569e-19 far 7839315.5516397618",
             "0.029677007846249021",
         ),
-    ] {
+    ]) {
         let scene = read(&format!(
             "image {{ width 4 height 2 }}
              camera {{ eye {eye} direction {direction} {rest} }}
@@ -218,11 +221,12 @@ fn wide_views_along_diagonals() {
     }
 }
 
+sampled_and_exhaustive!(wide_views_at_random);
+
 /// The horizon anywhere in views of any width beyond 179 degrees.
-#[test]
-fn wide_views_at_random() {
+fn wide_views_at_random(effort: Effort) {
     let mut random = Random(23);
-    for i in 0..24 {
+    for i in effort.of(0..24) {
         let mut number = |low: f64, high: f64| random.within(low, high);
         let (width, height) = [(3000, 2000), (2000, 3000), (12_000, 2000)][i % 3];
         let d = match i {
@@ -265,6 +269,7 @@ fn wide_views_at_random() {
 
 /// A row of many squares that runs into a point in which all lines of the board meet, but for what roundings do.
 #[test]
+#[ignore = "exhaustive"]
 fn a_corner_where_all_lines_meet() {
     let scene = read(
         "image { width 40 height 8 }
