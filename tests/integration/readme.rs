@@ -5,7 +5,12 @@
 use std::{fs, path::Path, process::Command};
 
 /// The documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 3] = ["README.md", "docs/accuracy.md", "docs/speed.md"];
+const DOCUMENTS: [&str; 4] = [
+    "README.md",
+    "docs/accuracy.md",
+    "docs/speed.md",
+    "examples/README.md",
+];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
