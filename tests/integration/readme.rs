@@ -1,8 +1,13 @@
-//! The documents say what happens: their commands are run and the outputs compared, and their scenes are checked.
+//! The documents say what happens: their commands are run and the outputs compared, their scenes are checked, and their links
+//! lead to files.
 //!
 //! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the documents.
 
-use std::{fs, path::Path, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// The documents whose `console` blocks are run and whose `scn` blocks are checked.
 const DOCUMENTS: [&str; 4] = [
@@ -139,4 +144,59 @@ fn the_readme_has_the_two_set_up_commands_and_the_first_scene() {
         assert!(text.lines().any(|line| line == command), "{command}");
     }
     assert!(text.contains(read("examples/figure_9_9.scn").trim()));
+}
+
+/// All Markdown files in `folder` and below it.
+fn markdown(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && !path.ends_with("node_modules") {
+            markdown(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "md") {
+            found.push(path);
+        }
+    }
+}
+
+/// The targets of a document's links and pictures, `[text](target)`. A fenced block is code and has none.
+fn links(text: &str) -> Vec<&str> {
+    let mut links = Vec::new();
+    let mut fenced = false;
+    for line in text.lines() {
+        fenced ^= line.starts_with("```");
+        if fenced {
+            continue;
+        }
+        let mut rest = line;
+        while let Some((_, after)) = rest.split_once("](") {
+            let (target, after) = after.split_once(')').expect("a link has an end");
+            links.push(target);
+            rest = after;
+        }
+    }
+    links
+}
+
+#[test]
+fn relative_links_lead_to_files() {
+    let mut documents = vec![root().join("README.md"), root().join("CHANGELOG.md")];
+    for folder in ["docs", "examples", "benches", "grammar"] {
+        markdown(&root().join(folder), &mut documents);
+    }
+    let (mut followed, mut missing) = (0, Vec::new());
+    for document in documents {
+        let text = fs::read_to_string(&document).unwrap();
+        let relative = links(&text)
+            .into_iter()
+            .filter(|link| !link.contains("://"));
+        for link in relative {
+            let file = link.split('#').next().unwrap();
+            followed += 1;
+            if !document.with_file_name("").join(file).exists() {
+                missing.push(format!("{}: {link}", document.display()));
+            }
+        }
+    }
+    assert!(followed > 50, "only {followed} links were found");
+    assert!(missing.is_empty(), "{missing:#?}");
 }
