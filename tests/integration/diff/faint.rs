@@ -197,16 +197,16 @@ fn gamma_is_named_through_noise(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(an_object_that_is_off_in_another_way_is_named);
-
-fn an_object_that_is_off_in_another_way_is_named(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn an_object_that_is_off_in_another_way_is_named() {
     let folder = plain(PLAIN);
-    for (set, expected) in effort.of([
+    for (set, expected) in [
         ("Sail.spin=25deg", "object_orientation"),
         ("Sail.normal=(-0.5, 0.2, 1)", "object_orientation"),
         // Three of its numbers at once.
         ("Crate.size=(1.2, 1.8, 1.5)", "object"),
-    ]) {
+    ] {
         let name = set.split('.').next().unwrap();
         render(&folder, &["-o", "b.png", "--set", set]);
         let [mistake, message] = first(&folder, &[]);
@@ -224,9 +224,9 @@ fn coordinates_of_the_eye_that_are_exchanged_are_named() {
     assert_eq!(mistake(&folder), "eye_swapped");
 }
 
-sampled_and_exhaustive!(a_picture_of_many_objects_is_judged);
-
-fn a_picture_of_many_objects_is_judged(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn a_picture_of_many_objects_is_judged() {
     let mut scene = "image { width 96 height 64 } camera { eye (0, 12, 30) lookat (0, 0, 0) fov 50deg } sampler { method exact }\n".to_owned();
     for i in 0..600 {
         let (x, z) = (f64::from(i % 30) - 15.0, f64::from(i / 30) - 10.0);
@@ -237,11 +237,9 @@ fn a_picture_of_many_objects_is_judged(effort: Effort) {
         );
     }
     let folder = plain(&scene);
-    if effort == Effort::Exhaustive {
-        sampled(&folder, "multi_jittered", 16, &[]);
-        assert_eq!(mistake(&folder), "noise");
-    }
-    for (set, expected) in effort.of([
+    sampled(&folder, "multi_jittered", 16, &[]);
+    assert_eq!(mistake(&folder), "noise");
+    for (set, expected) in [
         ("s404.radius=1.1", "`s404`"),
         ("camera.roll=2deg", "roll were 2 degrees instead of 0"),
         (
@@ -252,7 +250,7 @@ fn a_picture_of_many_objects_is_judged(effort: Effort) {
             "camera.fov=50.3deg",
             "a field of view of 50.3 degrees instead of 50",
         ),
-    ]) {
+    ] {
         assert!(
             pinhole(
                 folder.path(),

@@ -138,6 +138,7 @@ const FINE: [&str; 10] = [
 ];
 
 #[test]
+#[ignore = "exhaustive"]
 fn one_object_among_many_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let mut scene = SCENE.split("sphere").next().unwrap().to_owned() + "checkerboard {}\n";
@@ -450,13 +451,13 @@ fn objects_drawn_in_a_wrong_order_are_named(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(an_object_that_the_scene_does_not_have_is_named);
-
-fn an_object_that_the_scene_does_not_have_is_named(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn an_object_that_the_scene_does_not_have_is_named() {
     let folder = folder();
     let extra = format!("{SCENE}sphere {{ center (1, 1.2, 1.6) radius 0.4 color crimson }}\n");
     fs::write(folder.path().join("b.scn"), extra).unwrap();
-    for samples in effort.of([None, Some("64")]) {
+    for samples in [None, Some("64")] {
         let mut arguments = vec!["render", "b.scn", "-o", "b.png"];
         let set = samples.map(|samples| format!("sampler.per_pixel={samples}"));
         if let Some(set) = &set {
@@ -471,11 +472,11 @@ fn an_object_that_the_scene_does_not_have_is_named(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(one_size_that_is_wrong_is_named);
-
-fn one_size_that_is_wrong_is_named(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn one_size_that_is_wrong_is_named() {
     let folder = folder();
-    for (set, words) in effort.of([
+    for (set, words) in [
         (
             "Crate.size=(0.5, 1.8, 2)",
             "as if its size along y were 1.8 instead of 1.5",
@@ -484,7 +485,7 @@ fn one_size_that_is_wrong_is_named(effort: Effort) {
             "Sail.sides=(2, 2.3, 1)",
             "as if its side b were 2.3 instead of 2",
         ),
-    ]) {
+    ] {
         render(&folder, &["-o", "b.png", "--set", set]);
         let found = json(&folder, &["b.png", "a.scn"]);
         let first = &found["likely"][0];

@@ -39,6 +39,9 @@ fn pictures_of_all_kinds_are_equal(effort: Effort) {
     ]) {
         assert_eq!(diff(&folder, &[a, b]).0, 0, "{a}, {b}");
     }
+    if effort == Effort::Sample {
+        return;
+    }
     // Bytes that were rounded the other way.
     let mut other = picture.to_rgb8();
     other
@@ -328,6 +331,9 @@ fn sizes_that_differ_are_named(effort: Effort) {
         let (_, text) = diff(&folder, &["b.png", other]);
         let words = "another shape: 48 × 64 pixels where 96 × 64 are wanted";
         assert!(text.contains(words) && text.contains(help), "{text}");
+    }
+    if effort == Effort::Sample {
+        return;
     }
     let turned = open(&folder, "a.png").rotate90();
     save(&folder, "b.png", turned);

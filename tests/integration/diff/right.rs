@@ -92,6 +92,7 @@ fn nobody_is_blamed_for_samples(effort: Effort) {
 
 /// Of two hundred thousand pixels a few have no sample at all where there are eleven in each on an average, and chance has it.
 #[test]
+#[ignore = "exhaustive"]
 fn nobody_is_blamed_for_a_few_pixels_without_samples() {
     let scene = example("figure_9_9.scn", 1, 1);
     let subject = Subject::new(&scene, [640, 360]);

@@ -65,9 +65,9 @@ fn mistakes_of_sampling_are_named(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(a_picture_displaced_by_half_a_pixel_is_named);
-
-fn a_picture_displaced_by_half_a_pixel_is_named(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn a_picture_displaced_by_half_a_pixel_is_named() {
     let folder = folder();
     // Twice the columns and rows, of which those a half of a pixel beside are taken together.
     render(
@@ -82,10 +82,10 @@ fn a_picture_displaced_by_half_a_pixel_is_named(effort: Effort) {
         ],
     );
     let fine = open(&folder, "fine.exr").to_rgb32f();
-    for (by, words) in effort.of([
+    for (by, words) in [
         ([1, 1], "0.5 pixels to the left and 0.5 pixels up"),
         ([2, 0], "1 pixel to the left"),
-    ]) {
+    ] {
         let picture = ImageBuffer::from_fn(96, 64, |x, y| {
             let mut sum = [0.0; 3];
             for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
@@ -242,6 +242,7 @@ fn one_sample_in_each_pixel_excuses_no_wrong_colour() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_wrong_object_is_no_noise() {
     let folder = folder();
     let small = ["--set", "Ball.radius=0.4"];
@@ -286,6 +287,7 @@ fn a_band_of_wrong_colours_is_no_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_few_wrong_edges_are_no_noise() {
     let folder = folder();
     // All but the pixels around the ball is right.

@@ -10,7 +10,6 @@ use pinhole::{
 };
 
 use super::right::Subject;
-use crate::effort::{Effort, sampled_and_exhaustive};
 use crate::exact::read;
 
 /// All of it vanishes in the picture's middle.
@@ -120,9 +119,9 @@ fn corners(side: u32, [right, lower]: [u32; 2]) -> Vec<DVec2> {
         .collect()
 }
 
-sampled_and_exhaustive!(nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded);
-
-fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded() {
     let sets = [
         ("hammersley 4", hammersley(4)),
         ("hammersley 16", hammersley(16)),
@@ -134,13 +133,13 @@ fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded(effort: Ef
         ("lower right corners of 4", corners(2, [1, 1])),
     ];
     let mut blamed = String::new();
-    for (name, text, lookat, distance) in effort.of([
+    for (name, text, lookat, distance) in [
         ("level", LEVEL, DVec3::new(0.5, 1.6, 0.0), 2.2),
         ("down", DOWN, DVec3::ZERO, 2.0),
-    ]) {
+    ] {
         let subject = Subject::new(&read(text), SIZE);
         let program = Program::new(subject.scene(), lookat, distance);
-        for (set, samples) in effort.of(&sets) {
+        for (set, samples) in &sets {
             let found = subject.graded(&program.picture(samples)).unwrap();
             let may_be_noise =
                 found.may_be_noise || (found.likely.iter()).any(|likely| likely.mistake == "noise");
