@@ -4,12 +4,10 @@ mod clock;
 
 use std::{env, fs, hint::black_box, num::NonZero, sync::atomic::AtomicBool};
 
-use criterion::{Criterion, Throughput};
 use pinhole::{
     area::Area,
     film::Film,
     math::Vectors,
-    refine::coarse,
     render::{Control, Way, render_exact, render_in_a_way},
     report::numerics::textbook::Textbook,
     sampling::{Points, Sampling},
@@ -89,25 +87,6 @@ fn main() {
 
     price();
     exact();
-
-    let mut criterion = Criterion::default().configure_from_args();
-    let scene = sized(&figure, 320, Method::MultiJittered, 64);
-    let mut group =
-        criterion.benchmark_group("figure 9.9, 320 × 180, 64 samples a pixel, 1 thread");
-    group.throughput(Throughput::Elements(320 * 180 * 64));
-    group.sample_size(10);
-    for way in WAYS {
-        group.bench_function(format!("{way:?}"), |bencher| {
-            bencher.iter(picture(&scene, way))
-        });
-    }
-    group.finish();
-    let large = sized(&figure, 1280, Method::MultiJittered, 1);
-    let world = World::new(&large);
-    criterion.bench_function("blocks of 16 of 1280 × 720, all threads", |bencher| {
-        bencher.iter(|| coarse(&world, Area::whole(1280, 720), 16, &control(None)));
-    });
-    criterion.final_summary();
 }
 
 /// A floor of which a pixel sees many squares nearly everywhere.

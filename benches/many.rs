@@ -1,4 +1,4 @@
-//! Many objects: how preparing and rendering them grows with their number, and what the hierarchy gains: `cargo bench --bench many`. See
+//! Many objects: what the hierarchy gains per ray: `cargo bench --bench many`. See
 //! README.md beside this file.
 //!
 //! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
@@ -11,7 +11,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::DVec2;
 use pinhole::{
     area::Area,
@@ -32,7 +31,6 @@ mod spheres;
 
 /// How many objects the plain loop over all of them is bearable for.
 const PLAIN: [usize; 3] = [100, 1_000, 10_000];
-const ALL: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 
 /// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
 const ROUNDS: usize = 5;
@@ -65,7 +63,6 @@ fn main() {
         return;
     }
     ratios();
-    growth(&mut Criterion::default().configure_from_args());
 }
 
 fn read(text: String) -> Scene {
@@ -121,25 +118,6 @@ fn ratios() {
         let each = best[1] / points.len() as u32;
         println!("{count:9} spheres {ratio:8.1}   {each:.0?} a ray by the hierarchy");
     }
-}
-
-fn growth(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("many");
-    group.sample_size(10);
-    for count in ALL {
-        let scene = read(crowd(count));
-        group.throughput(Throughput::Elements(count as u64));
-        group.bench_function(BenchmarkId::new("world", count), |bencher| {
-            bencher.iter(|| black_box(World::new(&scene)));
-        });
-        let world = World::new(&scene);
-        let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
-        group.throughput(Throughput::Elements(4 * pixels));
-        group.bench_function(BenchmarkId::new("render", count), |bencher| {
-            bencher.iter(|| picture(&world, &scene, Way::Culled));
-        });
-    }
-    group.finish();
 }
 
 /// The CPU seconds of each phase, and the bytes of the world by object.

@@ -2,7 +2,7 @@
 """CPU seconds, wall time and peak memory of whole processes, in turns: processes.py ROUNDS figure|text SCENE PROGRAM...
 
 Each PROGRAM is a `pinhole` binary. `figure` renders the scene at 1280 x 720 pixels by every method and in the sizes and with the
-samples that README.md tells of, and writes a PNG each time. `text` renders it as a picture of one pixel with one sample, so that
+samples of the lists below, and writes a PNG each time. `text` renders it as a picture of one pixel with one sample, so that
 nearly all of its time goes from the text to the tracer's world. Of each number the least is printed, and of the CPU seconds the
 median as well."""
 

@@ -8,7 +8,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use criterion::{Criterion, Throughput};
 use pest::Parser;
 use pinhole::{
     scene,
@@ -51,7 +50,6 @@ fn main() {
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
-    let mut criterion = Criterion::default().configure_from_args();
     for layout in [Layout::Blocks, Layout::Lines] {
         let sources = Sources::new(Source::from_text("spheres.scn", spheres(OBJECTS, layout)));
         let reading = scene::read(&sources)
@@ -75,14 +73,7 @@ fn main() {
             }),
         ];
         ratios(layout, &stages);
-        let mut group = criterion.benchmark_group(format!("{layout:?}"));
-        group.throughput(Throughput::Bytes(sources.file.text().len() as u64));
-        for (name, stage) in stages {
-            group.bench_function(name, |bencher| bencher.iter(stage));
-        }
-        group.finish();
     }
-    criterion.final_summary();
 }
 
 /// Parses piece by piece, as the parser does, and looks at nothing.

@@ -2,13 +2,13 @@
 
 use std::{fs, path::Path};
 
+use diffy::Line;
 use pinhole::{
     diagnostic::{Report, printable},
     film,
     format::format,
     source::{Source, Sources},
 };
-use similar::{ChangeTag, TextDiff};
 
 use super::{
     Status, Trouble,
@@ -94,30 +94,30 @@ fn write(
 
 /// What would change, as a unified diff. Where lines end in different ways, carriage returns are shown: lines can differ in them alone.
 fn difference(source: &Source, formatted: &str) -> String {
-    let lines = TextDiff::from_lines(source.text(), formatted);
+    let patch = diffy::create_patch(source.text(), formatted);
     let name = source.name();
     let color = output::style().color;
     let text = source.text();
     let is_mixed = text.matches('\n').count() != text.matches("\r\n").count();
     let mut text = format!("--- {name}\n+++ {name}, formatted\n");
-    for hunk in lines.unified_diff().iter_hunks() {
-        text += &format!("{}\n", hunk.header());
-        for change in hunk.iter_changes() {
-            let (sign, paint) = match change.tag() {
-                ChangeTag::Delete => ('-', "\x1b[31m"),
-                ChangeTag::Insert => ('+', "\x1b[32m"),
-                ChangeTag::Equal => (' ', ""),
+    for hunk in patch.hunks() {
+        text += &format!("@@ -{} +{} @@\n", hunk.old_range(), hunk.new_range());
+        for line in hunk.lines() {
+            let (sign, paint, value) = match *line {
+                Line::Delete(value) => ('-', "\x1b[31m", value),
+                Line::Insert(value) => ('+', "\x1b[32m", value),
+                Line::Context(value) => (' ', "", value),
             };
-            let line = change.value().trim_end_matches(['\n', '\r']);
+            let line = value.trim_end_matches(['\n', '\r']);
             let mut line: String = line.chars().map(printable).collect();
-            if is_mixed && change.value().trim_end_matches('\n').ends_with('\r') {
+            if is_mixed && value.trim_end_matches('\n').ends_with('\r') {
                 line.push('␍');
             }
             text += &match color && !paint.is_empty() {
                 true => format!("{paint}{sign}{line}\x1b[0m\n"),
                 false => format!("{sign}{line}\n"),
             };
-            if change.missing_newline() {
+            if !value.ends_with('\n') {
                 text += "\\ No newline at end of file\n";
             }
         }

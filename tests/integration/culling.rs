@@ -16,6 +16,7 @@ use pinhole::{
     tracer::{Part, Quartering, Room, World},
 };
 
+use crate::effort::{Effort, sampled_and_exhaustive};
 use crate::{
     exact::{example, examples, random_scene, read},
     figure::figure,
@@ -77,9 +78,10 @@ fn with_samples(scene: &Scene, method: Method, count: Count) -> Scene {
     }
 }
 
-#[test]
-fn every_example_by_every_method() {
-    for name in examples() {
+sampled_and_exhaustive!(every_example_by_every_method);
+
+fn every_example_by_every_method(effort: Effort) {
+    for name in effort.first(6, examples()) {
         let scene = example(&name, 43, 29);
         for method in Method::SAMPLED {
             let pixels = 43 * 29;
@@ -354,10 +356,11 @@ fn parts_cover_each_pixel_once() {
     }
 }
 
-#[test]
-fn scenes_full_of_ties() {
+sampled_and_exhaustive!(scenes_full_of_ties);
+
+fn scenes_full_of_ties(effort: Effort) {
     let mut random = Random(77);
-    for _ in 0..300 {
+    for _ in effort.first(60, 0..300) {
         let scene = scene_full_of_ties(&mut random);
         // Offsets of odd eighths, and with one sample the centres: on edges and in planes.
         for n in [1, 4, 16] {
@@ -367,8 +370,9 @@ fn scenes_full_of_ties() {
     }
 }
 
-#[test]
-fn extreme_cameras() {
+sampled_and_exhaustive!(extreme_cameras);
+
+fn extreme_cameras(effort: Effort) {
     let shapes = [
         sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
         cuboid(dvec3(1.5, 0.0, -1.5), dvec3(2.5, 1.5, 0.5)),
@@ -393,7 +397,7 @@ fn extreme_cameras() {
         dvec3(1e3, 0.0, -1e6),
         dvec3(-1.6, 1.5, 0.1),
     ];
-    for eye in eyes {
+    for eye in effort.first(4, eyes) {
         for lookat in lookats {
             for fov in [1e-7, 1.0, 40.0, 120.0, 179.999] {
                 let mut camera = camera(eye, lookat);

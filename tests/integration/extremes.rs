@@ -15,6 +15,7 @@ use pinhole::{
     tracer::World,
 };
 
+use crate::effort::{Effort, sampled_and_exhaustive};
 use crate::tracer::Random;
 
 /// How many scenes are made unless the environment says otherwise. Two fifths of them have no mistake.
@@ -210,10 +211,15 @@ fn read(text: &str) -> Scene {
     scene::read(&sources).scene.unwrap()
 }
 
-#[test]
-fn whatever_the_numbers_every_channel_is_light() {
+sampled_and_exhaustive!(whatever_the_numbers_every_channel_is_light);
+
+fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
+    let scenes = match effort {
+        Effort::Sample => SCENES / 8,
+        Effort::Exhaustive => SCENES,
+    };
     let asked = std::env::var("PINHOLE_SCENES").ok();
-    let count = asked.map_or(SCENES, |count| count.parse().unwrap());
+    let count = asked.map_or(scenes, |count| count.parse().unwrap());
     let mut rendered = 0;
     for seed in 0..count {
         let mut numbers = Numbers::new(seed);
@@ -361,6 +367,7 @@ fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
 
 /// A pixel in doubt of which every quarter holds smaller and smaller pieces that are known no better ends nevertheless.
 #[test]
+#[ignore = "exhaustive"]
 fn what_quarters_do_not_mend_is_left_in_doubt() {
     let text = "image { width 2 height 3 background olive }
         camera {

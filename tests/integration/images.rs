@@ -1,8 +1,12 @@
-//! The examples as small pictures, byte for byte.
+//! The examples as small pictures, byte for byte, and the gallery that shows them.
 //!
-//! `PINHOLE_BLESS=1 cargo test images` writes the real pictures into `tests/images`: look at them before they are kept.
+//! `PINHOLE_BLESS=1 cargo test images` writes the real pictures into `examples/pictures`: look at them before they are kept.
 
-use std::{fs, path::Path, sync::atomic::AtomicBool};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
 
 use pinhole::{
     area::Area,
@@ -47,26 +51,34 @@ fn rendered(text: &str) -> image::RgbImage {
     image::load_from_memory(&png).unwrap().into_rgb8()
 }
 
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")
+}
+
+/// The names of the files in `folder` that end in `.ending`, without it, sorted.
+fn names(folder: &Path, ending: &str) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut names: Vec<String> = paths
+        .filter(|path| path.extension().is_some_and(|found| found == ending))
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    names.sort();
+    names
+}
+
 #[test]
 fn the_examples_look_as_they_did() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let bless = std::env::var_os("PINHOLE_BLESS").is_some();
-    let mut examples = 0;
-    for entry in fs::read_dir(root.join("examples")).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|ending| ending != "scn") {
-            continue;
-        }
-        examples += 1;
-        let text = fs::read_to_string(&path).unwrap();
+    let scenes = names(&examples(), "scn");
+    for name in &scenes {
+        let text = fs::read_to_string(examples().join(format!("{name}.scn"))).unwrap();
         assert!(
             text.starts_with("// "),
-            "{}: the first line says what it shows",
-            path.display()
+            "{name}: the first line says what it shows"
         );
         let picture = rendered(&text);
-        let name = path.file_stem().unwrap().to_string_lossy();
-        let kept = root.join(format!("tests/images/{name}.png"));
+        let kept = examples().join(format!("pictures/{name}.png"));
         if bless {
             picture.save(&kept).unwrap();
         }
@@ -83,6 +95,23 @@ fn the_examples_look_as_they_did() {
             "{name}"
         );
     }
-    let kept = fs::read_dir(root.join("tests/images")).unwrap().count();
-    assert_eq!(examples, kept, "a picture for each example and no other");
+    let kept = names(&examples().join("pictures"), "png");
+    assert_eq!(scenes, kept, "a picture for each example and no other");
+}
+
+#[test]
+fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
+    let gallery = fs::read_to_string(examples().join("README.md")).unwrap();
+    let mut shown = Vec::new();
+    for line in gallery.lines().filter(|line| line.starts_with("| ![")) {
+        let (_, rest) = line.split_once("](pictures/").expect("a picture");
+        let (name, rest) = rest.split_once(".png) | ").expect("a PNG file");
+        let sentence = rest
+            .strip_prefix(&format!("[{name}]({name}.scn): "))
+            .unwrap_or_else(|| panic!("the scene beside its picture: {line}"));
+        assert!(sentence.len() > 20, "what it shows: {line}");
+        shown.push(name.to_owned());
+    }
+    shown.sort();
+    assert_eq!(shown, names(&examples(), "scn"));
 }

@@ -10,6 +10,7 @@ mod culling;
 mod diagnostics;
 mod diff;
 mod editor;
+mod effort;
 mod exact;
 mod explain;
 mod extremes;

@@ -190,8 +190,6 @@ fn changed(mut text: String, changes: &[(prop::sample::Index, Change)]) -> Strin
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
-
     #[test]
     fn changed_scenes(
         one in select(&SCENES[..]),

@@ -1,41 +1,50 @@
-//! What the README shows is what happens: its commands are run, its outputs compared, its scenes checked.
+//! The documents say what happens: their commands are run and the outputs compared, their scenes are checked, and their links
+//! lead to files.
 //!
-//! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the README.
+//! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the documents.
 
-use std::{fs, path::Path, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
-const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+/// The documents whose `console` blocks are run and whose `scn` blocks are checked.
+const DOCUMENTS: [&str; 4] = [
+    "README.md",
+    "docs/accuracy.md",
+    "docs/speed.md",
+    "examples/README.md",
+];
 
-/// The blocks of the README fenced as `language`, each with the number of its first line.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(document: &str) -> String {
+    fs::read_to_string(root().join(document)).unwrap()
+}
+
+/// The blocks of a document that are fenced as `language`, each with the number of its first line.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<(usize, Vec<&'a str>)> {
     let mut blocks = Vec::new();
     let mut lines = text.lines().enumerate();
-    while let Some((_, line)) = lines.next() {
+    while let Some((number, line)) = lines.next() {
         let Some(fence) = line.strip_prefix("```") else {
             continue;
         };
-        let mut body = Vec::new();
-        let mut first = 0;
-        for (number, line) in lines.by_ref() {
-            if line == "```" {
-                break;
-            }
-            if body.is_empty() {
-                first = number;
-            }
-            body.push(line);
-        }
+        let body = lines.by_ref().map(|(_, line)| line);
+        let body = body.take_while(|line| *line != "```").collect();
         if fence == language {
-            blocks.push((first, body));
+            blocks.push((number + 2, body));
         }
     }
     blocks
 }
 
-/// A folder like a fresh clone's, as far as the commands go, and the shell's answer to one of them there.
+/// What a shell prints when it runs `command` in `folder`.
 fn run(command: &str, folder: &Path) -> String {
     let binary = env!("CARGO_BIN_EXE_pinhole");
-    let command = command.replace("cargo run --release -- ", "pinhole ");
     let path = format!(
         "{}:{}",
         Path::new(binary).parent().unwrap().display(),
@@ -50,15 +59,19 @@ fn run(command: &str, folder: &Path) -> String {
         .env_remove("NO_GRAPHICS")
         .output()
         .unwrap();
-    String::from_utf8(output.stdout).unwrap()
+    let mut output = String::from_utf8(output.stdout).unwrap();
+    if !output.is_empty() && !output.ends_with('\n') {
+        output.push('\n');
+    }
+    output
 }
 
+/// A folder with the examples of a fresh clone.
 fn fresh_folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let to = folder.path().join("examples");
     fs::create_dir(&to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
+    for entry in fs::read_dir(root().join("examples")).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap();
         if path.extension().is_some_and(|ending| ending == "scn") || name == "figure_9_9.png" {
@@ -68,94 +81,122 @@ fn fresh_folder() -> tempfile::TempDir {
     folder
 }
 
-/// Times are the only thing in an output that differs from run to run.
-fn without_times(text: &str) -> String {
-    let words = text.split_inclusive(char::is_whitespace);
-    let mut result = String::new();
-    let mut previous_was_number = false;
-    for word in words {
-        let is_unit = matches!(word.trim(), "s" | "s." | "ms" | "ms.");
-        if is_unit && previous_was_number {
-            let cut = result
-                .trim_end()
-                .rfind(char::is_whitespace)
-                .map_or(0, |at| at + 1);
-            result.truncate(cut);
-            result.push_str("TIME ");
-        }
-        previous_was_number = word.trim().parse::<f64>().is_ok();
-        result.push_str(word);
-    }
-    result
-}
-
-#[test]
-fn the_commands_print_what_the_readme_says() {
-    let text = fs::read_to_string(README).unwrap();
+/// The document with the real outputs of its commands.
+fn with_real_outputs(document: &str, text: &str) -> String {
     let folder = fresh_folder();
-    let mut real = text.clone();
+    let mut real = text.to_owned();
     let mut commands = 0;
-    for (_, block) in blocks(&text, "console") {
+    for (_, block) in blocks(text, "console") {
+        let mut happened = String::new();
         let mut lines = block.iter().peekable();
-        let (mut written, mut happened) = (String::new(), String::new());
         while let Some(line) = lines.next() {
             let command = line
                 .strip_prefix("$ ")
                 .expect("a console block starts with a command");
-            let mut said = String::new();
-            while let Some(line) = lines.next_if(|line| !line.starts_with("$ ")) {
-                said += &format!("{line}\n");
-            }
-            let output = run(command, folder.path());
-            let output = match output.is_empty() || output.ends_with('\n') {
-                true => output,
-                false => output + "\n",
-            };
-            let agrees = without_times(&said) == without_times(&output);
-            written += &format!("{line}\n{said}");
-            happened += &format!("{line}\n{}", if agrees { said } else { output });
+            while lines.next_if(|line| !line.starts_with("$ ")).is_some() {}
+            happened += &format!("{line}\n{}", run(command, folder.path()));
             commands += 1;
         }
+        let written = block.join("\n") + "\n";
         real = real.replace(&written, &happened);
     }
-    assert!(commands >= 5, "the README shows its commands");
-    if std::env::var_os("PINHOLE_BLESS").is_some() {
-        fs::write(README, real).unwrap();
-    } else {
-        assert!(real == text, "the README should read:\n{real}");
+    assert!(commands > 0, "{document} shows commands");
+    real
+}
+
+#[test]
+fn the_commands_print_what_the_documents_say() {
+    let bless = std::env::var_os("PINHOLE_BLESS").is_some();
+    for document in DOCUMENTS {
+        let text = read(document);
+        let real = with_real_outputs(document, &text);
+        if bless {
+            fs::write(root().join(document), real).unwrap();
+            continue;
+        }
+        for (number, (said, printed)) in text.lines().zip(real.lines()).enumerate() {
+            assert_eq!(said, printed, "line {} of {document}", number + 1);
+        }
+        assert_eq!(text.len(), real.len(), "{document} says all and no more");
     }
 }
 
 #[test]
-fn the_first_two_commands_stand_alone() {
-    let text = fs::read_to_string(README).unwrap();
+fn the_scenes_of_the_documents_are_right() {
+    let folder = fresh_folder();
+    for document in DOCUMENTS {
+        let text = read(document);
+        for (line, scene) in blocks(&text, "scn") {
+            fs::write(folder.path().join("scene.scn"), scene.join("\n") + "\n").unwrap();
+            let found = run("pinhole check scene.scn", folder.path());
+            assert_eq!(found, "", "the scene in line {line} of {document}");
+        }
+    }
+}
+
+#[test]
+fn the_readme_has_the_two_set_up_commands_and_the_first_scene() {
+    let text = read("README.md");
     for command in [
         "cargo run --release -- render examples/figure_9_9.scn",
         "cargo test",
     ] {
         assert!(text.lines().any(|line| line == command), "{command}");
     }
+    assert!(text.contains(read("examples/figure_9_9.scn").trim()));
+}
+
+/// All Markdown files in `folder` and below it.
+fn markdown(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && !path.ends_with("node_modules") {
+            markdown(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "md") {
+            found.push(path);
+        }
+    }
+}
+
+/// The targets of a document's links and pictures, `[text](target)`. A fenced block is code and has none.
+fn links(text: &str) -> Vec<&str> {
+    let mut links = Vec::new();
+    let mut fenced = false;
+    for line in text.lines() {
+        fenced ^= line.starts_with("```");
+        if fenced {
+            continue;
+        }
+        let mut rest = line;
+        while let Some((_, after)) = rest.split_once("](") {
+            let (target, after) = after.split_once(')').expect("a link has an end");
+            links.push(target);
+            rest = after;
+        }
+    }
+    links
 }
 
 #[test]
-fn the_scenes_of_the_readme_are_right() {
-    let text = fs::read_to_string(README).unwrap();
-    let folder = fresh_folder();
-    let scenes = blocks(&text, "scn");
-    assert!(!scenes.is_empty());
-    for (line, scene) in scenes {
-        let path = folder.path().join("scene.scn");
-        fs::write(&path, scene.join("\n") + "\n").unwrap();
-        assert_eq!(
-            run("pinhole check scene.scn", folder.path()),
-            "",
-            "the scene in line {}",
-            line + 1
-        );
+fn relative_links_lead_to_files() {
+    let mut documents = vec![root().join("README.md"), root().join("CHANGELOG.md")];
+    for folder in ["docs", "examples", "benches", "grammar"] {
+        markdown(&root().join(folder), &mut documents);
     }
-    let figure = fs::read_to_string(folder.path().join("examples/figure_9_9.scn")).unwrap();
-    assert!(
-        text.contains(figure.trim()),
-        "the README shows examples/figure_9_9.scn as it is"
-    );
+    let (mut followed, mut missing) = (0, Vec::new());
+    for document in documents {
+        let text = fs::read_to_string(&document).unwrap();
+        let relative = links(&text)
+            .into_iter()
+            .filter(|link| !link.contains("://"));
+        for link in relative {
+            let file = link.split('#').next().unwrap();
+            followed += 1;
+            if !document.with_file_name("").join(file).exists() {
+                missing.push(format!("{}: {link}", document.display()));
+            }
+        }
+    }
+    assert!(followed > 50, "only {followed} links were found");
+    assert!(missing.is_empty(), "{missing:#?}");
 }

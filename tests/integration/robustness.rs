@@ -8,6 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crate::effort::{Effort, sampled_and_exhaustive};
 use pinhole::{
     diagnostic::{self, Drawing, Report, Style},
     scene,
@@ -334,9 +335,10 @@ fn random_changes_of_an_example() {
     }
 }
 
+sampled_and_exhaustive!(time_grows_with_the_text);
+
 /// Whatever a line is, eight times as many of them take about eight times as long, not 64 times.
-#[test]
-fn time_grows_with_the_text() {
+fn time_grows_with_the_text(effort: Effort) {
     const LINES: usize = 10_000;
     let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
     let lines = [
@@ -350,7 +352,7 @@ fn time_grows_with_the_text() {
         "let name = 1 + 2\n".to_owned(),
         "spere {}\n".to_owned(),
     ];
-    for line in lines {
+    for line in effort.of(lines) {
         let time = |lines: usize| {
             let text = CAMERA.to_owned() + &line.repeat(lines);
             let once = || {

@@ -57,6 +57,7 @@ fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn no_more_than_were_asked_for_look_for_a_mistake() {
     let folder = TempDir::new().expect("a folder");
     let scene = |roll: f64| {

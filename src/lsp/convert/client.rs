@@ -1,6 +1,7 @@
 //! What the client understands, and what the server offers it.
 
 use gen_lsp_types as lsp;
+use serde_json::Value;
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
 
@@ -28,30 +29,36 @@ pub struct Client {
 }
 
 impl Client {
-    /// What a client says of itself, with its name if it has one.
-    pub fn new(capabilities: &lsp::ClientCapabilities, name: Option<&str>) -> Self {
-        let text = capabilities.text_document.clone().unwrap_or_default();
-        let general = capabilities.general.clone().unwrap_or_default();
-        let hover = text.hover.and_then(|hover| hover.content_format);
-        let completion = text
-            .completion
-            .and_then(|completion| completion.completion_item);
-        let workspace = capabilities.workspace.clone().unwrap_or_default();
-        let edits = workspace.workspace_edit.unwrap_or_default();
-        let published = text.publish_diagnostics.unwrap_or_default();
-        let published = published.diagnostics_capabilities;
-        let symbols = text.document_symbol.unwrap_or_default();
-        let markdown = hover.is_some_and(|formats| formats.contains(&lsp::MarkupKind::Markdown));
+    /// What a client says of itself in the parameters of `initialize`. The fields are looked up one by one: to read all that a client may say
+    /// would take a twentieth of the whole program's compilation.
+    pub fn new(params: &Value) -> Self {
+        let field = |path: &str| params.pointer(path);
+        let can = |path: &str| field(path) == Some(&Value::Bool(true));
+        let words = |path: &str| {
+            let words = field(path).and_then(Value::as_array).into_iter().flatten();
+            words.filter_map(Value::as_str)
+        };
+        let name = field("/clientInfo/name").and_then(Value::as_str);
+        let markdown = words("/capabilities/textDocument/hover/contentFormat")
+            .any(|format| format == "markdown");
+        let published = |what: &str| {
+            can(&format!(
+                "/capabilities/textDocument/publishDiagnostics/{what}"
+            ))
+        };
         Self {
-            encoding: encoding(&general.position_encodings.unwrap_or_default()),
-            snippets: completion.and_then(|item| item.snippet_support) == Some(true),
+            encoding: encoding(words("/capabilities/general/positionEncodings")),
+            snippets: can("/capabilities/textDocument/completion/completionItem/snippetSupport"),
             markdown,
             pictures: markdown && !name.is_some_and(is_in_terminal),
-            pulls_diagnostics: text.diagnostic.is_some(),
-            related: published.related_information == Some(true),
-            linked_codes: published.code_description_support == Some(true),
-            versioned_edits: edits.document_changes == Some(true),
-            nested_symbols: symbols.hierarchical_document_symbol_support == Some(true),
+            pulls_diagnostics: field("/capabilities/textDocument/diagnostic")
+                .is_some_and(Value::is_object),
+            related: published("relatedInformation"),
+            linked_codes: published("codeDescriptionSupport"),
+            versioned_edits: can("/capabilities/workspace/workspaceEdit/documentChanges"),
+            nested_symbols: can(
+                "/capabilities/textDocument/documentSymbol/hierarchicalDocumentSymbolSupport",
+            ),
         }
     }
 }
@@ -63,12 +70,12 @@ fn is_in_terminal(name: &str) -> bool {
 }
 
 /// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it says nothing.
-fn encoding(offered: &[lsp::PositionEncodingKind]) -> Encoding {
-    let known = offered.iter().find_map(|kind| match kind {
-        lsp::PositionEncodingKind::UTF8 => Some(Encoding::Utf8),
-        lsp::PositionEncodingKind::UTF16 => Some(Encoding::Utf16),
-        lsp::PositionEncodingKind::UTF32 => Some(Encoding::Utf32),
-        lsp::PositionEncodingKind::Custom(_) => None,
+fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
+    let known = offered.find_map(|kind| match kind {
+        "utf-8" => Some(Encoding::Utf8),
+        "utf-16" => Some(Encoding::Utf16),
+        "utf-32" => Some(Encoding::Utf32),
+        _ => None,
     });
     known.unwrap_or(Encoding::Utf16)
 }

@@ -48,7 +48,7 @@ pub enum Ended {
 /// The output cannot be written to.
 pub fn serve(
     input: impl Read + Send + 'static,
-    output: &mut impl Write,
+    output: &mut dyn Write,
     pages: Option<PathBuf>,
     log: fn(&str),
 ) -> io::Result<Ended> {
@@ -66,8 +66,8 @@ enum Phase {
     ShutDown,
 }
 
-struct Server<'o, W> {
-    output: &'o mut W,
+struct Server<'o> {
+    output: &'o mut dyn Write,
     log: fn(&str),
     phase: Phase,
     documents: HashMap<lsp::Uri, Document>,
@@ -76,8 +76,8 @@ struct Server<'o, W> {
     pages: Pages,
 }
 
-impl<'o, W: Write> Server<'o, W> {
-    fn new(output: &'o mut W, pages: Pages, log: fn(&str)) -> Self {
+impl<'o> Server<'o> {
+    fn new(output: &'o mut dyn Write, pages: Pages, log: fn(&str)) -> Self {
         Self {
             output,
             log,
@@ -218,9 +218,7 @@ impl<'o, W: Write> Server<'o, W> {
     }
 
     fn initialize(&mut self, params: Value) -> Answer {
-        let params: lsp::InitializeParams = parsed(params)?;
-        let name = params.client_info.as_ref().map(|info| info.name.as_str());
-        let client = Client::new(&params.capabilities, name);
+        let client = Client::new(&params);
         let result = lsp::InitializeResult {
             capabilities: convert::capabilities(&client),
             server_info: Some(lsp::ServerInfo {

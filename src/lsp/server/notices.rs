@@ -1,7 +1,5 @@
 //! What a client tells without asking: texts that are opened, changed and closed.
 
-use std::io::Write;
-
 use gen_lsp_types as lsp;
 use lsp_server::Notification;
 
@@ -14,7 +12,7 @@ use super::{
     outbox::{Refusal, parsed},
 };
 
-impl<W: Write> Server<'_, W> {
+impl Server<'_> {
     /// What the client tells: texts that are opened, changed and closed.
     pub(super) fn notice(&mut self, notification: Notification) {
         let Phase::Talking(client) = &self.phase else {

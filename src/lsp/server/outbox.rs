@@ -26,7 +26,7 @@ pub fn written(result: &impl serde::Serialize) -> Answer {
 
 /// Writes a response.
 pub fn respond(
-    output: &mut impl Write,
+    output: &mut dyn Write,
     id: &impl serde::Serialize,
     answer: Answer,
 ) -> io::Result<()> {
@@ -45,7 +45,7 @@ pub fn respond(
 
 /// Writes what is wrong with a text; nothing is with one that was closed.
 pub fn publish(
-    output: &mut impl Write,
+    output: &mut dyn Write,
     uri: &lsp::Uri,
     version: Option<i32>,
     diagnostics: &[lsp::Diagnostic],
@@ -59,7 +59,7 @@ pub fn publish(
     send(output, &message.to_string())
 }
 
-fn send(output: &mut impl Write, message: &str) -> io::Result<()> {
+fn send(output: &mut dyn Write, message: &str) -> io::Result<()> {
     write!(output, "Content-Length: {}\r\n\r\n{message}", message.len())?;
     output.flush()
 }

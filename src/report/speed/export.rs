@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use hmac_sha256::Hash;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 
 use super::{
     fit::median,
@@ -175,7 +175,7 @@ fn ends(values: &[f64]) -> [f64; 2] {
 /// The SHA-256 (FIPS 180-4) of a text's bytes, as `sha256sum` prints it.
 pub(super) fn sha256(text: &str) -> String {
     let mut digits = String::new();
-    for byte in Sha256::digest(text.as_bytes()) {
+    for byte in Hash::hash(text.as_bytes()) {
         let _ = write!(digits, "{byte:02x}");
     }
     digits

@@ -1,7 +1,7 @@
 //! What it may cost to learn what is seen in a part: a small share of what it costs to trace its samples one by one.
 //!
 //! So a picture takes hardly longer than that, whatever is in it. All is counted in samples that meet few objects on their way.
-//! The constants are ratios of times, chosen by what `benches/sweep.rs` measures on pictures of many kinds; `benches/tried.md` has what else was tried.
+//! The constants are ratios of times, chosen by what `benches/sweep.rs` measures on pictures of many kinds.
 
 use glam::DVec2;
 

@@ -14,6 +14,7 @@ use super::{
     SCENE,
     right::{DOT, DOTS, LEVEL, Subject},
 };
+use crate::effort::{Effort, sampled_and_exhaustive};
 use crate::exact::{example, examples, read};
 
 /// Boxes whose edges lie along pixels' sides, and a ball.
@@ -140,13 +141,18 @@ const HARD: [(&str, &str); 9] = [
     ("level", "hammersley 16"),
 ];
 
-/// `PINHOLE_SEEDS=1` grades each scene with all sets of samples, some four hundred pictures; without it each has two, beside those that are hard.
-#[test]
-fn nobody_is_blamed_for_samples_at_the_same_places_in_all_pixels() {
+sampled_and_exhaustive!(nobody_is_blamed_for_samples_at_the_same_places_in_all_pixels);
+
+/// `PINHOLE_SEEDS=1` grades each scene with all sets of samples, some four hundred pictures; without it each has two, beside those that are
+/// hard. A sample is one scene.
+fn nobody_is_blamed_for_samples_at_the_same_places_in_all_pixels(effort: Effort) {
     let names = examples().into_iter();
     let mut scenes: Vec<_> = names.map(|name| (example(&name, 1, 1), name)).collect();
     for (name, text) in [("dot", DOT), ("dots", DOTS), ("level", LEVEL)] {
         scenes.push((read(text), name.to_owned()));
+    }
+    if effort == Effort::Sample {
+        scenes.retain(|(_, name)| name == "dot");
     }
     let is_all = std::env::var("PINHOLE_SEEDS").is_ok();
     let sets = sets();
@@ -186,6 +192,7 @@ fn nobody_is_blamed_for_samples_at_the_same_places_in_all_pixels() {
 
 /// Programs that round see what is on an edge on one side of it or on the other.
 #[test]
+#[ignore = "exhaustive"]
 fn nobody_is_blamed_for_what_is_seen_on_an_edge() {
     let subject = Subject::new(&read(STEPS), [160, 90]);
     for (right, down) in [(-1e-12, -1e-12), (1e-12, -1e-12), (-1e-12, 1e-12)] {
@@ -231,8 +238,9 @@ fn samples_at_the_corners_of_their_cells_are_named() {
     }
 }
 
-#[test]
-fn mistakes_are_named_in_pictures_of_the_same_samples_in_all_pixels() {
+sampled_and_exhaustive!(mistakes_are_named_in_pictures_of_the_same_samples_in_all_pixels);
+
+fn mistakes_are_named_in_pictures_of_the_same_samples_in_all_pixels(effort: Effort) {
     let subject = Subject::new(&read(SCENE), [160, 90]);
     type Wrong = fn(&mut Scene);
     let cases: [(&str, Wrong); 5] = [
@@ -256,10 +264,10 @@ fn mistakes_are_named_in_pictures_of_the_same_samples_in_all_pixels() {
         }),
     ];
     let mut said = String::new();
-    for (mistake, wrong) in cases {
+    for (mistake, wrong) in effort.of(cases) {
         let mut scene = subject.scene().clone();
         wrong(&mut scene);
-        for (set, samples) in [hammersley(16), random(4), random(16), halton(25)] {
+        for (set, samples) in effort.of([hammersley(16), random(4), random(16), halton(25)]) {
             let found = subject.graded(&picture(&scene, &samples)).unwrap();
             let first = found.likely.first();
             // Beside a number what the samples displace may be told, too; and where they are few, or by chance, a place may not be told at all.

@@ -5,6 +5,7 @@ use pinhole::color::{linear_to_srgb, srgb_to_linear};
 use tempfile::TempDir;
 
 use super::{diff, folder, json, open, render, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// The picture `a.exr` with its light made bytes in some way, as `b.png`.
 fn with_bytes(folder: &TempDir, byte: impl Fn(f64) -> f64) {
@@ -66,12 +67,13 @@ fn mistakes(folder: &TempDir, sets: &[&str]) -> Vec<String> {
         .collect()
 }
 
-#[test]
-fn mixtures_alone_tell_of_bytes_that_are_cut_off() {
+sampled_and_exhaustive!(mixtures_alone_tell_of_bytes_that_are_cut_off);
+
+fn mixtures_alone_tell_of_bytes_that_are_cut_off(effort: Effort) {
     let folder = folder();
     // A little more than a whole number stays one: flat colours are right.
-    for (white, more) in [(255.0, 1e-3), (256.0, 0.0)] {
-        for (method, samples) in [("sobol", 256), ("random", 4)] {
+    for (white, more) in effort.of([(255.0, 1e-3), (256.0, 0.0)]) {
+        for (method, samples) in effort.of([("sobol", 256), ("random", 4)]) {
             let size = sampled(&folder, method, samples);
             with_bytes(&folder, |light| {
                 (white * linear_to_srgb(light) + more).floor()
@@ -83,10 +85,11 @@ fn mixtures_alone_tell_of_bytes_that_are_cut_off() {
     }
 }
 
-#[test]
-fn a_power_is_told_from_bytes_that_are_cut_off() {
+sampled_and_exhaustive!(a_power_is_told_from_bytes_that_are_cut_off);
+
+fn a_power_is_told_from_bytes_that_are_cut_off(effort: Effort) {
     let folder = folder();
-    for (method, samples) in [("random", 4), ("multi_jittered", 16), ("sobol", 256)] {
+    for (method, samples) in effort.of([("random", 4), ("multi_jittered", 16), ("sobol", 256)]) {
         let size = sampled(&folder, method, samples);
         with_bytes(&folder, |light| {
             (255.0 * libm::pow(light, 1.0 / 2.2)).round()
@@ -112,8 +115,9 @@ fn with_wide_numbers(folder: &TempDir, number: impl Fn(f64) -> f64) {
     save(folder, "b.png", DynamicImage::ImageRgb16(picture));
 }
 
-#[test]
-fn bytes_in_a_file_of_16_bits_are_told() {
+sampled_and_exhaustive!(bytes_in_a_file_of_16_bits_are_told);
+
+fn bytes_in_a_file_of_16_bits_are_told(effort: Effort) {
     let folder = folder();
     render(&folder, &["-o", "a.exr"]);
     type Number = fn(f64) -> f64;
@@ -134,7 +138,7 @@ fn bytes_in_a_file_of_16_bits_are_told() {
             "the 16 bits of each channel are cut off instead of rounded",
         ),
     ];
-    for (number, mistake, words) in cases {
+    for (number, mistake, words) in effort.of(cases) {
         with_wide_numbers(&folder, number);
         let found = json(&folder, &["b.png", "a.scn"]);
         let first = &found["likely"][0];
@@ -150,8 +154,9 @@ fn bytes_in_a_file_of_16_bits_are_told() {
     assert_eq!(mistakes(&folder, &[]), ["object_place"]);
 }
 
-#[test]
-fn gray_pictures_are_named() {
+sampled_and_exhaustive!(gray_pictures_are_named);
+
+fn gray_pictures_are_named(effort: Effort) {
     let folder = folder();
     let luma = |[r, g, b]: [f64; 3]| 0.299 * r + 0.587 * g + 0.114 * b;
     let mean = |[r, g, b]: [f64; 3]| (r + g + b) / 3.0;
@@ -170,7 +175,7 @@ fn gray_pictures_are_named() {
             "the luminance of its light",
         ),
     ];
-    for sets in [
+    for sets in effort.of([
         &[][..],
         &[
             "--set",
@@ -178,11 +183,11 @@ fn gray_pictures_are_named() {
             "--set",
             "sampler.per_pixel=16",
         ],
-    ] {
+    ]) {
         render(&folder, &[&["-o", "a.exr"], sets].concat());
         let light = open(&folder, "a.exr").to_rgb32f();
         let (width, height) = light.dimensions();
-        for (gray, words) in cases {
+        for (gray, words) in effort.of(cases) {
             let picture = ImageBuffer::from_fn(width, height, |x, y| {
                 let pixel = light.get_pixel(x, y).0;
                 let color = pixel.map(|light| linear_to_srgb(f64::from(light)));

@@ -8,6 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{diff, folder, json, mistake, open, pinhole, render, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// No checkerboard, so that little but the mistake differs.
 const PLAIN: &str = "image { width 200 height 200 background white }
@@ -79,18 +80,19 @@ fn light_that_is_wrong_in_a_turned_picture_is_seen_through_noise() {
     }
 }
 
-#[test]
-fn a_mistake_within_the_noise_is_no_noise() {
+sampled_and_exhaustive!(a_mistake_within_the_noise_is_no_noise);
+
+fn a_mistake_within_the_noise_is_no_noise(effort: Effort) {
     let folder = folder();
     let size = ["image.width=240", "image.height=160"];
-    for (set, words) in [
+    for (set, words) in effort.of([
         ("Ball.radius=1.04", "is 1.04 times as large"),
         (
             "Ball.center=(-1.53, 1, 0)",
             "is in a wrong place: as if the x",
         ),
-    ] {
-        for samples in [4, 16] {
+    ]) {
+        for samples in effort.of([4, 16]) {
             sampled(&folder, "random", samples, &[&size[..], &[set]].concat());
             let [mistake, message] = first(&folder, &size);
             assert!(
@@ -106,25 +108,27 @@ fn a_mistake_within_the_noise_is_no_noise() {
     }
 }
 
-#[test]
-fn a_mistake_of_part_of_a_pixel_is_named() {
+sampled_and_exhaustive!(a_mistake_of_part_of_a_pixel_is_named);
+
+fn a_mistake_of_part_of_a_pixel_is_named(effort: Effort) {
     let folder = plain(PLAIN);
-    for (set, expected) in [
+    for (set, expected) in effort.of([
         ("camera.roll=-19deg", "roll"),
         ("Ball.radius=0.721", "object_size"),
         ("Ball.radius=0.735", "object_size"),
         ("Ball.center=(-1, 0.45, 1)", "object_place"),
         ("Sail.centroid=(-0.95, 1.2, -1)", "object_place"),
-    ] {
+    ]) {
         render(&folder, &["-o", "b.png", "--set", set]);
         assert_eq!(mistake(&folder), expected, "{set}");
     }
 }
 
-#[test]
-fn right_pictures_of_all_methods_are_noise() {
+sampled_and_exhaustive!(right_pictures_of_all_methods_are_noise);
+
+fn right_pictures_of_all_methods_are_noise(effort: Effort) {
     let folders = [plain(PLAIN), plain(LEVEL), folder()];
-    for folder in &folders {
+    for folder in effort.of(&folders) {
         for method in [
             "regular",
             "random",
@@ -136,7 +140,7 @@ fn right_pictures_of_all_methods_are_noise() {
             "sobol",
             "scatter",
         ] {
-            for samples in [1, 3, 4, 16] {
+            for samples in effort.of([4, 1, 3, 16]) {
                 sampled(folder, method, samples, &[]);
                 let expected = match (method, samples) {
                     ("regular", 1) => "sample_at_center",
@@ -159,8 +163,9 @@ fn pixels_without_samples_are_told_of() {
     );
 }
 
-#[test]
-fn gamma_is_named_through_noise() {
+sampled_and_exhaustive!(gamma_is_named_through_noise);
+
+fn gamma_is_named_through_noise(effort: Effort) {
     let decode = |c: f64| match c <= 0.04045 {
         true => c / 12.92,
         false => libm::pow((c + 0.055) / 1.055, 2.4),
@@ -175,10 +180,10 @@ fn gamma_is_named_through_noise() {
         (plain(&PLAIN.replace("white", "skyblue")), ""),
         (folder(), "image.background=skyblue"),
     ];
-    for (folder, set) in &folders {
+    for (folder, set) in effort.of(&folders) {
         let sets: Vec<_> = [*set].into_iter().filter(|set| !set.is_empty()).collect();
-        for samples in [1, 16] {
-            for (change, expected) in changes {
+        for samples in effort.of([1, 16]) {
+            for (change, expected) in effort.of(changes) {
                 sampled(folder, "multi_jittered", samples, &sets);
                 let mut picture = open(folder, "b.png").to_rgb8();
                 for byte in picture.iter_mut() {
@@ -193,6 +198,7 @@ fn gamma_is_named_through_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn an_object_that_is_off_in_another_way_is_named() {
     let folder = plain(PLAIN);
     for (set, expected) in [
@@ -219,6 +225,7 @@ fn coordinates_of_the_eye_that_are_exchanged_are_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_picture_of_many_objects_is_judged() {
     let mut scene = "image { width 96 height 64 } camera { eye (0, 12, 30) lookat (0, 0, 0) fov 50deg } sampler { method exact }\n".to_owned();
     for i in 0..600 {
@@ -258,6 +265,7 @@ fn a_picture_of_many_objects_is_judged() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn cameras_are_judged_by_any_lens_and_along_up() {
     let level = "eye (0, 1, 4) lookat (0, 1, 0) fov 40deg";
     for (camera, set, expected) in [
@@ -288,10 +296,11 @@ fn cameras_are_judged_by_any_lens_and_along_up() {
     }
 }
 
-#[test]
-fn no_other_object_is_blamed_through_noise() {
+sampled_and_exhaustive!(no_other_object_is_blamed_through_noise);
+
+fn no_other_object_is_blamed_through_noise(effort: Effort) {
     let folder = plain(PLAIN);
-    for samples in [1, 4] {
+    for samples in effort.of([1, 4]) {
         sampled(&folder, "random", samples, &["Sail.spin=25deg"]);
         let [_, message] = first(&folder, &[]);
         assert!(!message.contains("Ball"), "{samples}: {message}");

@@ -6,6 +6,7 @@ use image::{ImageBuffer, Rgb};
 use tempfile::TempDir;
 
 use super::{SCENE, diff, folder, json, mistake, open, pinhole, render, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 #[test]
 fn mistakes_of_the_whole_picture_are_named() {
@@ -137,6 +138,7 @@ const FINE: [&str; 10] = [
 ];
 
 #[test]
+#[ignore = "exhaustive"]
 fn one_object_among_many_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let mut scene = SCENE.split("sphere").next().unwrap().to_owned() + "checkerboard {}\n";
@@ -182,10 +184,11 @@ fn several_wrong_colours_are_named_at_once() {
     );
 }
 
-#[test]
-fn mistakes_that_another_scene_makes_are_named() {
+sampled_and_exhaustive!(mistakes_that_another_scene_makes_are_named);
+
+fn mistakes_that_another_scene_makes_are_named(effort: Effort) {
     let folder = folder();
-    for (set, expected) in [
+    for (set, expected) in effort.of([
         ("camera.roll=-10deg", "roll_sign"),
         ("camera.roll=0deg", "roll_ignored"),
         ("camera.roll=10rad", "roll_unit"),
@@ -210,9 +213,12 @@ fn mistakes_that_another_scene_makes_are_named() {
         ("Crate.center=(2.3, 0.75, -0.5)", "object_place"),
         ("Sail.spin=180deg", "object_orientation"),
         ("Sail.sides=(0.0001, 0.0001, 0.0001)", "object_missing"),
-    ] {
+    ]) {
         render(&folder, &["-o", "b.png", "--set", set]);
         assert_eq!(mistake(&folder), expected, "{set}");
+    }
+    if effort == Effort::Sample {
+        return;
     }
     // It sees the background alone, as many another camera would.
     let set = "camera.direction=(0.2, 0.8, 0)";
@@ -222,7 +228,7 @@ fn mistakes_that_another_scene_makes_are_named() {
     let names: Vec<_> = names.map(|one| one["mistake"].as_str().unwrap()).collect();
     assert_eq!(names[0], "one_color");
     assert!(names.contains(&"lookat_as_direction"), "{names:?}");
-    for (set, expected) in [
+    for (set, expected) in effort.of([
         ("Sail.normal=(-0.3, 0, 1)", "whose x has the wrong sign"),
         ("Sail.normal=(1, 0, 0.3)", "whose x and z are exchanged"),
         ("Sail.sides=(1, 2, 2)", "`Sail` has its sides"),
@@ -230,7 +236,7 @@ fn mistakes_that_another_scene_makes_are_named() {
         ("Crate.size=(2, 1.5, 0.5)", "sizes along x and z exchanged"),
         ("Crate.size=(1, 1.5, 2)", "twice as long along x"),
         ("Crate.size=(0.5, 1.5, 1)", "half as long along z"),
-    ] {
+    ]) {
         render(&folder, &["-o", "b.png", "--set", set]);
         let (_, text) = diff(&folder, &["b.png", "a.scn"]);
         assert!(text.contains(expected), "{set}: {text}");
@@ -246,24 +252,25 @@ fn mistakes_that_another_scene_makes_are_named() {
     );
 }
 
-#[test]
-fn fields_that_are_not_minded_are_named() {
+sampled_and_exhaustive!(fields_that_are_not_minded_are_named);
+
+fn fields_that_are_not_minded_are_named(effort: Effort) {
     let folder = folder();
-    for (sets, expected) in [
+    for (sets, expected) in effort.of([
         (&["camera.near=8"][..], "near_ignored"),
         (&["camera.far=9.5"], "far_ignored"),
         (&["camera.near=8", "camera.far=9.5"], "not_clipped"),
         (&["camera.view_height=2.7"], "view_height_ignored"),
-    ] {
+    ]) {
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", *set]).collect();
         let found = json(&folder, &[&["a.png", "a.scn"], sets.as_slice()].concat());
         assert_eq!(found["likely"][0]["mistake"], expected, "{sets:?}");
     }
     let both = ["--set", "camera.near=8", "--set", "camera.far=9.5"];
-    for (set, expected) in [
+    for (set, expected) in effort.of([
         ("camera.near=8", "far_ignored"),
         ("camera.far=9.5", "near_ignored"),
-    ] {
+    ]) {
         render(&folder, &["-o", "b.png", "--set", set]);
         let found = json(&folder, &[&["b.png", "a.scn"], &both[..]].concat());
         assert_eq!(found["likely"][0]["mistake"], expected, "{set}");
@@ -343,18 +350,19 @@ fn whole_numbers_that_went_wrong_in_the_board_are_named() {
     }
 }
 
-#[test]
-fn mistakes_of_the_checkerboard_are_named() {
+sampled_and_exhaustive!(mistakes_of_the_checkerboard_are_named);
+
+fn mistakes_of_the_checkerboard_are_named(effort: Effort) {
     let folder = folder();
     let swapped = SCENE.replace("checkerboard {}", "checkerboard { colors (white, gray) }");
-    for (text, expected) in [
+    for (text, expected) in effort.of([
         (swapped.clone(), "board_swapped"),
         (
             SCENE.replace("checkerboard {}", "checkerboard { square 2 }"),
             "board_square",
         ),
         (SCENE.replace("checkerboard {}", ""), "object_missing"),
-    ] {
+    ]) {
         fs::write(folder.path().join("b.scn"), text).unwrap();
         assert!(
             pinhole(folder.path(), &["render", "b.scn"])
@@ -401,8 +409,9 @@ fn painted(folder: &TempDir, objects: &[&str]) -> image::RgbImage {
     })
 }
 
-#[test]
-fn objects_drawn_in_a_wrong_order_are_named() {
+sampled_and_exhaustive!(objects_drawn_in_a_wrong_order_are_named);
+
+fn objects_drawn_in_a_wrong_order_are_named(effort: Effort) {
     let folder = folder();
     let (camera, objects): (Vec<_>, Vec<_>) = SCENE.lines().partition(|line| {
         ["image", "camera", "sampler"]
@@ -414,7 +423,7 @@ fn objects_drawn_in_a_wrong_order_are_named() {
         kinds.map(object)
     };
     // The last one drawn is seen. From the nearest to the farthest they are triangle, box, sphere and board.
-    for (drawn, in_the_file, words) in [
+    for (drawn, in_the_file, words) in effort.of([
         (
             ["sphere", "triangle", "box", "checkerboard"],
             ["sphere", "triangle", "box", "checkerboard"],
@@ -430,7 +439,7 @@ fn objects_drawn_in_a_wrong_order_are_named() {
             ["box", "checkerboard", "sphere", "triangle"],
             "the farthest one",
         ),
-    ] {
+    ]) {
         save(&folder, "b.png", painted(&folder, &drawn));
         let lines = [camera.as_slice(), &objects_of(in_the_file)].concat();
         fs::write(folder.path().join("a.scn"), lines.join("\n")).unwrap();
@@ -443,6 +452,7 @@ fn objects_drawn_in_a_wrong_order_are_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn an_object_that_the_scene_does_not_have_is_named() {
     let folder = folder();
     let extra = format!("{SCENE}sphere {{ center (1, 1.2, 1.6) radius 0.4 color crimson }}\n");
@@ -463,6 +473,7 @@ fn an_object_that_the_scene_does_not_have_is_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn one_size_that_is_wrong_is_named() {
     let folder = folder();
     for (set, words) in [

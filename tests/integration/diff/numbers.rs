@@ -6,6 +6,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{SCENE, folder, json, pinhole, render};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 fn verdict(folder: &TempDir) -> (String, String, Value) {
     let found = json(folder, &["b.png", "a.scn"]);
@@ -23,6 +24,7 @@ fn first(folder: &TempDir, sets: &[&str]) -> (String, String, Value) {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn several_coordinates_of_the_eye_are_named() {
     let folder = folder();
     for (set, words) in [
@@ -46,6 +48,7 @@ fn several_coordinates_of_the_eye_are_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn coordinates_that_are_off_by_little_are_all_named() {
     let folder = folder();
     for (set, words) in [
@@ -68,6 +71,7 @@ fn coordinates_that_are_off_by_little_are_all_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn one_thing_is_said_of_one_object() {
     let folder = folder();
     for set in ["Ball.center=(-1.3, 1, 0)", "Crate.center=(2.2, 0.75, -0.5)"] {
@@ -81,6 +85,7 @@ fn one_thing_is_said_of_one_object() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_picture_of_few_rows_is_no_trap() {
     let folder = folder();
     let sizes = ["--set", "image.width=300", "--set", "image.height=3"];
@@ -95,6 +100,7 @@ fn a_picture_of_few_rows_is_no_trap() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_camera_that_looks_elsewhere_is_named() {
     let folder = folder();
     for set in [
@@ -110,6 +116,7 @@ fn a_camera_that_looks_elsewhere_is_named() {
 }
 
 #[test]
+#[ignore = "exhaustive; `pairs` has a sample"]
 fn two_fields_of_the_camera_are_named_and_no_other() {
     let folder = folder();
     let sets = ["camera.roll=16deg", "camera.d=2.4"];
@@ -126,10 +133,11 @@ fn two_fields_of_the_camera_are_named_and_no_other() {
     }
 }
 
-#[test]
-fn a_checkerboard_elsewhere_is_named() {
+sampled_and_exhaustive!(a_checkerboard_elsewhere_is_named);
+
+fn a_checkerboard_elsewhere_is_named(effort: Effort) {
     let folder = folder();
-    for (board, expected, words) in [
+    for (board, expected, words) in effort.of([
         (
             "y -0.3",
             "board_height",
@@ -138,7 +146,7 @@ fn a_checkerboard_elsewhere_is_named() {
         ("y 0.2", "board_height", "as if its y were 0.2 instead of 0"),
         ("square 1.1", "board_square", "the side 1.1 instead of 1"),
         ("square 0.85", "board_square", "the side 0.85 instead of 1"),
-    ] {
+    ]) {
         let text = SCENE.replace("checkerboard {}", &format!("checkerboard {{ {board} }}"));
         fs::write(folder.path().join("b.scn"), text).unwrap();
         assert!(
@@ -153,6 +161,7 @@ fn a_checkerboard_elsewhere_is_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_checkerboard_that_begins_elsewhere_is_named() {
     let folder = folder();
     // All else is moved by half a square, and a quarter of one.
@@ -193,11 +202,12 @@ fn seen(folder: &TempDir, point: [f64; 3]) -> [f64; 2] {
     [along("u") * pixels, -along("v") * pixels]
 }
 
-#[test]
-fn an_object_in_a_wrong_place_is_off_by_pixels() {
+sampled_and_exhaustive!(an_object_in_a_wrong_place_is_off_by_pixels);
+
+fn an_object_in_a_wrong_place_is_off_by_pixels(effort: Effort) {
     let folder = folder();
     let name = |set: &str| set.split('.').next().unwrap().to_owned();
-    for (set, from, to) in [
+    for (set, from, to) in effort.of([
         (
             "Ball.center=(-1.3, 1, 0)",
             [-1.6, 1.0, 0.0],
@@ -218,7 +228,7 @@ fn an_object_in_a_wrong_place_is_off_by_pixels() {
             [0.2, 1.0, 0.6],
             [0.5, 1.2, 0.1],
         ),
-    ] {
+    ]) {
         let (mistake, message, off) = first(&folder, &[set]);
         assert_eq!(mistake, "object_place", "{set}: {message}");
         assert!(
@@ -230,6 +240,9 @@ fn an_object_in_a_wrong_place_is_off_by_pixels() {
             let found = off[key].as_f64().unwrap();
             assert!((found - expected).abs() < 0.1, "{set}: {expected}, {off}");
         }
+    }
+    if effort == Effort::Sample {
+        return;
     }
     let set = "Sail.spin=25deg";
     let (mistake, message, _) = first(&folder, &[set]);
@@ -249,6 +262,7 @@ fn an_object_in_a_wrong_place_is_off_by_pixels() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_displaced_picture_is_named_through_noise() {
     let folder = folder();
     for method in ["random", "multi_jittered", "sobol"] {
@@ -270,6 +284,7 @@ fn a_displaced_picture_is_named_through_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn two_mistakes_at_once_are_no_other_one() {
     let folder = folder();
     // Of these none explains the picture, and what is said is true of it.
@@ -285,10 +300,11 @@ fn two_mistakes_at_once_are_no_other_one() {
     }
 }
 
-#[test]
-fn planes_at_another_depth_are_named() {
+sampled_and_exhaustive!(planes_at_another_depth_are_named);
+
+fn planes_at_another_depth_are_named(effort: Effort) {
     let folder = folder();
-    for (set, right, expected, says) in [
+    for (set, right, expected, says) in effort.of([
         (
             "camera.far=9.7",
             None,
@@ -313,7 +329,7 @@ fn planes_at_another_depth_are_named() {
             "near",
             "as if near were 8.2 instead of 5.5",
         ),
-    ] {
+    ]) {
         render(&folder, &["-o", "b.png", "--set", set]);
         let right = right.map_or(Vec::new(), |set| vec!["--set", set]);
         let found = json(&folder, &[&["b.png", "a.scn"], right.as_slice()].concat());
@@ -326,6 +342,7 @@ fn planes_at_another_depth_are_named() {
 
 /// Near the horizon no pixel has one colour, so that none is plainly wrong; and what is dark there adds up to as much as a curve brightens all edges.
 #[test]
+#[ignore = "exhaustive"]
 fn rays_that_end_before_the_horizon_are_neither_noise_nor_gamma() {
     let folder = folder();
     let level = ["image.width=320", "image.height=180", "camera.roll=0deg"];
@@ -355,6 +372,7 @@ fn rays_that_end_before_the_horizon_are_neither_noise_nor_gamma() {
 
 /// As samples at the same places in all pixels may be, and as no single sample shows where one colour is seen.
 #[test]
+#[ignore = "exhaustive; `faint` has a sample"]
 fn a_hundredth_of_a_pixel_without_noise_is_no_noise() {
     let folder = folder();
     let size = ["--set", "image.width=240", "--set", "image.height=136"];

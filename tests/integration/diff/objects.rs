@@ -3,6 +3,7 @@
 use std::fs;
 
 use super::{SCENE, folder, json, open, render, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// The first mistake that is found in `b.png`, and what is said of it.
 fn first(folder: &tempfile::TempDir) -> [String; 2] {
@@ -11,14 +12,15 @@ fn first(folder: &tempfile::TempDir) -> [String; 2] {
     ["mistake", "message"].map(|key| first[key].as_str().unwrap_or("none").to_owned())
 }
 
-#[test]
-fn a_wrong_colour_is_named_where_others_have_the_right_one() {
+sampled_and_exhaustive!(a_wrong_colour_is_named_where_others_have_the_right_one);
+
+fn a_wrong_colour_is_named_where_others_have_the_right_one(effort: Effort) {
     let folder = tempfile::tempdir().unwrap();
     let other = "sphere Other { center (-0.2, 0.5, 2.5) radius 0.5 }\n";
     let third = "sphere Third { center (1.5, 2.4, -1) radius 0.6 }\n";
     fs::write(folder.path().join("a.scn"), [SCENE, other, third].concat()).unwrap();
-    for name in ["Ball", "Other", "Third"] {
-        for method in ["exact", "multi_jittered"] {
+    for name in effort.of(["Ball", "Other", "Third"]) {
+        for method in effort.of(["exact", "multi_jittered"]) {
             let [color, method] = [
                 format!("{name}.color=magenta"),
                 format!("sampler.method={method}"),
@@ -30,15 +32,16 @@ fn a_wrong_colour_is_named_where_others_have_the_right_one() {
     }
 }
 
-#[test]
-fn a_colour_that_is_a_little_off_is_named_through_noise() {
+sampled_and_exhaustive!(a_colour_that_is_a_little_off_is_named_through_noise);
+
+fn a_colour_that_is_a_little_off_is_named_through_noise(effort: Effort) {
     let folder = folder();
-    for (set, name) in [
+    for (set, name) in effort.of([
         ("Sail.color=#0080a0", "Sail"),
         ("Ball.color=#808030", "Ball"),
-    ] {
+    ]) {
         let size = ["--set", "image.width=240", "--set", "image.height=160"];
-        for (method, samples) in [("multi_jittered", "16"), ("random", "4")] {
+        for (method, samples) in effort.of([("multi_jittered", "16"), ("random", "4")]) {
             let [method, samples] = [
                 format!("sampler.method={method}"),
                 format!("sampler.per_pixel={samples}"),
@@ -55,6 +58,7 @@ fn a_colour_that_is_a_little_off_is_named_through_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn only_what_grows_all_round_is_said_to() {
     let folder = folder();
     for (set, expected) in [
@@ -76,6 +80,7 @@ fn only_what_grows_all_round_is_said_to() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_size_that_is_off_by_some_pixels_is_measured() {
     let folder = folder();
     let size = ["--set", "image.width=240", "--set", "image.height=160"];
@@ -93,6 +98,7 @@ fn a_size_that_is_off_by_some_pixels_is_measured() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_triangle_that_is_turned_is_said_to_be() {
     let folder = folder();
     let size = ["--set", "image.width=240", "--set", "image.height=160"];
@@ -129,6 +135,7 @@ fn a_triangle_that_is_turned_is_said_to_be() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_triangle_with_equal_sides_is_spun_by_the_least() {
     let folder = folder();
     let scene = SCENE.replace("sides (2, 2, 1)", "sides (2, 2, 2)");
@@ -145,6 +152,7 @@ fn a_triangle_with_equal_sides_is_spun_by_the_least() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn edges_that_are_a_step_or_two_off_are_no_object() {
     let folder = folder();
     let right = open(&folder, "a.png").to_rgb8();
@@ -165,6 +173,7 @@ fn edges_that_are_a_step_or_two_off_are_no_object() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn an_object_that_is_not_in_the_scene_is_nobody_elses_fault() {
     let folder = folder();
     for (text, color) in [

@@ -6,6 +6,7 @@ use image::RgbImage;
 use tempfile::TempDir;
 
 use super::{SCENE, folder, json, open, pinhole, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// The first thing that is said of the picture of the scene with some of its text replaced, edited then.
 fn said(folder: &TempDir, replaced: &[(&str, &str)], edit: &dyn Fn(&mut RgbImage)) -> String {
@@ -65,8 +66,9 @@ fn dark(picture: &mut RgbImage) {
 
 fn as_it_is(_: &mut RgbImage) {}
 
-#[test]
-fn two_mistakes_are_both_named() {
+sampled_and_exhaustive!(two_mistakes_are_both_named);
+
+fn two_mistakes_are_both_named(effort: Effort) {
     let folder = folder();
     type Edit = fn(&mut RgbImage);
     type Both = (
@@ -75,9 +77,6 @@ fn two_mistakes_are_both_named() {
         [&'static str; 2],
     );
     let cases: [Both; 10] = [
-        (&[ROLLED, NEARER], as_it_is, [OF_ROLL, OF_DISTANCE]),
-        (&[ROLLED, SWAPPED], as_it_is, [OF_ROLL, OF_BOARD]),
-        (&[ROLLED], mirrored, [OF_ROLL, OF_MIRROR]),
         (
             &[],
             |picture| {
@@ -86,6 +85,9 @@ fn two_mistakes_are_both_named() {
             },
             [OF_MIRROR, OF_LIGHT],
         ),
+        (&[ROLLED, NEARER], as_it_is, [OF_ROLL, OF_DISTANCE]),
+        (&[ROLLED, SWAPPED], as_it_is, [OF_ROLL, OF_BOARD]),
+        (&[ROLLED], mirrored, [OF_ROLL, OF_MIRROR]),
         (&[SWAPPED], dark, [OF_BOARD, OF_LIGHT]),
         (&[SWAPPED], reversed, [OF_BOARD, OF_ORDER]),
         (&[NEARER], mirrored, [OF_MIRROR, OF_DISTANCE]),
@@ -93,7 +95,7 @@ fn two_mistakes_are_both_named() {
         (&[MOVED], mirrored, [OF_MIRROR, OF_BALL]),
         (&[MOVED, SWAPPED], as_it_is, [OF_BOARD, OF_BALL]),
     ];
-    for (replaced, edit, expected) in cases {
+    for (replaced, edit, expected) in effort.of(cases) {
         let said = said(&folder, replaced, &edit);
         for expected in expected {
             assert!(said.contains(expected), "{replaced:?}: {said}");
@@ -101,8 +103,9 @@ fn two_mistakes_are_both_named() {
     }
 }
 
-#[test]
-fn noise_is_no_second_mistake() {
+sampled_and_exhaustive!(noise_is_no_second_mistake);
+
+fn noise_is_no_second_mistake(effort: Effort) {
     let folder = folder();
     type One = (
         &'static [(&'static str, &'static str)],
@@ -114,8 +117,8 @@ fn noise_is_no_second_mistake() {
         (&[ROLLED], as_it_is, OF_ROLL),
         (&[], mirrored, OF_MIRROR),
     ];
-    for (replaced, edit, expected) in cases {
-        for samples in [4, 16] {
+    for (replaced, edit, expected) in effort.of(cases) {
+        for samples in effort.of([4, 16]) {
             let sampler = format!("method random per_pixel {samples}");
             let replaced = [replaced, &[("method exact", &*sampler)]].concat();
             let said = said(&folder, &replaced, &edit);
@@ -126,6 +129,7 @@ fn noise_is_no_second_mistake() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn what_one_mistake_explains_is_not_laid_on_two() {
     let folder = folder();
     for (replaced, expected) in [
@@ -160,6 +164,7 @@ fn what_one_mistake_explains_is_not_laid_on_two() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_wrong_distance_is_told_once() {
     let folder = folder();
     for distance in ["2.1", "2.6", "3.4"] {

@@ -6,9 +6,11 @@ use image::{DynamicImage, GenericImageView, ImageBuffer, Rgb, Rgba};
 use serde_json::Value;
 
 use super::{diff, folder, json, open, render, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
-#[test]
-fn pictures_of_all_kinds_are_equal() {
+sampled_and_exhaustive!(pictures_of_all_kinds_are_equal);
+
+fn pictures_of_all_kinds_are_equal(effort: Effort) {
     let folder = folder();
     render(&folder, &["-o", "a.exr"]);
     let picture = open(&folder, "a.png");
@@ -16,7 +18,7 @@ fn pictures_of_all_kinds_are_equal() {
     save(&folder, "wide.png", picture.to_rgb16());
     save(&folder, "wide_alpha.png", picture.to_rgba16());
     let everything = ["a.png", "a.exr", "alpha.png", "wide.png", "wide_alpha.png"];
-    for a in everything {
+    for a in effort.first(2, everything) {
         // What is said to have 16 bits here has but 8.
         let (status, text) = diff(&folder, &[a, "a.scn", "--tolerance", "0.5"]);
         assert_eq!(status, 0, "{a}: {text}");
@@ -29,13 +31,16 @@ fn pictures_of_all_kinds_are_equal() {
             );
         }
     }
-    for (a, b) in [
+    for (a, b) in effort.of([
         ("a.png", "a.exr"),
         ("a.exr", "a.png"),
         ("a.exr", "a.scn"),
         ("a.png", "a.scn"),
-    ] {
+    ]) {
         assert_eq!(diff(&folder, &[a, b]).0, 0, "{a}, {b}");
+    }
+    if effort == Effort::Sample {
+        return;
     }
     // Bytes that were rounded the other way.
     let mut other = picture.to_rgb8();
@@ -291,8 +296,9 @@ fn a_heat_map_is_a_picture_of_the_size() {
     }
 }
 
-#[test]
-fn sizes_that_differ_are_named() {
+sampled_and_exhaustive!(sizes_that_differ_are_named);
+
+fn sizes_that_differ_are_named(effort: Effort) {
     let folder = folder();
     render(
         &folder,
@@ -315,16 +321,19 @@ fn sizes_that_differ_are_named() {
     assert_eq!(found["rmse"], Value::Null);
     assert_eq!(found["likely"][0]["mistake"], "resolution");
     render(&folder, &["-o", "b.png", "--set", "image.width=48"]);
-    for (other, help) in [
+    for (other, help) in effort.of([
         ("a.scn", "help: render it in the size that the scene says"),
         (
             "a.png",
             "help: pictures can be compared that have the same size",
         ),
-    ] {
+    ]) {
         let (_, text) = diff(&folder, &["b.png", other]);
         let words = "another shape: 48 × 64 pixels where 96 × 64 are wanted";
         assert!(text.contains(words) && text.contains(help), "{text}");
+    }
+    if effort == Effort::Sample {
+        return;
     }
     let turned = open(&folder, "a.png").rotate90();
     save(&folder, "b.png", turned);

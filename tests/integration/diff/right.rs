@@ -12,7 +12,10 @@ use pinhole::{
     tracer::World,
 };
 
-use crate::exact::{example, examples, read};
+use crate::{
+    effort::{Effort, sampled_and_exhaustive},
+    exact::{example, examples, read},
+};
 
 /// A single small object: some two dozen pixels see its edge, and all others are right whatever the samples are.
 pub const DOT: &str = "image { background black }
@@ -39,10 +42,11 @@ const COUNTS: [u64; 6] = [1, 4, 9, 16, 25, 49];
 /// What may be said of such a picture.
 const NO_BLAME: [&str; 3] = ["noise", "sample_at_center", "sample_at_corner"];
 
+sampled_and_exhaustive!(nobody_is_blamed_for_samples);
+
 /// `PINHOLE_SEEDS=4` grades each scene in each size by each method with each number of samples and four seeds, some twenty thousand
 /// pictures; without it each scene has one picture by each method.
-#[test]
-fn nobody_is_blamed_for_samples() {
+fn nobody_is_blamed_for_samples(effort: Effort) {
     let names = examples().into_iter();
     let mut scenes: Vec<_> = names.map(|name| (example(&name, 1, 1), name)).collect();
     for (name, text) in [("dot", DOT), ("dots", DOTS), ("level", LEVEL)] {
@@ -51,7 +55,7 @@ fn nobody_is_blamed_for_samples() {
     let seeds = std::env::var("PINHOLE_SEEDS").ok();
     let seeds = seeds.map(|seeds| seeds.parse::<u64>().unwrap());
     let (mut blamed, mut pictures) = (String::new(), 0);
-    for (at, (scene, name)) in scenes.iter().enumerate() {
+    for (at, (scene, name)) in effort.first(2, scenes.iter().enumerate()) {
         for (place, size) in SIZES.into_iter().enumerate() {
             // A picture of the largest size takes as long as a dozen of the smallest.
             if seeds.is_none() && place != at % 2 {
@@ -88,6 +92,7 @@ fn nobody_is_blamed_for_samples() {
 
 /// Of two hundred thousand pixels a few have no sample at all where there are eleven in each on an average, and chance has it.
 #[test]
+#[ignore = "exhaustive"]
 fn nobody_is_blamed_for_a_few_pixels_without_samples() {
     let scene = example("figure_9_9.scn", 1, 1);
     let subject = Subject::new(&scene, [640, 360]);

@@ -6,9 +6,11 @@ use image::{ImageBuffer, Rgb};
 use serde_json::Value;
 
 use super::{SCENE, diff, folder, json, mistake, open, render, save};
+use crate::effort::{Effort, sampled_and_exhaustive};
 
-#[test]
-fn mistakes_of_sampling_are_named() {
+sampled_and_exhaustive!(mistakes_of_sampling_are_named);
+
+fn mistakes_of_sampling_are_named(effort: Effort) {
     let folder = folder();
     let one = [
         "-o",
@@ -28,8 +30,8 @@ fn mistakes_of_sampling_are_named() {
     ];
     render(&folder, &corners.concat());
     assert_eq!(mistake(&folder), "sample_at_corner");
-    for method in ["random", "multi_jittered", "sobol", "jittered", "regular"] {
-        for count in [4, 16, 64] {
+    for method in effort.of(["random", "multi_jittered", "sobol", "jittered", "regular"]) {
+        for count in effort.of([4, 16, 64]) {
             let (method, count) = (
                 format!("sampler.method={method}"),
                 format!("sampler.per_pixel={count}"),
@@ -53,17 +55,18 @@ fn mistakes_of_sampling_are_named() {
         "{text}"
     );
     // Noise hides no mistake.
-    for (set, expected) in [
+    for (set, expected) in effort.of([
         ("camera.roll=-10deg", "roll_sign"),
         ("camera.d=2.1", "distance"),
         ("Ball.color=red", "color"),
-    ] {
+    ]) {
         render(&folder, &[&noisy[..], &["--set", set]].concat());
         assert_eq!(mistake(&folder), expected, "{set}");
     }
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_picture_displaced_by_half_a_pixel_is_named() {
     let folder = folder();
     // Twice the columns and rows, of which those a half of a pixel beside are taken together.
@@ -101,17 +104,18 @@ fn a_picture_displaced_by_half_a_pixel_is_named() {
     }
 }
 
-#[test]
-fn a_picture_displaced_by_pixels_is_named_whatever_comes_in() {
+sampled_and_exhaustive!(a_picture_displaced_by_pixels_is_named_whatever_comes_in);
+
+fn a_picture_displaced_by_pixels_is_named_whatever_comes_in(effort: Effort) {
     let folder = folder();
     let picture = open(&folder, "a.png").to_rgb8();
     let (width, height) = picture.dimensions();
-    for (by, words) in [
+    for (by, words) in effort.of([
         ((1, 0), "1 pixel to the right"),
         ((0, 1), "1 pixel down"),
         ((-2, 0), "2 pixels to the left"),
         ((-1, -1), "1 pixel to the left and 1 pixel up"),
-    ] {
+    ]) {
         let (right, down): (i32, i32) = by;
         let from = |x: u32, y: u32| (x as i32 - right, y as i32 - down);
         let empty = ImageBuffer::from_fn(width, height, |x, y| {
@@ -129,13 +133,13 @@ fn a_picture_displaced_by_pixels_is_named_whatever_comes_in() {
                 y.rem_euclid(height as i32) as u32,
             )
         });
-        for (picture, rest) in [
+        for (picture, rest) in effort.of([
             (empty, ", and black where it is missing then"),
             (
                 wrapped,
                 ", and what goes out at one edge comes in at the other",
             ),
-        ] {
+        ]) {
             save(&folder, "b.png", picture);
             let found = json(&folder, &["b.png", "a.scn"]);
             assert_eq!(found["likely"][0]["mistake"], "shifted", "{by:?}{rest}");
@@ -148,22 +152,23 @@ fn a_picture_displaced_by_pixels_is_named_whatever_comes_in() {
     }
 }
 
-#[test]
-fn a_pixel_or_two_tell_of_no_mistake() {
+sampled_and_exhaustive!(a_pixel_or_two_tell_of_no_mistake);
+
+fn a_pixel_or_two_tell_of_no_mistake(effort: Effort) {
     let folder = folder();
-    for (size, most) in [("1", 1), ("2", 4), ("3", 9)] {
+    for (size, most) in effort.of([("1", 1), ("2", 4), ("3", 9)]) {
         let sizes = [
             format!("image.width={size}"),
             format!("image.height={size}"),
         ];
         let sets: Vec<_> = sizes.iter().flat_map(|set| ["--set", set]).collect();
-        for wrong in [
+        for wrong in effort.of([
             "sampler.per_pixel=1",
             "camera.roll=-10deg",
             "camera.d=5.5",
             "Ball.color=red",
             "camera.eye=(3, 3.5, 9)",
-        ] {
+        ]) {
             let method = ["--set", "sampler.method=regular", "--set", wrong];
             render(&folder, &[&["-o", "b.png"], &sets[..], &method].concat());
             let found = json(&folder, &[&["b.png", "a.scn"], &sets[..]].concat());
@@ -237,6 +242,7 @@ fn one_sample_in_each_pixel_excuses_no_wrong_colour() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_wrong_object_is_no_noise() {
     let folder = folder();
     let small = ["--set", "Ball.radius=0.4"];
@@ -247,6 +253,7 @@ fn a_wrong_object_is_no_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_band_of_wrong_colours_is_no_noise() {
     let folder = folder();
     let far = SCENE.replace("navy", "black").replace(
@@ -280,6 +287,7 @@ fn a_band_of_wrong_colours_is_no_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_few_wrong_edges_are_no_noise() {
     let folder = folder();
     // All but the pixels around the ball is right.

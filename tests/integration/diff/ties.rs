@@ -120,6 +120,7 @@ fn corners(side: u32, [right, lower]: [u32; 2]) -> Vec<DVec2> {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded() {
     let sets = [
         ("hammersley 4", hammersley(4)),
@@ -208,6 +209,7 @@ fn is_excused(change: impl Fn(&mut [&mut pinhole::scene::Cuboid])) -> bool {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn what_no_samples_can_see_is_not_excused_by_them() {
     // A twentieth of a metre is a pixel. Three fifths of the samples would be on left sides, and as many on right ones.
     assert!(!is_excused(|boxes| {

@@ -2,6 +2,7 @@
 
 use std::{fs, ops::Range, path::Path};
 
+use crate::effort::{Effort, sampled_and_exhaustive};
 use pinhole::{
     color::Color,
     editor::{
@@ -103,9 +104,10 @@ fn examples() -> Vec<String> {
         .collect()
 }
 
-#[test]
-fn every_beginning_of_every_example_gets_its_answers() {
-    for text in examples() {
+sampled_and_exhaustive!(every_beginning_of_every_example_gets_its_answers);
+
+fn every_beginning_of_every_example_gets_its_answers(effort: Effort) {
+    for text in effort.first(4, examples()) {
         for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
             let sources = Sources::new(Source::from_text("test.scn", &text[..at]));
             let analysis = Analysis::new(&sources);

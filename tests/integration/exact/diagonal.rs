@@ -1,6 +1,7 @@
 //! Views along a diagonal of the board, where most is left of its squares, be they too small to be seen.
 
 use super::*;
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the widest views along x = z with the eye over that line, of
 /// which both sides are the same, up to what the eye's coordinates are off and the view's depth; and two whose millions of pieces were added up
@@ -51,17 +52,18 @@ fn what_is_known_otherwise_is_within_the_bound() {
     }
 }
 
+sampled_and_exhaustive!(the_longest_lenses_end);
+
 /// Places and times so many that modes of lines do not end: something is known in the end, or nothing, but soon.
-#[test]
-fn the_longest_lenses_end() {
-    for text in [
+fn the_longest_lenses_end(effort: Effort) {
+    for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }
          checkerboard { square 136 colors (white, black) }",
         "camera { eye (5e-324, -1.333179750293108e17, 0) lookat (1.7976931348623157e308, -9.697327195529915e-14, 1.7976931348623157e308)
            up (7.287757695933216e92, -231448480128.88724, 5e-324) d 7.287757695933215e92
            near 1.1380496007412987e-202 far 1.7976931348623157e308 }
          checkerboard { y -241717738976317.66 square 2.2868347391406466e96 colors (red, olive) }",
-    ] {
+    ]) {
         let exact = exact(&read(&format!("image {{ width 2 height 2 }} sampler {{ method exact }} {text}")));
         assert!(exact.film.pixels().iter().flatten().all(|light| (0.0..=1.0).contains(light)));
     }

@@ -212,7 +212,6 @@ fn lists_with_comments_are_generated() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
     #[test]
     fn the_laws_hold_of_any_text(text in text()) {
         the_laws_hold(&text, &formatted(&text).unwrap());
@@ -226,7 +225,6 @@ const SLIPS: &[&str] = &[
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
     /// There is a layout, or something to say.
     #[test]
     fn what_is_not_laid_out_has_a_mistake(

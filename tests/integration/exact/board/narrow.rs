@@ -77,6 +77,7 @@ fn the_horizon_through_the_longest_lenses() {
 
 /// The same anywhere below the horizon of views narrower than a millionth of a degree.
 #[test]
+#[ignore = "exhaustive"]
 fn narrow_views_at_random() {
     let mut random = Random(29);
     for i in 0..24 {
