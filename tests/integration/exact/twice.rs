@@ -1,6 +1,7 @@
 //! The computed picture against itself in other ways: in pieces, turned, in parts, on other threads.
 
 use super::*;
+use crate::effort::{Effort, sampled_and_exhaustive};
 
 #[test]
 fn four_quarters_are_the_pixel() {
@@ -20,8 +21,9 @@ fn four_quarters_are_the_pixel_of_scenes_that_pierce_themselves() {
     }
 }
 
-#[test]
-fn four_quarters_are_the_pixel_of_extreme_cameras() {
+sampled_and_exhaustive!(four_quarters_are_the_pixel_of_extreme_cameras);
+
+fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
     let figure = example("figure_9_9.scn", 24, 16);
     let with = |change: &dyn Fn(&mut Scene)| {
         let mut scene = figure.clone();
@@ -48,7 +50,7 @@ fn four_quarters_are_the_pixel_of_extreme_cameras() {
     let sized = |width: u32, height: u32| {
         with(&|scene| (scene.image.width, scene.image.height) = (width, height))
     };
-    for (name, scene) in [
+    let table = [
         ("wide", wide(0.1)),
         ("very wide", wide(0.02)),
         ("much too wide", wide(1e-3)),
@@ -65,7 +67,8 @@ fn four_quarters_are_the_pixel_of_extreme_cameras() {
         ("a pixel", sized(1, 1)),
         ("a row", sized(60, 1)),
         ("a column", sized(1, 60)),
-    ] {
+    ];
+    for (name, scene) in effort.first(3, table) {
         adds_up(&scene, name);
     }
 }
