@@ -1,23 +1,23 @@
 //! The regions of a spot, and what is seen in each.
+//!
+//! In: regions between boundaries, with a point in each. Out: how much of the spot each colour has, with a bound. One ray through the point says what is
+//! seen; a checkerboard is divided further by `checker` and `conic_segment`. The bound adds what those say, what was said to be in doubt, and by how much the
+//! regions together are not the whole spot.
 
-use std::{
-    mem,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::mem;
 
 use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{self, Live, Spot, World},
+    tracer::{Live, Spot, World},
 };
 
-use super::{
-    arc::Arc,
-    board::Board,
-    care::Care,
-    sides::{Known, Sides},
-};
+use super::{budget::Budget, checker::Homography, conic_segment::Arc};
+
+/// Units of work of a region: for itself, and for each object that its ray may meet.
+const REGION_WORK: f64 = 4.0;
+const OBJECT_WORK: f64 = 0.5;
 
 /// How much of a spot each colour has.
 #[derive(Clone, Debug, Default)]
@@ -26,33 +26,22 @@ pub struct Shares {
     pub by_slot: Vec<(usize, f64)>,
     /// How much area may be with the wrong colour.
     pub bound: f64,
-    /// How much of that boards leave, by what is not known of their squares.
-    pub of_boards: f64,
-    /// Whether very many squares are among it, or squares without end.
-    pub is_crowded: bool,
 }
-
-/// About so many pieces of a pixel may be looked at together: in one that is smaller than such a part of it as much may be neglected as in one of
-/// those.
-const PIECES: f64 = 4.0;
 
 /// Collects the regions of one spot.
 pub struct Regions<'a> {
     world: &'a World,
     spot: Spot,
     live: &'a [Live],
-    /// Sides of pixels that are known.
-    sides: &'a mut Sides,
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
-    /// How closely boards are looked at.
-    care: Care,
     shares: Shares,
-    cancel: &'a AtomicBool,
+    /// What may still be computed of the pixel.
+    budget: &'a Budget<'a>,
 }
 
 struct Checkered {
-    board: Board,
+    board: Homography,
     odd: bool,
     /// How far its forms' values may be off, by the size of their terms.
     doubt: f64,
@@ -72,29 +61,20 @@ pub struct Region<'a> {
 
 impl<'a> Regions<'a> {
     /// For a spot in which no other objects are seen than some.
-    pub fn new(
-        world: &'a World,
-        spot: Spot,
-        live: &'a [Live],
-        sides: &'a mut Sides,
-        care: Care,
-        cancel: &'a AtomicBool,
-    ) -> Self {
+    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], budget: &'a Budget<'a>) -> Self {
         Self {
             world,
             spot,
             live,
-            sides,
             boards: Vec::new(),
-            care,
             shares: Shares::default(),
-            cancel,
+            budget,
         }
     }
 
-    /// Whether nobody wants the shares any more.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+    /// Whether nothing more should be computed.
+    pub fn is_given_up(&self) -> bool {
+        self.budget.is_spent()
     }
 
     /// Adds a region in which no boundary lies.
@@ -111,24 +91,9 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         };
         let checkered = &self.boards[at].1;
-        let world = self.world;
-        let mut known = Known {
-            sides: self.sides,
-            board: object,
-            x: self.spot.x,
-            y: self.spot.y,
-            odd: checkered.odd,
-            elsewhere: &|x, y| {
-                let Checkered { board, odd, .. } =
-                    Checkered::new(world, object, Spot::pixel(x, y))?;
-                Some((board, odd))
-            },
-        };
-        let is_pixel = self.spot.side == 1.0;
-        let known = is_pixel.then_some(&mut known);
-        let mut sum = checkered.board.over(region.polygon, known, self.cancel);
+        let mut sum = checkered.board.over(region.polygon, self.budget);
         for (bulge, arc) in region.arcs {
-            let sliver = checkered.board.sliver(arc, self.cancel);
+            let sliver = checkered.board.sliver(arc, self.budget);
             sum.value += bulge * sliver.value;
             sum.bound += sliver.bound;
         }
@@ -139,13 +104,13 @@ impl<'a> Regions<'a> {
         self.shares.add(first, 0.5 * region.area + half);
         self.shares.add(second, 0.5 * region.area - half);
         self.shares.bound += bound;
-        self.shares.of_boards += bound;
-        self.shares.is_crowded |= checkered.board.is_crowded(region.polygon);
     }
 
     /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
     /// each other than it tells; elsewhere in the region more may be known.
     fn seen(&mut self, region: &Region) -> Option<usize> {
+        self.budget
+            .charge(REGION_WORK + OBJECT_WORK * self.live.len() as f64);
         let at = |point| self.world.object_at(self.spot, point, self.live);
         let (seen, is_sure) = at(region.inside);
         // A point between two of a polygon lies in it, but not if an arc takes off from that.
@@ -198,10 +163,7 @@ impl<'a> Regions<'a> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
-                let mut checkered = Checkered::new(self.world, object, self.spot)?;
-                checkered.board.care = self.care;
-                let side = self.spot.side;
-                checkered.board.leeway = (PIECES * side * side).recip().max(1.0);
+                let checkered = Checkered::new(self.world, object, self.spot)?;
                 self.boards.push((object, checkered));
                 self.boards.len() - 1
             }
@@ -211,18 +173,14 @@ impl<'a> Regions<'a> {
 }
 
 impl Checkered {
-    /// An object as a spot sees it, if it is a checkerboard; more closely where that is not enough.
+    /// An object as a spot sees it, if it is a checkerboard.
     fn new(world: &World, object: usize, spot: Spot) -> Option<Self> {
-        let of = |seen: tracer::Board| Self {
-            board: Board::of(&seen),
-            // From which square floors are counted is a matter of roundings, too.
+        let seen = world.board(object, spot)?;
+        Some(Self {
+            board: Homography::of(&seen),
             odd: seen.odd,
             doubt: seen.doubt(),
-        };
-        let checkered = of(world.board(object, spot)?);
-        let closely = || world.board_closely(object, spot).map(of);
-        let better = checkered.board.is_doubtful().then(closely).flatten();
-        Some(better.unwrap_or(checkered))
+        })
     }
 }
 
@@ -237,8 +195,6 @@ impl Shares {
             self.add(slot, area * share);
         }
         self.bound += area * part.bound;
-        self.of_boards += area * part.of_boards;
-        self.is_crowded |= part.is_crowded;
     }
 
     fn add(&mut self, slot: usize, area: f64) {

@@ -87,8 +87,6 @@ pub struct Board {
     pub across: [[f64; 3]; 2],
     /// Those of ℓ.
     pub below: [f64; 3],
-    /// What their rounding has left of these factors: of N₀, N₁ and ℓ.
-    pub low: [[f64; 3]; 3],
     /// How far a value of each of these forms may be from the true one, but for the rounding of the factors.
     pub rads: [f64; 3],
     /// Whether the square [0, 1)² has the second colour.
@@ -367,11 +365,6 @@ impl World {
         }
     }
 
-    /// The same where more than one rounding of the factors matters.
-    pub fn board_closely(&self, object: usize, spot: Spot) -> Option<Board> {
-        self.board_in::<Big>(object, spot)
-    }
-
     fn board_in<T: Level>(&self, object: usize, spot: Spot) -> Option<Board> {
         let object = T::object(self, object);
         let Object::Checkerboard(board) = &*object else {
@@ -384,7 +377,6 @@ impl World {
         let factors = lines.map(|line| line.factors);
         let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
         Some(Board {
-            low: factors.map(|factors| factors.map(|c| c.lo)),
             across: [a, b],
             below,
             rads,

@@ -292,18 +292,20 @@ fn every_example_is_right_and_says_what_it_shows() {
     }
 }
 
-#[test]
-fn every_prefix_of_every_example() {
-    for example in examples() {
+sampled_and_exhaustive!(every_prefix_of_every_example);
+
+fn every_prefix_of_every_example(effort: Effort) {
+    for example in effort.first(6, examples()) {
         for end in 0..example.len() {
             read(&example[..end]);
         }
     }
 }
 
-#[test]
-fn every_example_without_any_one_byte() {
-    for example in examples() {
+sampled_and_exhaustive!(every_example_without_any_one_byte);
+
+fn every_example_without_any_one_byte(effort: Effort) {
+    for example in effort.first(6, examples()) {
         for gone in 0..example.len() {
             let mut bytes = example.clone();
             bytes.remove(gone);

@@ -4,7 +4,10 @@
 mod equal;
 mod reach;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use crate::math::{Big, Double};
 
@@ -18,6 +21,10 @@ use super::{
 
 /// The doubtful area of a conic from which on double-double was not enough.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
+
+/// Of more objects than so many times as many as there may be curves, no curves are asked for: to prepare the objects takes longer than to quarter the spot.
+/// (Fewer may be equal.)
+const HEAP: usize = 16;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.
 #[derive(Clone, Copy, Debug)]
@@ -41,16 +48,29 @@ struct Boundaries<'a, T: Level> {
 }
 
 impl World {
-    /// The curves in a spot that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
-    /// the rest of them is left out.
-    pub fn curves(&self, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
+    /// The curves in a spot that may bound what is seen there of some objects; and how many objects and pairs of objects were looked at. It is an error if
+    /// there are more than `most`, equal ones counted once: the search ends there, and once it is cancelled.
+    pub fn curves(
+        &self,
+        spot: Spot,
+        live: &[Live],
+        most: usize,
+        cancel: &AtomicBool,
+        out: &mut Vec<Curve>,
+    ) -> Result<usize, usize> {
         out.clear();
+        if live.len() > HEAP * most {
+            return Err(0);
+        }
         let reaches = self.reaches(spot, live);
         let boundaries = Boundaries::<Double>::new(self, spot, live, &reaches);
         // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
         let (mut loose, mut lacking) = (Vec::new(), Vec::new());
         let mut of_lacking = Vec::new();
-        boundaries.each(cancel, |source| {
+        let mut looks = 0;
+        let mut room = most;
+        let mut take = |source| {
+            looks += 1;
             let before = out.len();
             let is_whole = boundaries.push(source, out);
             if !out[before..].iter().all(Curve::is_tight) {
@@ -60,19 +80,37 @@ impl World {
                 of_lacking.extend(out.drain(before..));
                 lacking.push(source);
             }
-        });
+            if out.len() > room {
+                equal::merge(out);
+                room = out.len() + most;
+            }
+            match room > 2 * most {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        // Outlines come first: of a heap there are too many of them, long before all pairs have been looked at.
+        let outlines = boundaries.outlines(&mut take);
+        let are_few = outlines.is_continue() && boundaries.pairs(cancel, &mut take).is_continue();
+        if !are_few {
+            return Err(looks);
+        }
         if loose.is_empty() {
             out.append(&mut of_lacking);
-            return equal::merge(out);
-        }
-        let boundaries = Boundaries::<Big>::new(self, spot, live, &reaches);
-        for source in loose.into_iter().chain(lacking) {
-            if cancel.load(Ordering::Relaxed) {
-                return;
+        } else {
+            let boundaries = Boundaries::<Big>::new(self, spot, live, &reaches);
+            for source in loose.into_iter().chain(lacking) {
+                if cancel.load(Ordering::Relaxed) {
+                    return Err(looks);
+                }
+                boundaries.push(source, out);
             }
-            boundaries.push(source, out);
         }
         equal::merge(out);
+        match out.len() <= most {
+            true => Ok(looks),
+            false => Err(looks),
+        }
     }
 
     /// Whether surfaces of two objects may cross each other in a spot, or be one there.
@@ -82,18 +120,6 @@ impl World {
         let reaches = self.reaches(spot, &live);
         let boundaries = Boundaries::<Double>::new(self, spot, &live, &reaches);
         !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
-    }
-
-    /// How many curves may pass through a spot as far as double-double tells.
-    pub fn curves_about(&self, spot: Spot, live: &[Live], cancel: &AtomicBool) -> usize {
-        let mut curves = Vec::new();
-        let reaches = self.reaches(spot, live);
-        let boundaries = Boundaries::<Double>::new(self, spot, live, &reaches);
-        boundaries.each(cancel, |source| {
-            boundaries.push(source, &mut curves);
-        });
-        equal::merge(&mut curves);
-        curves.len()
     }
 
     /// Where each of some objects is met in a spot, at most.
@@ -123,24 +149,36 @@ impl<'a, T: Level> Boundaries<'a, T> {
         }
     }
 
-    /// All sources that there are in the spot, until it is cancelled.
-    fn each(&self, cancel: &AtomicBool, mut take: impl FnMut(Source)) {
+    /// The outlines, and what the near and the far plane cut, until one says that it is enough.
+    fn outlines(&self, mut take: impl FnMut(Source) -> ControlFlow<()>) -> ControlFlow<()> {
+        for (i, live) in self.live.iter().enumerate() {
+            if !live.is_whole {
+                take(Source::Outline(i))?;
+                take(Source::Clips(i))?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Where surfaces of two objects cross, until one says that it is enough, or it is cancelled.
+    fn pairs(
+        &self,
+        cancel: &AtomicBool,
+        mut take: impl FnMut(Source) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         for (i, a) in self.live.iter().enumerate() {
             if cancel.load(Ordering::Relaxed) {
-                return;
-            }
-            if !a.is_whole {
-                take(Source::Outline(i));
-                take(Source::Clips(i));
+                return ControlFlow::Break(());
             }
             for (j, b) in self.live.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
                 if !apart {
-                    take(Source::Pair(i, j));
+                    take(Source::Pair(i, j))?;
                 }
             }
         }
+        ControlFlow::Continue(())
     }
 
     /// Adds a source's curves that may pass through the spot, and through where its objects are met. Says whether all surfaces of it that are

@@ -104,6 +104,7 @@ fn a_power_in_place_of_the_curve_is_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_power_both_ways_is_named() {
     let folder = folder();
     // Decoded and encoded by the power 2.2: flat colours are right.
@@ -498,6 +499,7 @@ fn one_size_that_is_wrong_is_named() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_power_that_bytes_were_taken_through_is_named() {
     let folder = folder();
     for (sampler, power, expected) in [

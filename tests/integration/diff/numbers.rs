@@ -6,7 +6,6 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{SCENE, folder, json, pinhole, render};
-use crate::effort::{Effort, sampled_and_exhaustive};
 
 fn verdict(folder: &TempDir) -> (String, String, Value) {
     let found = json(folder, &["b.png", "a.scn"]);
@@ -133,11 +132,11 @@ fn two_fields_of_the_camera_are_named_and_no_other() {
     }
 }
 
-sampled_and_exhaustive!(a_checkerboard_elsewhere_is_named);
-
-fn a_checkerboard_elsewhere_is_named(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn a_checkerboard_elsewhere_is_named() {
     let folder = folder();
-    for (board, expected, words) in effort.of([
+    for (board, expected, words) in [
         (
             "y -0.3",
             "board_height",
@@ -146,7 +145,7 @@ fn a_checkerboard_elsewhere_is_named(effort: Effort) {
         ("y 0.2", "board_height", "as if its y were 0.2 instead of 0"),
         ("square 1.1", "board_square", "the side 1.1 instead of 1"),
         ("square 0.85", "board_square", "the side 0.85 instead of 1"),
-    ]) {
+    ] {
         let text = SCENE.replace("checkerboard {}", &format!("checkerboard {{ {board} }}"));
         fs::write(folder.path().join("b.scn"), text).unwrap();
         assert!(
@@ -202,12 +201,12 @@ fn seen(folder: &TempDir, point: [f64; 3]) -> [f64; 2] {
     [along("u") * pixels, -along("v") * pixels]
 }
 
-sampled_and_exhaustive!(an_object_in_a_wrong_place_is_off_by_pixels);
-
-fn an_object_in_a_wrong_place_is_off_by_pixels(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn an_object_in_a_wrong_place_is_off_by_pixels() {
     let folder = folder();
     let name = |set: &str| set.split('.').next().unwrap().to_owned();
-    for (set, from, to) in effort.of([
+    for (set, from, to) in [
         (
             "Ball.center=(-1.3, 1, 0)",
             [-1.6, 1.0, 0.0],
@@ -228,7 +227,7 @@ fn an_object_in_a_wrong_place_is_off_by_pixels(effort: Effort) {
             [0.2, 1.0, 0.6],
             [0.5, 1.2, 0.1],
         ),
-    ]) {
+    ] {
         let (mistake, message, off) = first(&folder, &[set]);
         assert_eq!(mistake, "object_place", "{set}: {message}");
         assert!(
@@ -240,9 +239,6 @@ fn an_object_in_a_wrong_place_is_off_by_pixels(effort: Effort) {
             let found = off[key].as_f64().unwrap();
             assert!((found - expected).abs() < 0.1, "{set}: {expected}, {off}");
         }
-    }
-    if effort == Effort::Sample {
-        return;
     }
     let set = "Sail.spin=25deg";
     let (mistake, message, _) = first(&folder, &[set]);
@@ -300,11 +296,11 @@ fn two_mistakes_at_once_are_no_other_one() {
     }
 }
 
-sampled_and_exhaustive!(planes_at_another_depth_are_named);
-
-fn planes_at_another_depth_are_named(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn planes_at_another_depth_are_named() {
     let folder = folder();
-    for (set, right, expected, says) in effort.of([
+    for (set, right, expected, says) in [
         (
             "camera.far=9.7",
             None,
@@ -329,7 +325,7 @@ fn planes_at_another_depth_are_named(effort: Effort) {
             "near",
             "as if near were 8.2 instead of 5.5",
         ),
-    ]) {
+    ] {
         render(&folder, &["-o", "b.png", "--set", set]);
         let right = right.map_or(Vec::new(), |set| vec!["--set", set]);
         let found = json(&folder, &[&["b.png", "a.scn"], right.as_slice()].concat());

@@ -104,18 +104,18 @@ fn a_picture_displaced_by_half_a_pixel_is_named() {
     }
 }
 
-sampled_and_exhaustive!(a_picture_displaced_by_pixels_is_named_whatever_comes_in);
-
-fn a_picture_displaced_by_pixels_is_named_whatever_comes_in(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn a_picture_displaced_by_pixels_is_named_whatever_comes_in() {
     let folder = folder();
     let picture = open(&folder, "a.png").to_rgb8();
     let (width, height) = picture.dimensions();
-    for (by, words) in effort.of([
+    for (by, words) in [
         ((1, 0), "1 pixel to the right"),
         ((0, 1), "1 pixel down"),
         ((-2, 0), "2 pixels to the left"),
         ((-1, -1), "1 pixel to the left and 1 pixel up"),
-    ]) {
+    ] {
         let (right, down): (i32, i32) = by;
         let from = |x: u32, y: u32| (x as i32 - right, y as i32 - down);
         let empty = ImageBuffer::from_fn(width, height, |x, y| {
@@ -133,13 +133,13 @@ fn a_picture_displaced_by_pixels_is_named_whatever_comes_in(effort: Effort) {
                 y.rem_euclid(height as i32) as u32,
             )
         });
-        for (picture, rest) in effort.of([
+        for (picture, rest) in [
             (empty, ", and black where it is missing then"),
             (
                 wrapped,
                 ", and what goes out at one edge comes in at the other",
             ),
-        ]) {
+        ] {
             save(&folder, "b.png", picture);
             let found = json(&folder, &["b.png", "a.scn"]);
             assert_eq!(found["likely"][0]["mistake"], "shifted", "{by:?}{rest}");
@@ -152,23 +152,23 @@ fn a_picture_displaced_by_pixels_is_named_whatever_comes_in(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(a_pixel_or_two_tell_of_no_mistake);
-
-fn a_pixel_or_two_tell_of_no_mistake(effort: Effort) {
+#[test]
+#[ignore = "exhaustive"]
+fn a_pixel_or_two_tell_of_no_mistake() {
     let folder = folder();
-    for (size, most) in effort.of([("1", 1), ("2", 4), ("3", 9)]) {
+    for (size, most) in [("1", 1), ("2", 4), ("3", 9)] {
         let sizes = [
             format!("image.width={size}"),
             format!("image.height={size}"),
         ];
         let sets: Vec<_> = sizes.iter().flat_map(|set| ["--set", set]).collect();
-        for wrong in effort.of([
+        for wrong in [
             "sampler.per_pixel=1",
             "camera.roll=-10deg",
             "camera.d=5.5",
             "Ball.color=red",
             "camera.eye=(3, 3.5, 9)",
-        ]) {
+        ] {
             let method = ["--set", "sampler.method=regular", "--set", wrong];
             render(&folder, &[&["-o", "b.png"], &sets[..], &method].concat());
             let found = json(&folder, &[&["b.png", "a.scn"], &sets[..]].concat());
@@ -219,6 +219,7 @@ sphere Dot { center (0.5, 0.3, 0) radius 0.4 color red }
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn one_sample_in_each_pixel_excuses_no_wrong_colour() {
     let folder = folder();
     let one = [

@@ -158,6 +158,7 @@ fn nobody_alone_is_blamed_for_how_samples_on_pixels_sides_are_rounded() {
 
 /// What a sample on a side sees excuses no more than that.
 #[test]
+#[ignore = "exhaustive"]
 fn mistakes_along_pixels_sides_are_named() {
     let right = read(DOWN);
     let subject = Subject::new(&right, SIZE);

@@ -33,12 +33,13 @@ fn objects_that_no_ray_meets_together_have_no_curves_between_them() {
         let spot = Spot::pixel(0, 0);
         world.live_in(spot, &everything, &mut live);
         assert_eq!(live.len(), (rows * rows) as usize, "all are seen");
-        let curves = world.curves_about(spot, &live, &AtomicBool::new(false));
-        assert!(
-            curves <= 3 * live.len(),
-            "{curves} curves of {} triangles",
-            live.len()
-        );
+        let (most, mut curves) = (3 * live.len(), Vec::new());
+        let cancel = AtomicBool::new(false);
+        let found = world.curves(spot, &live, most, &cancel, &mut curves);
+        assert!(found.is_ok(), "more than {most}");
+        let fewer = curves.len() - 1;
+        let found = world.curves(spot, &live, fewer, &cancel, &mut curves);
+        assert!(found.is_err(), "no more than {fewer}");
         adds_up(&scene, &format!("{rows} rows of triangles"));
     }
 }

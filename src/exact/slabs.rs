@@ -1,8 +1,11 @@
 //! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above the other.
 //!
+//! In: the lines and conics that pass through a spot. Out: the regions between neighbouring branches in each slab, which are told to [`Regions`]. (A sweep
+//! after Bentley and Ottmann, "Algorithms for reporting and counting geometric intersections", 1979, over slabs instead of events.)
+//!
 //! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if by that two neighbours
 //! might cross within a slab, the slab is cut, where they cross if that can be seen, else in the middle. What cannot be told
-//! apart when slabs have become too narrow counts as doubtful area.
+//! apart when slabs have become too narrow is added to the bound as doubtful area.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -11,9 +14,9 @@ use glam::DVec2;
 use crate::{math::Real, tracer::Curve};
 
 use super::{
-    arc::Arc,
+    branches::{Graph, Piece, Track},
+    conic_segment::Arc,
     region::{Region, Regions, Shares},
-    track::{Graph, Piece, Track},
 };
 
 /// Curves may be out of order by so much: the rounding of a y.
@@ -74,7 +77,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     let many = MANY + cuts.len();
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| Slab(pair[0], pair[1])).collect();
     while let Some(Slab(left, right)) = slabs.pop() {
-        if sweep.regions.is_cancelled() {
+        if sweep.regions.is_given_up() {
             break;
         }
         let is_last = right - left < NARROW || sweep.slabs + slabs.len() >= many;

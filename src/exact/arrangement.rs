@@ -1,4 +1,8 @@
-//! Pixels whose boundaries are all straight: each line cuts the convex polygons that the lines before it left.
+//! Pixels whose boundaries are all straight: the arrangement of their lines.
+//!
+//! In: the lines that pass through a spot, at most as many as `mod` allows. Out: the spot's convex cells, which are told to [`Regions`] with a point in each. Each
+//! line cuts the cells that the lines before it left. The bound adds how far each line may be from the true one, times its length, and cells too
+//! small to be asked for their colour.
 
 use std::mem;
 
@@ -10,17 +14,9 @@ use crate::{
 };
 
 use super::{
-    board::measure,
+    clip::{PIXEL, measure, split},
     region::{Region, Regions, Shares},
 };
-
-/// The pixel itself.
-pub const PIXEL: [DVec2; 4] = [
-    DVec2::new(-0.5, -0.5),
-    DVec2::new(0.5, -0.5),
-    DVec2::new(0.5, 0.5),
-    DVec2::new(-0.5, 0.5),
-];
 
 /// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it. Nor is it cut: of roundings that are all
 /// there is of it each line makes two more.
@@ -50,7 +46,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         // at most √2; and on both sides of it vertices are rounded.
         regions.doubt(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
-            if regions.is_cancelled() {
+            if regions.is_given_up() {
                 return regions.finish();
             }
             match area(&polygon) < SPECK {
@@ -60,7 +56,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         }
     }
     for polygon in &polygons {
-        if regions.is_cancelled() {
+        if regions.is_given_up() {
             return regions.finish();
         }
         let area = area(polygon);
@@ -85,26 +81,13 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
 
 /// The parts of a convex polygon on both sides of a line.
 fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
-    let heights: Vec<f64> = polygon.iter().map(|p| height(line, p)).collect();
-    if heights.iter().all(|&h| h >= 0.0) || heights.iter().all(|&h| h <= 0.0) {
+    let heights = || polygon.iter().map(|p| height(line, p));
+    if heights().all(|h| h >= 0.0) || heights().all(|h| h <= 0.0) {
         return vec![polygon];
     }
-    let side = |sign: f64| {
-        let mut part = Vec::with_capacity(polygon.len() + 1);
-        for i in 0..polygon.len() {
-            let j = (i + 1) % polygon.len();
-            let (here, next) = (heights[i] * sign, heights[j] * sign);
-            if here >= 0.0 {
-                part.push(polygon[i]);
-            }
-            if (here > 0.0 && next < 0.0) || (here < 0.0 && next > 0.0) {
-                let t = here / (here - next);
-                part.push(polygon[i] + (polygon[j] - polygon[i]) * t);
-            }
-        }
-        part
-    };
-    vec![side(1.0), side(-1.0)]
+    let [mut below, mut above] = [0; 2].map(|_| Vec::with_capacity(polygon.len() + 1));
+    split(&polygon, |p| height(line, &p), &mut below, &mut above);
+    vec![below, above]
 }
 
 fn height(line: &Line, p: &DVec2) -> f64 {
@@ -113,7 +96,7 @@ fn height(line: &Line, p: &DVec2) -> f64 {
 }
 
 fn area(polygon: &[DVec2]) -> f64 {
-    measure(polygon.iter().copied()).0.abs()
+    measure(polygon).0.abs()
 }
 
 fn middle(polygon: &[DVec2]) -> DVec2 {

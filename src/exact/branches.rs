@@ -1,4 +1,7 @@
-//! Curves as graphs of functions: over a range of x, a line is one function y(x) and a conic two.
+//! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x) and a conic that of two.
+//!
+//! In: lines and conics of a spot. Out: over a range of x each branch as a chord with an arc between its tangents, and how far the branch may be from that. Where the
+//! roundings of `f64` leave too much of an arc in doubt, its ends and tangents are taken in double-double.
 
 use glam::DVec2;
 
@@ -7,7 +10,7 @@ use crate::{
     tracer::{Conic, Line},
 };
 
-use super::arc::Arc;
+use super::conic_segment::Arc;
 
 /// In f64 the area of an arc is good enough if it is off by no more than this for each part of its width.
 const GOOD: f64 = 32.0 * f64::UNIT;

@@ -1,0 +1,51 @@
+//! How long a pixel may take.
+//!
+//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more is given the mean colour with
+//! its whole area as its bound, so that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the same picture.
+
+use std::{
+    cell::Cell,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// So many units of work may be spent on a pixel, and so many more for each object that may be seen in it. A unit is one square of a board cut out of a
+/// polygon, some 50 ns as measured; so this is about half a second, of the second that is allowed, and a few milliseconds an object.
+const PIXEL: f64 = 1e7;
+const OBJECT: f64 = 5e4;
+
+/// The work that may still be spent on a pixel, and the flag by which its picture is given up.
+#[derive(Debug)]
+pub(super) struct Budget<'a> {
+    left: Cell<f64>,
+    /// Set once nobody wants the picture any more.
+    pub cancel: &'a AtomicBool,
+}
+
+impl<'a> Budget<'a> {
+    /// That of a whole pixel, in which so many objects may be seen.
+    pub fn of_pixel(objects: usize, cancel: &'a AtomicBool) -> Self {
+        Self {
+            left: Cell::new(PIXEL + OBJECT * objects as f64),
+            cancel,
+        }
+    }
+
+    /// Whether nothing more should be computed.
+    pub fn is_spent(&self) -> bool {
+        self.left.get() <= 0.0 || self.cancel.load(Ordering::Relaxed)
+    }
+
+    /// Spends so much, if it is there. What is not a number, or infinite, never is.
+    pub fn spend(&self, work: f64) -> bool {
+        let is_there = work <= self.left.get() && !self.cancel.load(Ordering::Relaxed);
+        if is_there {
+            self.left.set(self.left.get() - work);
+        }
+        is_there
+    }
+
+    /// Takes so much away for what has been computed already.
+    pub fn charge(&self, work: f64) {
+        self.left.set(self.left.get() - work);
+    }
+}

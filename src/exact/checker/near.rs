@@ -1,0 +1,170 @@
+//! The board's integral where its squares are near: each square is cut out of the picture.
+//!
+//! In: a convex polygon of the picture above which the board's horizon lies. Out: the sum of the signed areas of the squares in it, with a bound.
+//! The lines of one family cut the polygon into rows, and those of the other cut each row into squares (`clip`). The bound adds up how far each cut may be from the true line, times its length, and the
+//! roundings of the areas.
+
+use glam::DVec2;
+
+use super::{
+    super::{
+        budget::Budget,
+        clip::{measure, split},
+    },
+    homography::{Homography, Sum, UNIT, form},
+    special::square_wave,
+};
+use crate::math::two_sum;
+
+/// A cut adds a corner at most, and the strips of one family two in all. Where so many more come together, lines are closer to each other
+/// than roundings.
+const SPARE_CORNERS: usize = 32;
+
+/// Beyond this a square's number is no longer exact in `f64` together with its neighbours'.
+const LAST_SQUARE: f64 = 1e15;
+
+/// The integral over a convex polygon that does not reach the horizon. It is 0 with the polygon's area as its bound if there are more squares than the
+/// budget allows.
+pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum {
+    let mut tally = Tally::default();
+    let [mut rows, mut squares] = [0, 1].map(|family| Cutter::new(board, family));
+    rows.start(polygon);
+    squares.start(polygon);
+    if squares.count() < rows.count() {
+        std::mem::swap(&mut rows, &mut squares);
+    }
+    if !budget.spend(rows.count()) {
+        return Sum::nothing_known(polygon);
+    }
+    while let Some(row) = rows.next(&mut tally) {
+        squares.start(&rows.piece);
+        if !budget.spend(squares.count()) {
+            tally.add(0.0, measure(&rows.piece).0.abs());
+            continue;
+        }
+        while let Some(square) = squares.next(&mut tally) {
+            let (area, perimeter) = measure(&squares.piece);
+            // Of each of a few products of two steps three roundings.
+            let rounding = 4.0 * UNIT * perimeter * perimeter;
+            tally.add(
+                square_wave(row) * square_wave(square) * area.abs(),
+                rounding,
+            );
+        }
+    }
+    tally.sum()
+}
+
+/// A convex polygon from which the strips between the lines of one family are cut off, one after the other.
+struct Cutter {
+    across: [f64; 3],
+    below: [f64; 3],
+    rest: Vec<DVec2>,
+    piece: Vec<DVec2>,
+    spare: Vec<DVec2>,
+    /// The next strip and the last one; none if they are out of the range of numbers.
+    strips: Option<(i64, i64)>,
+    /// With how many corners nothing is said of what is left any more.
+    too_many: usize,
+}
+
+impl Cutter {
+    fn new(board: &Homography, family: usize) -> Self {
+        Self {
+            across: board.across[family],
+            below: board.below,
+            rest: Vec::new(),
+            piece: Vec::new(),
+            spare: Vec::new(),
+            strips: None,
+            too_many: SPARE_CORNERS,
+        }
+    }
+
+    /// Begins with a polygon.
+    fn start(&mut self, polygon: &[DVec2]) {
+        self.rest.clear();
+        self.rest.extend(polygon);
+        self.too_many = self.rest.len() + SPARE_CORNERS;
+        let place = |&at: &DVec2| form(&self.across, at) / form(&self.below, at);
+        let places = || self.rest.iter().map(place);
+        self.strips =
+            (!self.rest.is_empty() && places().all(|at| at.abs() < LAST_SQUARE)).then(|| {
+                let squares = places().map(|at| at.floor() as i64);
+                squares.fold((i64::MAX, i64::MIN), |(low, high), i| {
+                    (low.min(i), high.max(i))
+                })
+            });
+    }
+
+    /// How many strips are left.
+    fn count(&self) -> f64 {
+        self.strips
+            .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
+    }
+
+    /// Makes `piece` the part of the rest between the lines i and i + 1, and returns i.
+    fn next(&mut self, tally: &mut Tally) -> Option<f64> {
+        let (i, last) = self.strips?;
+        if self.rest.len() < 3 {
+            return None;
+        }
+        self.strips = Some((i + 1, last));
+        if i >= last {
+            std::mem::swap(&mut self.piece, &mut self.rest);
+            self.rest.clear();
+            return Some(last as f64);
+        }
+        self.cut((i + 1) as f64, tally);
+        Some(i as f64)
+    }
+
+    /// Makes `piece` the part of the rest before the line n.
+    fn cut(&mut self, n: f64, tally: &mut Tally) {
+        let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
+        self.piece.clear();
+        self.spare.clear();
+        let chord = split(
+            &self.rest,
+            |at| form(&line, at),
+            &mut self.piece,
+            &mut self.spare,
+        );
+        std::mem::swap(&mut self.rest, &mut self.spare);
+        if self.rest.len() > self.too_many {
+            let (area, perimeter) = measure(&self.rest);
+            tally.add(0.0, area.abs() + 4.0 * UNIT * perimeter * perimeter);
+            self.rest.clear();
+        }
+        let Some([from, to]) = chord else { return };
+        let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
+        // The factors are off by three roundings of these, the form's value by four, and the point by four of its own.
+        let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
+        let step = (to - from).abs();
+        tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
+    }
+}
+
+/// A sum of many numbers with a bound on its error. The roundings of the additions are kept and added in the end.
+#[derive(Default)]
+struct Tally {
+    value: f64,
+    rest: f64,
+    bound: f64,
+}
+
+impl Tally {
+    fn add(&mut self, value: f64, bound: f64) {
+        let sum = two_sum(self.value, value);
+        self.value = sum.hi;
+        self.rest += sum.lo;
+        self.bound += bound;
+    }
+
+    fn sum(&self) -> Sum {
+        Sum {
+            value: self.value + self.rest,
+            bound: self.bound + 2.0 * UNIT,
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! Special functions: Euler's polynomials made periodic, exponential integrals of imaginary arguments, and the complex numbers they need.
+//!
+//! The periodic Euler polynomials A_k are the repeated antiderivatives of the square wave (DLMF 24.2; Borwein, Calkin and Manna,
+//! "Euler–Boole summation revisited", 2009). They are right to a few roundings of their greatest value.
+//!
+//! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19): F_s(−y) is the conjugate of F_s(y), and
+//! F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). They are right to some 1e-14 of their value.
+
+use std::{array, f64::consts::FRAC_PI_2, sync::LazyLock};
+
+use crate::math::{Double, ROUND, Real, two_product};
+
+/// A real and an imaginary part.
+pub(super) type Complex = [f64; 2];
+
+/// Less whole turns, in half turns: between −1 and 1.
+pub(super) fn turn(x: f64) -> f64 {
+    x - 2.0 * (0.5 * x).round_ties_even()
+}
+
+/// The same of a double-double number.
+pub(super) fn turn_exactly(x: &Double) -> Double {
+    Double::from_f64(turn(x.hi)).plus(&Double::from_f64(turn(x.lo)))
+}
+
+/// n times an angle that is given without whole turns, without whole turns: to within a rounding of itself, however small that is, as long as
+/// double-double numbers tell.
+pub(super) fn turned_times(n: f64, angle: &Double) -> f64 {
+    let Double { hi, lo } = two_product(n, angle.hi);
+    turn(hi) + (lo + n * angle.lo)
+}
+
+pub(super) fn times(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+pub(super) fn square(a: Complex) -> Complex {
+    times(a, a)
+}
+
+pub(super) fn over(a: Complex, b: Complex) -> Complex {
+    let norm = 1.0 / (b[0] * b[0] + b[1] * b[1]);
+    [
+        (a[0] * b[0] + a[1] * b[1]) * norm,
+        (a[1] * b[0] - a[0] * b[1]) * norm,
+    ]
+}
+
+pub(super) fn phase(x: f64) -> Complex {
+    [libm::cos(x), libm::sin(x)]
+}
+
+/// What bounds it from above: |x| + |y|.
+pub(super) fn size(z: Complex) -> f64 {
+    z[0].abs() + z[1].abs()
+}
+
+/// One more than the highest order there is.
+pub(super) const ORDERS: usize = 22;
+
+/// How many even powers of η there are in the waves of the highest order.
+const POWERS: usize = ORDERS / 2;
+
+/// The coefficients of 1/cosh(x/2) in even powers of x: Euler's numbers by 4^j·(2j)!, and from the seventh on by
+/// (−1)^j·4β(2j + 1)/π^(2j+1) with Dirichlet's β (DLMF 24.8.4 at x = ½), of which six terms are enough.
+const SECH: [f64; POWERS] = {
+    let mut all = [0.0; POWERS];
+    all[0] = 1.0;
+    all[1] = -1.0 / 8.0;
+    all[2] = 5.0 / 384.0;
+    all[3] = -61.0 / 46080.0;
+    all[4] = 1385.0 / 10321920.0;
+    all[5] = -50521.0 / 3715891200.0;
+    all[6] = 2702765.0 / 1961990553600.0;
+    let mut j = 7;
+    while j < POWERS {
+        let (mut sum, mut n) = (0.0, 6);
+        while n > 0 {
+            n -= 1;
+            let term = power(1.0 / (2 * n + 1) as f64, 2 * j + 1);
+            sum = if n % 2 == 0 { sum + term } else { sum - term };
+        }
+        let size = 4.0 * sum * power(std::f64::consts::FRAC_1_PI, 2 * j + 1);
+        all[j] = if j % 2 == 0 { size } else { -size };
+        j += 1;
+    }
+    all
+};
+
+const fn power(base: f64, exponent: usize) -> f64 {
+    let (mut product, mut left) = (1.0, exponent);
+    while left > 0 {
+        product *= base;
+        left -= 1;
+    }
+    product
+}
+
+/// The factors of η^i, i even or odd as k is, in A_k on a square: in the row k the factor of η^2j, or η^(2j+1), at j.
+const FACTORS: [[f64; POWERS]; ORDERS] = {
+    let mut factorials = [1.0; ORDERS];
+    let mut k = 1;
+    while k < ORDERS {
+        factorials[k] = factorials[k - 1] * k as f64;
+        k += 1;
+    }
+    let mut all = [[0.0; POWERS]; ORDERS];
+    let mut k = 1;
+    while k < ORDERS {
+        let mut j = 0;
+        while 2 * j + k % 2 <= k {
+            let power = 2 * j + k % 2;
+            all[k][j] = SECH[(k - power) / 2] / factorials[power];
+            j += 1;
+        }
+        k += 1;
+    }
+    all
+};
+
+/// The square wave: +1 where floor(t) is even, −1 where it is odd.
+#[inline(always)]
+pub(in crate::exact) fn square_wave(t: f64) -> f64 {
+    let half = t.floor() * 0.5;
+    if half == half.floor() { 1.0 } else { -1.0 }
+}
+
+/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be read.
+///
+/// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
+/// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
+/// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
+pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
+    waves_at::<TERMS, ROWS, 1>([t]).map(|[wave]| wave)
+}
+
+/// The waves at several places: in each of the answer's rows one order, so that there must be two rows more than terms.
+#[inline(always)]
+pub(super) fn waves_at<const TERMS: usize, const ROWS: usize, const N: usize>(
+    t: [f64; N],
+) -> [[f64; N]; ROWS] {
+    // At a tie either neighbour will do, for the waves are continuous. Half-way to t's last digits nothing is left to be said.
+    let middle = t.map(|t| t - 0.5);
+    let shifted = middle.map(|middle| middle + ROUND);
+    let eta: [f64; N] = array::from_fn(|i| middle[i] - (shifted[i] - ROUND));
+    let sign = shifted.map(|s| f64::from_bits(1.0_f64.to_bits() | (s.to_bits() << 63)));
+    let square: [f64; N] = array::from_fn(|i| eta[i] * eta[i]);
+    let odd: [f64; N] = array::from_fn(|i| sign[i] * eta[i]);
+    let mut all = [[0.0; N]; ROWS];
+    // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them would not become vectors.
+    macro_rules! order {
+        ($k:literal, $first:expr, $($factor:literal)*) => {
+            if TERMS + 1 >= $k {
+                all[$k] = array::from_fn(|i| {
+                    let mut sum = 0.0;
+                    $(sum = sum * square[i] + FACTORS[$k][$factor];)*
+                    $first[i] * sum
+                });
+            }
+        };
+    }
+    order!(1, odd, 0);
+    order!(2, sign, 1 0);
+    order!(3, odd, 1 0);
+    order!(4, sign, 2 1 0);
+    order!(5, odd, 2 1 0);
+    order!(6, sign, 3 2 1 0);
+    order!(7, odd, 3 2 1 0);
+    order!(8, sign, 4 3 2 1 0);
+    order!(9, odd, 4 3 2 1 0);
+    order!(10, sign, 5 4 3 2 1 0);
+    order!(11, odd, 5 4 3 2 1 0);
+    order!(12, sign, 6 5 4 3 2 1 0);
+    order!(13, odd, 6 5 4 3 2 1 0);
+    order!(14, sign, 7 6 5 4 3 2 1 0);
+    order!(15, odd, 7 6 5 4 3 2 1 0);
+    order!(16, sign, 8 7 6 5 4 3 2 1 0);
+    order!(17, odd, 8 7 6 5 4 3 2 1 0);
+    order!(18, sign, 9 8 7 6 5 4 3 2 1 0);
+    order!(19, odd, 9 8 7 6 5 4 3 2 1 0);
+    order!(20, sign, 10 9 8 7 6 5 4 3 2 1 0);
+    order!(21, odd, 10 9 8 7 6 5 4 3 2 1 0);
+    all
+}
+
+/// The order of the first exponential integral that is asked for.
+const ORDER: u32 = 3;
+
+/// Below this power series are good, from here on a continued fraction, and from there on an asymptotic series.
+const SMALL: f64 = 3.0;
+const LARGE: f64 = 64.0;
+
+/// The continued fraction takes very long, so it is asked for just at numbers so far apart, and Taylor's series about them, of so many terms, gives
+/// those in between: the first term that is left out is at most (¼/3)^16 = 5e-18.
+const STEP: f64 = 0.5;
+const EXPANSION_TERMS: usize = 16;
+type Expansion = [Complex; EXPANSION_TERMS];
+static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
+
+/// F_3, F_4 and F_5.
+pub(super) fn integrals(y: f64) -> [Complex; 3] {
+    let third = third(y);
+    let fourth = next(y, third, 3.0);
+    [third, fourth, next(y, fourth, 4.0)]
+}
+
+/// F_3.
+fn third(y: f64) -> Complex {
+    let size = y.abs();
+    let integral = if size >= LARGE {
+        asymptotic(size)
+    } else if size >= SMALL {
+        expanded(&EXPANSIONS, size)
+    } else {
+        power_series(size)
+    };
+    if y < 0.0 {
+        [integral[0], -integral[1]]
+    } else {
+        integral
+    }
+}
+
+/// The integral of the next order, by the recurrence.
+fn next(y: f64, integral: Complex, order: f64) -> Complex {
+    [(1.0 - y * integral[1]) / order, y * integral[0] / order]
+}
+
+/// DLMF 8.20.2: (1/z)·Σ (−1)^k (s)_k z^−k, until the terms vanish.
+fn asymptotic(y: f64) -> Complex {
+    let u = 1.0 / y;
+    // 1/z = i/y, so that with every term the factor is −i(k + s)/y.
+    let (mut term, mut sum) = (u, [0.0; 2]);
+    for k in 0..40 {
+        match k % 4 {
+            0 => sum[1] += term,
+            1 => sum[0] += term,
+            2 => sum[1] -= term,
+            _ => sum[0] -= term,
+        }
+        term *= f64::from(k + ORDER) * u;
+        if term < 1e-17 * u {
+            break;
+        }
+    }
+    sum
+}
+
+/// Between 3 and 64.
+fn expanded(expansions: &[Expansion], y: f64) -> Complex {
+    let middle = f64::from((y / STEP + 0.5) as u32);
+    let step = y - middle * STEP;
+    let terms = &expansions[(middle - SMALL / STEP) as usize];
+    terms.iter().rev().fold([0.0; 2], |sum, term| {
+        [sum[0] * step + term[0], sum[1] * step + term[1]]
+    })
+}
+
+/// Taylor's series from 3 to 64. That (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) is
+/// y·F_s′ = (s − 1 − iy)·F_s − 1, so that (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1, and 1 less where k is 0.
+fn expansions() -> Vec<Expansion> {
+    let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
+    let about = |middle: u32| {
+        let y = f64::from(middle) * STEP;
+        let mut terms = [[0.0; 2]; EXPANSION_TERMS];
+        terms[0] = continued_fraction(y);
+        for k in 1..EXPANSION_TERMS {
+            let done = (k - 1) as f64;
+            let mut term = times([f64::from(ORDER) - 1.0 - done, -y], terms[k - 1]);
+            match k.checked_sub(2) {
+                Some(before) => {
+                    let [re, im] = terms[before];
+                    term = [term[0] + im, term[1] - re];
+                }
+                None => term[0] -= 1.0,
+            }
+            terms[k] = term.map(|part| part / (y * (done + 1.0)));
+        }
+        terms
+    };
+    middles.map(about).collect()
+}
+
+/// DLMF 8.19.17 contracted, as Lentz evaluates it: 1/(z+s − 1·s/(z+s+2 − 2·(s+1)/(z+s+4 − …))).
+fn continued_fraction(y: f64) -> Complex {
+    const TINY: f64 = 1e-300;
+    let mut b = [f64::from(ORDER), -y];
+    let mut c = [1.0 / TINY, 0.0];
+    let mut d = over([1.0, 0.0], b);
+    let mut h = d;
+    for i in 1..200 {
+        let a = -f64::from(i) * f64::from(i + ORDER - 1);
+        b[0] += 2.0;
+        d = over([1.0, 0.0], [b[0] + a * d[0], b[1] + a * d[1]]);
+        c = over([a, 0.0], c);
+        c = [c[0] + b[0], c[1] + b[1]];
+        let delta = times(c, d);
+        h = times(h, delta);
+        if (delta[0] - 1.0).abs() + delta[1].abs() < 1e-16 {
+            break;
+        }
+    }
+    h
+}
+
+/// F_3 near 0, by twice the recurrence.
+fn power_series(y: f64) -> Complex {
+    let first = first(y);
+    // 1 − z·h with −z = iy.
+    let second = [1.0 - y * first[1], y * first[0]];
+    [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
+}
+
+/// F_1 near 0: E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where it has a pole of a logarithm, the 0 that y·F_1 is.
+fn first(y: f64) -> Complex {
+    const EULER: f64 = 0.577_215_664_901_532_9;
+    if y == 0.0 {
+        return [0.0; 2];
+    }
+    let mut first = [-EULER - libm::log(y.abs()), FRAC_PI_2.copysign(y)];
+    let mut term = [1.0, 0.0];
+    for k in 1..40 {
+        let k = f64::from(k);
+        // −z/k = iy/k.
+        term = [-term[1] * y / k, term[0] * y / k];
+        first = [first[0] - term[0] / k, first[1] - term[1] / k];
+        if size(term) < 1e-17 {
+            break;
+        }
+    }
+    times(first, phase(-y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn waves_are_the_fourier_series() {
+        for t in [-3.7, -1.0, -0.2, 0.0, 0.31, 0.5, 1.25, 2.0, 7.9] {
+            for (k, wave) in waves::<20, ORDERS>(t).into_iter().enumerate().skip(2) {
+                let mut sum = 0.0;
+                for n in (1..4001).step_by(2) {
+                    let x = f64::from(n) * PI;
+                    let phase = f64::from(n) * PI * t - k as f64 * PI / 2.0;
+                    sum += 4.0 / f64::from(n) * libm::sin(phase) / libm::pow(x, k as f64);
+                }
+                sum /= PI;
+                assert!(
+                    (sum - wave).abs() < 1e-8 / libm::pow(PI, k as f64),
+                    "A_{k}({t}) = {} or {sum}",
+                    wave
+                );
+                assert!(wave.abs() <= 0.5 * libm::pow(PI, 1.0 - k as f64));
+            }
+        }
+    }
+
+    fn close(found: Complex, expected: Complex, relative: f64) {
+        let error = (found[0] - expected[0]).abs() + (found[1] - expected[1]).abs();
+        let size = expected[0].abs() + expected[1].abs();
+        assert!(error <= relative * size, "{found:?}, not {expected:?}");
+    }
+
+    #[test]
+    fn the_ways_of_computing_them_agree_where_they_meet() {
+        close(continued_fraction(64.0), asymptotic(64.0), 1e-14);
+        close(continued_fraction(3.0), power_series(3.0), 1e-14);
+        for y in [3.0, 3.249, 3.251, 4.7, 11.3, 40.24, 63.99] {
+            close(third(y), continued_fraction(y), 1e-14);
+        }
+    }
+
+    #[test]
+    fn they_are_the_integrals() {
+        // By the midpoint rule in x, v = x/(1 − x), where the integrand is (1 − x)·e^(iyv).
+        const STEPS: u32 = 400_000;
+        for y in [0.0, 0.01, 0.7, 3.5, 12.0] {
+            let mut sum = [0.0; 2];
+            for i in 0..STEPS {
+                let x = (f64::from(i) + 0.5) / f64::from(STEPS);
+                let wave = phase(y * x / (1.0 - x));
+                sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
+            }
+            // Near x = 1, where waves are too fast for the rule, (1 − x)² is left of them.
+            close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
+        }
+    }
+}

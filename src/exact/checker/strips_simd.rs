@@ -1,0 +1,669 @@
+//! Pixels that show nothing but a checkerboard and few of its lines, eight at a time: most pixels of most pictures.
+//!
+//! In: such pixels one by one, in any order. Out: their integrals of the board's sign, with the bounds that `near` would have. Pixels that as many lines of either
+//! family cross wait for each other and are then computed in lanes, which the compiler makes vectors of. A pixel's sum is made of its own numbers,
+//! by the same operations whichever others it is computed with, so that it depends neither on their order nor on which part of a picture is wanted.
+//!
+//! The lines of one family, of which there are fewer, cut the pixel into strips; in strip i the sign of their squares is σ_i. Beyond
+//! line k of the other family lies the signed area W_k = Σ σ_i·|strip i ∩ H_k|, W_0 being all of it, and the sign changes from
+//! line to line:
+//!
+//! ∬ s(a) s(b) dx dy = s_0·(W_0 + 2 Σ_k (−1)^k W_k).
+//!
+//! A strip's area beyond a line is ½ Σ (p − O) × (q − p)·f over the strip's sides from p to q, f being the part of the side that
+//! lies beyond, if O is on the line: then what the line itself contributes is 0. A side of the pixel has a part, which may have no length, in each
+//! strip; a part without length starts and ends at the same number, so that it adds 0, which takes no rounding.
+
+use std::array;
+
+use glam::DVec2;
+use multiversion::multiversion;
+
+use super::{
+    super::clip::PIXEL,
+    homography::{Sum, UNIT},
+    special::square_wave,
+};
+use crate::{
+    math::ROUND,
+    tracer::{Boards, Live, PIXELS, Views, World},
+};
+
+/// At most so many lines cut the pixels into strips, and so many cross those.
+const STRIPS: usize = 6;
+const MOST: usize = 32;
+
+/// A family whose lines are farther away than this, in squares, is left to others: sums of numbers of lines are exact below.
+const OUT_OF_REACH: f64 = 1e9;
+
+/// A number of each pixel.
+type Row = [f64; PIXELS];
+
+/// The factors of a linear form.
+type Form = [Row; 3];
+
+/// Sides of strips: parts of the spot's four, and a chord for each line.
+const SIDES: usize = 4 * (STRIPS + 1) + STRIPS;
+
+/// A pixel that shows nothing but a checkerboard.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::exact) struct BoardPixel {
+    /// Its column.
+    pub x: u32,
+    /// Its row.
+    pub y: u32,
+    /// The checkerboard.
+    pub live: Live,
+}
+
+/// The pixels that wait.
+#[derive(Debug)]
+pub(in crate::exact) struct Waiting<'a> {
+    world: &'a World,
+    /// Pixels not looked at so far, all of one checkerboard.
+    next: Vec<BoardPixel>,
+    /// That checkerboard, as an object of the scene, and what its pixels have in common.
+    boards: Option<(usize, Boards)>,
+    views: Views,
+    corners: Corners,
+    groups: Groups<BoardPixel>,
+}
+
+impl<'a> Waiting<'a> {
+    /// None so far.
+    pub fn new(world: &'a World) -> Self {
+        Self {
+            world,
+            next: Vec::with_capacity(PIXELS),
+            boards: None,
+            views: Views::default(),
+            corners: Corners::default(),
+            groups: Groups::default(),
+        }
+    }
+
+    /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where something else has to be
+    /// tried.
+    pub fn push(&mut self, pixel: BoardPixel, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+        let object = pixel.live.object;
+        if !matches!(self.boards, Some((known, _)) if known == object) {
+            self.look(tell);
+            self.boards = self.world.boards(object).map(|boards| (object, boards));
+        }
+        self.next.push(pixel);
+        if self.next.len() == PIXELS {
+            self.look(tell);
+        }
+    }
+
+    /// Computes all that still wait.
+    pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+        self.look(tell);
+        for group in self.groups.all() {
+            compute(group, tell);
+        }
+    }
+
+    /// Sorts the pixels that come next by what crosses them.
+    fn look(&mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+        let Some(&last) = self.next.last() else {
+            return;
+        };
+        let Some((_, boards)) = &self.boards else {
+            self.next.drain(..).for_each(|pixel| tell(pixel, None));
+            return;
+        };
+        let (mut columns, mut rows) = ([last.x; PIXELS], [last.y; PIXELS]);
+        for (i, pixel) in self.next.iter().enumerate() {
+            (columns[i], rows[i]) = (pixel.x, pixel.y);
+        }
+        boards.at(&columns, &rows, &mut self.views);
+        self.corners.look(&self.views);
+        for (i, pixel) in self.next.drain(..).enumerate() {
+            let Some(group) = self.groups.of(&self.corners, i) else {
+                tell(pixel, None);
+                continue;
+            };
+            if group.push(pixel, &self.views, &self.corners, i) {
+                compute(group, tell);
+            }
+        }
+    }
+}
+
+/// The integrals of a group's pixels, after which it is empty.
+fn compute(group: &mut Group<BoardPixel>, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+    if group.pixels.is_empty() {
+        return;
+    }
+    let sums = group.sums();
+    for (i, pixel) in group.pixels.drain(..).enumerate() {
+        tell(pixel, Some(sums.of(i)));
+    }
+}
+
+/// In which squares some pixels have their corners.
+#[derive(Debug, Default)]
+struct Corners {
+    /// By family and corner, the lower one's number.
+    pub squares: [[Row; 4]; 2],
+    /// By family, the number of the first square.
+    pub first: [Row; 2],
+    /// By family, how many lines cross the pixel; infinite where its corners do not show it.
+    pub lines: [Row; 2],
+}
+
+/// Pixels that the same numbers of lines cross.
+#[derive(Debug)]
+struct Group<P> {
+    /// Which pixels they are: no more than are computed together.
+    pub pixels: Vec<P>,
+    lines: Lines,
+    /// How many lines of either family cross each of them, fewer first.
+    crossing: [usize; 2],
+}
+
+/// All groups there may be.
+#[derive(Debug)]
+struct Groups<P>(Vec<Group<P>>);
+
+impl Corners {
+    /// Of pixels that see a board so.
+    pub fn look(&mut self, views: &Views) {
+        look_widely(views, self);
+    }
+
+    #[inline(always)]
+    fn see(&mut self, views: &Views) {
+        let Views {
+            across, below, rad, ..
+        } = views;
+        let mut levels = [[0.0; PIXELS]; 4];
+        // Where it is infinite nothing is known of the pixel.
+        let mut doubt = [0.0; PIXELS];
+        for (level, at) in levels.iter_mut().zip(PIXEL) {
+            for i in 0..PIXELS {
+                level[i] = below[0][i] * at.x + below[1][i] * at.y + below[2][i];
+                let is_good = (level[i] > 0.0) & (rad[i] < f64::INFINITY);
+                doubt[i] += if is_good { 0.0 } else { f64::INFINITY };
+            }
+        }
+        let (mut firsts, mut lasts) = ([[OUT_OF_REACH; PIXELS]; 2], [[-OUT_OF_REACH; PIXELS]; 2]);
+        for family in 0..2 {
+            let [x, y, z] = &across[family];
+            let (first, last) = (&mut firsts[family], &mut lasts[family]);
+            for corner in 0..4 {
+                let (at, level) = (PIXEL[corner], &levels[corner]);
+                let mut squares = [0.0; PIXELS];
+                for i in 0..PIXELS {
+                    let place = (x[i] * at.x + y[i] * at.y + z[i]) / level[i];
+                    doubt[i] += if place.abs() < OUT_OF_REACH {
+                        0.0
+                    } else {
+                        f64::INFINITY
+                    };
+                    let nearest = nearest(place);
+                    let square = nearest - if nearest > place { 1.0 } else { 0.0 };
+                    squares[i] = square;
+                    first[i] = first[i].min(square);
+                    last[i] = last[i].max(square);
+                }
+                self.squares[family][corner] = squares;
+            }
+        }
+        for family in 0..2 {
+            self.first[family] = firsts[family];
+            let mut lines = [0.0; PIXELS];
+            for i in 0..PIXELS {
+                lines[i] = lasts[family][i] - firsts[family][i] + doubt[i];
+            }
+            self.lines[family] = lines;
+        }
+    }
+}
+
+impl<P> Default for Groups<P> {
+    fn default() -> Self {
+        let crossings = (0..=STRIPS).flat_map(|few| (0..=MOST).map(move |many| [few, many]));
+        let group = |crossing| Group {
+            pixels: Vec::new(),
+            lines: Lines::default(),
+            crossing,
+        };
+        Self(crossings.map(group).collect())
+    }
+}
+
+impl<P> Groups<P> {
+    /// All of them.
+    pub fn all(&mut self) -> impl Iterator<Item = &mut Group<P>> {
+        self.0.iter_mut()
+    }
+
+    /// Where a pixel goes; none if too many lines cross it.
+    pub fn of(&mut self, corners: &Corners, pixel: usize) -> Option<&mut Group<P>> {
+        let [a, b] = corners.lines.each_ref().map(|lines| lines[pixel]);
+        let (few, many) = if a <= b { (a, b) } else { (b, a) };
+        if !(few <= STRIPS as f64 && many <= MOST as f64) {
+            return None;
+        }
+        self.0.get_mut(few as usize * (MOST + 1) + many as usize)
+    }
+}
+
+impl<P> Group<P> {
+    /// Adds a pixel to those of which there are fewer than can be computed together; says whether there is no room for more.
+    pub fn push(&mut self, at: P, views: &Views, corners: &Corners, pixel: usize) -> bool {
+        self.lines.set(self.pixels.len(), views, corners, pixel);
+        self.pixels.push(at);
+        self.pixels.len() == PIXELS
+    }
+
+    /// The integrals over its pixels.
+    pub fn sums(&self) -> Sums {
+        self.lines.sums(self.crossing)
+    }
+}
+
+#[multiversion(targets = "simd")]
+fn look_widely(views: &Views, corners: &mut Corners) {
+    corners.see(views);
+}
+
+/// The boards of some pixels, the family with fewer lines first.
+#[derive(Debug, Default)]
+struct Lines {
+    few: Family,
+    many: Family,
+    below: Form,
+    rad: Row,
+    /// Of each pixel, −1 where square [0, 1)² has the second colour.
+    sign: Row,
+    /// In which squares of the first family the corners lie.
+    squares: [Row; 4],
+}
+
+/// The lines of one family.
+#[derive(Debug, Default)]
+struct Family {
+    across: Form,
+    first: Row,
+}
+
+/// Directed sides of strips, from `start` on by `step`, one of each pixel, with the signs of the strips that they bound.
+#[derive(Clone, Copy)]
+struct Sides {
+    start: [Row; 2],
+    step: [Row; 2],
+    sign: Row,
+}
+
+/// What several pixels sum up to; positive for the first colour.
+struct Sums {
+    values: Row,
+    bounds: Row,
+}
+
+impl Sums {
+    pub fn of(&self, pixel: usize) -> Sum {
+        let (value, bound) = (self.values[pixel], self.bounds[pixel]);
+        Sum {
+            value,
+            // Of squares as large as numbers can be products are lost.
+            bound: if value.is_nan() { f64::INFINITY } else { bound },
+        }
+    }
+}
+
+impl Lines {
+    /// Sets one of the pixels.
+    pub fn set(&mut self, place: usize, views: &Views, corners: &Corners, pixel: usize) {
+        let [a, b] = corners.lines.each_ref().map(|lines| lines[pixel]);
+        let order = if a <= b { [0, 1] } else { [1, 0] };
+        for (family, from) in [&mut self.few, &mut self.many].into_iter().zip(order) {
+            family.first[place] = corners.first[from][pixel];
+            for (out, factor) in family.across.iter_mut().zip(&views.across[from]) {
+                out[place] = factor[pixel];
+            }
+        }
+        for (out, factor) in self.below.iter_mut().zip(&views.below) {
+            out[place] = factor[pixel];
+        }
+        for (out, square) in self.squares.iter_mut().zip(&corners.squares[order[0]]) {
+            out[place] = square[pixel];
+        }
+        self.rad[place] = views.rad[pixel];
+        self.sign[place] = views.sign[pixel];
+    }
+
+    /// The integrals over the pixels, which so many lines of either family cross.
+    pub fn sums(&self, lines: [usize; 2]) -> Sums {
+        sums_widely(self, lines)
+    }
+
+    #[inline(always)]
+    fn compute(&self, [few, many]: [usize; 2]) -> Sums {
+        let mut sides = [Sides {
+            start: [[0.0; PIXELS]; 2],
+            step: [[0.0; PIXELS]; 2],
+            sign: [0.0; PIXELS],
+        }; SIDES];
+        let sides = &mut sides[..4 * (few + 1) + few];
+        let failed = self.strips(few, sides);
+        let (mut sums, mut lengths, mut offs) = ([0.0; PIXELS], [0.0; PIXELS], [0.0; PIXELS]);
+        for side in &*sides {
+            for i in 0..PIXELS {
+                let (x, y) = (side.step[0][i], side.step[1][i]);
+                sums[i] += 0.5 * side.sign[i] * (side.start[0][i] * y - side.start[1][i] * x);
+                lengths[i] += side.sign[i].abs() * (x.abs() + y.abs());
+            }
+        }
+        let mut displaced = [0.0; PIXELS];
+        for line in 0..few + 2 {
+            self.add_off(&self.few, line as f64, &mut displaced);
+        }
+        for line in 0..many + 2 {
+            self.add_off(&self.many, line as f64, &mut offs);
+        }
+        for line in 1..=many {
+            let sign = if line % 2 == 0 { 1.0 } else { -1.0 };
+            let beyond = self.beyond(line as f64, sides);
+            for i in 0..PIXELS {
+                sums[i] += sign * beyond[i];
+            }
+        }
+        // Each line that cuts, and the two next to them, may be off by 4 roundings of a point besides.
+        let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
+        let points = 4.0 * UNIT * (strips + 1.0);
+        Sums {
+            values: array::from_fn(|i| {
+                let wave = square_wave(self.many.first[i] + self.few.first[i]);
+                self.sign[i] * wave * sums[i]
+            }),
+            bounds: array::from_fn(|i| {
+                let roundings = UNIT * lines * (16.0 * lengths[i] + 8.0 * strips + 2.0 * lines);
+                let displaced = offs[i] * (1.0 + strips) + displaced[i] + points;
+                3.0 * displaced + roundings + failed[i]
+            }),
+        }
+    }
+
+    /// Adds how far line `line` of a family, counted from its first, may be from the computed one.
+    #[inline(always)]
+    fn add_off(&self, family: &Family, line: f64, out: &mut Row) {
+        for (i, out) in out.iter_mut().enumerate() {
+            let n = family.first[i] + line;
+            let size = |k: usize| family.across[k][i].abs() + (n * self.below[k][i]).abs();
+            let slope = |k: usize| (family.across[k][i] - n * self.below[k][i]).abs();
+            let value =
+                6.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2)) + self.rad[i] * (1.0 + n.abs());
+            *out += value / slope(0).max(slope(1));
+        }
+    }
+
+    /// Cuts the pixels into strips. The square wave is 1 in the first of them. 0 for each that could be cut, else infinite.
+    #[inline(always)]
+    fn strips(&self, few: usize, sides: &mut [Sides]) -> Row {
+        let mut failed = [0.0; PIXELS];
+        let (parts, chords) = sides.split_at_mut(4 * (few + 1));
+        // Along each side how far the part in the next strip reaches.
+        let mut reached = [[0.0; PIXELS]; 4];
+        for (corner, reached) in reached.iter_mut().enumerate() {
+            let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);
+            for (i, reached) in reached.iter_mut().enumerate() {
+                *reached = if next[i] >= here[i] { 0.0 } else { 1.0 };
+            }
+        }
+        for strip in 0..=few {
+            let sign = if strip % 2 == 0 { 1.0 } else { -1.0 };
+            let is_last = strip == few;
+            let mut ends = [[[0.0; PIXELS]; 2]; 2];
+            let mut crossings = [[0.0; PIXELS]; 2];
+            for corner in 0..4 {
+                let (from, to) = (PIXEL[corner], PIXEL[(corner + 1) % 4]);
+                let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);
+                let part = &mut parts[4 * strip + corner];
+                let [x, y] = [to.x - from.x, to.y - from.y];
+                let value = |line: [f64; 3], p: DVec2| line[0] * p.x + line[1] * p.y + line[2];
+                let mut places = [0.0; PIXELS];
+                let mut crossed = [[0.0; PIXELS]; 2];
+                for i in 0..PIXELS {
+                    let n = self.few.first[i] + (strip + 1) as f64;
+                    let factor = |k: usize| self.few.across[k][i] - n * self.below[k][i];
+                    let line = [factor(0), factor(1), factor(2)];
+                    let (start, end) = (value(line, from), value(line, to));
+                    let place = start / (start - end);
+                    let place = if place > 0.0 { place } else { 0.0 };
+                    let place = if place < 1.0 { place } else { 1.0 };
+                    // Beyond the last line there is nothing.
+                    let (starts_below, ends_below) =
+                        (is_last | (here[i] < n), is_last | (next[i] < n));
+                    let is_up = next[i] >= here[i];
+                    let whole = if starts_below == is_up { 1.0 } else { 0.0 };
+                    places[i] = if starts_below != ends_below {
+                        place
+                    } else {
+                        whole
+                    };
+                    // Where both ends are on the line, no place can be told.
+                    let known = if start == end { f64::INFINITY } else { 1.0 };
+                    crossed[0][i] = if starts_below & !ends_below {
+                        known
+                    } else {
+                        0.0
+                    };
+                    crossed[1][i] = if ends_below & !starts_below {
+                        known
+                    } else {
+                        0.0
+                    };
+                }
+                for i in 0..PIXELS {
+                    let is_up = next[i] >= here[i];
+                    let (before, place) = (reached[corner][i], places[i]);
+                    let first = if is_up { before } else { place };
+                    let second = if is_up { place } else { before };
+                    let (start_x, start_y) = (from.x + x * first, from.y + y * first);
+                    part.start[0][i] = start_x;
+                    part.start[1][i] = start_y;
+                    part.step[0][i] = (from.x + x * second) - start_x;
+                    part.step[1][i] = (from.y + y * second) - start_y;
+                    part.sign[i] = sign;
+                }
+                for way in 0..2 {
+                    for i in 0..PIXELS {
+                        let is_way = crossed[way][i] > 0.0;
+                        let (at_x, at_y) = (from.x + x * places[i], from.y + y * places[i]);
+                        ends[way][0][i] += if is_way { at_x } else { 0.0 };
+                        ends[way][1][i] += if is_way { at_y } else { 0.0 };
+                        crossings[way][i] += crossed[way][i];
+                    }
+                }
+                reached[corner] = places;
+            }
+            let Some(chord) = chords.get_mut(strip) else {
+                break;
+            };
+            // The strip above runs along its chord from where the boundary leaves it to where it came in.
+            let [up, down] = ends;
+            for i in 0..PIXELS {
+                let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);
+                failed[i] += if is_one { 0.0 } else { f64::INFINITY };
+                for axis in 0..2 {
+                    chord.start[axis][i] = down[axis][i];
+                    chord.step[axis][i] = up[axis][i] - down[axis][i];
+                }
+                chord.sign[i] = -2.0 * sign;
+            }
+        }
+        failed
+    }
+
+    /// Twice the signed area of the strips beyond a line of the second family, counted from its first.
+    #[inline(always)]
+    fn beyond(&self, line: f64, sides: &[Sides]) -> Row {
+        let mut area = [0.0; PIXELS];
+        let (mut form, mut origin) = ([[0.0; PIXELS]; 3], [[0.0; PIXELS]; 2]);
+        for i in 0..PIXELS {
+            let n = self.many.first[i] + line;
+            let factor = |k: usize| self.many.across[k][i] - n * self.below[k][i];
+            let (x, y, z) = (factor(0), factor(1), factor(2));
+            let foot = -z / (x * x + y * y);
+            (form[0][i], form[1][i], form[2][i]) = (x, y, z);
+            origin[0][i] = foot * x;
+            origin[1][i] = foot * y;
+        }
+        for side in sides {
+            let (start, step, sign) = (&side.start, &side.step, &side.sign);
+            for i in 0..PIXELS {
+                let (x, y) = (start[0][i], start[1][i]);
+                let (across, down) = (step[0][i], step[1][i]);
+                let value = |x: f64, y: f64| (form[0][i] * x + form[1][i] * y) + form[2][i];
+                let (here, there) = (value(x, y), value(x + across, y + down));
+                let beyond = here.max(0.0) + there.max(0.0);
+                // A side that lies on the line as a whole contributes nothing either way.
+                let all = here.abs() + there.abs() + f64::MIN_POSITIVE;
+                let twice = (x - origin[0][i]) * down - (y - origin[1][i]) * across;
+                area[i] += sign[i] * twice * (beyond / all);
+            }
+        }
+        area
+    }
+}
+
+/// A whole number that is nearest to one below 2^51.
+#[inline(always)]
+fn nearest(x: f64) -> f64 {
+    (x + ROUND) - ROUND
+}
+
+#[multiversion(targets = "simd")]
+fn sums_widely(pixels: &Lines, lines: [usize; 2]) -> Sums {
+    pixels.compute(lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        exact::{budget::Budget, checker::Homography},
+        scene,
+        source::{Source, Sources},
+        tracer::Spot,
+    };
+    use proptest::prelude::*;
+    use std::{collections::HashMap, sync::atomic::AtomicBool};
+
+    const SIZE: [u32; 2] = [24, 18];
+
+    fn world(camera: &str, square: f64) -> World {
+        let [width, height] = SIZE;
+        let text = format!(
+            "image {{ width {width} height {height} background black }}\ncamera {{ {camera} }}\n\
+             checkerboard {{ y 0.25 square {square} colors (gray, white) }}"
+        );
+        let sources = Sources::new(Source::from_text("a.scn", &text));
+        World::new(&scene::read(&sources).scene.expect("a scene"))
+    }
+
+    fn pixels() -> Vec<(u32, u32)> {
+        let [width, height] = SIZE;
+        (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .collect()
+    }
+
+    /// The sums of some pixels that come in this order.
+    fn sums(
+        world: &World,
+        order: impl IntoIterator<Item = (u32, u32)>,
+    ) -> HashMap<(u32, u32), Option<Sum>> {
+        let live = world.everything()[0];
+        let mut waiting = Waiting::new(world);
+        let mut known = HashMap::new();
+        let mut tell = |pixel: BoardPixel, sum| {
+            assert!(known.insert((pixel.x, pixel.y), sum).is_none());
+        };
+        for (x, y) in order {
+            waiting.push(BoardPixel { x, y, live }, &mut tell);
+        }
+        waiting.finish(&mut tell);
+        known
+    }
+
+    #[test]
+    fn no_pixel_depends_on_those_it_is_computed_with() {
+        for camera in [
+            "eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75",
+            "eye (0.3, 40, 0.2) lookat (0, 0, 0.1) roll 20deg fov 5deg",
+            "eye (-7, 2, 1e6) lookat (-6.4, 0, 1000001) fov 60deg",
+        ] {
+            let world = world(camera, 0.7);
+            let all = sums(&world, pixels());
+            assert_eq!(all.len(), pixels().len());
+            let some = |step: usize| pixels().into_iter().step_by(step);
+            let by_column = |(x, y): &(u32, u32)| (*x, *y);
+            let mut columns = pixels();
+            columns.sort_by_key(by_column);
+            let orders = [
+                pixels().into_iter().rev().collect(),
+                columns,
+                some(3).collect(),
+                some(7).collect(),
+                vec![(11, 17)],
+            ];
+            let bits = |sum: &Option<Sum>| sum.map(|sum| [sum.value, sum.bound].map(f64::to_bits));
+            for order in orders {
+                let count = order.len();
+                let found = sums(&world, order);
+                assert_eq!(found.len(), count);
+                for (pixel, sum) in found {
+                    assert_eq!(bits(&sum), bits(&all[&pixel]), "{camera} at {pixel:?}");
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        #[test]
+        fn it_is_what_clipping_square_by_square_gives(
+            place in prop::array::uniform2(-9.0..9.0_f64),
+            offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
+            // As powers of ten.
+            height in -1.0..2.0_f64,
+            square in -1.0..3.0_f64,
+            yaw in 0.0..360.0_f64,
+            down in 0.0..89.0_f64,
+            roll in 0.0..360.0_f64,
+            fov in prop::sample::select(vec![0.01, 1.0, 20.0, 60.0, 120.0, 170.0]),
+        ) {
+            let [x, z] = place;
+            let (yaw, down) = (yaw.to_radians(), down.to_radians());
+            let (x, y, z) = (x + offset, 0.25 + libm::pow(10.0, height), z);
+            let ahead = [libm::cos(yaw), -libm::tan(down), libm::sin(yaw)].map(|step| 1e3 * step);
+            let camera = format!(
+                "eye ({x}, {y}, {z}) lookat ({}, {}, {}) roll {roll}deg fov {fov}deg",
+                x + ahead[0], y + ahead[1], z + ahead[2]
+            );
+            let world = world(&camera, libm::pow(10.0, square));
+            let mut compared = 0;
+            for ((x, y), sum) in sums(&world, pixels()) {
+                // None where too many lines cross; not a number where squares are as large as numbers can be.
+                let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
+                    continue;
+                };
+                let seen = world.board(0, Spot::pixel(x, y)).expect("a board");
+                let cancel = AtomicBool::new(false);
+                let budget = Budget::of_pixel(1, &cancel);
+                let other = Homography::of(&seen).over(&PIXEL, &budget);
+                let value = if seen.odd { -other.value } else { other.value };
+                let off = (sum.value - value).abs();
+                prop_assert!(off <= sum.bound + other.bound, "{camera} at {x}, {y}: {sum:?} and {other:?}");
+                compared += 1;
+            }
+            prop_assert!(compared > 0 || fov < 1.0 || square < 0.0, "{camera}");
+        }
+    }
+}

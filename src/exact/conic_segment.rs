@@ -1,0 +1,350 @@
+//! The segment of a conic between an arc and its chord: its area, and what it shows of a checkerboard.
+//!
+//! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form; and the integral of the board's sign over it, for which the arc is cut
+//! where it crosses the board's lines, so that each piece has its segment in one square and the chords bound a convex polygon. The bound adds what roundings
+//! displace and, where lines are too many to cut at, the area of what is left out.
+
+use glam::DVec2;
+
+use super::{
+    budget::Budget,
+    checker::{Homography, Sum, UNIT, form, square_wave},
+};
+
+/// Half the width in which the area's series is used, in 1 − w².
+const NEAR_PARABOLA: f64 = 0.36;
+
+/// An arc that may cross more lines than this is halved.
+const LINES: f64 = 48.0;
+/// A sliver so small, in square pixels, is neglected rather than halved once more: the slivers of n pieces are n³ times
+/// smaller each.
+const NEGLECTED: f64 = 2e-13;
+/// Halves of an arc have slivers of less than this of its own: a quarter for a parabola, 0.37 for half an ellipse, less for a hyperbola.
+const LEFT: f64 = 0.75;
+
+/// An arc of a conic: the rational quadratic Bézier curve of the weights 1, w and 1.
+///
+/// Its tangents at the ends meet at `control`; it is of an ellipse for w < 1, of a parabola for w = 1 and of a hyperbola for
+/// w > 1 (Farin, "Curves and Surfaces for CAGD", chapter 12).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    pub start: DVec2,
+    pub control: DVec2,
+    pub end: DVec2,
+    /// w, above 0.
+    pub weight: f64,
+}
+
+impl Arc {
+    /// The area between the arc and its chord, never negative.
+    ///
+    /// Of the triangle start, control, end it is the part w·(θ − sin θ cos θ)/sin³θ with cos θ = w: what a circle's segment
+    /// of half-angle θ is of its triangle, for an affine map takes every ellipse to a circle. For w > 1 θ is imaginary.
+    pub(crate) fn area(&self) -> f64 {
+        let triangle = 0.5
+            * (self.control - self.start)
+                .perp_dot(self.end - self.start)
+                .abs();
+        triangle * part(self.weight)
+    }
+
+    /// The point of the parameter t, from 0 to 1.
+    pub(crate) fn at(&self, t: f64) -> DVec2 {
+        let (point, weight) = self.blossom(t, t);
+        point / weight
+    }
+
+    /// The arc between two parameters.
+    pub(crate) fn between(&self, t0: f64, t1: f64) -> Self {
+        let (start, w0) = self.blossom(t0, t0);
+        let (control, w) = self.blossom(t0, t1);
+        let (end, w1) = self.blossom(t1, t1);
+        Self {
+            start: start / w0,
+            control: control / w,
+            end: end / w1,
+            weight: w / (w0 * w1).sqrt(),
+        }
+    }
+
+    /// The curve's polar form in homogeneous coordinates.
+    fn blossom(&self, s: f64, t: f64) -> (DVec2, f64) {
+        let (first, last) = ((1.0 - s) * (1.0 - t), s * t);
+        let middle = self.weight * (s * (1.0 - t) + t * (1.0 - s));
+        (
+            self.start * first + self.control * middle + self.end * last,
+            first + middle + last,
+        )
+    }
+}
+
+/// The part of its triangle that lies between an arc of weight w and its chord.
+fn part(w: f64) -> f64 {
+    let z = (1.0 - w) * (1.0 + w);
+    if z.abs() < NEAR_PARABOLA {
+        return w * series(z);
+    }
+    let s = (1.0 - w).abs().sqrt() * (1.0 + w).sqrt();
+    if w < 1.0 {
+        return w * (libm::atan2(s, w) - s * w) / (s * s * s);
+    }
+    (w / s) * (w / s - libm::log(w + s) / s / s)
+}
+
+/// (θ − sin θ cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k with z = sin²θ, the integral of 2x²/√(1 − x²).
+fn series(z: f64) -> f64 {
+    const TERMS: usize = 34;
+    const COEFFICIENTS: [f64; TERMS] = {
+        let mut all = [0.0; TERMS];
+        let mut binomial = 1.0;
+        let mut k = 0;
+        while k < TERMS {
+            all[k] = 2.0 * binomial / (2 * k + 3) as f64;
+            binomial *= (2 * k + 1) as f64 / (2 * k + 2) as f64;
+            k += 1;
+        }
+        all
+    };
+    COEFFICIENTS.iter().rev().fold(0.0, |sum, c| sum * z + c)
+}
+
+impl Homography {
+    /// The integral of s(a)·s(b) over the region between an arc and its chord, in square pixels.
+    ///
+    /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one square, and what is left
+    /// is a convex polygon. Where the lines are too many, toward the horizon, chords take the place of pieces so short that
+    /// their slivers may be neglected.
+    pub(super) fn sliver(&self, arc: &Arc, budget: &Budget) -> Sum {
+        if let Some(sign) = self.one_square(arc) {
+            return within_a_square(arc, sign);
+        }
+        let mut chords = Chords {
+            points: vec![arc.start],
+            sum: Sum::default(),
+        };
+        self.cut(arc, &mut chords);
+        chords.sum.add(self.over(&chords.points, budget));
+        let area = arc.area();
+        if chords.sum.value.is_finite() && chords.sum.bound < area {
+            return chords.sum;
+        }
+        // Out of the range of numbers, or not worth having.
+        Sum {
+            value: 0.0,
+            bound: area,
+        }
+    }
+
+    /// Adds the slivers of an arc, and the points at which it was cut.
+    fn cut(&self, arc: &Arc, chords: &mut Chords) {
+        if let Some(sign) = self.one_square(arc) {
+            chords.sum.add(within_a_square(arc, sign));
+            chords.points.push(arc.end);
+            return;
+        }
+        let lines = [0, 1].map(|i| self.lines(arc, i));
+        if let [Some(a), Some(b)] = lines
+            && a.1 - a.0 + b.1 - b.0 <= LINES
+        {
+            return self.cut_at_lines(arc, [a, b], chords);
+        }
+        let area = arc.area();
+        let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
+        // Not so where numbers that are too large or too small have left no arc of them.
+        let is_halved = halves[0].area() + halves[1].area() < LEFT * area;
+        if area > NEGLECTED && is_halved {
+            for half in &halves {
+                self.cut(half, chords);
+            }
+            return;
+        }
+        chords.sum.bound += if area.is_nan() { 1.0 } else { area };
+        chords.points.push(arc.end);
+    }
+
+    fn cut_at_lines(&self, arc: &Arc, lines: [(f64, f64); 2], chords: &mut Chords) {
+        let points = [arc.start, arc.control, arc.end];
+        let below = points.map(|p| form(&self.below, p));
+        let mut cuts = vec![1.0];
+        for (across, (first, last)) in self.across.iter().zip(lines) {
+            let values = points.map(|p| form(across, p));
+            let mut line = first;
+            while line <= last {
+                let f = [0, 1, 2].map(|i| values[i] - line * below[i]);
+                cuts.extend(
+                    roots(f[0], 2.0 * arc.weight * f[1], f[2])
+                        .into_iter()
+                        .flatten(),
+                );
+                line += 1.0;
+            }
+        }
+        cuts.sort_by(f64::total_cmp);
+        let mut before = 0.0;
+        for cut in cuts {
+            if cut > before {
+                let piece = arc.between(before, cut);
+                let middle = piece.at(0.5);
+                let depth = 1.0 / form(&self.below, middle);
+                let [a, b] = self
+                    .across
+                    .map(|across| square_wave(form(&across, middle) * depth));
+                chords.sum.add(self.between_lines(&piece, a * b));
+                chords.points.push(piece.end);
+            }
+            before = cut;
+        }
+    }
+
+    /// The sliver of an arc within a square between whose lines it was cut, wherever those are to within roundings.
+    fn between_lines(&self, arc: &Arc, sign: f64) -> Sum {
+        let mut sum = within_a_square(arc, sign);
+        sum.bound += self.displaced(&[arc.start, arc.control, arc.end]);
+        sum
+    }
+
+    /// The sign of the square that an arc's triangle lies in, if it is one.
+    fn one_square(&self, arc: &Arc) -> Option<f64> {
+        let mut sign = 1.0;
+        for i in 0..2 {
+            let (first, last) = self.lines(arc, i)?;
+            if first <= last {
+                return None;
+            }
+            sign *= square_wave(last);
+        }
+        Some(sign)
+    }
+
+    /// The first and the last line of a family, a = i or b = i, that may cross an arc; unless it nears the horizon.
+    fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for p in [arc.start, arc.control, arc.end] {
+            let level = form(&self.below, p);
+            if level <= 0.0 {
+                return None;
+            }
+            let (t, off) = self.place(family, p, level);
+            low = low.min(t - off);
+            high = high.max(t + off);
+        }
+        Some((low.floor() + 1.0, high.floor()))
+    }
+}
+
+fn within_a_square(arc: &Arc, sign: f64) -> Sum {
+    let area = arc.area();
+    Sum {
+        value: sign * area,
+        bound: 16.0 * UNIT * area,
+    }
+}
+
+/// The points of an arc at which it was cut, and the sum of the slivers between.
+struct Chords {
+    points: Vec<DVec2>,
+    sum: Sum,
+}
+
+/// The roots in (0, 1) of f0·(1 − t)² + f1·t(1 − t) + f2·t².
+fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
+    // Of squares as large as numbers can be the products would vanish.
+    let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
+    let [f0, f1, f2] = [f0 * scale, f1 * scale, f2 * scale];
+    let discriminant = f1 * f1 - 4.0 * f0 * f2;
+    if discriminant < 0.0 {
+        return [None, None];
+    }
+    // In r = t/(1 − t): f2·r² + f1·r + f0, and t = r/(1 + r), neither of the roots by a difference of like numbers.
+    let q = -0.5 * (f1 + discriminant.sqrt().copysign(f1));
+    [(q, f2), (f0, q)].map(|(above, below)| {
+        let t = above / (above + below);
+        (t > 0.0 && t < 1.0).then_some(t)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn circle_segments() {
+        for degrees in 3..90 {
+            let theta = f64::from(degrees) * PI / 180.0;
+            let (sin, cos) = (libm::sin(theta), libm::cos(theta));
+            let arc = Arc {
+                start: DVec2::new(cos, -sin),
+                control: DVec2::new(1.0 / cos, 0.0),
+                end: DVec2::new(cos, sin),
+                weight: cos,
+            };
+            let expected = if degrees < 20 {
+                // x = 2θ: (x − sin x)/2 = x³/12 − x⁵/240 + …
+                let x = 2.0 * theta;
+                let mut term = x * x * x / 6.0;
+                let mut sum = 0.0;
+                for k in 2..20 {
+                    sum += term;
+                    term *= -x * x / f64::from(2 * k * (2 * k + 1));
+                }
+                0.5 * sum
+            } else {
+                theta - sin * cos
+            };
+            assert!(
+                // 1/cos θ is a coordinate, and the triangle's height its difference to cos θ.
+                (arc.area() / expected - 1.0).abs() < 4e-15 + 2.0 * f64::EPSILON / (theta * theta),
+                "{degrees}: {} {expected}",
+                arc.area()
+            );
+            let at = arc.at(0.3);
+            assert!((at.length() - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn parabola_and_hyperbola() {
+        assert_eq!(part(1.0), 2.0 / 3.0);
+        // x·y = 1 from x = 1 to x = k: the tangents meet at (2k, 2)/(k + 1), and w² = (k + 1)²/4k.
+        for k in [1.5_f64, 2.0, 3.0, 4.0, 5.0, 10.0, 1e3, 1e6, 1e12] {
+            let weight = (k + 1.0) / (2.0 * k.sqrt());
+            let arc = Arc {
+                start: DVec2::new(1.0, 1.0),
+                control: DVec2::new(2.0 * k, 2.0) / (k + 1.0),
+                end: DVec2::new(k, 1.0 / k),
+                weight,
+            };
+            let expected = 0.5 * (k - 1.0) * (1.0 + 1.0 / k) - libm::log(k);
+            assert!(
+                (arc.area() / expected - 1.0).abs() < 2e-14,
+                "{k}: {} {expected}",
+                arc.area()
+            );
+        }
+        assert!((part(1e200) - 1.0).abs() < 1e-15);
+        assert!((part(1e-200) / 1e-200 - PI / 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_formulas_meet() {
+        for edge in [NEAR_PARABOLA, -NEAR_PARABOLA] {
+            let w = (1.0 - edge).sqrt();
+            let (below, above) = (part(w * (1.0 - 1e-13)), part(w * (1.0 + 1e-13)));
+            assert!((below / above - 1.0).abs() < 3e-15 + 3e-13);
+        }
+    }
+
+    #[test]
+    fn a_part_of_an_arc_is_an_arc() {
+        let arc = Arc {
+            start: DVec2::new(0.1, 0.2),
+            control: DVec2::new(0.4, 0.5),
+            end: DVec2::new(-0.3, 0.4),
+            weight: 0.7,
+        };
+        let (left, right) = (arc.between(0.0, 0.35), arc.between(0.35, 1.0));
+        let triangle = 0.5 * (left.end - arc.start).perp_dot(arc.end - arc.start).abs();
+        assert!((left.area() + right.area() + triangle - arc.area()).abs() < 1e-16);
+    }
+}

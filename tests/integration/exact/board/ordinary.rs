@@ -1,0 +1,73 @@
+//! Ordinary views: a field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height. There the bound is at most 1e-9.
+
+use std::fmt::Write;
+
+use super::super::{exact, part_adds_up, read};
+use super::area_of;
+use crate::tracer::Random;
+
+/// A view of a board, with some objects on it or without.
+fn view(random: &mut Random) -> String {
+    let which = random.bits() as usize;
+    let mut number = |low: f64, high: f64| random.within(low, high);
+    let fov = [number(1.0, 20.0), number(20.0, 150.0), number(150.0, 170.0)][which % 3];
+    let height = libm::exp10(number(-2.0, 2.0));
+    let square = height
+        * [
+            libm::exp10(number(-4.0, 6.0)),
+            libm::exp10(number(-1.5, 1.0)),
+        ][which / 4 % 2];
+    let off = [0.0, number(-9.0, 9.0), number(-3e8, 3e8)][which / 8 % 3];
+    let direction = [
+        [1.0, 0.0, -1.0],
+        [number(-1.0, 1.0), number(-1.0, 0.4), number(-1.0, 1.0)],
+        [1.0, number(-1.0, 0.2), 3.0],
+    ][which / 32 % 3];
+    let roll = [0.0, 45.0, number(-180.0, 180.0)][which / 128 % 3];
+    let [x, y, z] = direction;
+    let mut text = format!(
+        "image {{ width 24 height 16 background blue }}
+         camera {{ eye ({off}, {height}, {off}) direction ({x}, {y}, {z}) roll {roll}deg fov {fov}deg }}
+         checkerboard {{ y 0 square {square:e} colors (white, black) }}\n"
+    );
+    for color in ["red", "lime", "gold"].iter().take(which / 512 % 4) {
+        let distance = height * libm::exp10(number(0.0, 1.0)) / libm::sqrt(x * x + y * y + z * z);
+        let mut near = |place: f64| place + 0.4 * distance * number(-1.0, 1.0);
+        let [cx, cy, cz] = [
+            near(off + x * distance),
+            near(height + y * distance),
+            near(off + z * distance),
+        ];
+        let radius = 0.4 * distance * number(0.1, 1.0);
+        let _ = match *color {
+            "red" => writeln!(
+                text,
+                "sphere {{ center ({cx}, {cy}, {cz}) radius {radius} color red }}"
+            ),
+            color => writeln!(
+                text,
+                "box {{ center ({cx}, {cy}, {cz}) size ({radius}, {radius}, {radius}) color {color} }}"
+            ),
+        };
+    }
+    text
+}
+
+#[test]
+fn every_pixel_is_known_to_a_thousand_millionth() {
+    let mut random = Random(31);
+    for _ in 0..60 {
+        let text = view(&mut random);
+        let bound = exact(&read(&text)).bound();
+        assert!(bound <= 1e-9, "{bound:e} of {text}");
+    }
+}
+
+#[test]
+fn four_quarters_are_the_pixel_of_ordinary_views() {
+    let mut random = Random(37);
+    for _ in 0..30 {
+        let text = view(&mut random);
+        part_adds_up(&read(&text), area_of([0, 0, 24, 16]), &text);
+    }
+}
