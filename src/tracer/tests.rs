@@ -366,7 +366,7 @@ fn very_many_objects() {
         "a sphere takes what it needs"
     );
     let mut seen = 0;
-    for number in 0..400 {
+    for number in 0..160 {
         let mut point = random.point();
         if number % 4 == 0 {
             // A cluster that is far smaller than a pixel, about the corner of the middle ones.
@@ -378,5 +378,5 @@ fn very_many_objects() {
         assert_eq!(Some(found), plain(&world, point), "{point:?}");
         seen += usize::from(found + 1 < world.palette().len());
     }
-    assert!(seen > 100, "{seen} points show a sphere");
+    assert!(seen > 40, "{seen} points show a sphere");
 }

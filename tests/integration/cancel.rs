@@ -40,26 +40,27 @@ fn sources(text: &str) -> Sources {
 }
 
 /// Does something to the end, and has it given up at two early moments by another thread: what is left then takes at least three quarters of
-/// the time, and it has to end long before that is done.
+/// the time, and it has to end long before that is done. Other work on the machine may delay it, so one of five tries is enough.
 #[track_caller]
 fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     let start = Instant::now();
     assert!(work(&AtomicBool::new(false)).is_ok(), "{what}");
     let whole = start.elapsed();
     for moment in [whole / 16, whole / 4] {
-        let cancel = AtomicBool::new(false);
-        let set = OnceLock::new();
-        thread::scope(|scope| {
-            scope.spawn(|| {
-                thread::sleep(moment);
-                cancel.store(true, Ordering::Relaxed);
-                set.get_or_init(Instant::now);
+        let mut tries = (0..5).map(|_| {
+            let cancel = AtomicBool::new(false);
+            let set = OnceLock::new();
+            let is_given_up = thread::scope(|scope| {
+                scope.spawn(|| {
+                    thread::sleep(moment);
+                    cancel.store(true, Ordering::Relaxed);
+                    set.get_or_init(Instant::now);
+                });
+                work(&cancel).is_err()
             });
-            assert!(work(&cancel).is_err(), "{what}: it was over too soon");
+            is_given_up && set.wait().elapsed() < whole / 2
         });
-        let end = Instant::now();
-        let took = end.duration_since(*set.wait());
-        assert!(took < whole / 2, "{what}: {took:?} of {whole:?}");
+        assert!(tries.any(|in_time| in_time), "{what} of {whole:?}");
     }
 }
 

@@ -245,7 +245,7 @@ fn ten_megabytes_in_a_line() {
 #[test]
 fn many_mistakes_and_many_names() {
     let lines = |line: &dyn Fn(usize) -> String| {
-        let lines: String = (0..20_000).map(line).collect();
+        let lines: String = (0..8_000).map(line).collect();
         format!("{CAMERA}{lines}")
     };
     assert!(!read(lines(&|i| format!("let a{i} = b{i}\n"))));
@@ -262,8 +262,8 @@ fn many_mistakes_and_many_names() {
 
 #[test]
 fn many_overrides() {
-    let lines = |line: &dyn Fn(usize) -> String| -> String { (0..10_000).map(line).collect() };
-    let sets = |set: &dyn Fn(usize) -> String| -> Vec<String> { (0..10_000).map(set).collect() };
+    let lines = |line: &dyn Fn(usize) -> String| -> String { (0..4_000).map(line).collect() };
+    let sets = |set: &dyn Fn(usize) -> String| -> Vec<String> { (0..4_000).map(set).collect() };
     let lets = format!("{CAMERA}{}", lines(&|i| format!("let a{i} = {i}\n")));
     assert!(read_with_sets(&*lets, &sets(&|i| format!("a{i}=2"))));
     assert!(!read_with_sets(&*lets, &sets(&|i| format!("zz{i}=2"))));

@@ -24,7 +24,7 @@ pub const CASES: &[Case] = &[
         Claim::Ulps(2.0),
         parallels,
     ),
-    Case::new("P3", "planes that hold the eye", Claim::Ulps(2.0), edge_on),
+    Case::new("P3", "planes through the eye", Claim::Ulps(2.0), edge_on),
     Case::new(
         "P4",
         "the eye 1e-9 … 5e-324 m above the board",

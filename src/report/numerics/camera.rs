@@ -38,7 +38,7 @@ pub const CASES: &[Case] = &[
     ),
     Case::new(
         "C3b",
-        "lenses of d = 1e±9 … 1e±302",
+        "view planes at d = 1e±9 … 1e±302",
         Claim::Ulps(2.0),
         lenses,
     ),

@@ -16,7 +16,7 @@ pub const CASES: &[Case] = &[
     ),
     Case::new(
         "F2",
-        "bytes of light close to where they change",
+        "8-bit rounding close to a step",
         Claim::Decisions,
         bytes,
     ),

@@ -17,19 +17,19 @@ use crate::{
 pub const CASES: &[Case] = &[
     Case::new(
         "M1",
-        "counts that are no squares: one in an n-th",
+        "n not a square: one sample in each of n cells",
         Claim::Decisions,
         uneven,
     ),
     Case::new(
         "M2",
-        "totals that pixels do not divide",
+        "totals not divisible by the pixel count",
         Claim::Decisions,
         totals,
     ),
     Case::new(
         "M3",
-        "samples 2^32 apart: one in an n-th, again",
+        "sample indices beyond 2^32, one in each cell",
         Claim::Decisions,
         long,
     ),
@@ -41,13 +41,13 @@ pub const CASES: &[Case] = &[
     ),
     Case::new(
         "M6",
-        "the first 2^m: one in a box of that share",
+        "first 2^m points: one in each elementary box",
         Claim::Decisions,
         first,
     ),
     Case::new(
         "M7",
-        "a sample alone, and after those before it",
+        "a sample alone equals the one in sequence",
         Claim::Decisions,
         alone,
     ),

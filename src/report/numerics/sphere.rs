@@ -45,7 +45,7 @@ pub const CASES: &[Case] = &[
     ),
     Case::new(
         "S6",
-        "worlds of 1e±160 … 1e±300 m",
+        "scenes of 1e±160 … 1e±300 m",
         Claim::Ulps(1.0),
         out_of_range,
     ),

@@ -148,7 +148,7 @@ impl fmt::Display for Table {
         writeln!(f)?;
         writeln!(
             f,
-            "{inputs} inputs, {wrong} wrong decisions of Pinhole's; beside them the textbook's formulas in f64."
+            "{inputs} inputs; wrong decisions of Pinhole: {wrong}. Textbook: the usual formulas in f64."
         )?;
         writeln!(
             f,

@@ -366,7 +366,7 @@ fn report_counts_wrong_decisions_for_people_and_programs() {
     assert!(output.status.success() && output.stdout.is_empty());
     let people = errors(&output);
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
-    assert!(people.contains(" 0 wrong decisions of Pinhole's;"));
+    assert!(people.contains("wrong decisions of Pinhole: 0."));
     let arguments = [&arguments[..], &["--format", "json", "--threads", "1"]].concat();
     let table = json(&folder, &arguments);
     assert_eq!(table["numerics"][0]["inputs"], 20);

@@ -215,6 +215,7 @@ fn nobody_is_blamed_for_what_is_seen_on_an_edge() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn samples_at_the_corners_of_their_cells_are_named() {
     let subject = Subject::new(&example("figure_9_9.scn", 1, 1), [160, 90]);
     for side in [2, 4] {

@@ -193,6 +193,7 @@ fn an_object_that_is_not_in_the_scene_is_nobody_elses_fault() {
 
 /// What is seen beyond an edge along a pixel's side is what a sample at the corner sees. No single corner sees it on all sides of a box.
 #[test]
+#[ignore = "exhaustive"]
 fn what_grows_beyond_the_sides_of_pixels_is_no_sample() {
     let folder = folder();
     let scene = "image { width 96 height 64 }

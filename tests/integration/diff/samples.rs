@@ -300,6 +300,7 @@ fn a_few_wrong_edges_are_no_noise() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn samples_averaged_as_bytes_are_named() {
     let folder = folder();
     // The mean of 64 single samples in each pixel, of their bytes.
