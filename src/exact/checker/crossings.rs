@@ -15,6 +15,10 @@ pub(super) const MAX_TERMS: usize = 20;
 /// Over so many blocks of crossings m grows by a factor of more than 1e20.
 const BLOCKS: f64 = 128.0;
 
+/// The crossings of a block: enough that choosing its number of terms is a small part of the work, and few enough for the roundings of a sum.
+const LEAST_BLOCK: f64 = 16.0;
+const MOST_BLOCK: f64 = 4096.0;
+
 /// In a sum over crossings so many are added on their own, as the terms' signs alternate; and the place of the first of so many is told more
 /// exactly.
 const LANES: usize = 8;
@@ -94,7 +98,9 @@ impl Crossings {
         let mut done = 0.0;
         while done < lines {
             let depth = self.depth + done * self.rise;
-            let most = (0.5 * depth / self.rise).floor().clamp(16.0, 4096.0);
+            let most = (0.5 * depth / self.rise)
+                .floor()
+                .clamp(LEAST_BLOCK, MOST_BLOCK);
             let count = most.min(lines - done);
             let (terms, left) = series.enough(depth, count, limit);
             let block = block(self, series, terms, [done, count]);

@@ -10,6 +10,9 @@ use std::{array, f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
+/// A term of a series that is no more than this, by the sum, changes nothing: a tenth of a rounding.
+const VANISHING: f64 = 1e-17;
+
 /// A real and an imaginary part.
 pub(super) type Complex = [f64; 2];
 
@@ -239,7 +242,7 @@ fn asymptotic(y: f64) -> Complex {
             _ => sum[0] -= term,
         }
         term *= f64::from(k + ORDER) * u;
-        if term < 1e-17 * u {
+        if term < VANISHING * u {
             break;
         }
     }
@@ -296,7 +299,7 @@ fn continued_fraction(y: f64) -> Complex {
         c = [c[0] + b[0], c[1] + b[1]];
         let delta = times(c, d);
         h = times(h, delta);
-        if (delta[0] - 1.0).abs() + delta[1].abs() < 1e-16 {
+        if (delta[0] - 1.0).abs() + delta[1].abs() < f64::UNIT {
             break;
         }
     }
@@ -324,7 +327,7 @@ fn first(y: f64) -> Complex {
         // −z/k = iy/k.
         term = [-term[1] * y / k, term[0] * y / k];
         first = [first[0] - term[0] / k, first[1] - term[1] / k];
-        if size(term) < 1e-17 {
+        if size(term) < VANISHING {
             break;
         }
     }

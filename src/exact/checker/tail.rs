@@ -42,6 +42,18 @@ const CRUMB: f64 = 2e-12;
 const MODE_COST: f64 = 2.0;
 /// The waves that are always computed; a later one may be skipped where it is small.
 const FIRST_MODES: f64 = 31.0;
+/// Shares of the tolerance, which together are less than all of it: of a sum or of modes that are left out, of what V_s lacks in the first wave, and of
+/// waves that have no modes.
+const LEFT_OUT: f64 = 0.25;
+const LACKING: f64 = 0.02;
+const LATER: f64 = 0.05;
+/// The series in 1/w is not used below this w: its terms fall by s/w and more.
+const LEAST_W: f64 = 16.0;
+/// Below this |θ|, 2 − 2cos θ is θ² to within θ²/12, a third of a percent, and a computed cosine leaves little of it.
+const SMALL_ANGLE: f64 = 0.2;
+const PART_OF_SQUARE: f64 = 0.99;
+/// Up to this |θ| Taylor's series stand for the rest of the pole: the next term, θ⁹/47900160, is 100 roundings of the 500 that V may be off by.
+const NEAR_POLE: f64 = 0.2;
 /// Units of work for a crossing, and for a wave.
 const CROSSING_WORK: f64 = 1.0 / 32.0;
 const MODE_WORK: f64 = 1.0 / 4.0;
@@ -53,7 +65,7 @@ pub(super) fn sum(all: &Crossings, series: &Series, tolerance: f64, budget: &Bud
             .map(|k| series.size(k, all.depth))
             .sum::<f64>();
     let is_crumb = all.lines > DENSE && trivial <= CRUMB.min(tolerance);
-    let is_little = all.lines > SHORT && trivial <= 0.25 * tolerance;
+    let is_little = all.lines > SHORT && trivial <= LEFT_OUT * tolerance;
     let trivial_sum = Sum {
         value: 0.0,
         bound: trivial,
@@ -111,21 +123,21 @@ fn start(all: &Crossings, series: &Series, tolerance: f64) -> f64 {
     let g = all.rise;
     let factor = series.factors[1].abs();
     // The cheapest: (m − m_0)/g crossings and κ/2m modes.
-    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * 0.25 * tolerance)).sqrt();
+    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * LEFT_OUT * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
     // Where so little is left that it may be neglected, the first term's bound being ½/π of its factor.
-    let nothing = (factor * 0.25 / PI / g / (0.125 * tolerance)).sqrt() + g;
+    let nothing = (factor * 0.25 / PI / g / (0.5 * LEFT_OUT * tolerance)).sqrt() + g;
     // What is neglected of a mode is w^−5, of the waves A_5 and on m^−5.
-    let steep = g * libm::pow(factor / (g * g * g) / (0.02 * tolerance), 0.2);
+    let steep = g * libm::pow(factor / (g * g * g) / (LACKING * tolerance), 0.2);
     let fourth = match series.terms {
         4.. => libm::pow(
-            series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g) / (0.05 * tolerance),
+            series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g) / (LATER * tolerance),
             0.2,
         ),
         _ => 0.0,
     };
     cheapest
-        .max(16.0 * g)
+        .max(LEAST_W * g)
         .max(steep)
         .max(fourth)
         .min(nothing)
@@ -139,7 +151,7 @@ fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64, budge
     let everything: f64 = (1..=series.terms)
         .map(|k| absolute(series, k, depth, g))
         .sum();
-    if everything <= 0.25 * tolerance {
+    if everything <= LEFT_OUT * tolerance {
         return Sum {
             value: 0.0,
             bound: everything,
@@ -175,7 +187,7 @@ fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64, budge
         };
     }
     // By Abel |V_3| ≤ 2w^−3/|1 − e^iθ|: a late mode n is skipped where this is below an allowance that falls as n^−2.
-    let allowance = 0.25 * tolerance * 2.0 * (FIRST_MODES - 1.0);
+    let allowance = LEFT_OUT * tolerance * 2.0 * (FIRST_MODES - 1.0);
     let skipped = allowance / (2.0 * (FIRST_MODES - 1.0));
     let threshold = 2.0 * first * waves * u3 / allowance;
     let threshold = threshold * threshold;
@@ -189,8 +201,8 @@ fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64, budge
     while n <= last {
         let theta = turned_times(n, &turning) * PI;
         // |1 − e^iθ|², of which a cosine would leave nothing where θ is small.
-        let gap = match theta.abs() < 0.2 {
-            true => 0.99 * theta * theta,
+        let gap = match theta.abs() < SMALL_ANGLE {
+            true => PART_OF_SQUARE * theta * theta,
             false => 2.0 - 2.0 * angle[0],
         };
         if n <= FIRST_MODES || gap * n * n < threshold {
@@ -247,7 +259,7 @@ fn lerch(theta: f64, turn: Complex, w: f64) -> [Complex; 3] {
 /// R at −iθ is ½ + i(½ cot(θ/2) − 1/θ); this is the bracket, and R′ = 1/4sin²(θ/2) − 1/θ².
 fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
     let square = theta * theta;
-    if square < 0.04 {
+    if theta.abs() < NEAR_POLE {
         let r = -theta
             * (1.0 / 12.0 + square * (1.0 / 720.0 + square * (1.0 / 30240.0 + square / 1209600.0)));
         let slope =
@@ -274,7 +286,7 @@ fn level(all: &Crossings, series: &Series, trivial: f64, tolerance: f64, budget:
         amplitudes[k - 1] = amplitude * series.factors[k];
         amplitude *= u / PI;
     }
-    let neglected = NEGLECTED.max(0.05 * tolerance);
+    let neglected = NEGLECTED.max(LATER * tolerance);
     // Σ n^−3 over the odd n beyond Q is at most 1/4Q²; of the trivial bound a mode is at most 8/π² n^−3.
     let last = ((trivial / neglected).sqrt().ceil() + 1.0).clamp(3.0, MOST);
     let beyond = trivial / (4.0 * (last - 1.0) * (last - 1.0));

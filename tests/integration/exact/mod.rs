@@ -181,3 +181,45 @@ fn part_adds_up(scene: &Scene, area: Area, name: &str) -> Exact {
     }
     coarse
 }
+
+/// Compares a picture with one of so many random samples a pixel.
+fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64, name: &str) {
+    let mut scene = scene.clone();
+    scene.sampler = Sampler {
+        method: Method::Random,
+        count: Count::PerPixel(samples),
+        seed: 5,
+    };
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
+    let sampled = render(&World::new(&scene), &sampling, whole, &control).unwrap();
+    // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By Bernstein's inequality no more than one of 10¹⁰ sums of
+    // independent ones is farther off than this.
+    let log = libm::log(2e10);
+    let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
+    let (mut sum, mut variances) = ([0.0; 3], [0.0; 3]);
+    for (x, y) in whole.iter() {
+        let (a, b) = (computed.film.pixel(x, y), sampled.pixel(x, y));
+        for channel in 0..3 {
+            let mean = a[channel];
+            let variance = mean * (1.0 - mean) / samples as f64;
+            let difference = mean - b[channel];
+            assert!(
+                difference.abs() <= most(variance),
+                "{name} at {x}, {y}: {mean} and {}",
+                b[channel]
+            );
+            sum[channel] += difference;
+            variances[channel] += variance;
+        }
+    }
+    for (sum, variance) in sum.into_iter().zip(variances) {
+        let most = most(variance);
+        assert!(sum.abs() <= most, "{name}: {sum:e} of {most:e}");
+    }
+}

@@ -91,52 +91,10 @@ fn squares_from_above() {
 
 #[test]
 fn samples_agree_within_their_statistical_error() {
-    const SAMPLES: u64 = 1024;
     let mut random = Random(20);
     for round in 0..24 {
-        let mut scene = random_scene(&mut random, round % 3 != 0);
-        scene.sampler = Sampler {
-            method: Method::Random,
-            count: Count::PerPixel(SAMPLES),
-            seed: round,
-        };
-        let computed = exact(&scene);
-        let whole = Area::whole(scene.image.width, scene.image.height);
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel: &AtomicBool::new(false),
-        };
-        let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
-        let sampled = render(&World::new(&scene), &sampling, whole, &control).unwrap();
-        // With two colours, p and 1 − p, the variance of a mean is p(1 − p)/n; with more it is at most m(1 − m)/n for
-        // channels from 0 to 1 of mean m.
-        let (mut sum, mut expected, mut mixed) = (0.0, 0.0, 0);
-        for (x, y) in whole.iter() {
-            let (a, b) = (computed.film.pixel(x, y), sampled.pixel(x, y));
-            for channel in 0..3 {
-                let mean = a[channel];
-                let variance = mean * (1.0 - mean) / SAMPLES as f64;
-                let difference = a[channel] - b[channel];
-                assert!(
-                    difference.abs() <= 6.5 * variance.sqrt() + 12.0 / SAMPLES as f64,
-                    "round {round} at {x}, {y}: {} and {}",
-                    a[channel],
-                    b[channel]
-                );
-                if computed.bounds[whole.index(x, y)] > 0.0 {
-                    sum += difference * difference;
-                    expected += variance;
-                    mixed += 1;
-                }
-            }
-        }
-        // Its mean is the expected one or, with several colours, below; its spread that of so many squares.
-        let spread = (2.0 / f64::from(mixed.max(1))).sqrt();
-        assert!(
-            sum <= expected * (1.0 + 6.0 * spread),
-            "round {round}: {sum:e} for {expected:e}"
-        );
+        let scene = random_scene(&mut random, round % 3 != 0);
+        agrees_with_samples(&scene, &exact(&scene), 1024, &format!("round {round}"));
     }
 }
 

@@ -2,9 +2,12 @@
 
 use std::fmt::Write;
 
-use super::super::{exact, part_adds_up, read};
+use super::super::{agrees_with_samples, exact, part_adds_up, read};
 use super::area_of;
-use crate::tracer::Random;
+use crate::{
+    effort::{Effort, sampled_and_exhaustive},
+    tracer::Random,
+};
 
 /// A view of a board, with some objects on it or without.
 fn view(random: &mut Random) -> String {
@@ -53,14 +56,28 @@ fn view(random: &mut Random) -> String {
     text
 }
 
-#[test]
-fn every_pixel_is_known_to_a_thousand_millionth() {
+sampled_and_exhaustive!(every_pixel_is_known_to_a_thousand_millionth);
+
+/// A million pixels, against bounds and against samples; says how many bounds are above 1e-11.
+fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
     let mut random = Random(31);
-    for _ in 0..60 {
+    let (mut pixels, mut above) = (0, 0);
+    for _ in effort.first(40, 0..2700) {
         let text = view(&mut random);
-        let bound = exact(&read(&text)).bound();
+        let scene = read(&text);
+        let computed = exact(&scene);
+        let bound = computed.bound();
         assert!(bound <= 1e-9, "{bound:e} of {text}");
+        pixels += computed.bounds.len();
+        above += computed
+            .bounds
+            .iter()
+            .filter(|bound| **bound > 1e-11)
+            .count();
+        agrees_with_samples(&scene, &computed, 64, &text);
     }
+    let share = 100.0 * above as f64 / pixels as f64;
+    println!("{above} of {pixels} bounds, {share:.2} %, are above 1e-11");
 }
 
 #[test]
