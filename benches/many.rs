@@ -15,7 +15,7 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::DVec2;
 use pinhole::{
     area::Area,
-    render::{Control, Way, render_exact, render_in_a_way},
+    render::{Control, render, render_exact},
     sampling::Sampling,
     scene::{self, Scene},
     source::{Source, Sources},
@@ -24,10 +24,12 @@ use pinhole::{
 
 use self::{
     clock::cpu_seconds,
+    one_by_one::one_by_one,
     spheres::{crowd, cube},
 };
 
 mod clock;
+mod one_by_one;
 mod spheres;
 
 /// How many objects the plain loop over all of them is bearable for.
@@ -75,7 +77,7 @@ fn read(text: String) -> Scene {
         .expect("a scene without mistakes")
 }
 
-fn picture(world: &World, scene: &Scene, way: Way) {
+fn picture(world: &World, scene: &Scene) {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let control = Control {
@@ -83,7 +85,7 @@ fn picture(world: &World, scene: &Scene, way: Way) {
         progress: &|_| {},
         cancel: &AtomicBool::new(false),
     };
-    let film = render_in_a_way::<[f64; 3]>(world, &sampling, whole, &control, way);
+    let film = render(world, &sampling, whole, &control);
     black_box(film).expect("there is memory for it");
 }
 
@@ -136,7 +138,7 @@ fn growth(criterion: &mut Criterion) {
         let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
         group.throughput(Throughput::Elements(4 * pixels));
         group.bench_function(BenchmarkId::new("render", count), |bencher| {
-            bencher.iter(|| picture(&world, &scene, Way::Culled));
+            bencher.iter(|| picture(&world, &scene));
         });
     }
     group.finish();
@@ -149,15 +151,16 @@ fn phases(scene: &Scene) {
     let before = (cpu_seconds(), resident_bytes());
     let world = World::new(scene);
     let after = (cpu_seconds(), resident_bytes());
-    (0..RENDERS).for_each(|_| picture(&world, scene, Way::Culled));
+    (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
     // Each sample by the hierarchy on its own.
-    picture(&world, scene, Way::OneByOne);
+    let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    black_box(one_by_one(&world, &sampling, whole));
     let plain = cpu_seconds() - start;
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();
-    let whole = Area::whole(scene.image.width, scene.image.height);
     let control = Control {
         threads: None,
         progress: &|_| {},

@@ -99,17 +99,6 @@ impl Object<f64> {
         }
     }
 
-    /// About how many forms tell where and how deep it is: of a box with two or three faces in sight as many as of two triangles.
-    pub fn forms(&self) -> usize {
-        match self {
-            Self::EdgeOn => 0,
-            Self::Checkerboard(_) => 2,
-            Self::Sphere(_) => 3,
-            Self::Triangle(_) => 4,
-            Self::Cuboid(_) => 8,
-        }
-    }
-
     /// The inverse depths of its second crossings, where it has any.
     pub fn behind(&self, patch: &Patch) -> Option<Range> {
         match self {

@@ -14,7 +14,7 @@ use super::{
     cover::{Patch, Range},
     crossing::Crossing,
     curve::{Crossings, Place, Surface},
-    hierarchy::Item,
+    hierarchy::Nearness,
     object::Object,
     world::{Level, World},
 };
@@ -135,11 +135,20 @@ impl World {
         }
     }
 
-    /// The same of a crowd.
-    pub fn live_of(&self, part: Area, crowd: &[Item], out: &mut Vec<Live>) {
+    /// All that may be seen in a part of the picture; whether that is so: of more than `most` it is not known.
+    #[must_use]
+    pub fn live_of(&self, part: Area, most: usize, out: &mut Vec<Live>) -> bool {
         let patch = Patch::new(&self.fast.camera, part);
-        self.live_among(&patch, crowd.iter().map(|item| item.object as usize), out);
-        out.sort_unstable_by_key(|live| live.object);
+        let [near, far] = self.clips_over(&patch);
+        let behind = |object: u32| match self.cover(object as usize, &patch, near, far) {
+            Some(live) if live.is_whole => Nearness::below(live.inverse_depth.low),
+            _ => Nearness::NONE,
+        };
+        let Some(objects) = self.hierarchy.within(&patch, most, behind) else {
+            return false;
+        };
+        self.live_among(&patch, objects.iter().map(|&object| object as usize), out);
+        true
     }
 
     /// The inverse depths of the near and the far plane over a patch, where there are any.

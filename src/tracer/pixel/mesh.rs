@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use multiversion::multiversion;
 
 use super::{
-    super::{object::Object, outlook::Live, quartering::Part, world::World},
+    super::{object::Object, world::World},
     local::{Here, Local, ROUNDINGS},
     squares::Squares,
 };
@@ -52,18 +52,26 @@ struct Corners {
     sign: [f64; LANES],
 }
 
+/// What pixels show of a board.
+#[derive(Clone, Copy, Debug)]
+pub enum Seen<'a> {
+    /// One square, or squares of one colour side by side; whether that is the second.
+    One(bool),
+    /// A few squares of one pixel.
+    Some(&'a Checks),
+    /// One pixel, of which that is not known.
+    Unknown,
+}
+
 impl World {
-    /// Shows `visit` the pixels of a part of the picture in which a checkerboard is all that is seen, in runs of one colour and singly, with
-    /// what they show of the board if that is known. `None` if the part is too large for that or the board too far.
-    pub(in super::super) fn checks(
+    /// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is seen, show of it: in runs of one colour and
+    /// singly. `None` if the object is none, the part is too large or the board too far.
+    pub fn checks(
         &self,
         part: Area,
-        live: &[Live],
-        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
+        object: usize,
+        each: &mut impl FnMut(Area, Seen) -> ControlFlow<()>,
     ) -> Option<ControlFlow<()>> {
-        let [Live { object, .. }] = *live else {
-            return None;
-        };
         if part.width as usize > SIDE || part.height as usize > SIDE {
             return None;
         }
@@ -71,30 +79,16 @@ impl World {
             return None;
         };
         let mesh = Mesh::new(board, &Here::new(&f64::frame(self).camera, part), part)?;
-        let slots = self.slots(object);
         let [mut above, mut below] = [Corners::new(), Corners::new()];
         mesh.corners(0, &mut above);
         for row in 0..part.height {
             mesh.corners(row + 1, &mut below);
             let flow = mesh.row(row, &above, &below, |area, seen| match seen {
-                Seen::One(odd) => {
-                    let slot = slots[usize::from(odd)];
-                    visit(Part::Flat { area, slot }, None)
-                }
-                Seen::Some(checks) => {
-                    let (x, y) = (area.x, area.y);
-                    visit(Part::Open { x, y, live }, Some(checks))
-                }
-                Seen::Unknown => match self.only_square(area, object) {
-                    Some(odd) => {
-                        let slot = slots[usize::from(odd)];
-                        visit(Part::Flat { area, slot }, None)
-                    }
-                    None => {
-                        let (x, y) = (area.x, area.y);
-                        visit(Part::Open { x, y, live }, None)
-                    }
-                },
+                // Of a pixel by itself errors are smaller.
+                Seen::Unknown if part.pixels() > 1 => self
+                    .checks(area, object, each)
+                    .unwrap_or_else(|| each(area, Seen::Unknown)),
+                _ => each(area, seen),
             });
             if flow.is_break() {
                 return Some(flow);
@@ -103,15 +97,6 @@ impl World {
         }
         Some(ControlFlow::Continue(()))
     }
-}
-
-/// What pixels show of a board.
-enum Seen<'a> {
-    /// One square, or squares of one colour side by side; whether that is the second.
-    One(bool),
-    /// A few.
-    Some(&'a Checks),
-    Unknown,
 }
 
 impl Corners {

@@ -24,8 +24,7 @@ use crate::math::Vectors;
 
 pub use self::{
     local::{Conic, Here, Local},
-    mesh::Checks,
-    squares::Tiling,
+    mesh::{Checks, Seen},
 };
 
 /// Fewer samples than this are not worth the preparation.

@@ -1,7 +1,6 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 
 mod colors;
-mod crowd;
 mod kept;
 mod level;
 mod order;
@@ -28,6 +27,7 @@ use super::{
     outlook::Live,
 };
 use crate::{
+    area::Area,
     color::Color,
     math::{Big, Double, Doubt, Real},
 };
@@ -81,6 +81,12 @@ impl World {
     /// The camera's axes.
     pub fn basis(&self) -> &Basis {
         &self.basis
+    }
+
+    /// All pixels of the picture.
+    pub fn picture(&self) -> Area {
+        let half = self.fast.camera.half;
+        Area::whole((2.0 * half.x) as u32, (2.0 * half.y) as u32)
     }
 
     /// The distinct colours that can be seen: the objects' in the order of the file, the background last.
@@ -153,42 +159,25 @@ impl World {
         let r = self.fast.camera.direction(point);
         match self.hierarchy.at(&r) {
             Some(descent) => {
-                let nearest = self.nearest_on(descent, &r, |_| ())?;
+                let nearest = self.nearest_on(descent, &r)?;
                 self.with_color(&r, nearest)
             }
             None => self.seen::<f64>(point),
         }
     }
 
-    /// How many objects a ray asks whether it meets them.
-    pub fn asked(&self, x: u32, y: u32, offset: DVec2) -> usize {
-        let point = self.fast.camera.sample_point(x, y, offset);
-        let r = self.fast.camera.direction(&point);
-        let Some(descent) = self.hierarchy.at(&r) else {
-            return self.len();
-        };
-        let mut asked = 0;
-        match self.nearest_on(descent, &r, |_| asked += 1) {
-            Ok(_) => asked,
-            // Then all are asked whose bounds hold the point.
-            Err(Doubt) => self.candidates(&point).len(),
-        }
-    }
-
-    /// The nearest crossing with the objects on the way down the hierarchy; `ask` is told each of them that is asked.
+    /// The nearest crossing with the objects on the way down the hierarchy.
     #[inline]
     fn nearest_on(
         &self,
         mut descent: Descent,
         r: &Direction<f64>,
-        mut ask: impl FnMut(usize),
     ) -> Result<Option<Nearest<f64>>, Doubt> {
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
         while let Some(mut list) = descent.next(bar) {
             while let Some(index) = list.next(bar) {
-                ask(index);
                 self.raise(r, index, &mut nearest, &mut bar)?;
             }
         }
