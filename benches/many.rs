@@ -1,4 +1,4 @@
-//! Many objects: how preparing and rendering them grows with their number, and what the hierarchy gains: `cargo bench --bench many`. See
+//! Many objects: how preparing and rendering them grows with their number, and what the quadtree gains: `cargo bench --bench many`. See
 //! README.md beside this file.
 //!
 //! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
@@ -100,7 +100,7 @@ fn points(scene: &Scene) -> Vec<(u32, u32)> {
 
 /// How much longer the plain loop takes, in turns, so that a busy moment meets both.
 fn ratios() {
-    println!("the plain loop over all objects by the hierarchy, per ray");
+    println!("the plain loop over all objects by the quadtree, per ray");
     for count in PLAIN {
         let scene = read(crowd(count));
         let world = World::new(&scene);
@@ -121,7 +121,7 @@ fn ratios() {
         }
         let ratio = best[0].as_secs_f64() / best[1].as_secs_f64();
         let each = best[1] / points.len() as u32;
-        println!("{count:9} spheres {ratio:8.1}   {each:.0?} a ray by the hierarchy");
+        println!("{count:9} spheres {ratio:8.1}   {each:.0?} a ray by the quadtree");
     }
 }
 
@@ -154,7 +154,7 @@ fn phases(scene: &Scene) {
     (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // Each sample by the hierarchy on its own.
+    // Each sample by the quadtree on its own.
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let whole = Area::whole(scene.image.width, scene.image.height);
     black_box(one_by_one(&world, &sampling, whole));

@@ -70,7 +70,7 @@ use glam::DVec2;
 
 use crate::{
     area::Area,
-    tracer::{Curve, Live, Part, Quartering, Room, Spot, World},
+    tracer::{Curve, Live, Part, Quartering, Room, Spot, World, boundaries, candidates},
 };
 
 use self::{
@@ -220,8 +220,8 @@ impl<'a> Integrator<'a> {
                     _ => film.set(x, y, self.pixel(x, y, live, &mut scratch, cancel)),
                 },
                 // Does not come: whatever it costs, the picture is to be known.
-                Part::Plain { area, .. } => {
-                    let live = self.world.everything();
+                Part::Plain { area } => {
+                    let live = candidates::everything(self.world);
                     for (x, y) in area.iter() {
                         film.set(x, y, self.pixel(x, y, &live, &mut scratch, cancel));
                     }
@@ -302,7 +302,7 @@ impl<'a> Integrator<'a> {
         let mut seen = Vec::new();
         let live = match live.len() > SEVERAL {
             true => {
-                self.world.live_in(spot, live, &mut seen);
+                boundaries::narrowed(self.world, spot, live, &mut seen);
                 &seen
             }
             false => live,
@@ -401,7 +401,7 @@ impl<'a> Integrator<'a> {
         let quarters = || {
             spot.quarters().map(|spot| {
                 let mut seen = Vec::new();
-                self.world.live_in(spot, live, &mut seen);
+                boundaries::narrowed(self.world, spot, live, &mut seen);
                 (spot, seen)
             })
         };
@@ -419,7 +419,8 @@ impl<'a> Integrator<'a> {
                 live,
             }));
         }
-        let curves = |spot, live: &[Live]| time(self.world.curves_about(spot, live, cancel));
+        let curves =
+            |spot, live: &[Live]| time(boundaries::curves_about(self.world, spot, live, cancel));
         let whole = allowed.whole.unwrap_or_else(|| curves(spot, live));
         if whole <= time(FEW_CURVES) {
             return None;
@@ -445,7 +446,7 @@ impl<'a> Integrator<'a> {
 
     /// A spot that is smaller than matters.
     fn in_doubt(&self, spot: Spot, live: &[Live]) -> Shares {
-        let (seen, _) = self.world.object_at(spot, DVec2::ZERO, live);
+        let (seen, _) = candidates::object_at(self.world, spot, DVec2::ZERO, live);
         let slot = seen.map_or(self.colors.len() - 1, |object| self.world.slots(object)[0]);
         Shares {
             by_slot: vec![(slot, 1.0)],
@@ -463,7 +464,7 @@ impl<'a> Integrator<'a> {
         cancel: &AtomicBool,
     ) -> Shares {
         let Scratch { curves, sides, .. } = scratch;
-        self.world.curves(spot, live, cancel, curves);
+        boundaries::curves(self.world, spot, live, cancel, curves);
         let regions = Regions::new(self.world, spot, live, sides, care, cancel);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         if lines_alone {

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{self, Live, Spot, World},
+    tracer::{self, Live, Spot, World, board, candidates},
 };
 
 use super::{
@@ -146,7 +146,7 @@ impl<'a> Regions<'a> {
     /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
     /// each other than it tells; elsewhere in the region more may be known.
     fn seen(&mut self, region: &Region) -> Option<usize> {
-        let at = |point| self.world.object_at(self.spot, point, self.live);
+        let at = |point| candidates::object_at(self.world, self.spot, point, self.live);
         let (seen, is_sure) = at(region.inside);
         // A point between two of a polygon lies in it, but not if an arc takes off from that.
         if is_sure || region.arcs.iter().any(|(bulge, _)| *bulge < 0.0) {
@@ -176,7 +176,7 @@ impl<'a> Regions<'a> {
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
             // Out of the range of numbers: nothing is known of the spot but what is in its middle.
-            let (seen, _) = self.world.object_at(self.spot, DVec2::ZERO, self.live);
+            let (seen, _) = candidates::object_at(self.world, self.spot, DVec2::ZERO, self.live);
             let background = self.world.background();
             let [first, second] = seen.map_or([background; 2], |object| self.world.slots(object));
             shares.by_slot.clear();
@@ -219,8 +219,8 @@ impl Checkered {
             odd: seen.odd,
             doubt: seen.doubt(),
         };
-        let checkered = of(world.board(object, spot)?);
-        let closely = || world.board_closely(object, spot).map(of);
+        let checkered = of(board::board(world, object, spot)?);
+        let closely = || board::board_closely(world, object, spot).map(of);
         let better = checkered.board.is_doubtful().then(closely).flatten();
         Some(better.unwrap_or(checkered))
     }

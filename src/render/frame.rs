@@ -21,7 +21,7 @@ use crate::{
     film::{self, Encoder},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World},
+    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World, samples},
 };
 
 /// Fewer samples than these are placed and looked at by the vectors that every processor has.
@@ -121,7 +121,7 @@ impl<P: film::Pixel> Frame<'_, P> {
     /// Prepares a pixel, where samples are traced together.
     fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut Pixel) {
         if let Trace::Together(live, checks) = trace {
-            self.world.look(at, live, checks, pixel);
+            samples::prepare(self.world, at, live, checks, pixel);
         }
     }
 
@@ -186,7 +186,8 @@ impl<P: film::Pixel> Frame<'_, P> {
         // One by one, each may take its time.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
-            Trace::Together(..) => self.world.count(
+            Trace::Together(..) => samples::count(
+                self.world,
                 pixel,
                 points.lanes(),
                 points.len(),
@@ -194,8 +195,9 @@ impl<P: film::Pixel> Frame<'_, P> {
                 |slot, samples| counts.add(slot, samples),
             ),
             Trace::Among(live) => {
+                let objects = live.iter().map(|live| live.object);
                 for offset in wanted {
-                    counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
+                    counts.add(self.world.slot_among(x, y, offset, objects.clone()), 1);
                 }
             }
             Trace::OneByOne => {
@@ -214,6 +216,6 @@ enum Trace<'a> {
     Together(&'a [Live], Option<&'a Checks>),
     /// One by one, against these.
     Among(&'a [Live]),
-    /// One by one, against the objects that the hierarchy knows on their way.
+    /// One by one, against the objects that the quadtree knows on their way.
     OneByOne,
 }

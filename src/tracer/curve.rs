@@ -5,7 +5,10 @@
 
 use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
-use super::{camera::Camera, cover::Range, form::Form, outlook::Spot, sphere::Sphere};
+use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::Spot};
+
+/// The error of a line's form from which on double-double was not enough.
+pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A boundary in a pixel.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! The hierarchy against the plain loop over all objects, in scenes that are hard on its bounds.
+//! The quadtree against the plain loop over all objects, in scenes that are hard on its bounds.
 
 use std::cmp::Ordering;
 
@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 
 use super::{
     Spot, World,
-    extent::Extent,
-    object::Object,
+    bounds2d::Extent,
+    candidates,
+    shape::Object,
     world::{Level, Precision},
 };
 use crate::{
@@ -118,14 +119,14 @@ fn plain(world: &World, (x, y, offset): (u32, u32, DVec2)) -> Option<usize> {
 
 /// The pixel and the offset in it of a point of the view plane, if it is in the picture.
 fn point_of(world: &World, at: DVec2) -> Option<(u32, u32, DVec2)> {
-    let pixels = at / world.fast.camera.pitch + f64::from(SIZE) / 2.0;
+    let pixels = at / world.geometry.fast.camera.pitch + f64::from(SIZE) / 2.0;
     let floor = pixels.floor();
     let is_within = floor.min_element() >= 0.0 && floor.max_element() < f64::from(SIZE);
     is_within.then(|| (floor.x as u32, floor.y as u32, pixels - floor - 0.5))
 }
 
 fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
-    let cameras = (world.double_camera(), &world.fast.camera);
+    let cameras = (world.double_camera(), &world.geometry.fast.camera);
     let objects = scene.objects.iter();
     objects
         .map(|object| Object::with_extent(cameras.0, cameras.1, &object.shape).1)
@@ -133,7 +134,7 @@ fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
 }
 
 #[test]
-fn the_hierarchy_changes_nothing() {
+fn the_quadtree_changes_nothing() {
     for seed in 0..60 {
         let mut random = Random(seed);
         let scene = random.scene(3 + seed as usize * 4);
@@ -173,12 +174,12 @@ fn what_a_ray_meets_is_within_bounds() {
         let extents = extents(&world, &scene);
         for _ in 0..40 {
             let (x, y, offset) = random.point();
-            let point = world.fast.camera.sample_point(x, y, offset);
+            let point = world.geometry.fast.camera.sample_point(x, y, offset);
             let candidates = world.candidates(&point);
             assert!(candidates.is_sorted_by(|a, b| a < b));
-            let r = Big::frame(&world).camera.direction(&point);
+            let r = Big::frame(&world.geometry).camera.direction(&point);
             for (index, extent) in extents.iter().enumerate() {
-                let object = Big::object(&world, index);
+                let object = Big::object(&world.geometry, index);
                 let Ok(Some(crossing)) = object.first(&r) else {
                     continue;
                 };
@@ -233,7 +234,7 @@ fn what_is_seen_in_a_part_is_live_there() {
         let mut random = Random(2000 + seed);
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
-        let everything = world.everything();
+        let everything = candidates::everything(&world);
         let (mut some, mut all) = (Vec::new(), Vec::new());
         for _ in 0..20 {
             let ((x, y, _), (right, bottom, _)) = (random.point(), random.point());
@@ -243,9 +244,9 @@ fn what_is_seen_in_a_part_is_live_there() {
                 width: x.abs_diff(right) % 8 + 1,
                 height: y.abs_diff(bottom) % 8 + 1,
             };
-            assert!(world.live_of(part, usize::MAX, &mut some));
-            world.live(part, &everything, &mut all);
-            // The hierarchy's bounds may leave out more, but nothing else comes in.
+            assert!(candidates::within(&world, part, usize::MAX, &mut some));
+            candidates::narrowed(&world, part, &everything, &mut all);
+            // The quadtree's bounds may leave out more, but nothing else comes in.
             let places: Vec<_> = some.iter().map(|live| live.object).collect();
             assert!(places.is_sorted_by(|a, b| a < b));
             assert!(
@@ -256,9 +257,9 @@ fn what_is_seen_in_a_part_is_live_there() {
             for (x, y) in part.iter() {
                 let spot = Spot::pixel(x, y);
                 let at = dvec2(random.within(-0.5, 0.5), random.within(-0.5, 0.5));
-                let (expected, _) = world.object_at(spot, at, &everything);
+                let (expected, _) = candidates::object_at(&world, spot, at, &everything);
                 assert_eq!(
-                    world.object_at(spot, at, &some).0,
+                    candidates::object_at(&world, spot, at, &some).0,
                     expected,
                     "seed {seed}: {part:?}"
                 );
@@ -296,7 +297,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut together = 0;
     for _ in 0..2000 {
         let (x, y, offset) = random.point();
-        let point = world.fast.camera.sample_point(x, y, offset);
+        let point = world.geometry.fast.camera.sample_point(x, y, offset);
         together += usize::from(world.candidates(&point).len() > 2);
         world.slot_at(x, y, offset);
     }

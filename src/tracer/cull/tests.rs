@@ -4,7 +4,7 @@ use std::{fmt::Write, ops::ControlFlow};
 
 use glam::dvec3;
 
-use super::{Part, Quartering, Room};
+use super::{Part, Quartering, Room, candidates};
 use crate::{
     area::Area,
     scene::{self, Scene},
@@ -99,13 +99,13 @@ fn what_a_wall_hides_is_not_found() {
     for (depth, behind) in [(8.0, true), (3.0, false)] {
         let world = World::new(&read(&format!("{} {wall}", thousand_spheres(depth))));
         let whole = Area::whole(SIZE, SIZE);
-        assert_eq!(world.live_of(whole, 1, &mut live), behind);
-        assert!(world.live_of(whole, usize::MAX, &mut live));
+        assert_eq!(candidates::within(&world, whole, 1, &mut live), behind);
+        assert!(candidates::within(&world, whole, usize::MAX, &mut live));
         assert_eq!(live.len() == 1, behind);
         assert!(behind || live.len() == 1001, "{}", live.len());
-        // Neither where it lies across the cells of the hierarchy.
+        // Neither where it lies across the cells of the quadtree.
         for part in whole.tiles(7) {
-            assert!(world.live_of(part, usize::MAX, &mut live));
+            assert!(candidates::within(&world, part, usize::MAX, &mut live));
             assert!(live.len() == 1 || !behind, "{part:?}");
         }
     }

@@ -1,9 +1,9 @@
-//! The grid in which a hierarchy counts: whole numbers for places in the view plane and for how near an object is.
+//! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near an object is.
 
 use crate::tracer::{
+    bounds2d::Extent,
     camera::{Direction, Window},
-    cover::{Patch, Range},
-    extent::Extent,
+    interval::{Patch, Range},
 };
 
 /// The side of the root is 2 to this power: units are far smaller than pixels in a picture of any common size.

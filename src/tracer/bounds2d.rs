@@ -5,9 +5,9 @@
 
 use super::{
     camera::Camera,
-    cover::{Patch, Range},
     cuboid,
-    object::Object,
+    interval::{Patch, Range},
+    shape::Object,
     sphere::Sphere,
     triangle::{Corners, Triangle},
 };

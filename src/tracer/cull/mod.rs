@@ -12,8 +12,8 @@ mod tests;
 use std::ops::ControlFlow;
 
 use super::{
-    outlook::Live,
-    pixel::{Checks, Seen},
+    candidates::{self, Live},
+    checker_corners::{self, Checks, Seen},
     world::World,
 };
 use crate::area::Area;
@@ -102,7 +102,7 @@ impl<'a> Quartering<'a> {
                 visit,
             };
             let mut live = take(room, 0);
-            let flow = match self.world.live_of(area, self.most(area), &mut live) {
+            let flow = match candidates::within(self.world, area, self.most(area), &mut live) {
                 true => cut.cut(area, &live, 1, room),
                 false => cut.show(Part::Plain { area }, None),
             };
@@ -152,7 +152,7 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
                         Seen::Unknown => self.show(Part::Open { x, y, live }, None),
                     }
                 };
-                if let Some(flow) = world.checks(area, only.object, show) {
+                if let Some(flow) = checker_corners::show(world, area, only.object, show) {
                     return flow;
                 }
             }
@@ -169,7 +169,7 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
         let wanted = self.wanted;
         let mut quarters = area.quarters().filter(|quarter| quarter.meets(wanted));
         let flow = quarters.try_for_each(|quarter| {
-            world.live(quarter, live, &mut below);
+            candidates::narrowed(world, quarter, live, &mut below);
             self.cut(quarter, &below, depth + 1, room)
         });
         room.live[depth] = below;

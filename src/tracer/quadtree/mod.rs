@@ -8,29 +8,29 @@
 //! Cells are counted in whole numbers, into which a coordinate's conversion is monotone: what it rounds never separates a point from
 //! bounds that hold it by more than one, and bounds are one wider.
 
-mod descent;
 mod grid;
-mod search;
+mod point_query;
+mod rectangle_query;
 mod tree;
 
 use std::sync::atomic::AtomicBool;
 
-use self::{search::Search, tree::Tree};
-use super::{camera::Direction, cover::Patch};
+use self::{rectangle_query::Search, tree::Tree};
+use super::{camera::Direction, interval::Patch};
 use crate::threads::Threads;
 
-pub use self::descent::Descent;
 pub use self::grid::{Grid, Item, Nearness};
+pub use self::point_query::Descent;
 
 /// The objects that may be seen, by where in the view plane they are.
 #[derive(Debug)]
-pub struct Hierarchy {
+pub struct Quadtree {
     grid: Grid,
     tree: Tree,
 }
 
-impl Hierarchy {
-    /// A hierarchy over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
+impl Quadtree {
+    /// A quadtree over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
     pub fn new(
         grid: Grid,
         items: Vec<Item>,

@@ -3,11 +3,11 @@
 use super::{
     camera::{Camera, Direction, Window},
     checkerboard::Checkerboard,
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
     cuboid::Cuboid,
     curve::{Crossings, Curve, Place, Surface},
     form::Form,
+    hit::{Crossing, Part},
+    interval::{Cover, Patch, Range},
     sphere::Sphere,
     triangle::Triangle,
 };

@@ -10,7 +10,7 @@ use crate::{area::Area, math::UP};
 use super::{
     camera::{Camera, Direction},
     form::Form,
-    outlook::Spot,
+    sub_pixel::Spot,
 };
 
 /// A rectangle of the view plane.
