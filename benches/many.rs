@@ -1,25 +1,19 @@
-//! Many objects: how preparing and rendering them grows with their number, and what the quadtree gains: `cargo bench --bench many`. See
+//! Many objects: how preparing and rendering them grows with their number: `cargo bench --bench many`. See
 //! README.md beside this file.
 //!
 //! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
 //! of each phase once, and the memory that the world takes; with `--cube` the spheres are in a cube, not all over the picture.
 
-use std::{
-    env, fs,
-    hint::black_box,
-    sync::atomic::AtomicBool,
-    time::{Duration, Instant},
-};
+use std::{env, fs, hint::black_box, sync::atomic::AtomicBool};
 
 use criterion::{BenchmarkId, Criterion, Throughput};
-use glam::DVec2;
 use pinhole::{
     area::Area,
     render::{Control, render, render_exact},
     sampling::Sampling,
     scene::{self, Scene},
     source::{Source, Sources},
-    tracer::{Precision, World},
+    tracer::World,
 };
 
 use self::{
@@ -32,12 +26,7 @@ mod clock;
 mod one_by_one;
 mod spheres;
 
-/// How many objects the plain loop over all of them is bearable for.
-const PLAIN: [usize; 3] = [100, 1_000, 10_000];
 const ALL: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
-
-/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
-const ROUNDS: usize = 5;
 
 fn main() {
     let arguments: Vec<String> = env::args().collect();
@@ -66,7 +55,6 @@ fn main() {
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
-    ratios();
     growth(&mut Criterion::default().configure_from_args());
 }
 
@@ -87,42 +75,6 @@ fn picture(world: &World, scene: &Scene) {
     };
     let film = render(world, &sampling, whole, &control);
     black_box(film).expect("there is memory for it");
-}
-
-/// Points all over the picture, row by row.
-fn points(scene: &Scene) -> Vec<(u32, u32)> {
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    whole
-        .iter()
-        .filter(|(x, y)| x % 16 == 0 && y % 16 == 0)
-        .collect()
-}
-
-/// How much longer the plain loop takes, in turns, so that a busy moment meets both.
-fn ratios() {
-    println!("the plain loop over all objects by the quadtree, per ray");
-    for count in PLAIN {
-        let scene = read(crowd(count));
-        let world = World::new(&scene);
-        let points = points(&scene);
-        let offset = DVec2::new(0.125, -0.25);
-        let mut best = [Duration::MAX; 2];
-        for _ in 0..ROUNDS {
-            let start = Instant::now();
-            for &(x, y) in &points {
-                black_box(world.slot_in(Precision::Single, x, y, offset));
-            }
-            let middle = Instant::now();
-            for &(x, y) in &points {
-                black_box(world.slot_at(x, y, offset));
-            }
-            best[0] = best[0].min(middle - start);
-            best[1] = best[1].min(middle.elapsed());
-        }
-        let ratio = best[0].as_secs_f64() / best[1].as_secs_f64();
-        let each = best[1] / points.len() as u32;
-        println!("{count:9} spheres {ratio:8.1}   {each:.0?} a ray by the quadtree");
-    }
 }
 
 fn growth(criterion: &mut Criterion) {

@@ -46,4 +46,4 @@ pub use curve::{Conic, Curve, Line};
 pub use samples::Pixel;
 pub use sub_pixel::Spot;
 pub use triangle::vertices;
-pub use world::{Hit, Precision, World, ray};
+pub use world::{Hit, World, ray};

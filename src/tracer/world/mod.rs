@@ -42,17 +42,6 @@ pub struct World {
     colors: Colors,
 }
 
-/// The precisions, as what may be asked for by number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// `f64` alone: may be in doubt.
-    Single,
-    /// Double-double alone: may be in doubt.
-    Double,
-    /// Big numbers: decides everything.
-    Big,
-}
-
 /// What is seen at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Seen {
@@ -150,14 +139,11 @@ impl World {
     }
 
     /// What [`slot_at`](World::slot_at) answers in one precision alone and without the quadtree, or `None` if that is in doubt.
-    pub fn slot_in(&self, precision: Precision, x: u32, y: u32, offset: DVec2) -> Option<usize> {
+    #[cfg(test)]
+    pub(super) fn slot_by<T: Level>(&self, x: u32, y: u32, offset: DVec2) -> Option<usize> {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
-        let seen = match precision {
-            Precision::Single => self.seen::<f64>(&point),
-            Precision::Double => self.seen::<Double>(&point),
-            Precision::Big => self.seen::<Big>(&point),
-        };
-        seen.ok().map(|seen| self.slot(seen))
+        let seen = self.seen::<T>(&point).ok()?;
+        Some(self.slot(seen))
     }
 
     /// The slots of the palette that an object's colour has, and a checkerboard's second one.
