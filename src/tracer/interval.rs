@@ -1,5 +1,7 @@
 //! What is certain of an object over a whole rectangle of the picture.
 //!
+//! In: an object's forms, and a rectangle of the view plane. Out: whether all of its rays meet the object, and the interval of its inverse depths.
+//!
 //! The ranges of an object's forms over the rectangle, widened by the error bounds of its decisions, so that what is said here of
 //! the rectangle is also what every sample in it says.
 
