@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{self, Live, Spot, World, board, candidates},
+    tracer::{self, Candidate, SubPixel, World, board, candidates},
 };
 
 use super::{
@@ -39,8 +39,8 @@ const PIECES: f64 = 4.0;
 /// Collects the regions of one spot.
 pub struct Regions<'a> {
     world: &'a World,
-    spot: Spot,
-    live: &'a [Live],
+    spot: SubPixel,
+    live: &'a [Candidate],
     /// Sides of pixels that are known.
     sides: &'a mut Sides,
     /// The boards that were met so far, by object.
@@ -74,8 +74,8 @@ impl<'a> Regions<'a> {
     /// For a spot in which no other objects are seen than some.
     pub fn new(
         world: &'a World,
-        spot: Spot,
-        live: &'a [Live],
+        spot: SubPixel,
+        live: &'a [Candidate],
         sides: &'a mut Sides,
         care: Care,
         cancel: &'a AtomicBool,
@@ -120,7 +120,7 @@ impl<'a> Regions<'a> {
             odd: checkered.odd,
             elsewhere: &|x, y| {
                 let Checkered { board, odd, .. } =
-                    Checkered::new(world, object, Spot::pixel(x, y))?;
+                    Checkered::new(world, object, SubPixel::pixel(x, y))?;
                 Some((board, odd))
             },
         };
@@ -212,7 +212,7 @@ impl<'a> Regions<'a> {
 
 impl Checkered {
     /// An object as a spot sees it, if it is a checkerboard; more closely where that is not enough.
-    fn new(world: &World, object: usize, spot: Spot) -> Option<Self> {
+    fn new(world: &World, object: usize, spot: SubPixel) -> Option<Self> {
         let of = |seen: tracer::Board| Self {
             board: Board::of(&seen),
             // From which square floors are counted is a matter of roundings, too.

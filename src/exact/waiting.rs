@@ -9,7 +9,7 @@ use super::{
     grid,
     groups::{Corners, Group, Groups},
 };
-use crate::tracer::{Board, Boards, Live, PIXELS, Spot, Views, World, board};
+use crate::tracer::{Board, Boards, Candidate, PIXELS, SubPixel, Views, World, board};
 
 /// A pixel that shows nothing but a checkerboard.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub(super) struct BoardPixel {
     /// Its row.
     pub y: u32,
     /// The checkerboard.
-    pub live: Live,
+    pub live: Candidate,
 }
 
 /// The pixels that wait.
@@ -89,9 +89,11 @@ impl<'a> Waiting<'a> {
             let Some(group) = self.groups.of(&self.corners, i) else {
                 let board = match self.views.rad[i] < f64::INFINITY {
                     true => Some(of_several(&self.views, i)),
-                    false => {
-                        board::board(self.world, pixel.live.object, Spot::pixel(pixel.x, pixel.y))
-                    }
+                    false => board::board(
+                        self.world,
+                        pixel.live.object,
+                        SubPixel::pixel(pixel.x, pixel.y),
+                    ),
                 };
                 tell(pixel, board.as_ref().and_then(alone));
                 continue;
@@ -240,7 +242,7 @@ mod tests {
             );
             let world = world(&camera, libm::pow(10.0, square));
             for ((x, y), sum) in sums(&world, pixels()) {
-                let other = board::board(&world, 0, Spot::pixel(x, y)).as_ref().and_then(alone);
+                let other = board::board(&world, 0, SubPixel::pixel(x, y)).as_ref().and_then(alone);
                 let what = format!("{camera} at {x}, {y}: {sum:?} and {other:?}");
                 match (sum, other) {
                     (Some(sum), Some(other)) => {

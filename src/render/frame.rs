@@ -21,7 +21,7 @@ use crate::{
     film::{self, Encoder},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Checks, Live, Part, Pixel, Quartering, Room, World, samples},
+    tracer::{Candidate, Checks, Part, Pixel, Quartering, Room, World, samples},
 };
 
 /// Fewer samples than these are placed and looked at by the vectors that every processor has.
@@ -213,9 +213,9 @@ impl<P: film::Pixel> Frame<'_, P> {
 #[derive(Clone, Copy)]
 enum Trace<'a> {
     /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where that is known.
-    Together(&'a [Live], Option<&'a Checks>),
+    Together(&'a [Candidate], Option<&'a Checks>),
     /// One by one, against these.
-    Among(&'a [Live]),
+    Among(&'a [Candidate]),
     /// One by one, against the objects that the quadtree knows on their way.
     OneByOne,
 }

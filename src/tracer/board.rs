@@ -9,7 +9,7 @@ use multiversion::multiversion;
 use super::{
     curve::{LOOSE_LINE, Place},
     shape::Object,
-    sub_pixel::Spot,
+    sub_pixel::SubPixel,
     world::{Level, World},
 };
 use crate::math::{Big, Double, ROUND, Real};
@@ -90,7 +90,7 @@ pub fn boards(world: &World, object: usize) -> Option<Boards> {
     })
 }
 /// An object's squares in a spot, if it is a checkerboard.
-pub fn board(world: &World, object: usize, spot: Spot) -> Option<Board> {
+pub fn board(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
     let board = board_in::<Double>(world, object, spot)?;
     match board.doubt() < LOOSE_LINE {
         true => Some(board),
@@ -99,11 +99,11 @@ pub fn board(world: &World, object: usize, spot: Spot) -> Option<Board> {
 }
 
 /// The same where more than one rounding of the factors matters.
-pub fn board_closely(world: &World, object: usize, spot: Spot) -> Option<Board> {
+pub fn board_closely(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
     board_in::<Big>(world, object, spot)
 }
 
-fn board_in<T: Level>(world: &World, object: usize, spot: Spot) -> Option<Board> {
+fn board_in<T: Level>(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
     let object = T::object(&world.geometry, object);
     let Object::Checkerboard(board) = &*object else {
         return None;
@@ -255,7 +255,7 @@ mod tests {
     use crate::{
         scene,
         source::{Source, Sources},
-        tracer::Spot,
+        tracer::SubPixel,
     };
 
     fn world(camera: &str) -> World {
@@ -294,7 +294,7 @@ mod tests {
                     if views.rad[i].is_infinite() {
                         continue;
                     }
-                    let one = board(&world, 0, Spot::pixel(columns[i], rows[i])).expect("it");
+                    let one = board(&world, 0, SubPixel::pixel(columns[i], rows[i])).expect("it");
                     let scale = one.below[2] / views.below[2][i];
                     assert_eq!(libm::frexp(scale).0, 0.5, "a power of two");
                     let scaled = |form: &[[f64; PIXELS]; 3]| form.map(|factor| factor[i] * scale);

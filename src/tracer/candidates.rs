@@ -16,13 +16,13 @@ use super::{
     interval::{Patch, Range},
     quadtree::Nearness,
     shape::Object,
-    sub_pixel::Spot,
+    sub_pixel::SubPixel,
     world::{Level, World, depth_order},
 };
 
 /// An object that may be seen in a part of the picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Live {
+pub struct Candidate {
     /// Its index in the file.
     pub object: usize,
     /// Whether every ray through the part meets it, between the near and the far plane.
@@ -33,7 +33,7 @@ pub struct Live {
     pub(super) crossings: Crossings,
 }
 
-impl Live {
+impl Candidate {
     /// Whether the near plane may cut it.
     pub(super) fn is_cut(&self) -> bool {
         self.crossings != Crossings::First
@@ -48,8 +48,8 @@ pub(super) const LAYERS: usize = 8;
 const APART: f64 = 1.0 + 1e-12;
 
 /// All objects, as candidates for any part of the picture.
-pub fn everything(world: &World) -> Vec<Live> {
-    let live = |object| Live {
+pub fn everything(world: &World) -> Vec<Candidate> {
+    let live = |object| Candidate {
         object,
         is_whole: false,
         inverse_depth: Range::ALL,
@@ -62,14 +62,14 @@ pub fn everything(world: &World) -> Vec<Live> {
 }
 
 /// Of some candidates, in file order, those that may be seen in a part of the picture.
-pub fn narrowed(world: &World, part: Area, among: &[Live], out: &mut Vec<Live>) {
+pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Candidate>) {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     live_among(world, &patch, among.iter().map(|live| live.object), out);
 }
 
 /// All that may be seen in a part of the picture; whether that is so: of more than `most` it is not known.
 #[must_use]
-pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Live>) -> bool {
+pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) -> bool {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let [near, far] = clips_over(world, &patch);
     let behind = |object: u32| match cover(world, object as usize, &patch, near, far) {
@@ -98,7 +98,7 @@ pub(super) fn live_among(
     world: &World,
     patch: &Patch,
     among: impl Iterator<Item = usize>,
-    out: &mut Vec<Live>,
+    out: &mut Vec<Candidate>,
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
@@ -129,10 +129,10 @@ pub(super) fn cover(
     patch: &Patch,
     near: Option<Range>,
     far: Option<Range>,
-) -> Option<Live> {
+) -> Option<Candidate> {
     let object = f64::object(&world.geometry, index);
     let cover = object.cover(patch)?;
-    let mut live = Live {
+    let mut live = Candidate {
         object: index,
         is_whole: cover.is_whole,
         inverse_depth: cover.inverse_depth.or_all(),
@@ -171,17 +171,17 @@ pub(super) fn cover(
 
 /// Removes flat objects that lie behind another flat one all over the patch, though their depths there overlap, or in
 /// the same plane as one that comes before them in the file.
-fn drop_covered(world: &World, patch: &Patch, live: &mut Vec<Live>) {
-    let drop_behind = |front: usize, live: &mut Vec<Live>| {
+fn drop_covered(world: &World, patch: &Patch, live: &mut Vec<Candidate>) {
+    let drop_behind = |front: usize, live: &mut Vec<Candidate>| {
         live.retain(|back| {
             back.object == front || back.is_cut() || !covers(world, front, back.object, patch)
         });
     };
-    let may_cover = |live: &&Live| live.is_whole && !live.is_cut();
+    let may_cover = |live: &&Candidate| live.is_whole && !live.is_cut();
     if live.len() > LAYERS {
         drop_boards_behind(world, live);
         // Of layers the nearest one hides all others; in one plane that is the first.
-        let is_flat = |live: &&Live| {
+        let is_flat = |live: &&Candidate| {
             !matches!(
                 *f64::object(&world.geometry, live.object),
                 Object::Sphere(_)
@@ -205,9 +205,9 @@ fn drop_covered(world: &World, patch: &Patch, live: &mut Vec<Live>) {
 
 /// Removes checkerboards that lie behind another one, above or below the eye: whatever ray meets them meets that one, too, and nearer, also
 /// where the horizon crosses the patch.
-fn drop_boards_behind(world: &World, live: &mut Vec<Live>) {
+fn drop_boards_behind(world: &World, live: &mut Vec<Candidate>) {
     for is_above in [false, true] {
-        let height = |live: &Live| {
+        let height = |live: &Candidate| {
             // Numbers of the scene lie farther away in memory than what is prepared of them.
             let is_board = matches!(
                 *f64::object(&world.geometry, live.object),
@@ -266,7 +266,12 @@ pub(super) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
 
 /// The object that is seen at a point of a spot, of some that may be; and whether the last precision was not asked, in which what it does
 /// not tell apart counts as equal.
-pub fn object_at(world: &World, spot: Spot, at: DVec2, live: &[Live]) -> (Option<usize>, bool) {
+pub fn object_at(
+    world: &World,
+    spot: SubPixel,
+    at: DVec2,
+    live: &[Candidate],
+) -> (Option<usize>, bool) {
     let offset = spot.offset(at);
     let point = world
         .geometry

@@ -12,7 +12,7 @@ use crate::{area::Area, math::UP};
 use super::{
     camera::{Camera, Direction},
     form::Form,
-    sub_pixel::Spot,
+    sub_pixel::SubPixel,
 };
 
 /// A rectangle of the view plane.
@@ -54,7 +54,7 @@ impl Patch {
     }
 
     /// The square of a spot.
-    pub fn of_spot(camera: &Camera<f64>, spot: Spot) -> Self {
+    pub fn of_spot(camera: &Camera<f64>, spot: SubPixel) -> Self {
         let half = 0.5 * spot.side * camera.pitch * UP + f64::MIN_POSITIVE;
         let middle = camera.sample_point(spot.x, spot.y, spot.offset(DVec2::ZERO));
         Self {

@@ -39,11 +39,11 @@ mod tests;
 
 pub use board::{Board, Boards, PIXELS, Views};
 pub use camera::{Basis, Point};
-pub use candidates::Live;
+pub use candidates::Candidate;
 pub use checker_corners::Checks;
 pub use cull::{GRID, Part, Quartering, Room};
 pub use curve::{Conic, Curve, Line};
 pub use samples::Pixel;
-pub use sub_pixel::Spot;
+pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
 pub use world::{Hit, World, ray};

@@ -5,7 +5,7 @@ use glam::DVec2;
 /// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
 /// down.
 #[derive(Clone, Copy, Debug)]
-pub struct Spot {
+pub struct SubPixel {
     /// The pixel's column.
     pub x: u32,
     /// The pixel's row.
@@ -16,7 +16,7 @@ pub struct Spot {
     pub side: f64,
 }
 
-impl Spot {
+impl SubPixel {
     /// A whole pixel.
     pub fn pixel(x: u32, y: u32) -> Self {
         Self {

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
-use super::{Spot, World, bounds2d::Extent, candidates, shape::Object, world::Level};
+use super::{SubPixel, World, bounds2d::Extent, candidates, shape::Object, world::Level};
 use crate::{
     area::Area,
     math::{Ball, Big, Double},
@@ -304,7 +304,7 @@ fn what_is_seen_in_a_part_is_live_there() {
                     .all(|place| all.iter().any(|live| live.object == *place))
             );
             for (x, y) in part.iter() {
-                let spot = Spot::pixel(x, y);
+                let spot = SubPixel::pixel(x, y);
                 let at = dvec2(random.within(-0.5, 0.5), random.within(-0.5, 0.5));
                 let (expected, _) = candidates::object_at(&world, spot, at, &everything);
                 assert_eq!(

@@ -17,12 +17,12 @@ use crate::math::{Big, Double};
 
 use self::reach::Reach;
 use super::{
-    candidates::{self, Live},
+    candidates::{self, Candidate},
     curve::{Crossings, Curve, LOOSE_LINE, Place, Surface},
     hit::Crossing,
     interval::Patch,
     shape::Object,
-    sub_pixel::Spot,
+    sub_pixel::SubPixel,
     world::{Held, Level, World},
 };
 
@@ -43,7 +43,7 @@ enum Source {
 /// The boundaries of what may be seen in a spot, in one precision.
 struct Boundaries<'a, T: Level> {
     world: &'a World,
-    live: &'a [Live],
+    live: &'a [Candidate],
     objects: Vec<Held<'a, T>>,
     place: Place<T>,
     /// Where each object is met, as double-double tells.
@@ -51,7 +51,7 @@ struct Boundaries<'a, T: Level> {
 }
 
 /// Of some candidates, in file order, those that may be seen in a spot.
-pub fn narrowed(world: &World, spot: Spot, among: &[Live], out: &mut Vec<Live>) {
+pub fn narrowed(world: &World, spot: SubPixel, among: &[Candidate], out: &mut Vec<Candidate>) {
     let patch = Patch::of_spot(&world.geometry.fast.camera, spot);
     candidates::live_among(world, &patch, among.iter().map(|live| live.object), out);
     if out.len() > candidates::LAYERS {
@@ -61,7 +61,13 @@ pub fn narrowed(world: &World, spot: Spot, among: &[Live], out: &mut Vec<Live>) 
 
 /// The curves in a spot that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
 /// the rest of them is left out.
-pub fn curves(world: &World, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
+pub fn curves(
+    world: &World,
+    spot: SubPixel,
+    live: &[Candidate],
+    cancel: &AtomicBool,
+    out: &mut Vec<Curve>,
+) {
     out.clear();
     let reaches = reaches(world, spot, live);
     let boundaries = Boundaries::<Double>::new(world, spot, live, &reaches);
@@ -94,7 +100,7 @@ pub fn curves(world: &World, spot: Spot, live: &[Live], cancel: &AtomicBool, out
 }
 
 /// Whether surfaces of two objects may cross each other in a spot, or be one there.
-fn may_cross(world: &World, spot: Spot, a: Live, b: Live) -> bool {
+fn may_cross(world: &World, spot: SubPixel, a: Candidate, b: Candidate) -> bool {
     let mut curves = Vec::new();
     let live = [a, b];
     let reaches = reaches(world, spot, &live);
@@ -103,7 +109,12 @@ fn may_cross(world: &World, spot: Spot, a: Live, b: Live) -> bool {
 }
 
 /// How many curves may pass through a spot as far as double-double tells.
-pub fn curves_about(world: &World, spot: Spot, live: &[Live], cancel: &AtomicBool) -> usize {
+pub fn curves_about(
+    world: &World,
+    spot: SubPixel,
+    live: &[Candidate],
+    cancel: &AtomicBool,
+) -> usize {
     let mut curves = Vec::new();
     let reaches = reaches(world, spot, live);
     let boundaries = Boundaries::<Double>::new(world, spot, live, &reaches);
@@ -115,9 +126,9 @@ pub fn curves_about(world: &World, spot: Spot, live: &[Live], cancel: &AtomicBoo
 }
 
 /// Where each of some objects is met in a spot, at most.
-fn reaches(world: &World, spot: Spot, live: &[Live]) -> Vec<Reach> {
+fn reaches(world: &World, spot: SubPixel, live: &[Candidate]) -> Vec<Reach> {
     let place = Place::new(&Double::frame(&world.geometry).camera, spot);
-    let reach = |live: &Live| {
+    let reach = |live: &Candidate| {
         let object = Double::object(&world.geometry, live.object);
         // Of a sphere no line bounds more than what lies behind the eye.
         match live.is_whole || matches!(*object, Object::Sphere(_)) {
@@ -129,7 +140,7 @@ fn reaches(world: &World, spot: Spot, live: &[Live]) -> Vec<Reach> {
 }
 
 /// Removes objects that lie all over a spot behind the one that is seen in its middle, if every ray through the spot meets that.
-fn drop_behind_middle(world: &World, spot: Spot, patch: &Patch, live: &mut Vec<Live>) {
+fn drop_behind_middle(world: &World, spot: SubPixel, patch: &Patch, live: &mut Vec<Candidate>) {
     let (Some(middle), _) = candidates::object_at(world, spot, DVec2::ZERO, live) else {
         return;
     };
@@ -145,7 +156,7 @@ fn drop_behind_middle(world: &World, spot: Spot, patch: &Patch, live: &mut Vec<L
             .camera
             .sample_point(spot.x, spot.y, offset),
     );
-    let is_met = |back: &Live| {
+    let is_met = |back: &Candidate| {
         let object = f64::object(&world.geometry, back.object);
         let first = || object.first(&r).ok().flatten();
         let is_beyond_near = |crossing: Crossing<f64>| match &world.geometry.fast.near {
@@ -168,7 +179,7 @@ fn drop_behind_middle(world: &World, spot: Spot, patch: &Patch, live: &mut Vec<L
 }
 
 impl<'a, T: Level> Boundaries<'a, T> {
-    fn new(world: &'a World, spot: Spot, live: &'a [Live], reaches: &'a [Reach]) -> Self {
+    fn new(world: &'a World, spot: SubPixel, live: &'a [Candidate], reaches: &'a [Reach]) -> Self {
         let objects = live
             .iter()
             .map(|live| T::object(&world.geometry, live.object));

@@ -12,7 +12,7 @@ mod tests;
 use std::ops::ControlFlow;
 
 use super::{
-    candidates::{self, Live},
+    candidates::{self, Candidate},
     checker_corners::{self, Checks, Seen},
     world::World,
 };
@@ -50,7 +50,7 @@ pub enum Part<'a> {
         /// Its row.
         y: u32,
         /// The objects that may be seen there, in file order.
-        live: &'a [Live],
+        live: &'a [Candidate],
     },
     /// More may be seen than is worth to know: its samples are traced one by one.
     Plain {
@@ -62,7 +62,7 @@ pub enum Part<'a> {
 /// Lists that are kept from area to area: the candidates at each depth of the quartering.
 #[derive(Debug, Default)]
 pub struct Room {
-    live: Vec<Vec<Live>>,
+    live: Vec<Vec<Candidate>>,
 }
 
 impl<'a> Quartering<'a> {
@@ -128,7 +128,13 @@ struct Cut<'a, 'b, V> {
 
 impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
     /// Cuts an area by what may be seen in it.
-    fn cut(&mut self, area: Area, live: &[Live], depth: usize, room: &mut Room) -> ControlFlow<()> {
+    fn cut(
+        &mut self,
+        area: Area,
+        live: &[Candidate],
+        depth: usize,
+        room: &mut Room,
+    ) -> ControlFlow<()> {
         let world = self.quartering.world;
         match live {
             [] => {
@@ -200,7 +206,7 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
 }
 
 /// The list of a depth, to be put back there.
-fn take(room: &mut Room, depth: usize) -> Vec<Live> {
+fn take(room: &mut Room, depth: usize) -> Vec<Candidate> {
     if room.live.len() <= depth {
         room.live.resize_with(depth + 1, Vec::new);
     }

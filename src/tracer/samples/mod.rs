@@ -15,7 +15,7 @@ use glam::DVec2;
 
 use self::simd::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Lanes};
 use super::{
-    candidates::Live,
+    candidates::Candidate,
     checker_corners::{Checks, Squares},
     local_form::{Conic, Line, Local},
     world::World,
@@ -29,7 +29,7 @@ const SAMPLES_WORTH_PREPARING: usize = 2;
 #[derive(Debug, Default)]
 pub struct Pixel {
     /// The candidates.
-    live: Vec<Live>,
+    live: Vec<Candidate>,
     x: u32,
     y: u32,
     surfaces: Vec<Surface>,
@@ -101,7 +101,7 @@ enum Depth {
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],
-    live: &[Live],
+    live: &[Candidate],
     checks: Option<&Checks>,
     pixel: &mut Pixel,
 ) {

@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 
 use super::{
     super::{
-        candidates::Live,
+        candidates::Candidate,
         checker_corners::{Checks, Squares, is_odd},
         checkerboard::Checkerboard,
         form::Form,
@@ -154,7 +154,7 @@ impl Pixel {
         &mut self,
         world: &World,
         here: &Here,
-        live: Live,
+        live: Candidate,
         object: &Object<f64>,
     ) -> Result<Met, Hard> {
         let frame = f64::frame(&world.geometry);

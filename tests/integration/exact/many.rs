@@ -1,6 +1,6 @@
 //! Many objects in one pixel.
 
-use pinhole::tracer::{Spot, boundaries, candidates};
+use pinhole::tracer::{SubPixel, boundaries, candidates};
 
 use super::*;
 
@@ -30,7 +30,7 @@ fn objects_that_no_ray_meets_together_have_no_curves_between_them() {
         let scene = read(&side_by_side(&mut random, rows));
         let world = World::new(&scene);
         let (everything, mut live) = (candidates::everything(&world), Vec::new());
-        let spot = Spot::pixel(0, 0);
+        let spot = SubPixel::pixel(0, 0);
         boundaries::narrowed(&world, spot, &everything, &mut live);
         assert_eq!(live.len(), (rows * rows) as usize, "all are seen");
         let curves = boundaries::curves_about(&world, spot, &live, &AtomicBool::new(false));
