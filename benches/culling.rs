@@ -1,14 +1,14 @@
-//! What culling and tracing many samples at a time gain: `cargo bench --bench culling`. See README.md beside this file.
+//! What culling gains: `cargo bench --bench culling`. See README.md beside this file.
 
 mod clock;
+mod one_by_one;
 
 use std::{env, fs, hint::black_box, num::NonZero, sync::atomic::AtomicBool};
 
 use pinhole::{
     area::Area,
-    film::Film,
     math::Vectors,
-    render::{Control, Way, render_exact, render_in_a_way},
+    render::{Control, render, render_exact},
     report::numerics::textbook::Textbook,
     sampling::{Points, Sampling},
     scene::{self, Count, Method, Scene},
@@ -16,10 +16,21 @@ use pinhole::{
     tracer::World,
 };
 
+use self::one_by_one::one_by_one;
+
 /// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
 const ROUNDS: usize = 3;
 
-const WAYS: [Way; 4] = [Way::OneByOne, Way::Narrow, Way::Together, Way::Culled];
+/// How samples are traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// Each on its own.
+    OneByOne,
+    /// As `render` does it.
+    Culled,
+}
+
+const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
 /// The scenes that are compared by one method: what culling likes, and what it does not.
 const SCENES: [&str; 5] = [
@@ -49,12 +60,9 @@ fn main() {
         return;
     }
     println!(
-        "one thread; millions of samples a second one by one, and how many times as fast the other ways are"
+        "one thread; millions of samples a second one by one, and how many times as fast culling is"
     );
-    println!(
-        "{:40} {:>10} {:>10} {:>10} {:>10}",
-        "", "one by one", "narrow", "together", "culled"
-    );
+    println!("{:40} {:>10} {:>10}", "", "one by one", "culled");
     let figure = example("figure_9_9");
     for method in Method::SAMPLED {
         ratios(
@@ -146,8 +154,10 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     );
     move || {
         let whole = Area::whole(width, height);
-        let film: Result<Film, _> =
-            render_in_a_way(&world, &sampling, whole, &control(NonZero::new(1)), way);
+        let film = match way {
+            Way::OneByOne => Ok(one_by_one(&world, &sampling, whole)),
+            Way::Culled => render(&world, &sampling, whole, &control(NonZero::new(1))),
+        };
         black_box(film.expect("there is memory for it"));
     }
 }
@@ -282,7 +292,7 @@ fn once(arguments: &[String]) {
     );
 }
 
-/// The ways compared in turns, so that a busy moment meets all of them.
+/// Both ways compared in turns, so that a busy moment meets both of them.
 fn ratios(name: &str, scene: &Scene) {
     let pictures = WAYS.map(|way| picture(scene, way));
     let mut best = [f64::MAX; WAYS.len()];
@@ -293,13 +303,8 @@ fn ratios(name: &str, scene: &Scene) {
             *best = best.min(clock::cpu_seconds() - start);
         }
     }
-    let [one, narrow, together, culled] = best;
+    let [one, culled] = best;
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let rate = sampling.total() as f64 / one / 1e6;
-    println!(
-        "{name:40} {rate:10.1} {:10.2} {:10.2} {:10.2}",
-        one / narrow,
-        one / together,
-        one / culled
-    );
+    println!("{name:40} {rate:10.1} {:10.2}", one / culled);
 }

@@ -70,7 +70,7 @@ use glam::DVec2;
 
 use crate::{
     area::Area,
-    tracer::{Curve, Live, Part, Quartering, Room, Spot, World},
+    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World, boundaries, candidates},
 };
 
 use self::{
@@ -116,7 +116,7 @@ pub struct Integrator<'a> {
 /// A part of a pixel.
 #[derive(Debug)]
 struct Piece {
-    spot: Spot,
+    spot: SubPixel,
     shares: Shares,
     /// Whether it is not worth while to quarter it: its quarters, or those of what it is a quarter of, leave more than half as much in doubt.
     is_final: bool,
@@ -140,8 +140,8 @@ const PATIENCE: f64 = 2048.0;
 
 /// A quarter of a spot, with what may be seen there, and how long it may take.
 struct Quarter {
-    spot: Spot,
-    live: Vec<Live>,
+    spot: SubPixel,
+    live: Vec<Candidate>,
     allowed: Allowed,
 }
 
@@ -165,13 +165,13 @@ struct Scratch {
 
 impl Piece {
     /// Its share of a spot that it is a part of.
-    fn area(&self, of: Spot) -> f64 {
+    fn area(&self, of: SubPixel) -> f64 {
         let side = self.spot.side / of.side;
         side * side
     }
 
     /// How far it may put that spot off.
-    fn bound(&self, of: Spot) -> f64 {
+    fn bound(&self, of: SubPixel) -> f64 {
         self.area(of) * self.shares.bound
     }
 }
@@ -220,8 +220,8 @@ impl<'a> Integrator<'a> {
                     _ => film.set(x, y, self.pixel(x, y, live, &mut scratch, cancel)),
                 },
                 // Does not come: whatever it costs, the picture is to be known.
-                Part::Plain { area, .. } => {
-                    let live = self.world.everything();
+                Part::Plain { area } => {
+                    let live = candidates::everything(self.world);
                     for (x, y) in area.iter() {
                         film.set(x, y, self.pixel(x, y, &live, &mut scratch, cancel));
                     }
@@ -243,7 +243,7 @@ impl<'a> Integrator<'a> {
         &self,
         x: u32,
         y: u32,
-        live: &[Live],
+        live: &[Candidate],
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Pixel {
@@ -253,14 +253,14 @@ impl<'a> Integrator<'a> {
             whole: None,
         };
         let Shares { by_slot, bound, .. } =
-            self.shares(Spot::pixel(x, y), live, allowed, scratch, cancel);
+            self.shares(SubPixel::pixel(x, y), live, allowed, scratch, cancel);
         // Of one colour it is that; else a mean of some, which parts of it may be known better than.
         let rounding = if by_slot.len() > 1 { 4.0 * UNIT } else { 0.0 };
         self.mean(&by_slot, (bound + rounding).min(1.0))
     }
 
     /// Whether an object that is all that may be seen fills what it is seen in, in two colours.
-    fn is_floor(&self, only: &Live) -> bool {
+    fn is_floor(&self, only: &Candidate) -> bool {
         let [first, second] = self.world.slots(only.object);
         only.is_whole && first != second
     }
@@ -289,8 +289,8 @@ impl<'a> Integrator<'a> {
     /// as well as it could be, and again as long as that helps much where far too little is known.
     fn shares(
         &self,
-        spot: Spot,
-        live: &[Live],
+        spot: SubPixel,
+        live: &[Candidate],
         allowed: Allowed,
         scratch: &mut Scratch,
         cancel: &AtomicBool,
@@ -302,7 +302,7 @@ impl<'a> Integrator<'a> {
         let mut seen = Vec::new();
         let live = match live.len() > SEVERAL {
             true => {
-                self.world.live_in(spot, live, &mut seen);
+                boundaries::narrowed(self.world, spot, live, &mut seen);
                 &seen
             }
             false => live,
@@ -390,8 +390,8 @@ impl<'a> Integrator<'a> {
     /// has none. A heap in one of the quarters is no less in there, but in the quarters of a quarter of that.
     fn with_fewer_curves(
         &self,
-        spot: Spot,
-        live: &[Live],
+        spot: SubPixel,
+        live: &[Candidate],
         allowed: Allowed,
         cancel: &AtomicBool,
     ) -> Option<[Quarter; 4]> {
@@ -401,7 +401,7 @@ impl<'a> Integrator<'a> {
         let quarters = || {
             spot.quarters().map(|spot| {
                 let mut seen = Vec::new();
-                self.world.live_in(spot, live, &mut seen);
+                boundaries::narrowed(self.world, spot, live, &mut seen);
                 (spot, seen)
             })
         };
@@ -419,7 +419,9 @@ impl<'a> Integrator<'a> {
                 live,
             }));
         }
-        let curves = |spot, live: &[Live]| time(self.world.curves_about(spot, live, cancel));
+        let curves = |spot, live: &[Candidate]| {
+            time(boundaries::curves_about(self.world, spot, live, cancel))
+        };
         let whole = allowed.whole.unwrap_or_else(|| curves(spot, live));
         if whole <= time(FEW_CURVES) {
             return None;
@@ -444,8 +446,8 @@ impl<'a> Integrator<'a> {
     }
 
     /// A spot that is smaller than matters.
-    fn in_doubt(&self, spot: Spot, live: &[Live]) -> Shares {
-        let (seen, _) = self.world.object_at(spot, DVec2::ZERO, live);
+    fn in_doubt(&self, spot: SubPixel, live: &[Candidate]) -> Shares {
+        let (seen, _) = candidates::object_at(self.world, spot, DVec2::ZERO, live);
         let slot = seen.map_or(self.colors.len() - 1, |object| self.world.slots(object)[0]);
         Shares {
             by_slot: vec![(slot, 1.0)],
@@ -456,14 +458,14 @@ impl<'a> Integrator<'a> {
 
     fn shares_at_once(
         &self,
-        spot: Spot,
-        live: &[Live],
+        spot: SubPixel,
+        live: &[Candidate],
         care: Care,
         scratch: &mut Scratch,
         cancel: &AtomicBool,
     ) -> Shares {
         let Scratch { curves, sides, .. } = scratch;
-        self.world.curves(spot, live, cancel, curves);
+        boundaries::curves(self.world, spot, live, cancel, curves);
         let regions = Regions::new(self.world, spot, live, sides, care, cancel);
         let lines_alone = curves.iter().all(|curve| matches!(curve, Curve::Line(_)));
         if lines_alone {

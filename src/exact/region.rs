@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{self, Live, Spot, World},
+    tracer::{self, Candidate, SubPixel, World, board, candidates},
 };
 
 use super::{
@@ -39,8 +39,8 @@ const PIECES: f64 = 4.0;
 /// Collects the regions of one spot.
 pub struct Regions<'a> {
     world: &'a World,
-    spot: Spot,
-    live: &'a [Live],
+    spot: SubPixel,
+    live: &'a [Candidate],
     /// Sides of pixels that are known.
     sides: &'a mut Sides,
     /// The boards that were met so far, by object.
@@ -74,8 +74,8 @@ impl<'a> Regions<'a> {
     /// For a spot in which no other objects are seen than some.
     pub fn new(
         world: &'a World,
-        spot: Spot,
-        live: &'a [Live],
+        spot: SubPixel,
+        live: &'a [Candidate],
         sides: &'a mut Sides,
         care: Care,
         cancel: &'a AtomicBool,
@@ -120,7 +120,7 @@ impl<'a> Regions<'a> {
             odd: checkered.odd,
             elsewhere: &|x, y| {
                 let Checkered { board, odd, .. } =
-                    Checkered::new(world, object, Spot::pixel(x, y))?;
+                    Checkered::new(world, object, SubPixel::pixel(x, y))?;
                 Some((board, odd))
             },
         };
@@ -146,7 +146,7 @@ impl<'a> Regions<'a> {
     /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
     /// each other than it tells; elsewhere in the region more may be known.
     fn seen(&mut self, region: &Region) -> Option<usize> {
-        let at = |point| self.world.object_at(self.spot, point, self.live);
+        let at = |point| candidates::object_at(self.world, self.spot, point, self.live);
         let (seen, is_sure) = at(region.inside);
         // A point between two of a polygon lies in it, but not if an arc takes off from that.
         if is_sure || region.arcs.iter().any(|(bulge, _)| *bulge < 0.0) {
@@ -176,7 +176,7 @@ impl<'a> Regions<'a> {
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
             // Out of the range of numbers: nothing is known of the spot but what is in its middle.
-            let (seen, _) = self.world.object_at(self.spot, DVec2::ZERO, self.live);
+            let (seen, _) = candidates::object_at(self.world, self.spot, DVec2::ZERO, self.live);
             let background = self.world.background();
             let [first, second] = seen.map_or([background; 2], |object| self.world.slots(object));
             shares.by_slot.clear();
@@ -212,15 +212,15 @@ impl<'a> Regions<'a> {
 
 impl Checkered {
     /// An object as a spot sees it, if it is a checkerboard; more closely where that is not enough.
-    fn new(world: &World, object: usize, spot: Spot) -> Option<Self> {
+    fn new(world: &World, object: usize, spot: SubPixel) -> Option<Self> {
         let of = |seen: tracer::Board| Self {
             board: Board::of(&seen),
             // From which square floors are counted is a matter of roundings, too.
             odd: seen.odd,
             doubt: seen.doubt(),
         };
-        let checkered = of(world.board(object, spot)?);
-        let closely = || world.board_closely(object, spot).map(of);
+        let checkered = of(board::board(world, object, spot)?);
+        let closely = || board::board_closely(world, object, spot).map(of);
         let better = checkered.board.is_doubtful().then(closely).flatten();
         Some(better.unwrap_or(checkered))
     }

@@ -9,7 +9,7 @@ use super::{
     grid,
     groups::{Corners, Group, Groups},
 };
-use crate::tracer::{Board, Boards, Live, PIXELS, Spot, Views, World};
+use crate::tracer::{Board, Boards, Candidate, PIXELS, SubPixel, Views, World, board};
 
 /// A pixel that shows nothing but a checkerboard.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub(super) struct BoardPixel {
     /// Its row.
     pub y: u32,
     /// The checkerboard.
-    pub live: Live,
+    pub live: Candidate,
 }
 
 /// The pixels that wait.
@@ -54,7 +54,7 @@ impl<'a> Waiting<'a> {
         let object = pixel.live.object;
         if !matches!(self.boards, Some((known, _)) if known == object) {
             self.look(tell);
-            self.boards = self.world.boards(object).map(|boards| (object, boards));
+            self.boards = board::boards(self.world, object).map(|boards| (object, boards));
         }
         self.next.push(pixel);
         if self.next.len() == PIXELS {
@@ -89,9 +89,11 @@ impl<'a> Waiting<'a> {
             let Some(group) = self.groups.of(&self.corners, i) else {
                 let board = match self.views.rad[i] < f64::INFINITY {
                     true => Some(of_several(&self.views, i)),
-                    false => self
-                        .world
-                        .board(pixel.live.object, Spot::pixel(pixel.x, pixel.y)),
+                    false => board::board(
+                        self.world,
+                        pixel.live.object,
+                        SubPixel::pixel(pixel.x, pixel.y),
+                    ),
                 };
                 tell(pixel, board.as_ref().and_then(alone));
                 continue;
@@ -169,7 +171,7 @@ mod tests {
         world: &World,
         order: impl IntoIterator<Item = (u32, u32)>,
     ) -> HashMap<(u32, u32), Option<Sum>> {
-        let live = world.everything()[0];
+        let live = crate::tracer::candidates::everything(world)[0];
         let mut waiting = Waiting::new(world);
         let mut known = HashMap::new();
         let mut tell = |pixel: BoardPixel, sum| {
@@ -240,7 +242,7 @@ mod tests {
             );
             let world = world(&camera, libm::pow(10.0, square));
             for ((x, y), sum) in sums(&world, pixels()) {
-                let other = world.board(0, Spot::pixel(x, y)).as_ref().and_then(alone);
+                let other = board::board(&world, 0, SubPixel::pixel(x, y)).as_ref().and_then(alone);
                 let what = format!("{camera} at {x}, {y}: {sum:?} and {other:?}");
                 match (sum, other) {
                     (Some(sum), Some(other)) => {

@@ -7,9 +7,9 @@ use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch},
-    crossing::{Crossing, Part},
     form::{Form, axis_vector, inverse_depth},
+    hit::{Crossing, Part},
+    interval::{Cover, Patch},
 };
 use crate::{
     math::{Ball, Double, Doubt, Radius, Real},

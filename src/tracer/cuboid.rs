@@ -8,9 +8,9 @@ use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
     form::{Form, axis_vector, inverse_depth},
+    hit::{Crossing, Part},
+    interval::{Cover, Patch, Range},
 };
 use crate::{
     math::{Ball3, Double, Doubt, Radius, Real, UP},

@@ -1,11 +1,14 @@
 //! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! In the coordinates of that [`Spot`] every form of a surface is prepared anew, in high precision, so that what is left is good
+//! In the coordinates of that [`SubPixel`] every form of a surface is prepared anew, in high precision, so that what is left is good
 //! to the last bit of an `f64` however far the spot is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
-use super::{camera::Camera, cover::Range, form::Form, outlook::Spot, sphere::Sphere};
+use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
+
+/// The error of a line's form from which on double-double was not enough.
+pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A boundary in a pixel.
 #[derive(Clone, Debug)]
@@ -78,7 +81,7 @@ pub struct Place<T: Real> {
 
 impl<T: Real> Place<T> {
     /// The place of a spot.
-    pub fn new(camera: &Camera<T>, spot: Spot) -> Self {
+    pub fn new(camera: &Camera<T>, spot: SubPixel) -> Self {
         let offset = spot.offset(glam::DVec2::ZERO);
         let r = camera.direction(&camera.sample_point(spot.x, spot.y, offset));
         // Five roundings in a coordinate, and its pitch.

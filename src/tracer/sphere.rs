@@ -10,9 +10,9 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
-    pixel::{Conic, Here, Local},
+    hit::{Crossing, Part},
+    interval::{Cover, Patch, Range},
+    local_form::{Conic, Here, Local},
 };
 use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
 

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch},
-    crossing::{Crossing, Part},
     form::{Form, inverse_depth},
+    hit::{Crossing, Part},
+    interval::{Cover, Patch},
 };
 use crate::{
     math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross},

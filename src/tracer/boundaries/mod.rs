@@ -1,18 +1,28 @@
-//! The curves in a spot that bound what is seen there: outlines, where surfaces cross each other, and where the near and the far plane
-//! cut them.
+//! The boundaries of what is seen in a pixel, or in a part of one.
+//!
+//! In: a spot and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
+//! near and the far plane cut them. They are had in double-double, and again in the last precision where that leaves too much in doubt.
 
 mod equal;
 mod reach;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    cmp,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use glam::DVec2;
 
 use crate::math::{Big, Double};
 
 use self::reach::Reach;
 use super::{
-    curve::{Curve, Place, Surface},
-    object::Object,
-    outlook::{LOOSE_LINE, Live, Spot},
+    candidates::{self, Candidate},
+    curve::{Crossings, Curve, LOOSE_LINE, Place, Surface},
+    hit::Crossing,
+    interval::Patch,
+    shape::Object,
+    sub_pixel::SubPixel,
     world::{Held, Level, World},
 };
 
@@ -33,92 +43,151 @@ enum Source {
 /// The boundaries of what may be seen in a spot, in one precision.
 struct Boundaries<'a, T: Level> {
     world: &'a World,
-    live: &'a [Live],
+    live: &'a [Candidate],
     objects: Vec<Held<'a, T>>,
     place: Place<T>,
     /// Where each object is met, as double-double tells.
     reaches: &'a [Reach],
 }
 
-impl World {
-    /// The curves in a spot that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
-    /// the rest of them is left out.
-    pub fn curves(&self, spot: Spot, live: &[Live], cancel: &AtomicBool, out: &mut Vec<Curve>) {
-        out.clear();
-        let reaches = self.reaches(spot, live);
-        let boundaries = Boundaries::<Double>::new(self, spot, live, &reaches);
-        // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
-        let (mut loose, mut lacking) = (Vec::new(), Vec::new());
-        let mut of_lacking = Vec::new();
-        boundaries.each(cancel, |source| {
-            let before = out.len();
-            let is_whole = boundaries.push(source, out);
-            if !out[before..].iter().all(Curve::is_tight) {
-                out.truncate(before);
-                loose.push(source);
-            } else if !is_whole {
-                of_lacking.extend(out.drain(before..));
-                lacking.push(source);
-            }
-        });
-        if loose.is_empty() {
-            out.append(&mut of_lacking);
-            return equal::merge(out);
-        }
-        let boundaries = Boundaries::<Big>::new(self, spot, live, &reaches);
-        for source in loose.into_iter().chain(lacking) {
-            if cancel.load(Ordering::Relaxed) {
-                return;
-            }
-            boundaries.push(source, out);
-        }
-        equal::merge(out);
-    }
-
-    /// Whether surfaces of two objects may cross each other in a spot, or be one there.
-    pub(super) fn may_cross(&self, spot: Spot, a: Live, b: Live) -> bool {
-        let mut curves = Vec::new();
-        let live = [a, b];
-        let reaches = self.reaches(spot, &live);
-        let boundaries = Boundaries::<Double>::new(self, spot, &live, &reaches);
-        !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
-    }
-
-    /// How many curves may pass through a spot as far as double-double tells.
-    pub fn curves_about(&self, spot: Spot, live: &[Live], cancel: &AtomicBool) -> usize {
-        let mut curves = Vec::new();
-        let reaches = self.reaches(spot, live);
-        let boundaries = Boundaries::<Double>::new(self, spot, live, &reaches);
-        boundaries.each(cancel, |source| {
-            boundaries.push(source, &mut curves);
-        });
-        equal::merge(&mut curves);
-        curves.len()
-    }
-
-    /// Where each of some objects is met in a spot, at most.
-    fn reaches(&self, spot: Spot, live: &[Live]) -> Vec<Reach> {
-        let place = Place::new(&Double::frame(self).camera, spot);
-        let reach = |live: &Live| {
-            let object = Double::object(self, live.object);
-            // Of a sphere no line bounds more than what lies behind the eye.
-            match live.is_whole || matches!(*object, Object::Sphere(_)) {
-                true => Reach::whole(),
-                false => Reach::within(object.outline(&place)),
-            }
-        };
-        live.iter().map(reach).collect()
+/// Of some candidates, in file order, those that may be seen in a spot.
+pub fn narrowed(world: &World, spot: SubPixel, among: &[Candidate], out: &mut Vec<Candidate>) {
+    let patch = Patch::of_spot(&world.geometry.fast.camera, spot);
+    candidates::live_among(world, &patch, among.iter().map(|live| live.object), out);
+    if out.len() > candidates::LAYERS {
+        drop_behind_middle(world, spot, &patch, out);
     }
 }
 
+/// The curves in a spot that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
+/// the rest of them is left out.
+pub fn curves(
+    world: &World,
+    spot: SubPixel,
+    live: &[Candidate],
+    cancel: &AtomicBool,
+    out: &mut Vec<Curve>,
+) {
+    out.clear();
+    let reaches = reaches(world, spot, live);
+    let boundaries = Boundaries::<Double>::new(world, spot, live, &reaches);
+    // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
+    let (mut loose, mut lacking) = (Vec::new(), Vec::new());
+    let mut of_lacking = Vec::new();
+    boundaries.each(cancel, |source| {
+        let before = out.len();
+        let is_whole = boundaries.push(source, out);
+        if !out[before..].iter().all(Curve::is_tight) {
+            out.truncate(before);
+            loose.push(source);
+        } else if !is_whole {
+            of_lacking.extend(out.drain(before..));
+            lacking.push(source);
+        }
+    });
+    if loose.is_empty() {
+        out.append(&mut of_lacking);
+        return equal::merge(out);
+    }
+    let boundaries = Boundaries::<Big>::new(world, spot, live, &reaches);
+    for source in loose.into_iter().chain(lacking) {
+        if cancel.load(Ordering::Relaxed) {
+            return;
+        }
+        boundaries.push(source, out);
+    }
+    equal::merge(out);
+}
+
+/// Whether surfaces of two objects may cross each other in a spot, or be one there.
+fn may_cross(world: &World, spot: SubPixel, a: Candidate, b: Candidate) -> bool {
+    let mut curves = Vec::new();
+    let live = [a, b];
+    let reaches = reaches(world, spot, &live);
+    let boundaries = Boundaries::<Double>::new(world, spot, &live, &reaches);
+    !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
+}
+
+/// How many curves may pass through a spot as far as double-double tells.
+pub fn curves_about(
+    world: &World,
+    spot: SubPixel,
+    live: &[Candidate],
+    cancel: &AtomicBool,
+) -> usize {
+    let mut curves = Vec::new();
+    let reaches = reaches(world, spot, live);
+    let boundaries = Boundaries::<Double>::new(world, spot, live, &reaches);
+    boundaries.each(cancel, |source| {
+        boundaries.push(source, &mut curves);
+    });
+    equal::merge(&mut curves);
+    curves.len()
+}
+
+/// Where each of some objects is met in a spot, at most.
+fn reaches(world: &World, spot: SubPixel, live: &[Candidate]) -> Vec<Reach> {
+    let place = Place::new(&Double::frame(&world.geometry).camera, spot);
+    let reach = |live: &Candidate| {
+        let object = Double::object(&world.geometry, live.object);
+        // Of a sphere no line bounds more than what lies behind the eye.
+        match live.is_whole || matches!(*object, Object::Sphere(_)) {
+            true => Reach::whole(),
+            false => Reach::within(object.outline(&place)),
+        }
+    };
+    live.iter().map(reach).collect()
+}
+
+/// Removes objects that lie all over a spot behind the one that is seen in its middle, if every ray through the spot meets that.
+fn drop_behind_middle(world: &World, spot: SubPixel, patch: &Patch, live: &mut Vec<Candidate>) {
+    let (Some(middle), _) = candidates::object_at(world, spot, DVec2::ZERO, live) else {
+        return;
+    };
+    let front = live.iter().find(|live| live.object == middle).copied();
+    let Some(front) = front.filter(|front| front.is_whole) else {
+        return;
+    };
+    let offset = spot.offset(DVec2::ZERO);
+    let r = world.geometry.fast.camera.direction(
+        &world
+            .geometry
+            .fast
+            .camera
+            .sample_point(spot.x, spot.y, offset),
+    );
+    let is_met = |back: &Candidate| {
+        let object = f64::object(&world.geometry, back.object);
+        let first = || object.first(&r).ok().flatten();
+        let is_beyond_near = |crossing: Crossing<f64>| match &world.geometry.fast.near {
+            Some(near) => crossing.inverse_depth.compare(&near.at(&r)) == Ok(cmp::Ordering::Less),
+            None => true,
+        };
+        match back.crossings {
+            Crossings::First => first().is_some(),
+            Crossings::Both => first().is_some_and(is_beyond_near),
+            Crossings::Second => first().and(object.second(&r)).is_some_and(is_beyond_near),
+        }
+    };
+    live.retain(|back| {
+        let are_uncut = !front.is_cut() && !back.is_cut();
+        back.object == middle
+            || !(are_uncut && candidates::covers(world, middle, back.object, patch)
+                    // What is met there is behind it there; and so it is wherever it is met, which is in one piece, as it is convex.
+                    || is_met(back) && !may_cross(world, spot, front, *back))
+    });
+}
+
 impl<'a, T: Level> Boundaries<'a, T> {
-    fn new(world: &'a World, spot: Spot, live: &'a [Live], reaches: &'a [Reach]) -> Self {
-        let objects = live.iter().map(|live| T::object(world, live.object));
+    fn new(world: &'a World, spot: SubPixel, live: &'a [Candidate], reaches: &'a [Reach]) -> Self {
+        let objects = live
+            .iter()
+            .map(|live| T::object(&world.geometry, live.object));
         Self {
             world,
             live,
             objects: objects.collect(),
-            place: Place::new(&T::frame(world).camera, spot),
+            place: Place::new(&T::frame(&world.geometry).camera, spot),
             reaches,
         }
     }
@@ -171,7 +240,7 @@ impl<'a, T: Level> Boundaries<'a, T> {
                 outline.into_iter().for_each(push);
             }
             Source::Clips(i) => {
-                let frame = T::frame(self.world);
+                let frame = T::frame(&self.world.geometry);
                 for clip in [&frame.near, &frame.far].into_iter().flatten() {
                     for surface in &self.surfaces(i) {
                         cross(surface, &Surface::Plane(clip));

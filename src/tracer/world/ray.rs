@@ -4,11 +4,14 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3};
 
-use super::{Level, World};
+use super::{
+    World, depth_order,
+    precision::{Geometry, Level},
+};
 use crate::{
     color::Color,
     math::{Ball, Ball3, Big, Real},
-    tracer::crossing::Crossing,
+    tracer::hit::Crossing,
 };
 
 /// A crossing of a ray with a surface, for people: numbers are right to the last bit.
@@ -28,69 +31,68 @@ pub struct Hit {
     pub visible: bool,
 }
 
-impl World {
-    /// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
-    /// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
-    /// the reach that the world was made for.
-    pub fn ray(&self, pixels: DVec2) -> (DVec3, Vec<Hit>) {
-        let camera = &self.big.camera;
-        let point = camera.picture_point(pixels);
-        let r = camera.direction(&point);
-        let candidates = self.candidates(&point);
-        let mut crossings = Vec::new();
-        for &index in &candidates {
-            let object = Big::object(self, index);
-            let first = object.first(&r).unwrap_or_default();
-            let second = first.as_ref().and_then(|_| object.second(&r));
-            crossings.extend(first.map(|crossing| (index, false, crossing)));
-            crossings.extend(second.map(|crossing| (index, true, crossing)));
-        }
-        self.sort(&mut crossings);
-
-        let among = candidates.iter().copied();
-        let seen = self.seen_in_direction(&r, among).unwrap_or_default();
-        let along = [&r.x, &r.y, &r.z].map(rounded);
-        let world: Ball3<Big> = [0, 1, 2].map(|i| {
-            let part = |j: usize| &camera.axes[j][i] * &along[j];
-            part(0) + part(1) + part(2)
-        });
-        let length = rounded(&r.square).sqrt();
-        let direction = world.each_ref().map(|x| settled(&(x / &length))).into();
-        let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
-            let lambda = Ball::exact(1.0) / &crossing.inverse_depth;
-            let lambda = lambda.scaled(-camera.exponent);
-            let coordinate =
-                |i: usize| settled(&(Ball::exact(camera.eye[i]) + &lambda * &world[i]));
-            let odd = Big::object(self, index).is_odd(&r).unwrap_or_default();
-            Hit {
-                object: index,
-                t: settled(&(&lambda * &length)),
-                depth: settled(&(&lambda * &along[2])),
-                point: [0, 1, 2].map(coordinate).into(),
-                color: self.palette()[self.slots(index)[usize::from(odd)]],
-                visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
-            }
-        };
-        (direction, crossings.into_iter().map(hit).collect())
+/// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
+/// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
+/// the reach that the world was made for.
+pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
+    let camera = &world.geometry.big.camera;
+    let point = camera.picture_point(pixels);
+    let r = camera.direction(&point);
+    let candidates = world.candidates(&point);
+    let mut crossings = Vec::new();
+    for &index in &candidates {
+        let object = Big::object(&world.geometry, index);
+        let first = object.first(&r).unwrap_or_default();
+        let second = first.as_ref().and_then(|_| object.second(&r));
+        crossings.extend(first.map(|crossing| (index, false, crossing)));
+        crossings.extend(second.map(|crossing| (index, true, crossing)));
     }
+    sort(&world.geometry, &mut crossings);
 
-    /// Sorts by depth; what cannot be told apart stands in file order.
-    fn sort(&self, crossings: &mut [(usize, bool, Crossing<Big>)]) {
-        // First by the computed depths, which is an order; then by pairs, as the tracer compares them.
-        crossings.sort_by(|(.., a), (.., b)| {
-            let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
-            difference.to_f64().total_cmp(&0.0)
-        });
-        for end in 1..crossings.len() {
-            let mut at = end;
-            while at > 0 {
-                let ((i, _, a), (j, _, b)) = (&crossings[at - 1], &crossings[at]);
-                if i <= j || self.order((*i, a), (*j, b)) != Ok(Ordering::Equal) {
-                    break;
-                }
-                crossings.swap(at - 1, at);
-                at -= 1;
+    let among = candidates.iter().copied();
+    let seen = world.seen_in_direction(&r, among).unwrap_or_default();
+    let along = [&r.x, &r.y, &r.z].map(rounded);
+    let turned: Ball3<Big> = [0, 1, 2].map(|i| {
+        let part = |j: usize| &camera.axes[j][i] * &along[j];
+        part(0) + part(1) + part(2)
+    });
+    let length = rounded(&r.square).sqrt();
+    let direction = turned.each_ref().map(|x| settled(&(x / &length))).into();
+    let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
+        let lambda = Ball::exact(1.0) / &crossing.inverse_depth;
+        let lambda = lambda.scaled(-camera.exponent);
+        let coordinate = |i: usize| settled(&(Ball::exact(camera.eye[i]) + &lambda * &turned[i]));
+        let odd = Big::object(&world.geometry, index)
+            .is_odd(&r)
+            .unwrap_or_default();
+        Hit {
+            object: index,
+            t: settled(&(&lambda * &length)),
+            depth: settled(&(&lambda * &along[2])),
+            point: [0, 1, 2].map(coordinate).into(),
+            color: world.palette()[world.slots(index)[usize::from(odd)]],
+            visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
+        }
+    };
+    (direction, crossings.into_iter().map(hit).collect())
+}
+
+/// Sorts by depth; what cannot be told apart stands in file order.
+fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
+    // First by the computed depths, which is an order; then by pairs, as the tracer compares them.
+    crossings.sort_by(|(.., a), (.., b)| {
+        let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
+        difference.to_f64().total_cmp(&0.0)
+    });
+    for end in 1..crossings.len() {
+        let mut at = end;
+        while at > 0 {
+            let ((i, _, a), (j, _, b)) = (&crossings[at - 1], &crossings[at]);
+            if i <= j || depth_order::order(geometry, (*i, a), (*j, b)) != Ok(Ordering::Equal) {
+                break;
             }
+            crossings.swap(at - 1, at);
+            at -= 1;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Many objects in one pixel.
 
-use pinhole::tracer::Spot;
+use pinhole::tracer::{SubPixel, boundaries, candidates};
 
 use super::*;
 
@@ -29,11 +29,11 @@ fn objects_that_no_ray_meets_together_have_no_curves_between_them() {
     for rows in [3, 5, 8] {
         let scene = read(&side_by_side(&mut random, rows));
         let world = World::new(&scene);
-        let (everything, mut live) = (world.everything(), Vec::new());
-        let spot = Spot::pixel(0, 0);
-        world.live_in(spot, &everything, &mut live);
+        let (everything, mut live) = (candidates::everything(&world), Vec::new());
+        let spot = SubPixel::pixel(0, 0);
+        boundaries::narrowed(&world, spot, &everything, &mut live);
         assert_eq!(live.len(), (rows * rows) as usize, "all are seen");
-        let curves = world.curves_about(spot, &live, &AtomicBool::new(false));
+        let curves = boundaries::curves_about(&world, spot, &live, &AtomicBool::new(false));
         assert!(
             curves <= 3 * live.len(),
             "{curves} curves of {} triangles",

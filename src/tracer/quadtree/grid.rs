@@ -1,9 +1,9 @@
-//! The grid in which a hierarchy counts: whole numbers for places in the view plane and for how near an object is.
+//! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near an object is.
 
 use crate::tracer::{
+    bounds2d::Extent,
     camera::{Direction, Window},
-    cover::{Patch, Range},
-    extent::Extent,
+    interval::{Patch, Range},
 };
 
 /// The side of the root is 2 to this power: units are far smaller than pixels in a picture of any common size.
@@ -88,35 +88,13 @@ impl Rectangle {
     pub(super) fn side(&self) -> u32 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) + 1
     }
-
-    /// The least that holds both.
-    fn with(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1].map(|i| self.low[i].min(other.low[i])),
-            high: [0, 1].map(|i| self.high[i].max(other.high[i])),
-        }
-    }
 }
 
 impl Item {
-    /// Adds what it is elsewhere.
-    pub fn add(&mut self, other: &Self) {
-        self.bounds = self.bounds.with(&other.bounds);
-    }
-
     /// Whether it may be met in a rectangle.
     #[inline]
     pub fn meets(&self, rectangle: &Rectangle) -> bool {
         self.bounds.meets(rectangle)
-    }
-
-    /// Whether a ray in these units may meet it.
-    #[inline]
-    pub fn holds(&self, at: [u32; 2]) -> bool {
-        let holds = |axis: usize| {
-            (self.bounds.low[axis] <= at[axis]) & (at[axis] <= self.bounds.high[axis])
-        };
-        holds(0) & holds(1)
     }
 
     /// Whether it may be met everywhere in a rectangle.

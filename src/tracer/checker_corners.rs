@@ -1,23 +1,26 @@
 //! The squares of a checkerboard at the corners of many pixels at once.
 //!
+//! In: a block of pixels in which a board is all that is seen. Out: runs of pixels that show one colour, and the squares that each other pixel
+//! shows.
+//!
 //! Where a board alone is seen, most parts of the picture end as pixels, which have their corners in common. So the squares that the
 //! corners of a block lie in are computed row by row, in plain arrays, which the compiler makes vectors of: a ratio of linear forms is
 //! the greatest and the least at corners, and a pixel whose corners lie in one square, each farther from its edge than errors reach, shows nothing
 //! else.
 
-use std::ops::ControlFlow;
+use std::{array, ops::ControlFlow};
 
 use multiversion::multiversion;
 
 use super::{
-    super::{object::Object, outlook::Live, quartering::Part, world::World},
-    local::{Here, Local, ROUNDINGS},
-    squares::Squares,
+    checkerboard::Checkerboard,
+    local_form::{Here, Local, ROUNDINGS},
+    shape::Object,
+    world::{Level, World},
 };
 use crate::{
     area::Area,
-    math::{ROUND, UP},
-    tracer::{checkerboard::Checkerboard, world::Level},
+    math::{ROUND, UP, floor},
 };
 
 /// The greatest side of a block, in pixels.
@@ -52,66 +55,53 @@ struct Corners {
     sign: [f64; LANES],
 }
 
-impl World {
-    /// Shows `visit` the pixels of a part of the picture in which a checkerboard is all that is seen, in runs of one colour and singly, with
-    /// what they show of the board if that is known. `None` if the part is too large for that or the board too far.
-    pub(in super::super) fn checks(
-        &self,
-        part: Area,
-        live: &[Live],
-        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
-    ) -> Option<ControlFlow<()>> {
-        let [Live { object, .. }] = *live else {
-            return None;
-        };
-        if part.width as usize > SIDE || part.height as usize > SIDE {
-            return None;
-        }
-        let Object::Checkerboard(board) = &*f64::object(self, object) else {
-            return None;
-        };
-        let mesh = Mesh::new(board, &Here::new(&f64::frame(self).camera, part), part)?;
-        let slots = self.slots(object);
-        let [mut above, mut below] = [Corners::new(), Corners::new()];
-        mesh.corners(0, &mut above);
-        for row in 0..part.height {
-            mesh.corners(row + 1, &mut below);
-            let flow = mesh.row(row, &above, &below, |area, seen| match seen {
-                Seen::One(odd) => {
-                    let slot = slots[usize::from(odd)];
-                    visit(Part::Flat { area, slot }, None)
-                }
-                Seen::Some(checks) => {
-                    let (x, y) = (area.x, area.y);
-                    visit(Part::Open { x, y, live }, Some(checks))
-                }
-                Seen::Unknown => match self.only_square(area, object) {
-                    Some(odd) => {
-                        let slot = slots[usize::from(odd)];
-                        visit(Part::Flat { area, slot }, None)
-                    }
-                    None => {
-                        let (x, y) = (area.x, area.y);
-                        visit(Part::Open { x, y, live }, None)
-                    }
-                },
-            });
-            if flow.is_break() {
-                return Some(flow);
-            }
-            std::mem::swap(&mut above, &mut below);
-        }
-        Some(ControlFlow::Continue(()))
-    }
-}
-
 /// What pixels show of a board.
-enum Seen<'a> {
+#[derive(Clone, Copy, Debug)]
+pub enum Seen<'a> {
     /// One square, or squares of one colour side by side; whether that is the second.
     One(bool),
-    /// A few.
+    /// A few squares of one pixel.
     Some(&'a Checks),
+    /// One pixel, of which that is not known.
     Unknown,
+}
+
+/// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is seen, show of it: in runs of one colour and
+/// singly. `None` if the object is none, the part is too large or the board too far.
+pub fn show(
+    world: &World,
+    part: Area,
+    object: usize,
+    each: &mut impl FnMut(Area, Seen) -> ControlFlow<()>,
+) -> Option<ControlFlow<()>> {
+    if part.width as usize > SIDE || part.height as usize > SIDE {
+        return None;
+    }
+    let Object::Checkerboard(board) = &*f64::object(&world.geometry, object) else {
+        return None;
+    };
+    let mesh = Mesh::new(
+        board,
+        &Here::new(&f64::frame(&world.geometry).camera, part),
+        part,
+    )?;
+    let [mut above, mut below] = [Corners::new(), Corners::new()];
+    mesh.corners(0, &mut above);
+    for row in 0..part.height {
+        mesh.corners(row + 1, &mut below);
+        let flow = mesh.row(row, &above, &below, |area, seen| match seen {
+            // Of a pixel by itself errors are smaller.
+            Seen::Unknown if part.pixels() > 1 => {
+                show(world, area, object, each).unwrap_or_else(|| each(area, Seen::Unknown))
+            }
+            _ => each(area, seen),
+        });
+        if flow.is_break() {
+            return Some(flow);
+        }
+        std::mem::swap(&mut above, &mut below);
+    }
+    Some(ControlFlow::Continue(()))
 }
 
 impl Corners {
@@ -293,4 +283,53 @@ fn compare_widely(above: &Corners, below: &Corners, out: &mut [f64; SIDE]) {
         let second = (c[i] == c[i + 1]) & (c[i] == d[i]) & (c[i] == d[i + 1]);
         out[i] = if first & second { above.sign[i] } else { 0.0 };
     }
+}
+
+/// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Squares {
+    pub(super) across: [Local; 2],
+    pub(super) below: Local,
+    pub(super) odd: bool,
+}
+
+/// The corners of a pixel, or of a part of the picture, from its middle.
+const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
+
+impl Squares {
+    pub(super) fn new(board: &Checkerboard<f64>, here: &Here) -> Self {
+        Self {
+            across: board.across.each_ref().map(|form| form.local(here)),
+            below: board.below.local(here),
+            odd: board.odd,
+        }
+    }
+
+    /// From which to which square there are any in the pixel, in x and in z: perhaps one square more than there are. `None` if that
+    /// is not certain.
+    pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
+        let least = self.below.factors[2] - self.below.spread() * UP;
+        if least <= 4.0 * self.below.rad {
+            return None;
+        }
+        let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
+        let [x, z] = self.across.each_ref().map(|across| {
+            // A ratio of linear forms is the greatest and the least at corners.
+            let values: [f64; 4] = array::from_fn(|i| {
+                let (x, y) = CORNERS[i];
+                across.at(x, y) * inverse[i]
+            });
+            let low = values.into_iter().fold(f64::INFINITY, f64::min);
+            let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let size = low.abs().max(high.abs());
+            let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
+            (slack < 0.25).then(|| (floor(low - slack), floor(high + slack)))
+        });
+        Some([x?, z?])
+    }
+}
+
+pub(super) fn is_odd(whole: f64) -> bool {
+    // `ranges` answers for numbers far below 2^53.
+    whole as i64 & 1 == 1
 }

@@ -1,15 +1,18 @@
-//! A checkerboard as pixels see it, several at a time: the same that [`World::board`] says of one spot, by the same operations on plain
+//! A checkerboard in the coordinates of pixels and of parts of them: three linear forms, whose ratios are places on the board.
+//!
+//! For one spot in any precision, by [`Place::together`]; and for several pixels at a time in double-double: the same that [`board`] says of one spot, by the same operations on plain
 //! arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
 
 use glam::DVec2;
 use multiversion::multiversion;
 
 use super::{
-    object::Object,
-    outlook::LOOSE_LINE,
+    curve::{LOOSE_LINE, Place},
+    shape::Object,
+    sub_pixel::SubPixel,
     world::{Level, World},
 };
-use crate::math::{Double, ROUND, Real};
+use crate::math::{Big, Double, ROUND, Real};
 
 /// So many pixels at a time.
 pub const PIXELS: usize = 8;
@@ -19,6 +22,22 @@ const SMALL: f64 = 1e-60;
 
 /// From how many squares on a pixel's nearest square is not told here.
 const FAR: f64 = 1e9;
+
+/// A checkerboard in a spot: the point (x, y) shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
+/// a corner of squares near to the spot, where ℓ > 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// The factors of x, y and 1 in N₀ and N₁.
+    pub across: [[f64; 3]; 2],
+    /// Those of ℓ.
+    pub below: [f64; 3],
+    /// What their rounding has left of these factors: of N₀, N₁ and ℓ.
+    pub low: [[f64; 3]; 3],
+    /// How far a value of each of these forms may be from the true one, but for the rounding of the factors.
+    pub rads: [f64; 3],
+    /// Whether the square [0, 1)² has the second colour.
+    pub odd: bool,
+}
 
 /// What all pixels have in common of a checkerboard.
 #[derive(Clone, Debug)]
@@ -42,33 +61,80 @@ pub struct Views {
     pub across: [[[f64; PIXELS]; 3]; 2],
     /// Those of ℓ.
     pub below: [[f64; PIXELS]; 3],
-    /// How far a value of these forms may be from the true one, but for the rounding of the factors; infinite where [`World::board`] should
+    /// How far a value of these forms may be from the true one, but for the rounding of the factors; infinite where [`board`] should
     /// be asked.
     pub rad: [f64; PIXELS],
     /// −1 where the square [0, 1)² has the second colour, else 1.
     pub sign: [f64; PIXELS],
 }
 
-impl World {
-    /// An object in pixels, if it is a checkerboard.
-    pub fn boards(&self, object: usize) -> Option<Boards> {
-        let object = Double::object(self, object);
-        let Object::Checkerboard(board) = &*object else {
-            return None;
-        };
-        let camera = &Double::frame(self).camera;
-        let [a, b] = &board.across;
-        let forms = [a, b, &board.below];
-        Some(Boards {
-            forms: forms.map(|form| *form.factors()),
-            slopes: forms.map(|form| {
-                let [x, y, _] = form.factors();
-                [x, y].map(|factor| factor.times(&camera.pitch))
-            }),
-            rads: forms.map(|form| form.rad()),
-            pitch: camera.pitch,
-            half: camera.half,
-            odd: board.odd,
+/// An object in pixels, if it is a checkerboard.
+pub fn boards(world: &World, object: usize) -> Option<Boards> {
+    let object = Double::object(&world.geometry, object);
+    let Object::Checkerboard(board) = &*object else {
+        return None;
+    };
+    let camera = &Double::frame(&world.geometry).camera;
+    let [a, b] = &board.across;
+    let forms = [a, b, &board.below];
+    Some(Boards {
+        forms: forms.map(|form| *form.factors()),
+        slopes: forms.map(|form| {
+            let [x, y, _] = form.factors();
+            [x, y].map(|factor| factor.times(&camera.pitch))
+        }),
+        rads: forms.map(|form| form.rad()),
+        pitch: camera.pitch,
+        half: camera.half,
+        odd: board.odd,
+    })
+}
+/// An object's squares in a spot, if it is a checkerboard.
+pub fn board(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
+    let board = board_in::<Double>(world, object, spot)?;
+    match board.doubt() < LOOSE_LINE {
+        true => Some(board),
+        false => board_in::<Big>(world, object, spot),
+    }
+}
+
+/// The same where more than one rounding of the factors matters.
+pub fn board_closely(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
+    board_in::<Big>(world, object, spot)
+}
+
+fn board_in<T: Level>(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
+    let object = T::object(&world.geometry, object);
+    let Object::Checkerboard(board) = &*object else {
+        return None;
+    };
+    let place = Place::new(&T::frame(&world.geometry).camera, spot);
+    let [a, b] = &board.across;
+    let (lines, is_moved) = place.together([a, b], &board.below);
+    let rads = lines.each_ref().map(|line| line.rad);
+    let factors = lines.map(|line| line.factors);
+    let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
+    Some(Board {
+        low: factors.map(|factors| factors.map(|c| c.lo)),
+        across: [a, b],
+        below,
+        rads,
+        odd: board.odd ^ is_moved,
+    })
+}
+
+impl Board {
+    /// How far the value of a form may be from the true one, by the size of its terms; infinite where squares are too small for the range of
+    /// `f64`.
+    pub fn doubt(&self) -> f64 {
+        let [a, b] = &self.across;
+        let forms = [a, b, &self.below].into_iter().zip(self.rads);
+        forms.fold(0.0, |doubt, ([x, y, z], rad)| {
+            let size = 0.5 * (x.abs() + y.abs()) + z.abs();
+            match size.is_finite() && size > 0.0 {
+                true => doubt.max(rad / size),
+                false => f64::INFINITY,
+            }
         })
     }
 }
@@ -189,7 +255,7 @@ mod tests {
     use crate::{
         scene,
         source::{Source, Sources},
-        tracer::Spot,
+        tracer::SubPixel,
     };
 
     fn world(camera: &str) -> World {
@@ -217,7 +283,7 @@ mod tests {
             ),
         ] {
             let world = world(camera);
-            let boards = world.boards(0).expect("a checkerboard");
+            let boards = boards(&world, 0).expect("a checkerboard");
             let mut views = Views::default();
             let mut compared = 0;
             for row in (0..480).step_by(8) {
@@ -228,9 +294,7 @@ mod tests {
                     if views.rad[i].is_infinite() {
                         continue;
                     }
-                    let one = world
-                        .board(0, Spot::pixel(columns[i], rows[i]))
-                        .expect("it");
+                    let one = board(&world, 0, SubPixel::pixel(columns[i], rows[i])).expect("it");
                     let scale = one.below[2] / views.below[2][i];
                     assert_eq!(libm::frexp(scale).0, 0.5, "a power of two");
                     let scaled = |form: &[[f64; PIXELS]; 3]| form.map(|factor| factor[i] * scale);

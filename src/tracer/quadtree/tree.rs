@@ -1,4 +1,4 @@
-//! The cells of a hierarchy, and the objects listed in them.
+//! The cells of a quadtree, and the objects listed in them.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 

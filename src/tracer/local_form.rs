@@ -1,6 +1,6 @@
 //! Forms in a pixel: functions of the offset from its centre, each with one bound on the error of all its values there.
 
-use super::super::{
+use super::{
     camera::{Camera, Direction},
     form::Form,
 };

@@ -3,9 +3,11 @@
 use multiversion::multiversion;
 
 use super::{
+    super::{
+        checker_corners::Squares,
+        local_form::{Conic, Line, Local, ROUNDINGS},
+    },
     Depth, Pattern, Pixel, Surface,
-    local::{Conic, Line, Local, ROUNDINGS},
-    squares::Squares,
 };
 use crate::math::{ROUND, UP, Vectors};
 

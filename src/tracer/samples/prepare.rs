@@ -4,17 +4,16 @@ use std::borrow::Borrow;
 
 use super::{
     super::{
+        candidates::Candidate,
+        checker_corners::{Checks, Squares, is_odd},
         checkerboard::Checkerboard,
         form::Form,
-        object::Object,
-        outlook::Live,
+        local_form::{Here, Local, ROUNDINGS, Side},
+        shape::Object,
         sphere::Sphere,
         world::{Level, World},
     },
     Depth, Pattern, Pixel, Surface,
-    local::{Here, Local, ROUNDINGS, Side},
-    mesh::Checks,
-    squares::{Squares, is_odd},
 };
 use crate::{area::Area, math::UP};
 
@@ -32,7 +31,10 @@ enum Met {
 
 impl Pixel {
     pub(super) fn prepare(&mut self, world: &World) -> Result<(), Hard> {
-        let here = Here::new(&f64::frame(world).camera, Area::pixel(self.x, self.y));
+        let here = Here::new(
+            &f64::frame(&world.geometry).camera,
+            Area::pixel(self.x, self.y),
+        );
         self.surfaces.clear();
         self.lines.clear();
         self.planes.clear();
@@ -63,7 +65,7 @@ impl Pixel {
     /// Writes down a candidate's boundaries and colours.
     fn surface(&mut self, world: &World, here: &Here, place: usize) -> Result<(), Hard> {
         let live = self.live[place];
-        let object = &*f64::object(world, live.object);
+        let object = &*f64::object(&world.geometry, live.object);
         let start = self.lines.len();
         let mut surface = Surface {
             place,
@@ -152,10 +154,10 @@ impl Pixel {
         &mut self,
         world: &World,
         here: &Here,
-        live: Live,
+        live: Candidate,
         object: &Object<f64>,
     ) -> Result<Met, Hard> {
-        let frame = f64::frame(world);
+        let frame = f64::frame(&world.geometry);
         let plane = match object {
             Object::Triangle(triangle) => Some(&triangle.plane),
             Object::Checkerboard(board) => Some(&board.plane),
@@ -258,7 +260,7 @@ impl Pixel {
         let mut rad = 0.0_f64;
         for surface in &mut self.surfaces {
             let start = self.planes.len();
-            let object = &*f64::object(world, self.live[surface.place].object);
+            let object = &*f64::object(&world.geometry, self.live[surface.place].object);
             surface.depth = match object {
                 Object::EdgeOn => return Err(Hard),
                 Object::Triangle(triangle) => {

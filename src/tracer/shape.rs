@@ -3,11 +3,11 @@
 use super::{
     camera::{Camera, Direction, Window},
     checkerboard::Checkerboard,
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
     cuboid::Cuboid,
     curve::{Crossings, Curve, Place, Surface},
     form::Form,
+    hit::{Crossing, Part},
+    interval::{Cover, Patch, Range},
     sphere::Sphere,
     triangle::Triangle,
 };
@@ -96,17 +96,6 @@ impl Object<f64> {
             Self::Triangle(triangle) => triangle.cover(patch),
             Self::Cuboid(cuboid) => cuboid.cover(patch),
             Self::Checkerboard(checkerboard) => checkerboard.cover(patch),
-        }
-    }
-
-    /// About how many forms tell where and how deep it is: of a box with two or three faces in sight as many as of two triangles.
-    pub fn forms(&self) -> usize {
-        match self {
-            Self::EdgeOn => 0,
-            Self::Checkerboard(_) => 2,
-            Self::Sphere(_) => 3,
-            Self::Triangle(_) => 4,
-            Self::Cuboid(_) => 8,
         }
     }
 
