@@ -30,7 +30,7 @@ pub struct Client {
 
 impl Client {
     /// What a client says of itself in the parameters of `initialize`. The fields are looked up one by one: to read all that a client may say
-    /// would take a tenth of the whole program's compilation.
+    /// would take a twentieth of the whole program's compilation.
     pub fn new(params: &Value) -> Self {
         let field = |path: &str| params.pointer(path);
         let can = |path: &str| field(path) == Some(&Value::Bool(true));
