@@ -211,7 +211,11 @@ impl<'a> Integrator<'a> {
             }
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
-                Part::Open { x, y, live } => match live {
+                Part::Open {
+                    x,
+                    y,
+                    candidates: live,
+                } => match live {
                     [only] if self.is_floor(only) => {
                         waiting.push(BoardPixel { x, y, live: *only }, &mut |floor, sum| {
                             self.set(floor, sum, &mut film, &mut others);

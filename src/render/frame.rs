@@ -65,9 +65,12 @@ impl<P: film::Pixel> Frame<'_, P> {
                 film.fill(area, self.shown[slot]);
                 self.go_on()
             }
-            Part::Open { x, y, live } => {
-                self.pixel([x, y], Trace::Together(live, checks), &mut film, tally)
-            }
+            Part::Open { x, y, candidates } => self.pixel(
+                [x, y],
+                Trace::Together(candidates, checks),
+                &mut film,
+                tally,
+            ),
             Part::Plain { area } => {
                 let mut pixels = area.iter();
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], Trace::OneByOne, &mut film, tally))
@@ -102,7 +105,7 @@ impl<P: film::Pixel> Frame<'_, P> {
         }
         let trace = match trace {
             // To prepare the pixel would take longer.
-            Trace::Together(live, _) if samples == 1 => Trace::Among(live),
+            Trace::Together(candidates, _) if samples == 1 => Trace::Among(candidates),
             _ => trace,
         };
         film.rays += samples;
@@ -120,8 +123,8 @@ impl<P: film::Pixel> Frame<'_, P> {
 
     /// Prepares a pixel, where samples are traced together.
     fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut Pixel) {
-        if let Trace::Together(live, checks) = trace {
-            samples::prepare(self.world, at, live, checks, pixel);
+        if let Trace::Together(candidates, checks) = trace {
+            samples::prepare(self.world, at, candidates, checks, pixel);
         }
     }
 
@@ -194,8 +197,8 @@ impl<P: film::Pixel> Frame<'_, P> {
                 vectors,
                 |slot, samples| counts.add(slot, samples),
             ),
-            Trace::Among(live) => {
-                let objects = live.iter().map(|live| live.object);
+            Trace::Among(candidates) => {
+                let objects = candidates.iter().map(|candidate| candidate.object);
                 for offset in wanted {
                     counts.add(self.world.slot_among(x, y, offset, objects.clone()), 1);
                 }

@@ -1,13 +1,13 @@
 //! A checkerboard in the coordinates of pixels and of parts of them: three linear forms, whose ratios are places on the board.
 //!
-//! For one spot in any precision, by [`Place::together`]; and for several pixels at a time in double-double: the same that [`board`] says of one spot, by the same operations on plain
+//! For one sub-pixel in any precision, by [`SubPixelFrame::together`]; and for several pixels at a time in double-double: the same that [`board`] says of one sub-pixel, by the same operations on plain
 //! arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
 
 use glam::DVec2;
 use multiversion::multiversion;
 
 use super::{
-    curve::{LOOSE_LINE, Place},
+    curve::{LOOSE_LINE, SubPixelFrame},
     shape::Object,
     sub_pixel::SubPixel,
     world::{Level, World},
@@ -23,8 +23,8 @@ const SMALL: f64 = 1e-60;
 /// From how many squares on a pixel's nearest square is not told here.
 const FAR: f64 = 1e9;
 
-/// A checkerboard in a spot: the point (x, y) shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
-/// a corner of squares near to the spot, where ℓ > 0.
+/// A checkerboard in a sub-pixel: the point (x, y) shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
+/// a corner of squares near to the sub-pixel, where ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Board {
     /// The factors of x, y and 1 in N₀ and N₁.
@@ -89,28 +89,28 @@ pub fn boards(world: &World, object: usize) -> Option<Boards> {
         odd: board.odd,
     })
 }
-/// An object's squares in a spot, if it is a checkerboard.
-pub fn board(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
-    let board = board_in::<Double>(world, object, spot)?;
+/// An object's squares in a sub-pixel, if it is a checkerboard.
+pub fn board(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
+    let board = board_in::<Double>(world, object, sub_pixel)?;
     match board.doubt() < LOOSE_LINE {
         true => Some(board),
-        false => board_in::<Big>(world, object, spot),
+        false => board_in::<Big>(world, object, sub_pixel),
     }
 }
 
 /// The same where more than one rounding of the factors matters.
-pub fn board_closely(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
-    board_in::<Big>(world, object, spot)
+pub fn board_closely(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
+    board_in::<Big>(world, object, sub_pixel)
 }
 
-fn board_in<T: Level>(world: &World, object: usize, spot: SubPixel) -> Option<Board> {
+fn board_in<T: Level>(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
     let object = T::object(&world.geometry, object);
     let Object::Checkerboard(board) = &*object else {
         return None;
     };
-    let place = Place::new(&T::frame(&world.geometry).camera, spot);
+    let frame = SubPixelFrame::new(&T::frame(&world.geometry).camera, sub_pixel);
     let [a, b] = &board.across;
-    let (lines, is_moved) = place.together([a, b], &board.below);
+    let (lines, is_moved) = frame.together([a, b], &board.below);
     let rads = lines.each_ref().map(|line| line.rad);
     let factors = lines.map(|line| line.factors);
     let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
@@ -145,7 +145,7 @@ impl Boards {
         see_widely(self, columns, rows, out);
     }
 
-    /// As `Place::together` has it, step by step.
+    /// As `SubPixelFrame::together` has it, step by step.
     #[inline(always)]
     fn see(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
         const ONE: u64 = 1.0f64.to_bits();

@@ -11,7 +11,7 @@ use super::{
     interval::{Patch, Range},
     shape::Object,
     sphere::Sphere,
-    triangle::{Corners, Triangle},
+    triangle::{Triangle, Vertices},
 };
 use crate::{
     math::{Ball3, Double, Radius, Real, UP},
@@ -59,7 +59,7 @@ impl Object<f64> {
             (Self::Sphere(sphere), _) => of_sphere(sphere, fast.window.z),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), fast.window.z),
             _ => match &corners {
-                Some(Corners { points, exponent }) => {
+                Some(Vertices { points, exponent }) => {
                     let scale = libm::ldexp(1.0, *exponent);
                     of_corners(points, fast.window.z).times_nearest(scale)
                 }

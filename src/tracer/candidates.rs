@@ -49,7 +49,7 @@ const APART: f64 = 1.0 + 1e-12;
 
 /// All objects, as candidates for any part of the picture.
 pub fn everything(world: &World) -> Vec<Candidate> {
-    let live = |object| Candidate {
+    let candidate = |object| Candidate {
         object,
         is_whole: false,
         inverse_depth: Range::ALL,
@@ -58,13 +58,18 @@ pub fn everything(world: &World) -> Vec<Candidate> {
             None => Crossings::First,
         },
     };
-    (0..world.len()).map(live).collect()
+    (0..world.len()).map(candidate).collect()
 }
 
 /// Of some candidates, in file order, those that may be seen in a part of the picture.
 pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Candidate>) {
     let patch = Patch::new(&world.geometry.fast.camera, part);
-    live_among(world, &patch, among.iter().map(|live| live.object), out);
+    visible_among(
+        world,
+        &patch,
+        among.iter().map(|candidate| candidate.object),
+        out,
+    );
 }
 
 /// All that may be seen in a part of the picture; whether that is so: of more than `most` it is not known.
@@ -73,13 +78,13 @@ pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) 
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let [near, far] = clips_over(world, &patch);
     let behind = |object: u32| match cover(world, object as usize, &patch, near, far) {
-        Some(live) if live.is_whole => Nearness::below(live.inverse_depth.low),
+        Some(candidate) if candidate.is_whole => Nearness::below(candidate.inverse_depth.low),
         _ => Nearness::NONE,
     };
     let Some(objects) = world.quadtree.within(&patch, most, behind) else {
         return false;
     };
-    live_among(
+    visible_among(
         world,
         &patch,
         objects.iter().map(|&object| object as usize),
@@ -94,7 +99,7 @@ pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Range>; 2] {
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
-pub(super) fn live_among(
+pub(super) fn visible_among(
     world: &World,
     patch: &Patch,
     among: impl Iterator<Item = usize>,
@@ -104,19 +109,19 @@ pub(super) fn live_among(
     let [near, far] = clips_over(world, patch);
     // The nearest of what is met everywhere hides what is farther.
     let mut hidden = f64::NEG_INFINITY;
-    for candidate in among {
-        let Some(live) = cover(world, candidate, patch, near, far) else {
+    for object in among {
+        let Some(candidate) = cover(world, object, patch, near, far) else {
             continue;
         };
-        if live.inverse_depth.high < hidden {
+        if candidate.inverse_depth.high < hidden {
             continue;
         }
-        if live.is_whole {
-            hidden = hidden.max(live.inverse_depth.low);
+        if candidate.is_whole {
+            hidden = hidden.max(candidate.inverse_depth.low);
         }
-        out.push(live);
+        out.push(candidate);
     }
-    out.retain(|live| live.inverse_depth.high >= hidden);
+    out.retain(|candidate| candidate.inverse_depth.high >= hidden);
     if out.len() > 1 {
         drop_covered(world, patch, out);
     }
@@ -132,98 +137,98 @@ pub(super) fn cover(
 ) -> Option<Candidate> {
     let object = f64::object(&world.geometry, index);
     let cover = object.cover(patch)?;
-    let mut live = Candidate {
+    let mut candidate = Candidate {
         object: index,
         is_whole: cover.is_whole,
         inverse_depth: cover.inverse_depth.or_all(),
         crossings: Crossings::First,
     };
     if let Some(near) = near
-        && live.inverse_depth.high >= near.low
+        && candidate.inverse_depth.high >= near.low
     {
         let behind = match object.behind(patch) {
             Some(behind) => behind.or_all(),
             // It has but one surface, which the near plane takes away as a whole or in part.
-            None if live.inverse_depth.low > near.high => return None,
-            None => live.inverse_depth,
+            None if candidate.inverse_depth.low > near.high => return None,
+            None => candidate.inverse_depth,
         };
         if behind.low > near.high {
             return None;
         }
-        if live.inverse_depth.low > near.high {
-            live.crossings = Crossings::Second;
-            live.inverse_depth = behind;
-            live.is_whole &= behind.high < near.low;
+        if candidate.inverse_depth.low > near.high {
+            candidate.crossings = Crossings::Second;
+            candidate.inverse_depth = behind;
+            candidate.is_whole &= behind.high < near.low;
         } else {
-            live.crossings = Crossings::Both;
-            live.inverse_depth.low = live.inverse_depth.low.min(behind.low);
-            live.is_whole = false;
+            candidate.crossings = Crossings::Both;
+            candidate.inverse_depth.low = candidate.inverse_depth.low.min(behind.low);
+            candidate.is_whole = false;
         }
     }
     if let Some(far) = far {
-        if live.inverse_depth.high < far.low {
+        if candidate.inverse_depth.high < far.low {
             return None;
         }
-        live.is_whole &= live.inverse_depth.low > far.high;
+        candidate.is_whole &= candidate.inverse_depth.low > far.high;
     }
-    Some(live)
+    Some(candidate)
 }
 
 /// Removes flat objects that lie behind another flat one all over the patch, though their depths there overlap, or in
 /// the same plane as one that comes before them in the file.
-fn drop_covered(world: &World, patch: &Patch, live: &mut Vec<Candidate>) {
-    let drop_behind = |front: usize, live: &mut Vec<Candidate>| {
-        live.retain(|back| {
+fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
+    let drop_behind = |front: usize, candidates: &mut Vec<Candidate>| {
+        candidates.retain(|back| {
             back.object == front || back.is_cut() || !covers(world, front, back.object, patch)
         });
     };
-    let may_cover = |live: &&Candidate| live.is_whole && !live.is_cut();
-    if live.len() > LAYERS {
-        drop_boards_behind(world, live);
+    let may_cover = |candidate: &&Candidate| candidate.is_whole && !candidate.is_cut();
+    if candidates.len() > LAYERS {
+        drop_boards_behind(world, candidates);
         // Of layers the nearest one hides all others; in one plane that is the first.
-        let is_flat = |live: &&Candidate| {
+        let is_flat = |candidate: &&Candidate| {
             !matches!(
-                *f64::object(&world.geometry, live.object),
+                *f64::object(&world.geometry, candidate.object),
                 Object::Sphere(_)
             )
         };
-        let fronts = live.iter().filter(may_cover).filter(is_flat);
+        let fronts = candidates.iter().filter(may_cover).filter(is_flat);
         let nearest = fronts.max_by(|a, b| {
             let nearer = a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
             nearer.then(b.object.cmp(&a.object))
         });
-        if let Some(front) = nearest.map(|live| live.object) {
-            drop_behind(front, live);
+        if let Some(front) = nearest.map(|candidate| candidate.object) {
+            drop_behind(front, candidates);
         }
     }
-    if live.len() <= LAYERS {
-        for front in live.clone().iter().filter(may_cover) {
-            drop_behind(front.object, live);
+    if candidates.len() <= LAYERS {
+        for front in candidates.clone().iter().filter(may_cover) {
+            drop_behind(front.object, candidates);
         }
     }
 }
 
 /// Removes checkerboards that lie behind another one, above or below the eye: whatever ray meets them meets that one, too, and nearer, also
 /// where the horizon crosses the patch.
-fn drop_boards_behind(world: &World, live: &mut Vec<Candidate>) {
+fn drop_boards_behind(world: &World, candidates: &mut Vec<Candidate>) {
     for is_above in [false, true] {
-        let height = |live: &Candidate| {
+        let height = |candidate: &Candidate| {
             // Numbers of the scene lie farther away in memory than what is prepared of them.
             let is_board = matches!(
-                *f64::object(&world.geometry, live.object),
+                *f64::object(&world.geometry, candidate.object),
                 Object::Checkerboard(_)
             );
-            let height =
-                is_board.then(|| depth_order::board_height(&world.geometry, live.object))??;
+            let height = is_board
+                .then(|| depth_order::board_height(&world.geometry, candidate.object))??;
             ((height > 0.0) == is_above).then_some(height.abs())
         };
-        let fronts = live.iter().filter(|live| !live.is_cut());
-        let fronts = fronts.filter_map(|live| Some((height(live)?, live.object)));
+        let fronts = candidates.iter().filter(|candidate| !candidate.is_cut());
+        let fronts = fronts.filter_map(|candidate| Some((height(candidate)?, candidate.object)));
         let nearest = fronts.min_by(|(a, i), (b, j)| a.total_cmp(b).then(i.cmp(j)));
         let Some((nearest, front)) = nearest else {
             continue;
         };
-        live.retain(|back| match height(back) {
+        candidates.retain(|back| match height(back) {
             // Heights that are hardly apart may be rounded otherwise, or be one.
             Some(height) => back.object == front || back.is_cut() || height <= nearest * APART,
             None => true,
@@ -264,21 +269,21 @@ pub(super) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     }
 }
 
-/// The object that is seen at a point of a spot, of some that may be; and whether the last precision was not asked, in which what it does
+/// The object that is seen at a point of a sub-pixel, of some that may be; and whether the last precision was not asked, in which what it does
 /// not tell apart counts as equal.
 pub fn object_at(
     world: &World,
-    spot: SubPixel,
+    sub_pixel: SubPixel,
     at: DVec2,
-    live: &[Candidate],
+    candidates: &[Candidate],
 ) -> (Option<usize>, bool) {
-    let offset = spot.offset(at);
+    let offset = sub_pixel.offset(at);
     let point = world
         .geometry
         .fast
         .camera
-        .sample_point(spot.x, spot.y, offset);
-    let among = || live.iter().map(|live| live.object);
+        .sample_point(sub_pixel.x, sub_pixel.y, offset);
+    let among = || candidates.iter().map(|candidate| candidate.object);
     let fast = world.nearest(
         &f64::frame(&world.geometry).camera.direction(&point),
         among(),

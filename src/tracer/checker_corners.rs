@@ -14,7 +14,7 @@ use multiversion::multiversion;
 
 use super::{
     checkerboard::Checkerboard,
-    local_form::{Here, Local, ROUNDINGS},
+    local_form::{LocalForm, PixelFrame, ROUNDINGS},
     shape::Object,
     world::{Level, World},
 };
@@ -48,7 +48,7 @@ struct Mesh {
 }
 
 /// A row of corners.
-struct Corners {
+struct CornerRow {
     /// Their squares in x and in z; NaN where that is not certain.
     squares: [[f64; LANES]; 2],
     /// 1, or −1 in the squares of the second colour, if the board begins with the first.
@@ -57,7 +57,7 @@ struct Corners {
 
 /// What pixels show of a board.
 #[derive(Clone, Copy, Debug)]
-pub enum Seen<'a> {
+pub enum Shown<'a> {
     /// One square, or squares of one colour side by side; whether that is the second.
     One(bool),
     /// A few squares of one pixel.
@@ -72,7 +72,7 @@ pub fn show(
     world: &World,
     part: Area,
     object: usize,
-    each: &mut impl FnMut(Area, Seen) -> ControlFlow<()>,
+    each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
 ) -> Option<ControlFlow<()>> {
     if part.width as usize > SIDE || part.height as usize > SIDE {
         return None;
@@ -82,17 +82,17 @@ pub fn show(
     };
     let mesh = Mesh::new(
         board,
-        &Here::new(&f64::frame(&world.geometry).camera, part),
+        &PixelFrame::new(&f64::frame(&world.geometry).camera, part),
         part,
     )?;
-    let [mut above, mut below] = [Corners::new(), Corners::new()];
+    let [mut above, mut below] = [CornerRow::new(), CornerRow::new()];
     mesh.corners(0, &mut above);
     for row in 0..part.height {
         mesh.corners(row + 1, &mut below);
         let flow = mesh.row(row, &above, &below, |area, seen| match seen {
             // Of a pixel by itself errors are smaller.
-            Seen::Unknown if part.pixels() > 1 => {
-                show(world, area, object, each).unwrap_or_else(|| each(area, Seen::Unknown))
+            Shown::Unknown if part.pixels() > 1 => {
+                show(world, area, object, each).unwrap_or_else(|| each(area, Shown::Unknown))
             }
             _ => each(area, seen),
         });
@@ -104,7 +104,7 @@ pub fn show(
     Some(ControlFlow::Continue(()))
 }
 
-impl Corners {
+impl CornerRow {
     fn new() -> Self {
         Self {
             squares: [[0.0; LANES]; 2],
@@ -120,8 +120,8 @@ impl Corners {
 
 impl Mesh {
     /// `None` if the board is too far for its squares to be told apart so.
-    fn new(board: &Checkerboard<f64>, here: &Here, block: Area) -> Option<Self> {
-        let squares = Squares::new(board, here);
+    fn new(board: &Checkerboard<f64>, frame: &PixelFrame, block: Area) -> Option<Self> {
+        let squares = Squares::new(board, frame);
         let Squares { across, below, .. } = squares;
         let least = below.factors[2] - below.spread() * UP;
         if least <= 4.0 * below.rad {
@@ -148,21 +148,21 @@ impl Mesh {
         })
     }
 
-    fn corners(&self, row: u32, out: &mut Corners) {
+    fn corners(&self, row: u32, out: &mut CornerRow) {
         let y = middle(2 * row, self.block.height);
         let length = (self.block.width as usize + 1).next_multiple_of(8);
         corners_widely(self, y, length, out);
     }
 
     #[inline(always)]
-    fn evaluate(&self, y: f64, length: usize, out: &mut Corners) {
+    fn evaluate(&self, y: f64, length: usize, out: &mut CornerRow) {
         const ONE: u64 = 1.0f64.to_bits();
         let Squares { across, below, .. } = &self.squares;
         let [n0, n1, l] = [&across[0], &across[1], below].map(|local| {
             let [a, b, c] = local.factors;
             (a, b * y + c)
         });
-        let Corners {
+        let CornerRow {
             squares: [first, second],
             sign,
         } = out;
@@ -192,9 +192,9 @@ impl Mesh {
     fn row(
         &self,
         row: u32,
-        above: &Corners,
-        below: &Corners,
-        mut each: impl FnMut(Area, Seen) -> ControlFlow<()>,
+        above: &CornerRow,
+        below: &CornerRow,
+        mut each: impl FnMut(Area, Shown) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut shown = [0.0; SIDE];
         compare_widely(above, below, &mut shown);
@@ -210,8 +210,8 @@ impl Mesh {
             };
             if sign == 0.0 {
                 match self.checks(row, first, above, below) {
-                    Some(checks) => each(area, Seen::Some(&checks))?,
-                    None => each(area, Seen::Unknown)?,
+                    Some(checks) => each(area, Shown::Some(&checks))?,
+                    None => each(area, Shown::Unknown)?,
                 }
                 first += 1;
                 continue;
@@ -219,14 +219,20 @@ impl Mesh {
             let rest = shown[first..].iter();
             let length = rest.take_while(|&&other| other == sign).count();
             area.width = length as u32;
-            each(area, Seen::One((sign < 0.0) ^ self.squares.odd))?;
+            each(area, Shown::One((sign < 0.0) ^ self.squares.odd))?;
             first += length;
         }
         ControlFlow::Continue(())
     }
 
     /// What a pixel shows, if it is certain in which squares its corners lie.
-    fn checks(&self, row: u32, column: usize, above: &Corners, below: &Corners) -> Option<Checks> {
+    fn checks(
+        &self,
+        row: u32,
+        column: usize,
+        above: &CornerRow,
+        below: &CornerRow,
+    ) -> Option<Checks> {
         let corners = [
             above.at(column),
             above.at(column + 1),
@@ -246,10 +252,10 @@ impl Mesh {
         let x = middle(2 * column as u32 + 1, width);
         let y = middle(2 * row + 1, height);
         let [width, height] = [width, height].map(f64::from);
-        let local = |block: &Local| {
+        let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
             // The form of the block is off by its error, and the value at the pixel's centre by as much again.
-            Local::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
+            LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let Squares { across, below, odd } = &self.squares;
         Some(Checks {
@@ -269,13 +275,13 @@ fn middle(halves: u32, pixels: u32) -> f64 {
 }
 
 #[multiversion(targets = "simd")]
-fn corners_widely(mesh: &Mesh, y: f64, length: usize, out: &mut Corners) {
+fn corners_widely(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
     mesh.evaluate(y, length, out);
 }
 
 /// The sign of each pixel whose corners lie in one square, and 0 for all others.
 #[multiversion(targets = "simd")]
-fn compare_widely(above: &Corners, below: &Corners, out: &mut [f64; SIDE]) {
+fn compare_widely(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     let [a, b] = [&above.squares[0], &below.squares[0]];
     let [c, d] = [&above.squares[1], &below.squares[1]];
     for i in 0..SIDE {
@@ -288,8 +294,8 @@ fn compare_widely(above: &Corners, below: &Corners, out: &mut [f64; SIDE]) {
 /// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Squares {
-    pub(super) across: [Local; 2],
-    pub(super) below: Local,
+    pub(super) across: [LocalForm; 2],
+    pub(super) below: LocalForm,
     pub(super) odd: bool,
 }
 
@@ -297,10 +303,10 @@ pub(super) struct Squares {
 const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
 
 impl Squares {
-    pub(super) fn new(board: &Checkerboard<f64>, here: &Here) -> Self {
+    pub(super) fn new(board: &Checkerboard<f64>, frame: &PixelFrame) -> Self {
         Self {
-            across: board.across.each_ref().map(|form| form.local(here)),
-            below: board.below.local(here),
+            across: board.across.each_ref().map(|form| form.local(frame)),
+            below: board.below.local(frame),
             odd: board.odd,
         }
     }

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use super::{
     camera::{Camera, Direction, Window},
     form::{Form, axis_vector, inverse_depth},
-    hit::{Crossing, Part},
+    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch, Range},
 };
 use crate::{
@@ -253,7 +253,7 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
     let mut extreme: Option<Crossing<T>> = None;
     for face in faces {
         let inverse_depth = face.inverse_depth.at(r);
-        let part = Part::Plane(face.index);
+        let part = SurfacePart::Plane(face.index);
         match &mut extreme {
             None => {
                 extreme = Some(Crossing {
@@ -273,7 +273,7 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
                     };
                 }
                 if !is_clear {
-                    so_far.part = Part::Edge;
+                    so_far.part = SurfacePart::Edge;
                     so_far.inverse_depth.rad = match difference.magnitude() >= T::Radius::ZERO {
                         true => rad,
                         false => T::Radius::INFINITE,

@@ -1,7 +1,7 @@
 //! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
 //!
 //! In the coordinates of that [`SubPixel`] every form of a surface is prepared anew, in high precision, so that what is left is good
-//! to the last bit of an `f64` however far the spot is from the picture's centre.
+//! to the last bit of an `f64` however far the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
@@ -70,20 +70,20 @@ pub enum Crossings {
 type Linear<T> = [Ball<T>; 3];
 type Quadratic<T> = [Ball<T>; 6];
 
-/// A spot in one precision.
+/// A sub-pixel in one precision.
 #[derive(Clone, Debug)]
-pub struct Place<T: Real> {
+pub struct SubPixelFrame<T: Real> {
     /// The direction through its centre.
     center: Ball3<T>,
     /// Its side.
     pitch: Ball<T>,
 }
 
-impl<T: Real> Place<T> {
-    /// The place of a spot.
-    pub fn new(camera: &Camera<T>, spot: SubPixel) -> Self {
-        let offset = spot.offset(glam::DVec2::ZERO);
-        let r = camera.direction(&camera.sample_point(spot.x, spot.y, offset));
+impl<T: Real> SubPixelFrame<T> {
+    /// The place of a sub-pixel.
+    pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
+        let offset = sub_pixel.offset(glam::DVec2::ZERO);
+        let r = camera.direction(&camera.sample_point(sub_pixel.x, sub_pixel.y, offset));
         // Five roundings in a coordinate, and its pitch.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
@@ -91,7 +91,7 @@ impl<T: Real> Place<T> {
         };
         Self {
             center: [ball(r.x), ball(r.y), ball(r.z)],
-            pitch: ball(camera.pitch.times(&T::from_f64(spot.side))),
+            pitch: ball(camera.pitch.times(&T::from_f64(sub_pixel.side))),
         }
     }
 

@@ -53,10 +53,10 @@ impl Patch {
         }
     }
 
-    /// The square of a spot.
-    pub fn of_spot(camera: &Camera<f64>, spot: SubPixel) -> Self {
-        let half = 0.5 * spot.side * camera.pitch * UP + f64::MIN_POSITIVE;
-        let middle = camera.sample_point(spot.x, spot.y, spot.offset(DVec2::ZERO));
+    /// The square of a sub-pixel.
+    pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
+        let half = 0.5 * sub_pixel.side * camera.pitch * UP + f64::MIN_POSITIVE;
+        let middle = camera.sample_point(sub_pixel.x, sub_pixel.y, sub_pixel.offset(DVec2::ZERO));
         Self {
             center: camera.direction(&middle),
             half: [half; 2],

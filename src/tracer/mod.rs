@@ -32,6 +32,7 @@ pub mod boundaries;
 pub mod candidates;
 mod checker_corners;
 mod cull;
+mod ray;
 pub mod samples;
 
 #[cfg(test)]
@@ -43,7 +44,8 @@ pub use candidates::Candidate;
 pub use checker_corners::Checks;
 pub use cull::{GRID, Part, Quartering, Room};
 pub use curve::{Conic, Curve, Line};
+pub use ray::{Hit, ray};
 pub use samples::Pixel;
 pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
-pub use world::{Hit, World, ray};
+pub use world::World;

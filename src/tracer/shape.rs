@@ -4,9 +4,9 @@ use super::{
     camera::{Camera, Direction, Window},
     checkerboard::Checkerboard,
     cuboid::Cuboid,
-    curve::{Crossings, Curve, Place, Surface},
+    curve::{Crossings, Curve, SubPixelFrame, Surface},
     form::Form,
-    hit::{Crossing, Part},
+    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch, Range},
     sphere::Sphere,
     triangle::Triangle,
@@ -77,11 +77,11 @@ impl<T: Real> Object<T> {
     }
 
     /// The form of the inverse depth of a flat part.
-    pub fn plane(&self, part: Part) -> Option<&Form<T>> {
+    pub fn plane(&self, part: SurfacePart) -> Option<&Form<T>> {
         match (self, part) {
-            (Self::Triangle(triangle), Part::Plane(_)) => Some(&triangle.plane),
-            (Self::Checkerboard(checkerboard), Part::Plane(_)) => Some(&checkerboard.plane),
-            (Self::Cuboid(cuboid), Part::Plane(index)) => cuboid.face(index),
+            (Self::Triangle(triangle), SurfacePart::Plane(_)) => Some(&triangle.plane),
+            (Self::Checkerboard(checkerboard), SurfacePart::Plane(_)) => Some(&checkerboard.plane),
+            (Self::Cuboid(cuboid), SurfacePart::Plane(index)) => cuboid.face(index),
             _ => None,
         }
     }
@@ -116,22 +116,22 @@ impl<T: Real> Object<T> {
     }
 
     /// The part that one of the surfaces of its first crossings is, if that is flat.
-    pub fn first_part(&self, at: usize) -> Part {
+    pub fn first_part(&self, at: usize) -> SurfacePart {
         match self {
-            Self::Cuboid(cuboid) => Part::Plane(cuboid.first_index(at)),
-            Self::Sphere(_) => Part::Entry,
-            Self::EdgeOn | Self::Triangle(_) | Self::Checkerboard(_) => Part::Plane(0),
+            Self::Cuboid(cuboid) => SurfacePart::Plane(cuboid.first_index(at)),
+            Self::Sphere(_) => SurfacePart::Entry,
+            Self::EdgeOn | Self::Triangle(_) | Self::Checkerboard(_) => SurfacePart::Plane(0),
         }
     }
 
     /// What bounds the rays that meet it; each line's form is not negative where it is met.
-    pub fn outline(&self, place: &Place<T>) -> Vec<Curve> {
-        let line = |form: &Form<T>| place.line(form);
+    pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Curve> {
+        let line = |form: &Form<T>| frame.line(form);
         match self {
             Self::EdgeOn => Vec::new(),
-            Self::Sphere(sphere) => place.silhouette(sphere),
+            Self::Sphere(sphere) => frame.silhouette(sphere),
             Self::Triangle(triangle) => triangle.edges.iter().map(line).collect(),
-            Self::Cuboid(cuboid) => cuboid.sides().map(|form| place.line(&form)).collect(),
+            Self::Cuboid(cuboid) => cuboid.sides().map(|form| frame.line(&form)).collect(),
             Self::Checkerboard(checkerboard) => vec![line(&checkerboard.plane)],
         }
     }

@@ -10,9 +10,9 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
-    hit::{Crossing, Part},
+    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch, Range},
-    local_form::{Conic, Here, Local},
+    local_form::{LocalForm, LocalQuadratic, PixelFrame},
 };
 use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
 
@@ -134,7 +134,7 @@ impl<T: Real> Sphere<T> {
                     return Ok(None);
                 }
                 let inverse = (b + q.sqrt()) / &self.power;
-                Ok(Some(self.crossing(&inverse, Part::Entry)))
+                Ok(Some(self.crossing(&inverse, SurfacePart::Entry)))
             }
             Ordering::Equal if b.sign()? != Ordering::Greater => Ok(None),
             _ => Ok(Some(self.exit(&q, &b, r))),
@@ -168,11 +168,11 @@ impl<T: Real> Sphere<T> {
         } else {
             (b - root) / &self.power
         };
-        self.crossing(&inverse, Part::Exit)
+        self.crossing(&inverse, SurfacePart::Exit)
     }
 
     #[inline]
-    fn crossing(&self, inverse: &Ball<T>, part: Part) -> Crossing<T> {
+    fn crossing(&self, inverse: &Ball<T>, part: SurfacePart) -> Crossing<T> {
         Crossing {
             inverse_depth: inverse.times_power(self.scale),
             part,
@@ -265,12 +265,12 @@ impl Sphere<f64> {
     ///
     /// Q's own bound is generous enough for its value at the centre; its gradient and its second derivatives are made of the same
     /// products as Q, and half a pixel is within the window. All of them together stay below so many times that bound.
-    pub fn local(&self, here: &Here) -> (Conic, Local) {
+    pub fn local(&self, frame: &PixelFrame) -> (LocalQuadratic, LocalForm) {
         const TIMES: f64 = 16.0;
         let [cx, cy, cz] = self.center;
-        let (r, [width, height]) = (&here.center, here.sides);
+        let (r, [width, height]) = (&frame.center, frame.sides);
         let [q, along_x, along_y] = self.expanded(r);
-        let q = Conic::new(
+        let q = LocalQuadratic::new(
             [
                 q,
                 2.0 * along_x * width,
@@ -282,7 +282,7 @@ impl Sphere<f64> {
             TIMES * self.rad_q,
         );
         let b = [cx * width, cy * height, cx * r.x + cy * r.y + cz * r.z];
-        (q, Local::new(b, 2.0 * self.rad_b))
+        (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye

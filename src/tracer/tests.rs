@@ -296,19 +296,19 @@ fn what_is_seen_in_a_part_is_live_there() {
             assert!(candidates::within(&world, part, usize::MAX, &mut some));
             candidates::narrowed(&world, part, &everything, &mut all);
             // The quadtree's bounds may leave out more, but nothing else comes in.
-            let places: Vec<_> = some.iter().map(|live| live.object).collect();
+            let places: Vec<_> = some.iter().map(|candidate| candidate.object).collect();
             assert!(places.is_sorted_by(|a, b| a < b));
             assert!(
                 places
                     .iter()
-                    .all(|place| all.iter().any(|live| live.object == *place))
+                    .all(|place| all.iter().any(|candidate| candidate.object == *place))
             );
             for (x, y) in part.iter() {
-                let spot = SubPixel::pixel(x, y);
+                let sub_pixel = SubPixel::pixel(x, y);
                 let at = dvec2(random.within(-0.5, 0.5), random.within(-0.5, 0.5));
-                let (expected, _) = candidates::object_at(&world, spot, at, &everything);
+                let (expected, _) = candidates::object_at(&world, sub_pixel, at, &everything);
                 assert_eq!(
-                    candidates::object_at(&world, spot, at, &some).0,
+                    candidates::object_at(&world, sub_pixel, at, &some).0,
                     expected,
                     "seed {seed}: {part:?}"
                 );

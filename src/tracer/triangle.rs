@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     camera::{Camera, Direction, Window},
     form::{Form, inverse_depth},
-    hit::{Crossing, Part},
+    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch},
 };
 use crate::{
@@ -26,7 +26,7 @@ pub struct Triangle<T: Real> {
 
 /// The corners of a triangle in the camera's axes, their lengths times a power of two.
 #[derive(Clone, Debug)]
-pub struct Corners<T: Real> {
+pub struct Vertices<T: Real> {
     /// Left base end, right base end, apex.
     pub points: [Ball3<T>; 3],
     /// That power's exponent.
@@ -40,7 +40,10 @@ impl<T: Real> Triangle<T> {
     }
 
     /// Prepares a triangle, and tells where its corners are.
-    pub fn with_corners(camera: &Camera<T>, shape: &scene::Triangle) -> Option<(Self, Corners<T>)> {
+    pub fn with_corners(
+        camera: &Camera<T>,
+        shape: &scene::Triangle,
+    ) -> Option<(Self, Vertices<T>)> {
         let from_eye = camera.relative(shape.centroid);
         let (normal, height, side) = plane(camera, shape);
         if side.is_eq() {
@@ -74,7 +77,7 @@ impl<T: Real> Triangle<T> {
             edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
             plane,
         };
-        let corners = Corners {
+        let corners = Vertices {
             points: offsets.each_ref().map(|offset| sum(&center, offset)),
             exponent,
         };
@@ -103,7 +106,7 @@ impl<T: Real> Triangle<T> {
         }
         Ok(Some(Crossing {
             inverse_depth,
-            part: Part::Plane(0),
+            part: SurfacePart::Plane(0),
         }))
     }
 }

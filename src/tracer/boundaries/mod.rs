@@ -1,6 +1,6 @@
 //! The boundaries of what is seen in a pixel, or in a part of one.
 //!
-//! In: a spot and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
+//! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
 //! near and the far plane cut them. They are had in double-double, and again in the last precision where that leaves too much in doubt.
 
 mod equal;
@@ -18,7 +18,7 @@ use crate::math::{Big, Double};
 use self::reach::Reach;
 use super::{
     candidates::{self, Candidate},
-    curve::{Crossings, Curve, LOOSE_LINE, Place, Surface},
+    curve::{Crossings, Curve, LOOSE_LINE, SubPixelFrame, Surface},
     hit::Crossing,
     interval::Patch,
     shape::Object,
@@ -40,37 +40,42 @@ enum Source {
     Pair(usize, usize),
 }
 
-/// The boundaries of what may be seen in a spot, in one precision.
+/// The boundaries of what may be seen in a sub-pixel, in one precision.
 struct Boundaries<'a, T: Level> {
     world: &'a World,
-    live: &'a [Candidate],
+    candidates: &'a [Candidate],
     objects: Vec<Held<'a, T>>,
-    place: Place<T>,
+    frame: SubPixelFrame<T>,
     /// Where each object is met, as double-double tells.
     reaches: &'a [Reach],
 }
 
-/// Of some candidates, in file order, those that may be seen in a spot.
-pub fn narrowed(world: &World, spot: SubPixel, among: &[Candidate], out: &mut Vec<Candidate>) {
-    let patch = Patch::of_spot(&world.geometry.fast.camera, spot);
-    candidates::live_among(world, &patch, among.iter().map(|live| live.object), out);
+/// Of some candidates, in file order, those that may be seen in a sub-pixel.
+pub fn narrowed(world: &World, sub_pixel: SubPixel, among: &[Candidate], out: &mut Vec<Candidate>) {
+    let patch = Patch::of_sub_pixel(&world.geometry.fast.camera, sub_pixel);
+    candidates::visible_among(
+        world,
+        &patch,
+        among.iter().map(|candidate| candidate.object),
+        out,
+    );
     if out.len() > candidates::LAYERS {
-        drop_behind_middle(world, spot, &patch, out);
+        drop_behind_middle(world, sub_pixel, &patch, out);
     }
 }
 
-/// The curves in a spot that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
+/// The curves in a sub-pixel that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled
 /// the rest of them is left out.
 pub fn curves(
     world: &World,
-    spot: SubPixel,
-    live: &[Candidate],
+    sub_pixel: SubPixel,
+    candidates: &[Candidate],
     cancel: &AtomicBool,
     out: &mut Vec<Curve>,
 ) {
     out.clear();
-    let reaches = reaches(world, spot, live);
-    let boundaries = Boundaries::<Double>::new(world, spot, live, &reaches);
+    let reaches = reaches(world, sub_pixel, candidates);
+    let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, &reaches);
     // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
     let (mut loose, mut lacking) = (Vec::new(), Vec::new());
     let mut of_lacking = Vec::new();
@@ -89,7 +94,7 @@ pub fn curves(
         out.append(&mut of_lacking);
         return equal::merge(out);
     }
-    let boundaries = Boundaries::<Big>::new(world, spot, live, &reaches);
+    let boundaries = Boundaries::<Big>::new(world, sub_pixel, candidates, &reaches);
     for source in loose.into_iter().chain(lacking) {
         if cancel.load(Ordering::Relaxed) {
             return;
@@ -99,25 +104,25 @@ pub fn curves(
     equal::merge(out);
 }
 
-/// Whether surfaces of two objects may cross each other in a spot, or be one there.
-fn may_cross(world: &World, spot: SubPixel, a: Candidate, b: Candidate) -> bool {
+/// Whether surfaces of two objects may cross each other in a sub-pixel, or be one there.
+fn may_cross(world: &World, sub_pixel: SubPixel, a: Candidate, b: Candidate) -> bool {
     let mut curves = Vec::new();
-    let live = [a, b];
-    let reaches = reaches(world, spot, &live);
-    let boundaries = Boundaries::<Double>::new(world, spot, &live, &reaches);
+    let candidates = [a, b];
+    let reaches = reaches(world, sub_pixel, &candidates);
+    let boundaries = Boundaries::<Double>::new(world, sub_pixel, &candidates, &reaches);
     !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
 }
 
-/// How many curves may pass through a spot as far as double-double tells.
+/// How many curves may pass through a sub-pixel as far as double-double tells.
 pub fn curves_about(
     world: &World,
-    spot: SubPixel,
-    live: &[Candidate],
+    sub_pixel: SubPixel,
+    candidates: &[Candidate],
     cancel: &AtomicBool,
 ) -> usize {
     let mut curves = Vec::new();
-    let reaches = reaches(world, spot, live);
-    let boundaries = Boundaries::<Double>::new(world, spot, live, &reaches);
+    let reaches = reaches(world, sub_pixel, candidates);
+    let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, &reaches);
     boundaries.each(cancel, |source| {
         boundaries.push(source, &mut curves);
     });
@@ -125,37 +130,40 @@ pub fn curves_about(
     curves.len()
 }
 
-/// Where each of some objects is met in a spot, at most.
-fn reaches(world: &World, spot: SubPixel, live: &[Candidate]) -> Vec<Reach> {
-    let place = Place::new(&Double::frame(&world.geometry).camera, spot);
-    let reach = |live: &Candidate| {
-        let object = Double::object(&world.geometry, live.object);
+/// Where each of some objects is met in a sub-pixel, at most.
+fn reaches(world: &World, sub_pixel: SubPixel, candidates: &[Candidate]) -> Vec<Reach> {
+    let frame = SubPixelFrame::new(&Double::frame(&world.geometry).camera, sub_pixel);
+    let reach = |candidate: &Candidate| {
+        let object = Double::object(&world.geometry, candidate.object);
         // Of a sphere no line bounds more than what lies behind the eye.
-        match live.is_whole || matches!(*object, Object::Sphere(_)) {
+        match candidate.is_whole || matches!(*object, Object::Sphere(_)) {
             true => Reach::whole(),
-            false => Reach::within(object.outline(&place)),
+            false => Reach::within(object.outline(&frame)),
         }
     };
-    live.iter().map(reach).collect()
+    candidates.iter().map(reach).collect()
 }
 
-/// Removes objects that lie all over a spot behind the one that is seen in its middle, if every ray through the spot meets that.
-fn drop_behind_middle(world: &World, spot: SubPixel, patch: &Patch, live: &mut Vec<Candidate>) {
-    let (Some(middle), _) = candidates::object_at(world, spot, DVec2::ZERO, live) else {
+/// Removes objects that lie all over a sub-pixel behind the one that is seen in its middle, if every ray through the sub-pixel meets that.
+fn drop_behind_middle(
+    world: &World,
+    sub_pixel: SubPixel,
+    patch: &Patch,
+    candidates: &mut Vec<Candidate>,
+) {
+    let (Some(middle), _) = candidates::object_at(world, sub_pixel, DVec2::ZERO, candidates) else {
         return;
     };
-    let front = live.iter().find(|live| live.object == middle).copied();
+    let front = candidates
+        .iter()
+        .find(|candidate| candidate.object == middle)
+        .copied();
     let Some(front) = front.filter(|front| front.is_whole) else {
         return;
     };
-    let offset = spot.offset(DVec2::ZERO);
-    let r = world.geometry.fast.camera.direction(
-        &world
-            .geometry
-            .fast
-            .camera
-            .sample_point(spot.x, spot.y, offset),
-    );
+    let offset = sub_pixel.offset(DVec2::ZERO);
+    let camera = &world.geometry.fast.camera;
+    let r = camera.direction(&camera.sample_point(sub_pixel.x, sub_pixel.y, offset));
     let is_met = |back: &Candidate| {
         let object = f64::object(&world.geometry, back.object);
         let first = || object.first(&r).ok().flatten();
@@ -169,32 +177,37 @@ fn drop_behind_middle(world: &World, spot: SubPixel, patch: &Patch, live: &mut V
             Crossings::Second => first().and(object.second(&r)).is_some_and(is_beyond_near),
         }
     };
-    live.retain(|back| {
+    candidates.retain(|back| {
         let are_uncut = !front.is_cut() && !back.is_cut();
         back.object == middle
             || !(are_uncut && candidates::covers(world, middle, back.object, patch)
                     // What is met there is behind it there; and so it is wherever it is met, which is in one piece, as it is convex.
-                    || is_met(back) && !may_cross(world, spot, front, *back))
+                    || is_met(back) && !may_cross(world, sub_pixel, front, *back))
     });
 }
 
 impl<'a, T: Level> Boundaries<'a, T> {
-    fn new(world: &'a World, spot: SubPixel, live: &'a [Candidate], reaches: &'a [Reach]) -> Self {
-        let objects = live
+    fn new(
+        world: &'a World,
+        sub_pixel: SubPixel,
+        candidates: &'a [Candidate],
+        reaches: &'a [Reach],
+    ) -> Self {
+        let objects = candidates
             .iter()
-            .map(|live| T::object(&world.geometry, live.object));
+            .map(|candidate| T::object(&world.geometry, candidate.object));
         Self {
             world,
-            live,
+            candidates,
             objects: objects.collect(),
-            place: Place::new(&T::frame(&world.geometry).camera, spot),
+            frame: SubPixelFrame::new(&T::frame(&world.geometry).camera, sub_pixel),
             reaches,
         }
     }
 
-    /// All sources that there are in the spot, until it is cancelled.
+    /// All sources that there are in the sub-pixel, until it is cancelled.
     fn each(&self, cancel: &AtomicBool, mut take: impl FnMut(Source)) {
-        for (i, a) in self.live.iter().enumerate() {
+        for (i, a) in self.candidates.iter().enumerate() {
             if cancel.load(Ordering::Relaxed) {
                 return;
             }
@@ -202,7 +215,7 @@ impl<'a, T: Level> Boundaries<'a, T> {
                 take(Source::Outline(i));
                 take(Source::Clips(i));
             }
-            for (j, b) in self.live.iter().enumerate().skip(i + 1) {
+            for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
                 if !apart {
@@ -212,7 +225,7 @@ impl<'a, T: Level> Boundaries<'a, T> {
         }
     }
 
-    /// Adds a source's curves that may pass through the spot, and through where its objects are met. Says whether all surfaces of it that are
+    /// Adds a source's curves that may pass through the sub-pixel, and through where its objects are met. Says whether all surfaces of it that are
     /// seen there cross each other somewhere, as all do that are not equal.
     fn push(&self, source: Source, out: &mut Vec<Curve>) -> bool {
         let met = match source {
@@ -230,13 +243,13 @@ impl<'a, T: Level> Boundaries<'a, T> {
             }
         };
         let mut all = true;
-        let mut cross = |a: &Surface<T>, b: &Surface<T>| match self.place.crossing(a, b) {
+        let mut cross = |a: &Surface<T>, b: &Surface<T>| match self.frame.crossing(a, b) {
             Some(curve) => push(curve),
             None => all = false,
         };
         match source {
             Source::Outline(i) => {
-                let outline = self.objects[i].outline(&self.place);
+                let outline = self.objects[i].outline(&self.frame);
                 outline.into_iter().for_each(push);
             }
             Source::Clips(i) => {
@@ -261,12 +274,12 @@ impl<'a, T: Level> Boundaries<'a, T> {
     }
 
     fn surfaces(&self, at: usize) -> Vec<Surface<'_, T>> {
-        self.objects[at].surfaces(self.live[at].crossings)
+        self.objects[at].surfaces(self.candidates[at].crossings)
     }
 }
 
 impl Curve {
-    /// Whether it may pass through the spot.
+    /// Whether it may pass through the sub-pixel.
     fn may_pass(&self) -> bool {
         match self {
             Self::Line(line) => line.over_pixel().holds_zero(),

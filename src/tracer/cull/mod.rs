@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 use super::{
     candidates::{self, Candidate},
-    checker_corners::{self, Checks, Seen},
+    checker_corners::{self, Checks, Shown},
     world::World,
 };
 use crate::area::Area;
@@ -50,7 +50,7 @@ pub enum Part<'a> {
         /// Its row.
         y: u32,
         /// The objects that may be seen there, in file order.
-        live: &'a [Candidate],
+        candidates: &'a [Candidate],
     },
     /// More may be seen than is worth to know: its samples are traced one by one.
     Plain {
@@ -62,7 +62,7 @@ pub enum Part<'a> {
 /// Lists that are kept from area to area: the candidates at each depth of the quartering.
 #[derive(Debug, Default)]
 pub struct Room {
-    live: Vec<Vec<Candidate>>,
+    candidates: Vec<Vec<Candidate>>,
 }
 
 impl<'a> Quartering<'a> {
@@ -101,12 +101,13 @@ impl<'a> Quartering<'a> {
                 wanted,
                 visit,
             };
-            let mut live = take(room, 0);
-            let flow = match candidates::within(self.world, area, self.most(area), &mut live) {
-                true => cut.cut(area, &live, 1, room),
+            let mut candidates = take(room, 0);
+            let flow = match candidates::within(self.world, area, self.most(area), &mut candidates)
+            {
+                true => cut.cut(area, &candidates, 1, room),
                 false => cut.show(Part::Plain { area }, None),
             };
-            room.live[0] = live;
+            room.candidates[0] = candidates;
             flow
         })
     }
@@ -131,12 +132,12 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
     fn cut(
         &mut self,
         area: Area,
-        live: &[Candidate],
+        candidates: &[Candidate],
         depth: usize,
         room: &mut Room,
     ) -> ControlFlow<()> {
         let world = self.quartering.world;
-        match live {
+        match candidates {
             [] => {
                 let slot = world.background();
                 return self.show(Part::Flat { area, slot }, None);
@@ -147,15 +148,17 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
                 if slot == second {
                     return self.show(Part::Flat { area, slot }, None);
                 }
-                let show = &mut |area: Area, seen: Seen| {
+                let show = &mut |area: Area, seen: Shown| {
                     let Area { x, y, .. } = area;
                     match seen {
-                        Seen::One(odd) => {
+                        Shown::One(odd) => {
                             let slot = slots[usize::from(odd)];
                             self.show(Part::Flat { area, slot }, None)
                         }
-                        Seen::Some(checks) => self.show(Part::Open { x, y, live }, Some(checks)),
-                        Seen::Unknown => self.show(Part::Open { x, y, live }, None),
+                        Shown::Some(checks) => {
+                            self.show(Part::Open { x, y, candidates }, Some(checks))
+                        }
+                        Shown::Unknown => self.show(Part::Open { x, y, candidates }, None),
                     }
                 };
                 if let Some(flow) = checker_corners::show(world, area, only.object, show) {
@@ -164,21 +167,21 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
             }
             _ => {}
         }
-        if live.len() > self.quartering.most(area) {
+        if candidates.len() > self.quartering.most(area) {
             return self.show(Part::Plain { area }, None);
         }
         if area.pixels() == 1 {
             let Area { x, y, .. } = area;
-            return self.show(Part::Open { x, y, live }, None);
+            return self.show(Part::Open { x, y, candidates }, None);
         }
         let mut below = take(room, depth);
         let wanted = self.wanted;
         let mut quarters = area.quarters().filter(|quarter| quarter.meets(wanted));
         let flow = quarters.try_for_each(|quarter| {
-            candidates::narrowed(world, quarter, live, &mut below);
+            candidates::narrowed(world, quarter, candidates, &mut below);
             self.cut(quarter, &below, depth + 1, room)
         });
-        room.live[depth] = below;
+        room.candidates[depth] = below;
         flow
     }
 
@@ -207,8 +210,8 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
 
 /// The list of a depth, to be put back there.
 fn take(room: &mut Room, depth: usize) -> Vec<Candidate> {
-    if room.live.len() <= depth {
-        room.live.resize_with(depth + 1, Vec::new);
+    if room.candidates.len() <= depth {
+        room.candidates.resize_with(depth + 1, Vec::new);
     }
-    std::mem::take(&mut room.live[depth])
+    std::mem::take(&mut room.candidates[depth])
 }

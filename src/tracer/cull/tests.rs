@@ -80,7 +80,7 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
             let flow = parts.parts(Area::whole(SIZE, SIZE), &mut Room::default(), &mut |part| {
                 let few = match part {
                     Part::Flat { .. } => 0,
-                    Part::Open { live, .. } => live.len(),
+                    Part::Open { candidates, .. } => candidates.len(),
                     Part::Plain { .. } => usize::MAX,
                 };
                 // At the horizon the nearest one below and the nearest one above.
@@ -95,18 +95,18 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
 #[test]
 fn what_a_wall_hides_is_not_found() {
     let wall = "box { min (-9, -9, -5) max (9, 9, -4) }";
-    let mut live = Vec::new();
+    let mut found = Vec::new();
     for (depth, behind) in [(8.0, true), (3.0, false)] {
         let world = World::new(&read(&format!("{} {wall}", thousand_spheres(depth))));
         let whole = Area::whole(SIZE, SIZE);
-        assert_eq!(candidates::within(&world, whole, 1, &mut live), behind);
-        assert!(candidates::within(&world, whole, usize::MAX, &mut live));
-        assert_eq!(live.len() == 1, behind);
-        assert!(behind || live.len() == 1001, "{}", live.len());
+        assert_eq!(candidates::within(&world, whole, 1, &mut found), behind);
+        assert!(candidates::within(&world, whole, usize::MAX, &mut found));
+        assert_eq!(found.len() == 1, behind);
+        assert!(behind || found.len() == 1001, "{}", found.len());
         // Neither where it lies across the cells of the quadtree.
         for part in whole.tiles(7) {
-            assert!(candidates::within(&world, part, usize::MAX, &mut live));
-            assert!(live.len() == 1 || !behind, "{part:?}");
+            assert!(candidates::within(&world, part, usize::MAX, &mut found));
+            assert!(found.len() == 1 || !behind, "{part:?}");
         }
     }
 }
@@ -144,7 +144,9 @@ fn a_pixel_has_the_same_candidates_in_every_part() {
             let flow = parts.parts(wanted, &mut Room::default(), &mut |part| {
                 let (area, text) = match part {
                     Part::Flat { area, slot } => (area, format!("{slot}")),
-                    Part::Open { x, y, live } => (Area::pixel(x, y), format!("{live:?}")),
+                    Part::Open { x, y, candidates } => {
+                        (Area::pixel(x, y), format!("{candidates:?}"))
+                    }
                     Part::Plain { area } => (area, "plain".to_owned()),
                 };
                 for (x, y) in area.iter() {

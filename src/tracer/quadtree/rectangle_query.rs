@@ -2,7 +2,7 @@
 
 use super::{
     grid::{Nearness, Rectangle},
-    tree::{Place, Tree},
+    tree::{CellSquare, Tree},
 };
 
 /// An object is listed in no more cells than this.
@@ -35,7 +35,7 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
 
     /// The objects, in file order; none if they are too many.
     pub(super) fn run(mut self) -> Option<Vec<u32>> {
-        self.below(0, Place::ROOT)?;
+        self.below(0, CellSquare::ROOT)?;
         let mut objects: Vec<u32> = self
             .found
             .iter()
@@ -49,19 +49,19 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
     }
 
     /// Adds what a cell lists, and then what those below it do: the large objects come first, which may hide the others. None if that is too much.
-    fn below(&mut self, cell: u32, place: Place) -> Option<()> {
+    fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
         let cell = self.tree.cells[cell as usize];
-        if cell.nearest <= self.hidden || !place.bounds().meets(self.rectangle) {
+        if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {
             return Some(());
         }
         // An object in a smaller cell is too small to hide anything. One that lies in several cells may fill what the rectangle has of this one.
-        let part =
-            (place.side() >= self.rectangle.side()).then(|| self.rectangle.within(&place.bounds()));
+        let part = (square.side() >= self.rectangle.side())
+            .then(|| self.rectangle.within(&square.bounds()));
         for entry in &self.tree.entries[cell.start as usize..cell.end as usize] {
             if entry.nearest <= self.hidden {
                 break;
             }
-            let item = place.item(entry);
+            let item = square.item(entry);
             if item.meets(self.rectangle) {
                 if self.found.len() == self.most {
                     return None;
@@ -74,7 +74,7 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         }
         if cell.quarters > 0 {
             for quarter in 0..4 {
-                self.below(cell.quarters + quarter, place.quarter(quarter))?;
+                self.below(cell.quarters + quarter, square.quarter(quarter))?;
             }
         }
         Some(())

@@ -8,109 +8,36 @@
 //! divided by its error bound: beyond ±1 its sign is certain. A sample that is not certain is asked for again on its own, exactly, so
 //! that nothing here can change what is seen: it only says it sooner.
 
+mod pixel;
 mod prepare;
 mod simd;
 
 use glam::DVec2;
 
-use self::simd::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Lanes};
-use super::{
-    candidates::Candidate,
-    checker_corners::{Checks, Squares},
-    local_form::{Conic, Line, Local},
-    world::World,
-};
+use self::pixel::{BACKGROUND, CHUNK_SAMPLES, ColorCount, DOUBT, Pattern};
+use super::{candidates::Candidate, checker_corners::Checks, world::World};
 use crate::math::Vectors;
+
+pub use self::pixel::Pixel;
 
 /// Fewer samples than this are not worth the preparation.
 const SAMPLES_WORTH_PREPARING: usize = 2;
-
-/// A pixel's objects, prepared for many samples. Kept from pixel to pixel for its room.
-#[derive(Debug, Default)]
-pub struct Pixel {
-    /// The candidates.
-    live: Vec<Candidate>,
-    x: u32,
-    y: u32,
-    surfaces: Vec<Surface>,
-    /// Of all surfaces.
-    lines: Vec<Line>,
-    /// How the surfaces lie, if that is to be looked at sample by sample.
-    depths: Option<f64>,
-    /// Of all surfaces, if they are looked at.
-    planes: Vec<Local>,
-    /// Whether samples are to be traced one by one.
-    is_hard: bool,
-    /// What may be seen, where surfaces are told by forms.
-    colors: Vec<Color>,
-    /// How many samples of the last chunk are not certain.
-    doubts: u64,
-    lanes: Lanes,
-}
-
-/// A colour that may be seen in a pixel.
-#[derive(Debug)]
-struct Color {
-    /// What stands for it.
-    code: f64,
-    /// Its slot in the palette.
-    slot: usize,
-    /// How many samples have seen it.
-    count: u64,
-}
-
-/// What a pixel shows of an object.
-#[derive(Debug)]
-struct Surface {
-    /// Its place among the candidates.
-    place: usize,
-    /// Where its boundaries begin among all lines, and where they end: each is ≥ 0 where it is hit.
-    edges: [usize; 2],
-    /// The boundary of a sphere.
-    conic: Option<Conic>,
-    pattern: Pattern,
-    depth: Depth,
-}
-
-/// Which of its colours an object shows.
-#[derive(Debug)]
-enum Pattern {
-    /// The first or the second.
-    Plain(f64),
-    /// The first where the product of the lines up to `end`, behind the edges, is positive, if not `odd`.
-    Lines { end: usize, odd: bool },
-    /// Squares by division.
-    Squares(Squares),
-}
-
-/// Where the inverse depth of a surface comes from.
-#[derive(Debug)]
-enum Depth {
-    /// It is not asked for.
-    Unknown,
-    /// The least of some planes'.
-    Least([usize; 2]),
-    /// The greatest of them.
-    Greatest([usize; 2]),
-    /// That of the near side of a sphere, (b + √Q) · factor.
-    Sphere { q: Conic, b: Local, factor: f64 },
-}
 
 /// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but a board and that is known, what
 /// is seen of it.
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],
-    live: &[Candidate],
+    candidates: &[Candidate],
     checks: Option<&Checks>,
     pixel: &mut Pixel,
 ) {
     (pixel.x, pixel.y) = (x, y);
-    pixel.live.clear();
-    match live {
+    pixel.candidates.clear();
+    match candidates {
         // Most often, and then without a call to copy it.
-        [only] => pixel.live.push(*only),
-        _ => pixel.live.extend_from_slice(live),
+        [only] => pixel.candidates.push(*only),
+        _ => pixel.candidates.extend_from_slice(candidates),
     }
     let prepared = match checks {
         Some(checks) => pixel.prepare_checks(checks),
@@ -131,7 +58,7 @@ pub fn count(
 ) {
     let alone = |pixel: &Pixel, index: usize| {
         let offset = DVec2::new(x[index], y[index]);
-        let objects = pixel.live.iter().map(|live| live.object);
+        let objects = pixel.candidates.iter().map(|candidate| candidate.object);
         world.slot_among(pixel.x, pixel.y, offset, objects)
     };
     if pixel.is_hard || samples < SAMPLES_WORTH_PREPARING {
@@ -160,14 +87,14 @@ pub fn count(
 
 /// Lists the colours that may be seen in a pixel.
 fn may_see(world: &World, pixel: &mut Pixel) {
-    let color = |code: f64, slot: usize| Color {
+    let color = |code: f64, slot: usize| ColorCount {
         code,
         slot,
         count: 0,
     };
     pixel.colors.clear();
     for surface in &pixel.surfaces {
-        let [first, second] = world.slots(pixel.live[surface.place].object);
+        let [first, second] = world.slots(pixel.candidates[surface.place].object);
         let codes = [false, true].map(|odd| surface.code(odd));
         match surface.pattern {
             Pattern::Plain(code) if code == codes[1] => pixel.colors.push(color(code, second)),
@@ -178,11 +105,4 @@ fn may_see(world: &World, pixel: &mut Pixel) {
         }
     }
     pixel.colors.push(color(BACKGROUND, world.background()));
-}
-
-impl Surface {
-    /// What stands for one of its colours.
-    fn code(&self, odd: bool) -> f64 {
-        (2 * self.place + 1 + usize::from(odd)) as f64
-    }
 }

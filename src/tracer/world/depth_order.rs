@@ -12,13 +12,13 @@ use crate::{
     tracer::{
         camera::Direction,
         form::Form,
-        hit::{Crossing, Part},
+        hit::{Crossing, SurfacePart},
     },
 };
 
 /// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their computed values.
 #[inline]
-pub(super) fn order<T: Real>(
+pub(in crate::tracer) fn order<T: Real>(
     geometry: &Geometry,
     (i, a): (usize, &Crossing<T>),
     (j, b): (usize, &Crossing<T>),
@@ -54,7 +54,11 @@ pub(super) fn order_to_clip<T: Real>(
 
 /// Whether two parts of objects are one surface: parts of one plane, or the same side of equal spheres.
 #[cold]
-fn is_same_surface(geometry: &Geometry, (i, a): (usize, Part), (j, b): (usize, Part)) -> bool {
+fn is_same_surface(
+    geometry: &Geometry,
+    (i, a): (usize, SurfacePart),
+    (j, b): (usize, SurfacePart),
+) -> bool {
     match (&geometry.numbers[i], &geometry.numbers[j]) {
         (Numbers::Sphere(center, radius), Numbers::Sphere(other_center, other_radius)) => {
             a == b && center == other_center && radius == other_radius
@@ -67,8 +71,8 @@ fn is_same_surface(geometry: &Geometry, (i, a): (usize, Part), (j, b): (usize, P
 /// and where surfaces lie in one plane it is asked at every sample point.
 pub(in crate::tracer) fn is_one_plane(
     geometry: &Geometry,
-    (i, a): (usize, Part),
-    (j, b): (usize, Part),
+    (i, a): (usize, SurfacePart),
+    (j, b): (usize, SurfacePart),
 ) -> bool {
     match (geometry.numbers[i].plane(a), geometry.numbers[j].plane(b)) {
         (Some(a), Some(b)) => a.equals(&b),
@@ -89,7 +93,7 @@ pub(in crate::tracer) fn board_height(geometry: &Geometry, index: usize) -> Opti
 
 /// Whether a flat part of an object lies in the near or in the far plane.
 #[cold]
-fn is_in_clip<T: Level>(geometry: &Geometry, (index, part): (usize, Part)) -> bool {
+fn is_in_clip<T: Level>(geometry: &Geometry, (index, part): (usize, SurfacePart)) -> bool {
     let frame = T::frame(geometry);
     let object = T::object(geometry, index);
     let clips = [&frame.near, &frame.far];

@@ -8,17 +8,17 @@ pub(super) mod depth_order;
 mod precise_cache;
 mod precision;
 mod prepare;
-mod ray;
 
-pub use self::ray::{Hit, ray};
-
-pub(super) use self::{precise_cache::Held, precision::Level};
+pub(super) use self::{
+    precise_cache::Held,
+    precision::{Geometry, Level},
+};
 
 use std::{cmp::Ordering, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
-use self::{colors::Colors, precision::Geometry, prepare::prepare};
+use self::{colors::Colors, prepare::prepare};
 use super::{
     camera::{Basis, Direction, Point},
     hit::Crossing,
@@ -44,10 +44,10 @@ pub struct World {
 
 /// What is seen at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Seen {
-    object: usize,
+pub(super) struct Seen {
+    pub(super) object: usize,
     /// Whether it is the object's second crossing, the first being nearer than the near plane.
-    second: bool,
+    pub(super) second: bool,
     /// Whether it is a checkerboard's second colour.
     odd: bool,
 }
@@ -279,7 +279,7 @@ impl World {
 
     /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
     #[inline]
-    fn seen_in_direction<T: Level>(
+    pub(super) fn seen_in_direction<T: Level>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,

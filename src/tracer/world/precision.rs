@@ -12,7 +12,7 @@ use crate::{
     tracer::{
         camera::{Basis, Camera},
         form::Form,
-        hit::Part,
+        hit::SurfacePart,
         shape::Object,
         sphere::Sphere,
     },
@@ -94,8 +94,8 @@ impl Numbers {
     }
 
     /// The plane of a flat part.
-    pub(super) fn plane(&self, part: Part) -> Option<Plane> {
-        let (Self::Other(shape), Part::Plane(index)) = (self, part) else {
+    pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
+        let (Self::Other(shape), SurfacePart::Plane(index)) = (self, part) else {
             return None;
         };
         Some(match **shape {

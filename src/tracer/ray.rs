@@ -5,13 +5,12 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3};
 
 use super::{
-    World, depth_order,
-    precision::{Geometry, Level},
+    hit::Crossing,
+    world::{Geometry, Level, World, depth_order},
 };
 use crate::{
     color::Color,
     math::{Ball, Ball3, Big, Real},
-    tracer::hit::Crossing,
 };
 
 /// A crossing of a ray with a surface, for people: numbers are right to the last bit.
