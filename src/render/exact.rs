@@ -1,4 +1,6 @@
 //! A part of the picture without samples, and how far it may be from the true one.
+//!
+//! In: the world and the part. Out: the pixels' means as [`Integrator`] computes them, and their bounds, rounded upwards.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,4 +1,6 @@
 //! A part of the picture with samples.
+//!
+//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut into tiles for the threads; `frame` makes each.
 
 use std::sync::{Mutex, PoisonError, atomic::AtomicU64};
 

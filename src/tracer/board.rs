@@ -1,7 +1,8 @@
 //! A checkerboard in the coordinates of pixels and of parts of them: three linear forms, whose ratios are places on the board.
 //!
-//! For one sub-pixel in any precision, by [`SubPixelFrame::together`]; and for several pixels at a time in double-double: the same that [`board`] says of one sub-pixel, by the same operations on plain
-//! arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
+//! In: the board, and a sub-pixel or eight pixels. Out: the forms N₀, N₁ and ℓ, moved to a corner of squares near to the pixel, with bounds on their
+//! errors: for one sub-pixel in any precision, by [`SubPixelFrame::together`]; for eight pixels in double-double, by the same operations on
+//! plain arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
 
 use glam::DVec2;
 use multiversion::multiversion;
@@ -14,13 +15,13 @@ use super::{
 };
 use crate::math::{Big, Double, ROUND, Real};
 
-/// So many pixels at a time.
+/// So many pixels at a time: as many numbers as the widest vectors have.
 pub const PIXELS: usize = 8;
 
-/// Forms are prepared here if their largest factors are between this and its inverse, so that products of a few neither overflow nor vanish.
+/// Forms are prepared here if their largest factors are between this and its inverse, so that products of five neither overflow nor vanish.
 const SMALL: f64 = 1e-60;
 
-/// From how many squares on a pixel's nearest square is not told here.
+/// From how many squares on a pixel's nearest one is not told here: far below 2^51, up to which [`ROUND`] rounds.
 const FAR: f64 = 1e9;
 
 /// A checkerboard in a sub-pixel: the point (x, y) shows the board's point (N₀/ℓ, N₁/ℓ), in squares from

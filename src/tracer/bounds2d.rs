@@ -1,6 +1,7 @@
 //! Where in the view plane an object may be seen, and how near it is at most.
 //!
-//! In: an object. Out: its bounds in X and Y, of which the quadtree is built, and a bound on its inverse depth.
+//! In: an object. Out: its bounds in X and Y, of which the quadtree is built, and a bound on its inverse depth. A sphere's are the tangents from
+//! the eye, those of a triangle and of a box the extremes of their corners.
 //!
 //! The bounds are those of the object's convex hull, and wider than all roundings on the way by far more than the last
 //! precision cannot tell: outside of them every decision says for certain that the object is missed.

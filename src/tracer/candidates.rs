@@ -40,13 +40,6 @@ impl Candidate {
     }
 }
 
-/// As many objects as lie above each other in pictures that people make. Of more it takes too long to compare each two: only the nearest is compared
-/// with the others.
-pub(super) const LAYERS: usize = 8;
-
-/// Heights of checkerboards above or below the eye that differ by this factor are in this order, whatever their rounding.
-const APART: f64 = 1.0 + 1e-12;
-
 /// All objects, as candidates for any part of the picture.
 pub fn everything(world: &World) -> Vec<Candidate> {
     let candidate = |object| Candidate {
@@ -174,64 +167,24 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that lie behind another flat one all over the patch, though their depths there overlap, or in
-/// the same plane as one that comes before them in the file.
+/// Removes flat objects that lie behind the nearest one all over the patch, though their depths there overlap, or in the same plane as one that
+/// comes before them in the file. Of layers the nearest one hides all others; of those in one plane it is the first.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
-    let drop_behind = |front: usize, candidates: &mut Vec<Candidate>| {
-        candidates.retain(|back| {
-            back.object == front || back.is_cut() || !covers(world, front, back.object, patch)
-        });
+    let is_flat = |candidate: &&Candidate| {
+        !matches!(
+            *f64::object(&world.geometry, candidate.object),
+            Object::Sphere(_)
+        )
     };
     let may_cover = |candidate: &&Candidate| candidate.is_whole && !candidate.is_cut();
-    if candidates.len() > LAYERS {
-        drop_boards_behind(world, candidates);
-        // Of layers the nearest one hides all others; in one plane that is the first.
-        let is_flat = |candidate: &&Candidate| {
-            !matches!(
-                *f64::object(&world.geometry, candidate.object),
-                Object::Sphere(_)
-            )
-        };
-        let fronts = candidates.iter().filter(may_cover).filter(is_flat);
-        let nearest = fronts.max_by(|a, b| {
-            let nearer = a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
-            nearer.then(b.object.cmp(&a.object))
-        });
-        if let Some(front) = nearest.map(|candidate| candidate.object) {
-            drop_behind(front, candidates);
-        }
-    }
-    if candidates.len() <= LAYERS {
-        for front in candidates.clone().iter().filter(may_cover) {
-            drop_behind(front.object, candidates);
-        }
-    }
-}
-
-/// Removes checkerboards that lie behind another one, above or below the eye: whatever ray meets them meets that one, too, and nearer, also
-/// where the horizon crosses the patch.
-fn drop_boards_behind(world: &World, candidates: &mut Vec<Candidate>) {
-    for is_above in [false, true] {
-        let height = |candidate: &Candidate| {
-            // Numbers of the scene lie farther away in memory than what is prepared of them.
-            let is_board = matches!(
-                *f64::object(&world.geometry, candidate.object),
-                Object::Checkerboard(_)
-            );
-            let height = is_board
-                .then(|| depth_order::board_height(&world.geometry, candidate.object))??;
-            ((height > 0.0) == is_above).then_some(height.abs())
-        };
-        let fronts = candidates.iter().filter(|candidate| !candidate.is_cut());
-        let fronts = fronts.filter_map(|candidate| Some((height(candidate)?, candidate.object)));
-        let nearest = fronts.min_by(|(a, i), (b, j)| a.total_cmp(b).then(i.cmp(j)));
-        let Some((nearest, front)) = nearest else {
-            continue;
-        };
-        candidates.retain(|back| match height(back) {
-            // Heights that are hardly apart may be rounded otherwise, or be one.
-            Some(height) => back.object == front || back.is_cut() || height <= nearest * APART,
-            None => true,
+    let fronts = candidates.iter().filter(may_cover).filter(is_flat);
+    let nearest = fronts.max_by(|a, b| {
+        let nearer = a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
+        nearer.then(b.object.cmp(&a.object))
+    });
+    if let Some(front) = nearest.map(|candidate| candidate.object) {
+        candidates.retain(|back| {
+            back.object == front || back.is_cut() || !covers(world, front, back.object, patch)
         });
     }
 }

@@ -23,10 +23,10 @@ use crate::{
     math::{ROUND, UP, floor},
 };
 
-/// The greatest side of a block, in pixels.
-const SIDE: usize = 32;
+/// The greatest side of a block, in pixels: that of the squares that quartering begins with.
+pub(super) const SIDE: usize = 32;
 
-/// Its corners in a row, and so many more that vectors of eight make them up.
+/// Its corners in a row, 33, and so many more that vectors of eight make them up.
 const LANES: usize = 40;
 
 /// The squares of a board that a pixel shows.
@@ -67,16 +67,13 @@ pub enum Shown<'a> {
 }
 
 /// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is seen, show of it: in runs of one colour and
-/// singly. `None` if the object is none, the part is too large or the board too far.
+/// singly. `None` if the object is none or the board too far. The part's sides are at most [`SIDE`].
 pub fn show(
     world: &World,
     part: Area,
     object: usize,
     each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
 ) -> Option<ControlFlow<()>> {
-    if part.width as usize > SIDE || part.height as usize > SIDE {
-        return None;
-    }
     let Object::Checkerboard(board) = &*f64::object(&world.geometry, object) else {
         return None;
     };

@@ -1,7 +1,8 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
-//! Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole
-//! squares are kept apart, since only their parity matters: far from the origin they would cost N its precision.
+//! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour there. Below the horizon the plane's inverse
+//! depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole squares are kept apart, since only their parity matters: far
+//! from the origin they would cost N its precision. Errors: those of the forms; a ratio whose error reaches a whole number is in doubt.
 
 use std::cmp::Ordering;
 

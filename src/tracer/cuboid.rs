@@ -1,8 +1,9 @@
 //! The box: three slabs, each the space between two parallel faces.
 //!
-//! With μ = 1/λ a point λr lies between the planes x = lo and x = hi (as seen from the eye) where lo·μ ≤ r_x ≤ hi·μ. On which
-//! side of its two planes the eye lies makes of these a greatest and a least μ, each a linear form: no division by r_x, which
-//! may be zero.
+//! In: the box's corners and the camera. Out: the forms of its faces' inverse depths; for a ray, where it enters and where it leaves. The method
+//! is Kay and Kajiya's slabs ("Ray tracing complex scenes", 1986) in inverse depths: with μ = 1/λ a point λr lies between the planes x = lo and
+//! x = hi (as seen from the eye) where lo·μ ≤ r_x ≤ hi·μ. On which side of its two planes the eye lies makes of these a greatest and a least μ,
+//! each a linear form: no division by r_x, which may be zero. Errors: each form's own bound.
 
 use std::cmp::Ordering;
 

@@ -1,13 +1,18 @@
 //! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! In the coordinates of that [`SubPixel`] every form of a surface is prepared anew, in high precision, so that what is left is good
-//! to the last bit of an `f64` however far the sub-pixel is from the picture's centre.
+//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and where they cross each other, as curves in the
+//! coordinates of that sub-pixel. Outlines of spheres are Q = 0 (`sphere`); two planes cross where their inverse depths are equal, a plane and a
+//! sphere in the circle's cone, two spheres in their radical plane.
+//!
+//! Errors: each form is prepared anew in the sub-pixel's coordinates and in high precision, with a bound on its values there, so that what is left
+//! is good to the last bit of an `f64` however far the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
 use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
 
-/// The error of a line's form from which on double-double was not enough.
+/// The error of a line's form, in units of its greatest slope, from which on double-double was not enough: eight roundings of an `f64`, more than
+/// the three of its factors come to.
 pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A boundary in a pixel.

@@ -1,4 +1,4 @@
-//! Where a ray meets a surface.
+//! Where a ray meets a surface: the inverse depth of the crossing, and which part of the surface it lies in.
 
 use crate::math::{Ball, Real};
 

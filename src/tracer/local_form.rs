@@ -1,4 +1,7 @@
-//! Forms in a pixel: functions of the offset from its centre, each with one bound on the error of all its values there.
+//! Linear and quadratic forms in the coordinates of a pixel or of a rectangle of pixels.
+//!
+//! In: a form over the view plane, and the pixel. Out: the same form as a function of the offset from the pixel's centre, in units of its sides.
+//! Errors: one bound for all values there, the form's own taken twice (its factors, its value at the centre) and the roundings of its evaluation.
 
 use super::{
     camera::{Camera, Direction},

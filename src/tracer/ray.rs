@@ -1,4 +1,7 @@
 //! All crossings of one ray, for people.
+//!
+//! In: the world, and a point of the picture. Out: the ray's direction and its crossings, the nearest first, computed in big numbers, so that each
+//! number printed is the true one rounded.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,7 @@
 //! Any object, prepared for one picture.
+//!
+//! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer asks of every kind of object: crossings of a ray,
+//! intervals over a rectangle, the curves that bound it. Each kind answers for itself; here is only the choice between them.
 
 use super::{
     camera::{Camera, Direction, Window},

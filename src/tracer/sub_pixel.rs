@@ -1,4 +1,6 @@
-//! Square parts of pixels, in which exact pictures are computed.
+//! A pixel, or a square part of one: where exact pictures are computed.
+//!
+//! In: a pixel, and quarterings. Out: points of the part as offsets from the pixel's centre, without error: sides are powers of two.
 
 use glam::DVec2;
 

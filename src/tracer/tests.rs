@@ -277,7 +277,7 @@ fn bounds_are_tight() {
 }
 
 #[test]
-fn what_is_seen_in_a_part_is_live_there() {
+fn what_is_seen_in_a_part_is_a_candidate_there() {
     let mut seen = 0;
     for seed in 0..60 {
         let mut random = Random(2000 + seed);

@@ -1,4 +1,8 @@
 //! The triangle: three edges, each a line in the view plane.
+//!
+//! In: the triangle's numbers and the camera. Out: three edge forms and the form of its plane's inverse depth; for a ray, its crossing. A ray
+//! meets the triangle where no edge form is negative: the edge functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous
+//! coordinates", 1997). Errors: each form's own bound.
 
 use std::{array, cmp::Ordering};
 

@@ -26,7 +26,7 @@ use super::{
     world::{Held, Level, World},
 };
 
-/// The doubtful area of a conic from which on double-double was not enough.
+/// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.
@@ -59,9 +59,7 @@ pub fn narrowed(world: &World, sub_pixel: SubPixel, among: &[Candidate], out: &m
         among.iter().map(|candidate| candidate.object),
         out,
     );
-    if out.len() > candidates::LAYERS {
-        drop_behind_middle(world, sub_pixel, &patch, out);
-    }
+    drop_behind_middle(world, sub_pixel, &patch, out);
 }
 
 /// The curves in a sub-pixel that may bound what is seen there of some objects. There may be as many as pairs of objects: once it is cancelled

@@ -1,4 +1,7 @@
 //! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near an object is.
+//!
+//! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of an `f64`. Both conversions are monotone, and
+//! bounds are rounded outwards.
 
 use crate::tracer::{
     bounds2d::Extent,
@@ -6,7 +9,7 @@ use crate::tracer::{
     interval::{Patch, Range},
 };
 
-/// The side of the root is 2 to this power: units are far smaller than pixels in a picture of any common size.
+/// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred thousand pixels wide is a hundred of them.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle in the units of the grid, ends included.

@@ -21,6 +21,7 @@ use crate::threads::Threads;
 
 pub use self::grid::{Grid, Item, Nearness};
 pub use self::point_query::Descent;
+pub use self::tree::OBJECTS_A_CELL;
 
 /// The objects that may be seen, by where in the view plane they are.
 #[derive(Debug)]

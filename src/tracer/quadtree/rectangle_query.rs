@@ -1,11 +1,13 @@
-//! The objects in a part of the view plane.
+//! The rectangle query: the objects that rays through a rectangle may meet.
+//!
+//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, but for those behind one that fills it.
 
 use super::{
     grid::{Nearness, Rectangle},
     tree::{CellSquare, Tree},
 };
 
-/// An object is listed in no more cells than this.
+/// An object is listed in no more cells than this: it is no longer than the cells that list it, and meets two of them along each axis.
 const CELLS: usize = 4;
 
 /// A search for the objects that rays through a rectangle may meet.

@@ -1,4 +1,7 @@
 //! The cells of a quadtree, and the objects listed in them.
+//!
+//! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A cell is divided while it holds many objects; an
+//! object larger than its quarters stays in it. Within a cell, bounds are kept in 256 parts of its side, rounded outwards.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
@@ -7,8 +10,8 @@ use rayon::prelude::*;
 use super::grid::{Item, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
-/// A cell with no more objects is not divided.
-const OBJECTS_A_CELL: usize = 32;
+/// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take the same time within a twentieth.
+pub const OBJECTS_A_CELL: usize = 32;
 
 /// A cell with more objects is divided by several threads.
 const OBJECTS_A_THREAD: usize = 1 << 14;

@@ -20,9 +20,6 @@ use crate::math::Vectors;
 
 pub use self::pixel::Pixel;
 
-/// Fewer samples than this are not worth the preparation.
-const SAMPLES_WORTH_PREPARING: usize = 2;
-
 /// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but a board and that is known, what
 /// is seen of it.
 pub fn prepare(
@@ -61,7 +58,7 @@ pub fn count(
         let objects = pixel.candidates.iter().map(|candidate| candidate.object);
         world.slot_among(pixel.x, pixel.y, offset, objects)
     };
-    if pixel.is_hard || samples < SAMPLES_WORTH_PREPARING {
+    if pixel.is_hard {
         (0..samples).for_each(|index| count(alone(pixel, index), 1));
         return;
     }

@@ -1,4 +1,8 @@
-//! What a pixel shows of its candidates, written down as forms.
+//! The preparation of a pixel: what it shows of its candidates, written down as forms.
+//!
+//! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths, sorted from back to front where their depths do
+//! not overlap. A form that has one sign all over the pixel by its bound is left out. What is rare or has overflowed is left to the world, sample by
+//! sample.
 
 use std::borrow::Borrow;
 
@@ -17,7 +21,8 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// A square of a board is told by lines if no more than this many of them pass through the pixel.
+/// A square of a board is told by lines if no more than this many of them pass through the pixel, else by division. Measured: 3 to 12 make no
+/// difference, and division alone makes figure 9.9 a ninth slower.
 const LINES: usize = 6;
 
 /// The preparation has met something that is better traced sample by sample.

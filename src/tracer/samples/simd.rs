@@ -1,4 +1,8 @@
 //! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
+//!
+//! In: a prepared pixel, and a chunk of its samples. Out: what each sees, and how often each colour is seen. For each surface in turn its boundary
+//! forms are evaluated at all samples, then its pattern and its depth. Errors: a value within its form's bound of 0, or two depths within theirs of
+//! each other, make the sample one in doubt, which the world is asked for again.
 
 use multiversion::multiversion;
 

@@ -1,14 +1,13 @@
 //! Which of two crossings is nearer, and where they are in one surface, that none is.
 //!
-//! Computed depths of one surface are in doubt at every sample point, and forms take long to prepare. So objects' planes are compared by the
-//! numbers of the scene.
+//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths of one surface are in doubt at every sample
+//! point, and forms take long to prepare. So where depths are in doubt, objects' planes are compared by the numbers of the scene, without rounding.
 
 use std::cmp::Ordering;
 
 use super::precision::{Geometry, Level, Numbers};
 use crate::{
     math::{Big, Double, Doubt, Real},
-    scene::{Checkerboard, Shape},
     tracer::{
         camera::Direction,
         form::Form,
@@ -77,17 +76,6 @@ pub(in crate::tracer) fn is_one_plane(
     match (geometry.numbers[i].plane(a), geometry.numbers[j].plane(b)) {
         (Some(a), Some(b)) => a.equals(&b),
         _ => false,
-    }
-}
-
-/// How far above the eye a checkerboard lies, rounded once; none if the object is none.
-pub(in crate::tracer) fn board_height(geometry: &Geometry, index: usize) -> Option<f64> {
-    match &geometry.numbers[index] {
-        Numbers::Other(shape) => match **shape {
-            Shape::Checkerboard(Checkerboard { y, .. }) => Some(y - geometry.fast.camera.eye.y),
-            _ => None,
-        },
-        Numbers::Sphere(..) => None,
     }
 }
 

@@ -1,4 +1,6 @@
-//! The objects that were asked for last in a higher precision.
+//! The cache of objects in a higher precision.
+//!
+//! In: an object's index, and how it is prepared. Out: the object, prepared now or kept since it was last asked for.
 
 use std::{
     ops::Deref,

@@ -1,7 +1,7 @@
 //! The camera and the objects in each precision: `f64`, double-double, and big numbers, which decide everything.
 //!
 //! In: the numbers of the scene. Out: frames and objects in the precision that is asked for; beyond `f64` they are prepared when they are
-//! first asked for.
+//! first asked for. What a decision in one precision leaves in doubt, by the bounds on its errors, is asked of the next.
 
 use glam::{DVec2, DVec3};
 

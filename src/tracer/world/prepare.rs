@@ -1,3 +1,5 @@
+//! The preparation of a scene.
+//!
 //! In: a scene. Out: its geometry, prepared block by block by all threads, and the quadtree over its objects' bounds.
 
 use std::sync::atomic::AtomicBool;
