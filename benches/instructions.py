@@ -1,14 +1,10 @@
 #!/usr/bin/env python3
 """Instructions, counted by valgrind's callgrind: instructions.py BENCH [NAME...]
 
-BENCH is the built benchmark `culling` or `sweep` (`cargo bench --no-run` prints where they are). Printed are the millions of
-instructions of the plain way, one by one, and the other ways' as ratios to it.
+BENCH is the built benchmark `culling` (`cargo bench --no-run` prints where it is). Printed are the millions of instructions of the
+plain way, one by one, and culling's as a ratio to it, of figure 9.9 at 160 x 90 pixels with 64 samples each by the methods that are
+named, or by all; start-up and the scene's preparation are counted with each."""
 
-`culling` renders figure 9.9 at 160 x 90 pixels with 64 samples each by the methods that are named, or by all; start-up and the
-scene's preparation are counted with each. `sweep` renders the pictures that are named, as it prints their names, once and nine
-times, and an eighth of the difference is counted: to read a long text never takes quite the same."""
-
-import os
 import re
 import shutil
 import subprocess
@@ -30,11 +26,6 @@ def figure(bench, way, method):
     return count([bench, "--bench", "--once", way, method, "160", "64", "1"])
 
 
-def picture(bench, way, name):
-    once, nine = (count([bench, "--bench", "--once", name, way, times]) for times in "19")
-    return (nine - once) / 8
-
-
 def table(names, ways, counted):
     width = max(map(len, names)) + 2
     print(" " * width + "".join(f"{way:>12}" for way in ways))
@@ -50,13 +41,8 @@ def main():
     if not shutil.which("valgrind"):
         sys.exit("valgrind is not there: nothing is counted")
     bench, names = sys.argv[1], sys.argv[2:]
-    if os.path.basename(bench).startswith("sweep"):
-        if not names:
-            sys.exit(__doc__)
-        table(names, ["OneByOne", "Culled"], lambda way, name: picture(bench, way, name))
-    else:
-        ways = ["OneByOne", "Narrow", "Together", "Culled"]
-        table(names or METHODS, ways, lambda way, name: figure(bench, way, name))
+    ways = ["OneByOne", "Culled"]
+    table(names or METHODS, ways, lambda way, name: figure(bench, way, name))
 
 
 main()

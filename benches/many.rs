@@ -1,39 +1,30 @@
-//! Many objects: what the hierarchy gains per ray: `cargo bench --bench many`. See
-//! README.md beside this file.
+//! Many objects: how preparing and rendering them grows with their number: `cargo bench --bench many`. See README.md beside this file.
 //!
 //! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
 //! of each phase once, and the memory that the world takes; with `--cube` the spheres are in a cube, not all over the picture.
 
-use std::{
-    env, fs,
-    hint::black_box,
-    sync::atomic::AtomicBool,
-    time::{Duration, Instant},
-};
+use std::{env, fs, hint::black_box, sync::atomic::AtomicBool};
 
-use glam::DVec2;
 use pinhole::{
     area::Area,
-    render::{Control, Way, render_exact, render_in_a_way},
+    render::{Control, render, render_exact},
     sampling::Sampling,
     scene::{self, Scene},
     source::{Source, Sources},
-    tracer::{Precision, World},
+    tracer::World,
 };
 
 use self::{
     clock::cpu_seconds,
+    one_by_one::one_by_one,
     spheres::{crowd, cube},
 };
 
 mod clock;
+mod one_by_one;
 mod spheres;
 
-/// How many objects the plain loop over all of them is bearable for.
-const PLAIN: [usize; 3] = [100, 1_000, 10_000];
-
-/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
-const ROUNDS: usize = 5;
+const ALL: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 
 fn main() {
     let arguments: Vec<String> = env::args().collect();
@@ -62,7 +53,7 @@ fn main() {
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
-    ratios();
+    ALL.into_iter().for_each(|count| phases(&read(text(count))));
 }
 
 fn read(text: String) -> Scene {
@@ -72,7 +63,7 @@ fn read(text: String) -> Scene {
         .expect("a scene without mistakes")
 }
 
-fn picture(world: &World, scene: &Scene, way: Way) {
+fn picture(world: &World, scene: &Scene) {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let control = Control {
@@ -80,44 +71,8 @@ fn picture(world: &World, scene: &Scene, way: Way) {
         progress: &|_| {},
         cancel: &AtomicBool::new(false),
     };
-    let film = render_in_a_way::<[f64; 3]>(world, &sampling, whole, &control, way);
+    let film = render(world, &sampling, whole, &control);
     black_box(film).expect("there is memory for it");
-}
-
-/// Points all over the picture, row by row.
-fn points(scene: &Scene) -> Vec<(u32, u32)> {
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    whole
-        .iter()
-        .filter(|(x, y)| x % 16 == 0 && y % 16 == 0)
-        .collect()
-}
-
-/// How much longer the plain loop takes, in turns, so that a busy moment meets both.
-fn ratios() {
-    println!("the plain loop over all objects by the hierarchy, per ray");
-    for count in PLAIN {
-        let scene = read(crowd(count));
-        let world = World::new(&scene);
-        let points = points(&scene);
-        let offset = DVec2::new(0.125, -0.25);
-        let mut best = [Duration::MAX; 2];
-        for _ in 0..ROUNDS {
-            let start = Instant::now();
-            for &(x, y) in &points {
-                black_box(world.slot_in(Precision::Single, x, y, offset));
-            }
-            let middle = Instant::now();
-            for &(x, y) in &points {
-                black_box(world.slot_at(x, y, offset));
-            }
-            best[0] = best[0].min(middle - start);
-            best[1] = best[1].min(middle.elapsed());
-        }
-        let ratio = best[0].as_secs_f64() / best[1].as_secs_f64();
-        let each = best[1] / points.len() as u32;
-        println!("{count:9} spheres {ratio:8.1}   {each:.0?} a ray by the hierarchy");
-    }
 }
 
 /// The CPU seconds of each phase, and the bytes of the world by object.
@@ -127,15 +82,16 @@ fn phases(scene: &Scene) {
     let before = (cpu_seconds(), resident_bytes());
     let world = World::new(scene);
     let after = (cpu_seconds(), resident_bytes());
-    (0..RENDERS).for_each(|_| picture(&world, scene, Way::Culled));
+    (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // Each sample by the hierarchy on its own.
-    picture(&world, scene, Way::OneByOne);
+    // Each sample by the quadtree on its own.
+    let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    black_box(one_by_one(&world, &sampling, whole));
     let plain = cpu_seconds() - start;
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();
-    let whole = Area::whole(scene.image.width, scene.image.height);
     let control = Control {
         threads: None,
         progress: &|_| {},

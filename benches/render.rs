@@ -9,14 +9,17 @@ use glam::DVec2;
 use pinhole::{
     area::Area,
     film::{Film, Recipe, write_exr, write_png},
-    render::{Control, Way, render_in_a_way},
+    render::{Control, render},
     sampling::Sampling,
     scene::{Count, Method, Scene},
     tracer::World,
 };
 
+use self::one_by_one::one_by_one;
+
 #[path = "../tests/integration/figure.rs"]
 mod figure;
+mod one_by_one;
 
 const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
@@ -43,16 +46,16 @@ fn main() {
         let scene = figure::figure(WIDTH, HEIGHT, method, Count::PerPixel(PER_PIXEL));
         let [plain, points, one, all] = least([
             &mut || {
-                black_box(picture(&scene, 1, Way::OneByOne));
+                black_box(plain(&scene));
             },
             &mut || {
                 black_box(points(&scene));
             },
             &mut || {
-                black_box(picture(&scene, 1, Way::Culled));
+                black_box(picture(&scene, 1));
             },
             &mut || {
-                black_box(picture(&scene, threads, Way::Culled));
+                black_box(picture(&scene, threads));
             },
         ]);
         println!(
@@ -64,7 +67,7 @@ fn main() {
         );
     }
     let scene = figure::figure(WIDTH, HEIGHT, Method::Random, Count::PerPixel(PER_PIXEL));
-    let film = picture(&scene, threads, Way::Culled);
+    let film = picture(&scene, threads);
     let recipe = Recipe {
         scene: String::new(),
         overrides: Vec::new(),
@@ -72,7 +75,7 @@ fn main() {
     };
     let [plain, png, exr] = least([
         &mut || {
-            black_box(picture(&scene, 1, Way::OneByOne));
+            black_box(plain(&scene));
         },
         &mut || write_png(&film, &recipe, &mut Vec::new()).expect("a list takes all bytes"),
         &mut || write_exr(&film, Cursor::new(Vec::new())).expect("a list takes all bytes"),
@@ -112,7 +115,13 @@ fn points(scene: &Scene) -> f64 {
     sum.element_sum()
 }
 
-fn picture(scene: &Scene, threads: usize, way: Way) -> Film {
+/// Each sample on its own.
+fn plain(scene: &Scene) -> Film {
+    let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
+    one_by_one(&World::new(scene), &sampling, Area::whole(WIDTH, HEIGHT))
+}
+
+fn picture(scene: &Scene, threads: usize) -> Film {
     let control = Control {
         threads: NonZero::new(threads),
         progress: &|_| {},
@@ -121,5 +130,5 @@ fn picture(scene: &Scene, threads: usize, way: Way) -> Film {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     let part = Area::whole(WIDTH, HEIGHT);
     let world = World::new(scene);
-    render_in_a_way(&world, &sampling, part, &control, way).expect("there is memory for it")
+    render(&world, &sampling, part, &control).expect("there is memory for it")
 }

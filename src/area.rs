@@ -92,6 +92,35 @@ impl Area {
         })
     }
 
+    /// The squares of this side, counted from the picture's top left corner, that it meets; row by row.
+    pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
+        let starts = move |start: u32, length: u32| {
+            (start - start % side..start + length).step_by(side as usize)
+        };
+        let square = move |x: u32, y: u32| Self {
+            x,
+            y,
+            width: side,
+            height: side,
+        };
+        starts(self.y, self.height)
+            .flat_map(move |y| starts(self.x, self.width).map(move |x| square(x, y)))
+    }
+
+    /// What two areas have in common: no pixels if they do not meet.
+    pub fn common(self, other: Self) -> Self {
+        let (x, y) = (self.x.max(other.x), self.y.max(other.y));
+        let length = |end: u64, other_end: u64, start: u32| {
+            end.min(other_end).saturating_sub(u64::from(start)) as u32
+        };
+        Self {
+            x,
+            y,
+            width: length(self.columns().end, other.columns().end, x),
+            height: length(self.rows().end, other.rows().end, y),
+        }
+    }
+
     /// The same area, counted from the corner of one that it lies in.
     pub fn within(self, outer: Self) -> Self {
         Self {

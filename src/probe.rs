@@ -9,7 +9,7 @@ use crate::{
     color::Color,
     numbers::{short, short_vector},
     scene::Scene,
-    tracer::{Hit, World},
+    tracer::{Hit, World, ray},
 };
 
 /// What `pinhole probe` shows: the ray through a point of the picture, and all surfaces on it. Every number is the rounding
@@ -32,7 +32,7 @@ pub struct Probe {
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
     let world = World::reaching(scene, (pixel - half).abs());
-    let (direction, hits) = world.ray(pixel);
+    let (direction, hits) = ray(&world, pixel);
     let visible = hits.iter().find(|hit| hit.visible);
     let color = visible.map_or(scene.image.background, |hit| hit.color);
     let named = |hit: Hit| {

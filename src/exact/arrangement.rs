@@ -1,6 +1,6 @@
 //! Pixels whose boundaries are all straight: the arrangement of their lines.
 //!
-//! In: the lines that pass through a spot, at most as many as `mod` allows. Out: the spot's convex cells, which are told to [`Regions`] with a point in each. Each
+//! In: the lines that pass through a sub-pixel, at most as many as `mod` allows. Out: the sub-pixel's convex cells, which are told to [`Regions`] with a point in each. Each
 //! line cuts the cells that the lines before it left. The bound adds how far each line may be from the true one, times its length, and cells too
 //! small to be asked for their colour.
 

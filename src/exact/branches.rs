@@ -1,6 +1,6 @@
 //! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x) and a conic that of two.
 //!
-//! In: lines and conics of a spot. Out: over a range of x each branch as a chord with an arc between its tangents, and how far the branch may be from that. Where the
+//! In: lines and conics of a sub-pixel. Out: over a range of x each branch as a chord with an arc between its tangents, and how far the branch may be from that. Where the
 //! roundings of `f64` leave too much of an arc in doubt, its ends and tangents are taken in double-double.
 
 use glam::DVec2;

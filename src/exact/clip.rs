@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-/// The pixel itself, or the spot that takes its place.
+/// The pixel itself, or the sub-pixel that takes its place.
 pub(super) const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, -0.5),
     DVec2::new(0.5, -0.5),

@@ -39,7 +39,7 @@ use glam::DVec2;
 
 use crate::{
     area::Area,
-    tracer::{Curve, Live, Part, Quartering, Room, Spot, World},
+    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World, boundaries, candidates},
 };
 
 use self::{
@@ -88,9 +88,9 @@ pub struct Integrator<'a> {
 
 /// A part of a pixel.
 struct Piece {
-    spot: Spot,
+    sub_pixel: SubPixel,
     /// What may be seen there.
-    live: Vec<Live>,
+    candidates: Vec<Candidate>,
     shares: Shares,
     state: State,
 }
@@ -108,7 +108,7 @@ enum State {
 impl Piece {
     /// Its share of the pixel.
     fn area(&self) -> f64 {
-        self.spot.side * self.spot.side
+        self.sub_pixel.side * self.sub_pixel.side
     }
 
     /// How far it may put the pixel off.
@@ -173,30 +173,37 @@ impl<'a> Integrator<'a> {
             }
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
-                Part::Open { x, y, live } => match live {
+                Part::Open { x, y, candidates } => match candidates {
                     [only] if self.is_floor(only) => {
-                        waiting.push(BoardPixel { x, y, live: *only }, &mut |floor, sum| {
-                            self.set(floor, sum, &mut film, &mut others);
-                        });
+                        waiting.push(
+                            BoardPixel {
+                                x,
+                                y,
+                                candidate: *only,
+                            },
+                            &mut |floor, sum| {
+                                self.set(floor, sum, &mut film, &mut others);
+                            },
+                        );
                     }
-                    _ => film.set(x, y, self.pixel(x, y, live, &mut curves, cancel)),
+                    _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
                 // Does not come: whatever it costs, the picture is to be known.
-                Part::Plain { area, .. } => {
-                    let live = self.world.everything();
+                Part::Plain { area } => {
+                    let candidates = candidates::everything(self.world);
                     for (x, y) in area.iter() {
-                        film.set(x, y, self.pixel(x, y, &live, &mut curves, cancel));
+                        film.set(x, y, self.pixel(x, y, &candidates, &mut curves, cancel));
                     }
                 }
             }
             ControlFlow::Continue(())
         });
         waiting.finish(&mut |floor, sum| self.set(floor, sum, &mut film, &mut others));
-        for BoardPixel { x, y, live } in others {
+        for BoardPixel { x, y, candidate } in others {
             if cancel.load(Relaxed) {
                 break;
             }
-            film.set(x, y, self.pixel(x, y, &[live], &mut curves, cancel));
+            film.set(x, y, self.pixel(x, y, &[candidate], &mut curves, cancel));
         }
         (flow.is_continue() && !cancel.load(Relaxed)).then_some(film.pixels)
     }
@@ -206,20 +213,20 @@ impl<'a> Integrator<'a> {
         &self,
         x: u32,
         y: u32,
-        live: &[Live],
+        candidates: &[Candidate],
         curves: &mut Vec<Curve>,
         cancel: &AtomicBool,
     ) -> Pixel {
-        let budget = Budget::of_pixel(live.len(), cancel);
-        let mut piece = |spot, live| self.piece(spot, live, curves, &budget);
-        let whole = piece(Spot::pixel(x, y), live.to_vec());
+        let budget = Budget::of_pixel(candidates.len(), cancel);
+        let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
+        let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
         let mut bound = whole.bound();
         let mut together = Shares::default();
         let mut open = BinaryHeap::from([whole]);
         let mut quarterings = 0;
         while let Some(worst) = open.pop() {
             let may_be_better = match worst.state {
-                State::Crowded => worst.spot.side > SMALLEST,
+                State::Crowded => worst.sub_pixel.side > SMALLEST,
                 State::Computed => quarterings < MOST_QUARTERINGS,
                 State::Final => false,
             };
@@ -227,10 +234,10 @@ impl<'a> Integrator<'a> {
                 together.add_part(&worst.shares, worst.area());
                 continue;
             }
-            let mut quarters = worst.spot.quarters().map(|spot| {
+            let mut quarters = worst.sub_pixel.quarters().map(|sub_pixel| {
                 let mut seen = Vec::new();
-                self.world.live_in(spot, &worst.live, &mut seen);
-                piece(spot, seen)
+                boundaries::narrowed(self.world, sub_pixel, &worst.candidates, &mut seen);
+                piece(sub_pixel, seen)
             });
             let after: f64 = quarters.iter().map(Piece::bound).sum();
             if worst.state == State::Computed {
@@ -258,7 +265,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// Whether an object that is all that may be seen fills what it is seen in, in two colours.
-    fn is_floor(&self, only: &Live) -> bool {
+    fn is_floor(&self, only: &Candidate) -> bool {
         let [first, second] = self.world.slots(only.object);
         only.is_whole && first != second
     }
@@ -275,7 +282,7 @@ impl<'a> Integrator<'a> {
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= ENOUGH) else {
             return others.push(floor);
         };
-        let [first, second] = self.world.slots(floor.live.object);
+        let [first, second] = self.world.slots(floor.candidate.object);
         let shares = [(first, 0.5 + half), (second, 0.5 - half)];
         film.set(floor.x, floor.y, self.mean(&shares, bound));
     }
@@ -283,42 +290,49 @@ impl<'a> Integrator<'a> {
     /// A piece of a pixel with what is seen there, if there are not too many curves.
     fn piece(
         &self,
-        spot: Spot,
-        live: Vec<Live>,
+        sub_pixel: SubPixel,
+        candidates: Vec<Candidate>,
         curves: &mut Vec<Curve>,
         budget: &Budget,
     ) -> Piece {
-        let quarterings = libm::ilogb(spot.side).unsigned_abs() as usize;
+        let quarterings = libm::ilogb(sub_pixel.side).unsigned_abs() as usize;
         let most = MOST_CURVES + MORE_CURVES * quarterings;
-        let found = self.world.curves(spot, &live, most, budget.cancel, curves);
+        let found = boundaries::curves(
+            self.world,
+            sub_pixel,
+            &candidates,
+            most,
+            budget.cancel,
+            curves,
+        );
         let (Ok(looks) | Err(looks)) = found;
-        let work = PIECE_WORK + live.len() as f64 * OBJECT_WORK + looks as f64 * LOOK_WORK;
+        let work = PIECE_WORK + candidates.len() as f64 * OBJECT_WORK + looks as f64 * LOOK_WORK;
         let is_computed = budget.spend(work) && found.is_ok();
         let shares = match is_computed {
             true => {
-                let regions = Regions::new(self.world, spot, &live, budget);
+                let regions = Regions::new(self.world, sub_pixel, &candidates, budget);
                 match curves.iter().all(|curve| matches!(curve, Curve::Line(_))) {
                     true => arrangement::shares(curves, regions),
                     false => slabs::shares(curves, regions),
                 }
             }
-            false => self.in_doubt(spot, &live),
+            false => self.in_doubt(sub_pixel, &candidates),
         };
         let state = match is_computed {
             true => State::Computed,
             false => State::Crowded,
         };
         Piece {
-            spot,
-            live,
+            sub_pixel,
+            candidates,
             shares,
             state,
         }
     }
 
-    /// What is said of a spot of which nothing is computed: all of it may be what its middle is not.
-    fn in_doubt(&self, spot: Spot, live: &[Live]) -> Shares {
-        let (seen, _) = self.world.object_at(spot, DVec2::ZERO, live);
+    /// What is said of a sub-pixel of which nothing is computed: all of it may be what its middle is not.
+    fn in_doubt(&self, sub_pixel: SubPixel, candidates: &[Candidate]) -> Shares {
+        let (seen, _) = candidates::object_at(self.world, sub_pixel, DVec2::ZERO, candidates);
         let slot = seen.map_or(self.colors.len() - 1, |object| self.world.slots(object)[0]);
         Shares {
             by_slot: vec![(slot, 1.0)],

@@ -1,8 +1,8 @@
-//! The regions of a spot, and what is seen in each.
+//! The regions of a sub-pixel, and what is seen in each.
 //!
-//! In: regions between boundaries, with a point in each. Out: how much of the spot each colour has, with a bound. One ray through the point says what is
+//! In: regions between boundaries, with a point in each. Out: how much of the sub-pixel each colour has, with a bound. One ray through the point says what is
 //! seen; a checkerboard is divided further by `checker` and `conic_segment`. The bound adds what those say, what was said to be in doubt, and by how much the
-//! regions together are not the whole spot.
+//! regions together are not the whole sub-pixel.
 
 use std::mem;
 
@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{Live, Spot, World},
+    tracer::{Candidate, SubPixel, World, board, candidates},
 };
 
 use super::{budget::Budget, checker::Homography, conic_segment::Arc};
@@ -19,7 +19,7 @@ use super::{budget::Budget, checker::Homography, conic_segment::Arc};
 const REGION_WORK: f64 = 4.0;
 const OBJECT_WORK: f64 = 0.5;
 
-/// How much of a spot each colour has.
+/// How much of a sub-pixel each colour has.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
     /// Slots of the palette with the area that shows them, 1 together but for rounding.
@@ -28,11 +28,11 @@ pub struct Shares {
     pub bound: f64,
 }
 
-/// Collects the regions of one spot.
+/// Collects the regions of one sub-pixel.
 pub struct Regions<'a> {
     world: &'a World,
-    spot: Spot,
-    live: &'a [Live],
+    sub_pixel: SubPixel,
+    candidates: &'a [Candidate],
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
@@ -60,12 +60,17 @@ pub struct Region<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// For a spot in which no other objects are seen than some.
-    pub fn new(world: &'a World, spot: Spot, live: &'a [Live], budget: &'a Budget<'a>) -> Self {
+    /// For a sub-pixel in which no other objects are seen than some.
+    pub fn new(
+        world: &'a World,
+        sub_pixel: SubPixel,
+        candidates: &'a [Candidate],
+        budget: &'a Budget<'a>,
+    ) -> Self {
         Self {
             world,
-            spot,
-            live,
+            sub_pixel,
+            candidates,
             boards: Vec::new(),
             shares: Shares::default(),
             budget,
@@ -110,8 +115,8 @@ impl<'a> Regions<'a> {
     /// each other than it tells; elsewhere in the region more may be known.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         self.budget
-            .charge(REGION_WORK + OBJECT_WORK * self.live.len() as f64);
-        let at = |point| self.world.object_at(self.spot, point, self.live);
+            .charge(REGION_WORK + OBJECT_WORK * self.candidates.len() as f64);
+        let at = |point| candidates::object_at(self.world, self.sub_pixel, point, self.candidates);
         let (seen, is_sure) = at(region.inside);
         // A point between two of a polygon lies in it, but not if an arc takes off from that.
         if is_sure || region.arcs.iter().any(|(bulge, _)| *bulge < 0.0) {
@@ -136,12 +141,13 @@ impl<'a> Regions<'a> {
     /// The shares of all that was added.
     pub fn finish(mut self) -> Shares {
         let mut shares = mem::take(&mut self.shares);
-        // What the regions leave out of the spot, or count twice, may have any colour.
+        // What the regions leave out of the sub-pixel, or count twice, may have any colour.
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Out of the range of numbers: nothing is known of the spot but what is in its middle.
-            let (seen, _) = self.world.object_at(self.spot, DVec2::ZERO, self.live);
+            // Out of the range of numbers: nothing is known of the sub-pixel but what is in its middle.
+            let (seen, _) =
+                candidates::object_at(self.world, self.sub_pixel, DVec2::ZERO, self.candidates);
             let background = self.world.background();
             let [first, second] = seen.map_or([background; 2], |object| self.world.slots(object));
             shares.by_slot.clear();
@@ -163,7 +169,7 @@ impl<'a> Regions<'a> {
         let at = match self.boards.iter().position(|(known, _)| *known == object) {
             Some(at) => at,
             None => {
-                let checkered = Checkered::new(self.world, object, self.spot)?;
+                let checkered = Checkered::new(self.world, object, self.sub_pixel)?;
                 self.boards.push((object, checkered));
                 self.boards.len() - 1
             }
@@ -173,9 +179,9 @@ impl<'a> Regions<'a> {
 }
 
 impl Checkered {
-    /// An object as a spot sees it, if it is a checkerboard.
-    fn new(world: &World, object: usize, spot: Spot) -> Option<Self> {
-        let seen = world.board(object, spot)?;
+    /// An object as a sub-pixel sees it, if it is a checkerboard.
+    fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
+        let seen = board::board(world, object, sub_pixel)?;
         Some(Self {
             board: Homography::of(&seen),
             odd: seen.odd,

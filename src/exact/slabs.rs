@@ -1,6 +1,6 @@
 //! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above the other.
 //!
-//! In: the lines and conics that pass through a spot. Out: the regions between neighbouring branches in each slab, which are told to [`Regions`]. (A sweep
+//! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring branches in each slab, which are told to [`Regions`]. (A sweep
 //! after Bentley and Ottmann, "Algorithms for reporting and counting geometric intersections", 1979, over slabs instead of events.)
 //!
 //! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if by that two neighbours

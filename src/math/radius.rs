@@ -1,4 +1,5 @@
-//! Bounds on errors.
+//! Bounds on errors: numbers ≥ 0, of wider range than an `f64` where big numbers need it. Their operations round to nearest; where it counts, a
+//! result is widened by [`UP`](super::UP).
 
 use std::ops::{Add, Div, Mul};
 

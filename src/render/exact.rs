@@ -1,16 +1,18 @@
 //! A part of the picture without samples, and how far it may be from the true one.
+//!
+//! In: the world and the part. Out: the pixels' means as [`Integrator`] computes them, and their bounds, rounded upwards.
 
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::{Control, RenderError, TILE, finished, wanted};
+use super::{Control, RenderError, finished, wanted};
 use crate::{
     area::Area,
     exact::{self, Integrator},
     film::{self, Encoder, Film},
     threads,
-    tracer::World,
+    tracer::{GRID, World},
 };
 
 /// A computed picture, and how far it may be from the true one.
@@ -67,46 +69,44 @@ fn render_exact_as<P: film::Pixel>(
     let integrator = Integrator::new(world);
     let encoder = Encoder::new();
     threads::install(control.threads, || {
-        wanted(part.tiles(TILE), control)
-            .par_bridge()
-            .for_each(|tile| {
-                let Some(pixels) = integrator.pixels(tile, control.cancel) else {
-                    return;
-                };
-                let bounds: Vec<f32> = pixels
-                    .iter()
-                    .map(|pixel| match pixel.bound {
-                        0.0 => 0.0,
-                        // Rounded up; light is from 0 to 1.
-                        bound => (bound as f32).next_up().min(1.0),
-                    })
-                    .collect();
-                // Most pixels are as the one before.
-                let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
-                let means: Vec<P> = pixels
-                    .iter()
-                    .map(|pixel| {
-                        if pixel.mean != before {
-                            (before, last) = (pixel.mean, P::of(pixel.mean, &encoder));
-                        }
-                        last
-                    })
-                    .collect();
-                let is_certain = |(pixel, bound): &(&exact::Pixel, &f32)| {
-                    P::is_certain(pixel.mean, f64::from(**bound), &encoder)
-                };
-                let certain = pixels.iter().zip(&bounds).filter(is_certain).count();
-                let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
-                exact.film.put(tile.within(part), &means);
-                let rows = bounds.chunks_exact(tile.width as usize);
-                for (y, row) in (tile.y..).zip(rows) {
-                    let start = part.index(tile.x, y);
-                    exact.bounds[start..start + row.len()].copy_from_slice(row);
-                }
-                exact.certain += certain as u64;
-                drop(exact);
-                (control.progress)(tile.pixels());
-            });
+        wanted(part, GRID, control).par_bridge().for_each(|tile| {
+            let Some(pixels) = integrator.pixels(tile, control.cancel) else {
+                return;
+            };
+            let bounds: Vec<f32> = pixels
+                .iter()
+                .map(|pixel| match pixel.bound {
+                    0.0 => 0.0,
+                    // Rounded up; light is from 0 to 1.
+                    bound => (bound as f32).next_up().min(1.0),
+                })
+                .collect();
+            // Most pixels are as the one before.
+            let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
+            let means: Vec<P> = pixels
+                .iter()
+                .map(|pixel| {
+                    if pixel.mean != before {
+                        (before, last) = (pixel.mean, P::of(pixel.mean, &encoder));
+                    }
+                    last
+                })
+                .collect();
+            let is_certain = |(pixel, bound): &(&exact::Pixel, &f32)| {
+                P::is_certain(pixel.mean, f64::from(**bound), &encoder)
+            };
+            let certain = pixels.iter().zip(&bounds).filter(is_certain).count();
+            let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
+            exact.film.put(tile.within(part), &means);
+            let rows = bounds.chunks_exact(tile.width as usize);
+            for (y, row) in (tile.y..).zip(rows) {
+                let start = part.index(tile.x, y);
+                exact.bounds[start..start + row.len()].copy_from_slice(row);
+            }
+            exact.certain += certain as u64;
+            drop(exact);
+            (control.progress)(tile.pixels());
+        });
     })?;
     finished(exact, control)
 }

@@ -21,38 +21,14 @@ use crate::{
     film::{self, Encoder},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Among, Checks, Item, Live, Part, Pixel, Quartering, Room, World},
+    tracer::{Candidate, Checks, Part, Pixel, Quartering, Room, World, samples},
 };
 
-/// Fewer samples than these are placed and looked at by the vectors that every processor has.
+/// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
 const WIDE_SAMPLES: u64 = 8;
 
-/// A pixel's samples are taken so many at a time; a pixel with more is shared by the threads.
-const CHUNK_SAMPLES: u64 = 1 << 12;
-
-/// How samples are traced. All ways make the same picture, to the bit: the slower ones are there to be compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
-    /// None where one colour is certain, else many at a time, against what may be seen in their pixel, or one by one where to know that would
-    /// cost more.
-    Culled,
-    /// All of them, many at a time, against all objects.
-    Together,
-    /// The same by vectors that every processor of the kind has.
-    Narrow,
-    /// All of them, one by one, against the objects that the hierarchy knows on their way.
-    OneByOne,
-}
-
-impl Way {
-    /// What its loops are made of.
-    fn vectors(self) -> Vectors {
-        match self {
-            Self::Culled | Self::Together => Vectors::Widest,
-            Self::Narrow | Self::OneByOne => Vectors::Baseline,
-        }
-    }
-}
+/// A pixel's samples are taken so many at a time, which takes 40 µs together and 0.3 ms one by one; a pixel with more is shared by the threads.
+const SAMPLES_A_TASK: u64 = 1 << 12;
 
 /// What all tiles have in common.
 pub(super) struct Frame<'a, P> {
@@ -64,12 +40,9 @@ pub(super) struct Frame<'a, P> {
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
-    pub(super) way: Way,
     /// How many samples were traced.
     pub(super) rays: AtomicU64,
     pub(super) quartering: Quartering<'a>,
-    /// All objects, for the ways that ask all of them.
-    pub(super) everything: Vec<Live>,
 }
 
 impl<P: film::Pixel> Frame<'_, P> {
@@ -92,33 +65,18 @@ impl<P: film::Pixel> Frame<'_, P> {
                 film.fill(area, self.shown[slot]);
                 self.go_on()
             }
-            Part::Open { x, y, live } => {
-                self.pixel([x, y], Trace::Together(live, checks), &mut film, tally)
-            }
-            Part::Plain { area, among } => {
-                let trace = match among {
-                    Among::All => Trace::OneByOne,
-                    Among::Crowd(crowd) => Trace::InCrowd(crowd),
-                    Among::Live(live) => Trace::Among(live),
-                };
-                let mut pixels = area.iter();
-                pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
-            }
-        };
-        let flow = match self.way {
-            Way::Culled => self.quartering.parts_and_checks(tile, room, &mut visit),
-            Way::Together | Way::Narrow => tile.iter().try_for_each(|(x, y)| {
-                let live = &self.everything;
-                visit(Part::Open { x, y, live }, None)
-            }),
-            Way::OneByOne => visit(
-                Part::Plain {
-                    area: tile,
-                    among: Among::All,
-                },
-                None,
+            Part::Open { x, y, candidates } => self.pixel(
+                [x, y],
+                Trace::Together(candidates, checks),
+                &mut film,
+                tally,
             ),
+            Part::Plain { area } => {
+                let mut pixels = area.iter();
+                pixels.try_for_each(|(x, y)| self.pixel([x, y], Trace::OneByOne, &mut film, tally))
+            }
         };
+        let flow = self.quartering.parts_and_checks(tile, room, &mut visit);
         (self.control.progress)(film.unreported);
         self.rays.fetch_add(film.rays, Ordering::Relaxed);
         flow.is_continue().then_some(film.pixels)
@@ -147,11 +105,11 @@ impl<P: film::Pixel> Frame<'_, P> {
         }
         let trace = match trace {
             // To prepare the pixel would take longer.
-            Trace::Together(live, _) if samples == 1 => Trace::Among(live),
+            Trace::Together(candidates, _) if samples == 1 => Trace::Among(candidates),
             _ => trace,
         };
         film.rays += samples;
-        if samples <= CHUNK_SAMPLES {
+        if samples <= SAMPLES_A_TASK {
             self.look([x, y], trace, &mut tally.pixel);
             self.chunk(x, y, samples, 0, trace, tally);
             film.unreported += samples;
@@ -165,19 +123,19 @@ impl<P: film::Pixel> Frame<'_, P> {
 
     /// Prepares a pixel, where samples are traced together.
     fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut Pixel) {
-        if let Trace::Together(live, checks) = trace {
-            self.world.look(at, live, checks, pixel);
+        if let Trace::Together(candidates, checks) = trace {
+            samples::prepare(self.world, at, candidates, checks, pixel);
         }
     }
 
     /// All samples of a pixel that has many, on all threads.
     fn many(&self, x: u32, y: u32, samples: u64, trace: Trace, tally: &mut Tally<P>) {
         // A few thousand chunks at a time, so that what is gathered from the threads stays small.
-        const BATCH: u64 = CHUNK_SAMPLES << 10;
+        const BATCH: u64 = SAMPLES_A_TASK << 10;
         let mut first = 0;
         while first < samples && !self.control.cancel.load(Ordering::Relaxed) {
             let end = samples.min(first.saturating_add(BATCH));
-            let chunks = (end - first).div_ceil(CHUNK_SAMPLES);
+            let chunks = (end - first).div_ceil(SAMPLES_A_TASK);
             let slots = self.colors.len();
             let sums = (0..chunks)
                 .into_par_iter()
@@ -189,7 +147,7 @@ impl<P: film::Pixel> Frame<'_, P> {
                     },
                     |mut tally, chunk| {
                         if !self.control.cancel.load(Ordering::Relaxed) {
-                            let first = first + chunk * CHUNK_SAMPLES;
+                            let first = first + chunk * SAMPLES_A_TASK;
                             self.chunk(x, y, samples, first, trace, &mut tally);
                         }
                         tally
@@ -212,9 +170,9 @@ impl<P: film::Pixel> Frame<'_, P> {
         }
     }
 
-    /// Counts up to [`CHUNK_SAMPLES`] samples of a pixel that has `samples`, from the one with index `first` on.
+    /// Counts up to [`SAMPLES_A_TASK`] samples of a pixel that has `samples`, from the one with index `first` on.
     fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, trace: Trace, tally: &mut Tally<P>) {
-        let end = samples.min(first + CHUNK_SAMPLES);
+        let end = samples.min(first + SAMPLES_A_TASK);
         let Tally {
             counts,
             pixel,
@@ -222,7 +180,7 @@ impl<P: film::Pixel> Frame<'_, P> {
             ..
         } = tally;
         let vectors = match trace {
-            Trace::Together(..) if end - first >= WIDE_SAMPLES => self.way.vectors(),
+            Trace::Together(..) if end - first >= WIDE_SAMPLES => Vectors::Widest,
             // To choose others takes longer, and rays that are traced one by one afterwards are slower for it.
             _ => Vectors::Baseline,
         };
@@ -231,21 +189,18 @@ impl<P: film::Pixel> Frame<'_, P> {
         // One by one, each may take its time.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
-            Trace::Together(..) => self.world.count(
+            Trace::Together(..) => samples::count(
+                self.world,
                 pixel,
                 points.lanes(),
                 points.len(),
                 vectors,
                 |slot, samples| counts.add(slot, samples),
             ),
-            Trace::Among(live) => {
+            Trace::Among(candidates) => {
+                let objects = candidates.iter().map(|candidate| candidate.object);
                 for offset in wanted {
-                    counts.add(self.world.slot_among(x, y, offset, live.iter()), 1);
-                }
-            }
-            Trace::InCrowd(crowd) => {
-                for offset in wanted {
-                    counts.add(self.world.slot_in_crowd(x, y, offset, crowd), 1);
+                    counts.add(self.world.slot_among(x, y, offset, objects.clone()), 1);
                 }
             }
             Trace::OneByOne => {
@@ -261,11 +216,9 @@ impl<P: film::Pixel> Frame<'_, P> {
 #[derive(Clone, Copy)]
 enum Trace<'a> {
     /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where that is known.
-    Together(&'a [Live], Option<&'a Checks>),
+    Together(&'a [Candidate], Option<&'a Checks>),
     /// One by one, against these.
-    Among(&'a [Live]),
-    /// One by one, against those of these whose bounds hold the ray.
-    InCrowd(&'a [Item]),
-    /// One by one, against the objects that the hierarchy knows on their way.
+    Among(&'a [Candidate]),
+    /// One by one, against the objects that the quadtree knows on their way.
     OneByOne,
 }

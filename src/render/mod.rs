@@ -28,12 +28,6 @@ pub use self::{
     exact::{Exact, render_exact, render_exact_bytes},
     sampled::{render, render_and_count, render_bytes},
 };
-// For the tests and measurements that compare ways to render; no part of what the library is for.
-#[doc(hidden)]
-pub use self::{frame::Way, sampled::render_in_a_way};
-
-/// The side of the largest tiles: enough pixels that handing out a tile costs nothing, and few enough that the threads end together.
-const TILE: u32 = 64;
 
 /// How a render is watched, and by how many it is done.
 pub struct Control<'a> {
@@ -65,11 +59,10 @@ impl From<Cancelled> for RenderError {
     }
 }
 
-/// Tiles as long as they are wanted: to hand out millions that nobody renders would take a second.
-fn wanted(
-    tiles: impl Iterator<Item = Area> + Send,
-    control: &Control,
-) -> impl Iterator<Item = Area> + Send {
+/// The tiles of a part of the picture, squares of this side from the picture's corner on, as long as they are wanted: to hand out millions that nobody
+/// renders would take a second.
+fn wanted(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
+    let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 

@@ -1,4 +1,4 @@
-//! What the threads count with.
+//! What a thread counts with: how often each colour was seen in a pixel, and the means that come of such counts.
 
 use crate::{
     film::{self, Encoder, mean},
@@ -77,7 +77,7 @@ impl Counts {
 /// often as some pixel before.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// How many means are kept.
+/// How many means are kept: 28 KiB of them, which fit into a first-level cache.
 const KEPT: usize = 512;
 
 impl<P: film::Pixel> Means<P> {

@@ -1,4 +1,4 @@
-//! A tile while it is rendered.
+//! A tile while it is rendered: its pixels so far, and how many samples each has.
 
 use crate::{area::Area, film::Pixel};
 

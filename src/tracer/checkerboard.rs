@@ -1,15 +1,16 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
-//! Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole
-//! squares are kept apart, since only their parity matters: far from the origin they would cost N its precision.
+//! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour there. Below the horizon the plane's inverse
+//! depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole squares are kept apart, since only their parity matters: far
+//! from the origin they would cost N its precision. Errors: those of the forms; a ratio whose error reaches a whole number is in doubt.
 
 use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch},
-    crossing::{Crossing, Part},
     form::{Form, axis_vector, inverse_depth},
+    hit::{Crossing, SurfacePart},
+    interval::{Cover, Patch},
 };
 use crate::{
     math::{Ball, Double, Doubt, Radius, Real},
@@ -42,16 +43,16 @@ impl<T: Real> Checkerboard<T> {
         let h = height.scaled(scale);
         let up = camera.turned(&axis_vector(1));
         let (x, z) = (
-            Place::new(camera.eye.x, square),
-            Place::new(camera.eye.z, square),
+            EyeOffset::new(camera.eye.x, square),
+            EyeOffset::new(camera.eye.z, square),
         );
-        let numerator = |axis: usize, place: &Place| {
+        let numerator = |axis: usize, from_square: &EyeOffset| {
             // x = e_x + λ r_x, so x/square = e_x/square + (r_x/square)/ℓ, all over ℓ = r_y/h.
             let along = camera.turned(&axis_vector(axis));
-            let exponent = -libm::frexp(place.square).1;
-            let side = Ball::exact(place.square).scaled(exponent);
-            let offset = Ball::exact(place.rest).scaled(exponent) / &side;
-            let side = side.scaled(camera.exponent + scale - place.exponent - exponent);
+            let exponent = -libm::frexp(from_square.square).1;
+            let side = Ball::exact(from_square.square).scaled(exponent);
+            let offset = Ball::exact(from_square.rest).scaled(exponent) / &side;
+            let side = side.scaled(camera.exponent + scale - from_square.exponent - exponent);
             let v = [0, 1, 2].map(|i| &offset * &(&up[i] / &h) + &along[i] / &side);
             Form::new(camera, &v)
         };
@@ -70,7 +71,7 @@ impl<T: Real> Checkerboard<T> {
         match inverse_depth.sign()? {
             Ordering::Greater => Ok(Some(Crossing {
                 inverse_depth,
-                part: Part::Plane(0),
+                part: SurfacePart::Plane(0),
             })),
             _ => Ok(None),
         }
@@ -116,7 +117,7 @@ impl Checkerboard<Double> {
 }
 
 /// A coordinate of the eye as whole squares and a rest.
-struct Place {
+struct EyeOffset {
     /// The rest, at most half a square either way.
     rest: f64,
     /// The side of a square, in the rest's unit.
@@ -127,7 +128,7 @@ struct Place {
     odd: bool,
 }
 
-impl Place {
+impl EyeOffset {
     /// Splits a coordinate without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
         // Twice the side must not overflow; a unit four times as large loses nothing at that size.

@@ -1,16 +1,17 @@
 //! The box: three slabs, each the space between two parallel faces.
 //!
-//! With μ = 1/λ a point λr lies between the planes x = lo and x = hi (as seen from the eye) where lo·μ ≤ r_x ≤ hi·μ. On which
-//! side of its two planes the eye lies makes of these a greatest and a least μ, each a linear form: no division by r_x, which
-//! may be zero.
+//! In: the box's corners and the camera. Out: the forms of its faces' inverse depths; for a ray, where it enters and where it leaves. The method
+//! is Kay and Kajiya's slabs ("Ray tracing complex scenes", 1986) in inverse depths: with μ = 1/λ a point λr lies between the planes x = lo and
+//! x = hi (as seen from the eye) where lo·μ ≤ r_x ≤ hi·μ. On which side of its two planes the eye lies makes of these a greatest and a least μ,
+//! each a linear form: no division by r_x, which may be zero. Errors: each form's own bound.
 
 use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
     form::{Form, axis_vector, inverse_depth},
+    hit::{Crossing, SurfacePart},
+    interval::{Cover, Patch, Range},
 };
 use crate::{
     math::{Ball3, Double, Doubt, Radius, Real, UP},
@@ -253,7 +254,7 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
     let mut extreme: Option<Crossing<T>> = None;
     for face in faces {
         let inverse_depth = face.inverse_depth.at(r);
-        let part = Part::Plane(face.index);
+        let part = SurfacePart::Plane(face.index);
         match &mut extreme {
             None => {
                 extreme = Some(Crossing {
@@ -273,7 +274,7 @@ fn extreme<T: Real>(faces: &[Face<T>], r: &Direction<T>, which: Ordering) -> Opt
                     };
                 }
                 if !is_clear {
-                    so_far.part = Part::Edge;
+                    so_far.part = SurfacePart::Edge;
                     so_far.inverse_depth.rad = match difference.magnitude() >= T::Radius::ZERO {
                         true => rad,
                         false => T::Radius::INFINITE,

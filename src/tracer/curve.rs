@@ -1,11 +1,19 @@
 //! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! In the coordinates of that [`Spot`] every form of a surface is prepared anew, in high precision, so that what is left is good
-//! to the last bit of an `f64` however far the spot is from the picture's centre.
+//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and where they cross each other, as curves in the
+//! coordinates of that sub-pixel. Outlines of spheres are Q = 0 (`sphere`); two planes cross where their inverse depths are equal, a plane and a
+//! sphere in the circle's cone, two spheres in their radical plane.
+//!
+//! Errors: each form is prepared anew in the sub-pixel's coordinates and in high precision, with a bound on its values there, so that what is left
+//! is good to the last bit of an `f64` however far the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
-use super::{camera::Camera, cover::Range, form::Form, outlook::Spot, sphere::Sphere};
+use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
+
+/// The error of a line's form, in units of its greatest slope, from which on double-double was not enough: eight roundings of an `f64`, more than
+/// the three of its factors come to.
+pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A boundary in a pixel.
 #[derive(Clone, Debug)]
@@ -67,20 +75,20 @@ pub enum Crossings {
 type Linear<T> = [Ball<T>; 3];
 type Quadratic<T> = [Ball<T>; 6];
 
-/// A spot in one precision.
+/// A sub-pixel in one precision.
 #[derive(Clone, Debug)]
-pub struct Place<T: Real> {
+pub struct SubPixelFrame<T: Real> {
     /// The direction through its centre.
     center: Ball3<T>,
     /// Its side.
     pitch: Ball<T>,
 }
 
-impl<T: Real> Place<T> {
-    /// The place of a spot.
-    pub fn new(camera: &Camera<T>, spot: Spot) -> Self {
-        let offset = spot.offset(glam::DVec2::ZERO);
-        let r = camera.direction(&camera.sample_point(spot.x, spot.y, offset));
+impl<T: Real> SubPixelFrame<T> {
+    /// The place of a sub-pixel.
+    pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
+        let offset = sub_pixel.offset(glam::DVec2::ZERO);
+        let r = camera.direction(&camera.sample_point(sub_pixel.x, sub_pixel.y, offset));
         // Five roundings in a coordinate, and its pitch.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
@@ -88,7 +96,7 @@ impl<T: Real> Place<T> {
         };
         Self {
             center: [ball(r.x), ball(r.y), ball(r.z)],
-            pitch: ball(camera.pitch.times(&T::from_f64(spot.side))),
+            pitch: ball(camera.pitch.times(&T::from_f64(sub_pixel.side))),
         }
     }
 

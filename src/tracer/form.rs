@@ -1,7 +1,8 @@
 //! Linear forms: the boundaries and depths of everything flat.
 //!
-//! Over the view plane every edge of a flat surface is the zero line of a linear form aX + bY + c, and so is the inverse
-//! depth of its plane.
+//! In: a vector in the camera's axes. Out: the form aX + bY + c over the view plane that it makes. Every edge of a flat surface is the zero line of
+//! one, and the inverse depth of its plane is one. Errors: one bound for all values in the window, of its factors' own errors and the roundings of
+//! its evaluation.
 
 use super::camera::{Camera, Direction, Window};
 use crate::math::{Ball, Ball3, Double, Real, UP};

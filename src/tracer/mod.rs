@@ -9,33 +9,43 @@
 //! knows. Every decision is made in `f64` with a bound on its error;
 //! what that leaves in doubt is decided in double-double, and what that leaves in doubt, in big numbers.
 
-mod boards;
-mod boundaries;
 mod camera;
+mod form;
+mod hit;
+mod local_form;
+mod sub_pixel;
+
 mod checkerboard;
-mod cover;
-mod crossing;
 mod cuboid;
 mod curve;
-mod extent;
-mod form;
-mod hierarchy;
-mod object;
-mod outlook;
-mod pixel;
-mod quartering;
+mod interval;
+mod shape;
 mod sphere;
-#[cfg(test)]
-mod tests;
 mod triangle;
+
+mod bounds2d;
+mod quadtree;
 mod world;
 
-pub use boards::{Boards, PIXELS, Views};
+pub mod board;
+pub mod boundaries;
+pub mod candidates;
+mod checker_corners;
+mod cull;
+mod ray;
+pub mod samples;
+
+#[cfg(test)]
+mod tests;
+
+pub use board::{Board, Boards, PIXELS, Views};
 pub use camera::{Basis, Point};
+pub use candidates::Candidate;
+pub use checker_corners::Checks;
+pub use cull::{GRID, Part, Quartering, Room};
 pub use curve::{Conic, Curve, Line};
-pub use hierarchy::Item;
-pub use outlook::{Board, Live, Spot};
-pub use pixel::{Checks, Pixel};
-pub use quartering::{Among, Part, Quartering, Room};
+pub use ray::{Hit, ray};
+pub use samples::Pixel;
+pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
-pub use world::{Hit, Precision, World};
+pub use world::World;

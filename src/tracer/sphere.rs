@@ -1,8 +1,10 @@
 //! The sphere: a conic in the view plane.
 //!
-//! With c the centre as seen from the eye, R the radius and C = c·c − R² (the power of the eye), the ray λr meets the sphere
-//! where λ² r·r − 2λ c·r + C = 0. A quarter of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity, which unlike
-//! (c·r)² − r·r C does not subtract large squares where the sphere is small and far.
+//! In: centre, radius and the camera. Out: for a ray, its crossings; for a rectangle, their intervals. With c the centre as seen from the eye, R
+//! the radius and C = c·c − R² (the power of the eye), the ray λr meets the sphere where λ² r·r − 2λ c·r + C = 0. A quarter of the discriminant is
+//! Q = R² r·r − |c × r|² by Lagrange's identity, which unlike (c·r)² − r·r C does not subtract large squares where the sphere is small and far.
+//!
+//! Errors: Q and c·r have one bound each over the whole window, their roundings counted; C is computed exactly where it is small.
 
 use std::cmp::Ordering;
 
@@ -10,9 +12,9 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
-    pixel::{Conic, Here, Local},
+    hit::{Crossing, SurfacePart},
+    interval::{Cover, Patch, Range},
+    local_form::{LocalForm, LocalQuadratic, PixelFrame},
 };
 use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
 
@@ -38,7 +40,7 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// As in a form's value, and once more for squares and their sum.
+/// Roundings of a value, in units of [`Real::UNIT`]: twelve as in a form's, twice over for squares, and eight for their sum.
 const ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -134,7 +136,7 @@ impl<T: Real> Sphere<T> {
                     return Ok(None);
                 }
                 let inverse = (b + q.sqrt()) / &self.power;
-                Ok(Some(self.crossing(&inverse, Part::Entry)))
+                Ok(Some(self.crossing(&inverse, SurfacePart::Entry)))
             }
             Ordering::Equal if b.sign()? != Ordering::Greater => Ok(None),
             _ => Ok(Some(self.exit(&q, &b, r))),
@@ -168,11 +170,11 @@ impl<T: Real> Sphere<T> {
         } else {
             (b - root) / &self.power
         };
-        self.crossing(&inverse, Part::Exit)
+        self.crossing(&inverse, SurfacePart::Exit)
     }
 
     #[inline]
-    fn crossing(&self, inverse: &Ball<T>, part: Part) -> Crossing<T> {
+    fn crossing(&self, inverse: &Ball<T>, part: SurfacePart) -> Crossing<T> {
         Crossing {
             inverse_depth: inverse.times_power(self.scale),
             part,
@@ -183,6 +185,7 @@ impl<T: Real> Sphere<T> {
 impl Sphere<f64> {
     /// The centre and the radius of a ball that holds it, errors included, in its own unit; none for an eye that is not outside.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
+        // Three roundings of 2^−53.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
         (self.side == Ordering::Greater).then_some((self.center, radius * WIDER))
@@ -265,12 +268,12 @@ impl Sphere<f64> {
     ///
     /// Q's own bound is generous enough for its value at the centre; its gradient and its second derivatives are made of the same
     /// products as Q, and half a pixel is within the window. All of them together stay below so many times that bound.
-    pub fn local(&self, here: &Here) -> (Conic, Local) {
+    pub fn local(&self, frame: &PixelFrame) -> (LocalQuadratic, LocalForm) {
         const TIMES: f64 = 16.0;
         let [cx, cy, cz] = self.center;
-        let (r, [width, height]) = (&here.center, here.sides);
+        let (r, [width, height]) = (&frame.center, frame.sides);
         let [q, along_x, along_y] = self.expanded(r);
-        let q = Conic::new(
+        let q = LocalQuadratic::new(
             [
                 q,
                 2.0 * along_x * width,
@@ -282,7 +285,7 @@ impl Sphere<f64> {
             TIMES * self.rad_q,
         );
         let b = [cx * width, cy * height, cx * r.x + cy * r.y + cz * r.z];
-        (q, Local::new(b, 2.0 * self.rad_b))
+        (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
@@ -294,6 +297,7 @@ impl Sphere<f64> {
 
     /// In the world's unit, and wider than all the roundings on the way.
     fn widened(&self, range: Range) -> Range {
+        // A few roundings of 2^−53, and what the power is off, which is compared with it below.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
         let power = self.power.rad / self.power.size();
         // A power that is not known well is that of an eye on the surface.

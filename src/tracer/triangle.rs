@@ -1,4 +1,8 @@
 //! The triangle: three edges, each a line in the view plane.
+//!
+//! In: the triangle's numbers and the camera. Out: three edge forms and the form of its plane's inverse depth; for a ray, its crossing. A ray
+//! meets the triangle where no edge form is negative: the edge functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous
+//! coordinates", 1997). Errors: each form's own bound.
 
 use std::{array, cmp::Ordering};
 
@@ -6,9 +10,9 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
-    cover::{Cover, Patch},
-    crossing::{Crossing, Part},
     form::{Form, inverse_depth},
+    hit::{Crossing, SurfacePart},
+    interval::{Cover, Patch},
 };
 use crate::{
     math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross},
@@ -26,7 +30,7 @@ pub struct Triangle<T: Real> {
 
 /// The corners of a triangle in the camera's axes, their lengths times a power of two.
 #[derive(Clone, Debug)]
-pub struct Corners<T: Real> {
+pub struct Vertices<T: Real> {
     /// Left base end, right base end, apex.
     pub points: [Ball3<T>; 3],
     /// That power's exponent.
@@ -40,7 +44,10 @@ impl<T: Real> Triangle<T> {
     }
 
     /// Prepares a triangle, and tells where its corners are.
-    pub fn with_corners(camera: &Camera<T>, shape: &scene::Triangle) -> Option<(Self, Corners<T>)> {
+    pub fn with_corners(
+        camera: &Camera<T>,
+        shape: &scene::Triangle,
+    ) -> Option<(Self, Vertices<T>)> {
         let from_eye = camera.relative(shape.centroid);
         let (normal, height, side) = plane(camera, shape);
         if side.is_eq() {
@@ -74,7 +81,7 @@ impl<T: Real> Triangle<T> {
             edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
             plane,
         };
-        let corners = Corners {
+        let corners = Vertices {
             points: offsets.each_ref().map(|offset| sum(&center, offset)),
             exponent,
         };
@@ -103,7 +110,7 @@ impl<T: Real> Triangle<T> {
         }
         Ok(Some(Crossing {
             inverse_depth,
-            part: Part::Plane(0),
+            part: SurfacePart::Plane(0),
         }))
     }
 }

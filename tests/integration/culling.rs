@@ -1,4 +1,4 @@
-//! Whichever way samples are traced, a picture is the same to the bit: culled, many at a time, or one by one as the oracle has judged them.
+//! A picture is the same to the bit whether its samples are culled and traced many at a time, or one by one, as the oracle has judged them.
 
 use std::{
     num::NonZero,
@@ -10,21 +10,26 @@ use glam::{DVec3, dvec3};
 use pinhole::{
     area::Area,
     film::{Encoder, Film},
-    render::{Control, Way, render_bytes, render_in_a_way},
+    render::{Control, render, render_bytes},
     sampling::Sampling,
     scene::{Count, Lens, Method, Sampler, Scene, Shape, View},
     tracer::{Part, Quartering, Room, World},
 };
 
-use crate::effort::{Effort, sampled_and_exhaustive};
+#[path = "../../benches/one_by_one/mod.rs"]
+mod one_by_one;
+
+pub use self::one_by_one::one_by_one;
+
 use crate::{
+    effort::{Effort, sampled_and_exhaustive},
     exact::{example, examples, random_scene, read},
     figure::figure,
     tracer::{Random, camera, cuboid, floor, planes::scene_full_of_ties, scene, sphere, triangle},
 };
 
 /// A part of a picture, and how many samples progress was told of.
-fn part(scene: &Scene, part: Area, threads: usize, way: Way) -> (Film, u64) {
+fn part(scene: &Scene, part: Area, threads: usize) -> (Film, u64) {
     let done = AtomicU64::new(0);
     let control = Control {
         threads: NonZero::new(threads),
@@ -35,27 +40,33 @@ fn part(scene: &Scene, part: Area, threads: usize, way: Way) -> (Film, u64) {
     };
     let [width, height] = [scene.image.width, scene.image.height];
     let sampling = Sampling::new(&scene.sampler, width, height);
-    let film = render_in_a_way(&World::new(scene), &sampling, part, &control, way).unwrap();
+    let film = render(&World::new(scene), &sampling, part, &control).unwrap();
     (film, done.into_inner())
+}
+
+/// The same part sample by sample.
+fn plain(scene: &Scene, part: Area) -> Film {
+    let [width, height] = [scene.image.width, scene.image.height];
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    one_by_one(&World::new(scene), &sampling, part)
 }
 
 fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Compares all ways, by vectors of the processor's own width and by those that every processor has; answers how many colours the picture has.
+/// Compares a picture with the one made sample by sample; answers how many colours it has.
 #[track_caller]
 fn compare(scene: &Scene, what: &str) -> usize {
-    let (film, done) = part(scene, whole(scene), 1, Way::OneByOne);
-    for way in [Way::Culled, Way::Together, Way::Narrow] {
-        let (other, other_done) = part(scene, whole(scene), 2, way);
-        if let Some(at) = (0..film.pixels().len()).find(|&i| film.pixels()[i] != other.pixels()[i])
-        {
-            let (x, y) = (at as u32 % film.width(), at as u32 / film.width());
-            panic!("{what}: {way:?} has another pixel {x}, {y} than one by one in {scene:?}");
-        }
-        assert_eq!(done, other_done, "{what}: {way:?}");
+    let film = plain(scene, whole(scene));
+    let (culled, done) = part(scene, whole(scene), 2);
+    if let Some(at) = (0..film.pixels().len()).find(|&i| film.pixels()[i] != culled.pixels()[i]) {
+        let (x, y) = (at as u32 % film.width(), at as u32 / film.width());
+        panic!("{what}: another pixel {x}, {y} than one by one in {scene:?}");
     }
+    let [width, height] = [scene.image.width, scene.image.height];
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    assert_eq!(done, sampling.total(), "{what}");
     let mut colors: Vec<_> = film
         .pixels()
         .iter()
@@ -153,7 +164,7 @@ fn bytes_are_those_of_the_light() {
         };
         let crop: Area = "7,9,80,50".parse().unwrap();
         let bytes = render_bytes(&World::new(&scene), &sampling, crop, &control).unwrap();
-        let (light, _) = part(&scene, crop, 1, Way::OneByOne);
+        let light = plain(&scene, crop);
         assert_eq!((bytes.width(), bytes.height()), (80, 50));
         for (bytes, &light) in bytes.pixels().iter().zip(light.pixels()) {
             assert_eq!(*bytes, encoder.pixel(light));
@@ -209,8 +220,8 @@ fn very_many_in_one_plane() {
     }
     let many = resized(&shapes);
     compare(&many, "8000 in two planes");
-    let plain = |scene: &Scene| part(scene, whole(scene), 1, Way::OneByOne).0;
-    assert_eq!(plain(&few).pixels(), plain(&many).pixels());
+    let picture = |scene: &Scene| part(scene, whole(scene), 1).0;
+    assert_eq!(picture(&few).pixels(), picture(&many).pixels());
 }
 
 #[test]
@@ -235,16 +246,14 @@ fn crowds_of_all_kinds() {
         // Few samples are traced one by one where objects are dense, many together.
         for n in [1, 4, 8, 12, 100] {
             let all = with_samples(&all, Method::SAMPLED[index], Count::PerPixel(n));
-            let (plain, _) = part(&all, whole(&all), 1, Way::OneByOne);
-            let (culled, _) = part(&all, whole(&all), 2, Way::Culled);
-            assert_eq!(plain.pixels(), culled.pixels(), "{index}: {n}");
+            compare(&all, &format!("{index}: {n}"));
         }
         let world = World::new(&all);
         for (samples, pixels) in [(1.0, &mut dense), (1e4, &mut open)] {
             let parts = Quartering::for_samples(&world, samples);
             let _ = parts.parts(whole(&all), &mut Room::default(), &mut |part| {
                 *pixels += match part {
-                    Part::Plain { area, .. } if samples == 1.0 => area.pixels(),
+                    Part::Plain { area } if samples == 1.0 => area.pixels(),
                     Part::Open { .. } if samples > 1.0 => 1,
                     _ => 0,
                 };
@@ -322,10 +331,7 @@ fn objects_as_small_as_pixels() {
         (all.image.width, all.image.height) = (71, 53);
         for (n, method) in [2, 3, 4, 8, 9, 16].into_iter().zip(Method::SAMPLED) {
             let all = with_samples(&all, method, Count::PerPixel(n));
-            let (plain, done) = part(&all, whole(&all), 1, Way::OneByOne);
-            let (culled, culled_done) = part(&all, whole(&all), 2, Way::Culled);
-            assert_eq!(plain.pixels(), culled.pixels(), "{index}: {n}");
-            assert_eq!(done, culled_done);
+            compare(&all, &format!("{index}: {n}"));
         }
     }
 }
@@ -344,7 +350,7 @@ fn parts_cover_each_pixel_once() {
             let parts = Quartering::for_samples(&world, samples);
             let flow = parts.parts(area, &mut Room::default(), &mut |part| {
                 let part = match part {
-                    Part::Flat { area, .. } | Part::Plain { area, .. } => area,
+                    Part::Flat { area, .. } | Part::Plain { area } => area,
                     Part::Open { x, y, .. } => Area::pixel(x, y),
                 };
                 part.iter().for_each(|(x, y)| seen[area.index(x, y)] += 1);
@@ -455,7 +461,7 @@ fn dense_rows_of_squares() {
 fn crops_on_any_number_of_threads() {
     for method in [Method::Sobol, Method::Scatter] {
         let scene = figure(150, 90, method, Count::Total(150 * 90 * 6 + 1));
-        let (film, _) = part(&scene, whole(&scene), 1, Way::OneByOne);
+        let film = plain(&scene, whole(&scene));
         for (crop, threads) in [
             ("0,0,150,90", 3),
             ("1,1,148,88", 2),
@@ -463,7 +469,7 @@ fn crops_on_any_number_of_threads() {
             ("77,41,1,1", 4),
         ] {
             let crop: Area = crop.parse().unwrap();
-            let (cropped, _) = part(&scene, crop, threads, Way::Culled);
+            let (cropped, _) = part(&scene, crop, threads);
             for (x, y) in crop.iter() {
                 let (here, there) = (cropped.pixel(x - crop.x, y - crop.y), film.pixel(x, y));
                 assert_eq!(here, there, "{crop}: {x}, {y}");

@@ -4,19 +4,22 @@
 
 use std::{fmt::Write, num::NonZero, sync::atomic::AtomicBool};
 
-use glam::DVec2;
+use glam::{DVec2, dvec3};
 use pinhole::{
     area::Area,
     film::Film,
-    render::{Control, Way, render_exact, render_in_a_way},
+    render::{self, Control, render_exact},
     sampling::Sampling,
-    scene::{self, Scene},
+    scene::{self, Count, Method, Scene},
     source::{Source, Sources},
     tracer::World,
 };
 
-use crate::effort::{Effort, sampled_and_exhaustive};
-use crate::tracer::Random;
+use crate::{
+    culling::one_by_one,
+    effort::{Effort, sampled_and_exhaustive},
+    tracer::Random,
+};
 
 /// How many scenes are made unless the environment says otherwise. Two fifths of them have no mistake.
 const SCENES: u64 = 3000;
@@ -187,10 +190,9 @@ fn render(scene: &Scene, text: &str, is_decided: bool) {
     let whole = Area::whole(width, height);
     let world = World::new(scene);
     let sampling = Sampling::new(&scene.sampler, width, height);
-    let sampled = |way| render_in_a_way(&world, &sampling, whole, &control, way).unwrap();
-    let culled: Film = sampled(Way::Culled);
+    let culled = render::render(&world, &sampling, whole, &control).unwrap();
     assert_light(&culled, text);
-    let plain = sampled(Way::OneByOne);
+    let plain = one_by_one(&world, &sampling, whole);
     assert_eq!(culled.pixels(), plain.pixels(), "{text}");
     let exact = render_exact(&world, whole, &control).unwrap();
     assert_light(&exact.film, text);
@@ -232,6 +234,61 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
         }
     }
     assert!(rendered >= count / 3, "{rendered} of {count}");
+}
+
+/// Whatever part of the picture is asked for, a pixel's candidates are those of one grid.
+#[test]
+fn a_pixel_does_not_depend_on_the_crop() {
+    let control = Control {
+        threads: NonZero::new(1),
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let mut compared = 0;
+    let asked = std::env::var("PINHOLE_SCENES").ok();
+    for seed in 0..asked.map_or(600, |count| count.parse().unwrap()) {
+        let mut numbers = Numbers::new(seed);
+        let sources = Sources::new(Source::from_text("a.scn", numbers.scene()));
+        let Some(mut scene) = scene::read(&sources).scene else {
+            continue;
+        };
+        if seed % 50 == 0 {
+            // So far away that of what lies about the origin nothing is left.
+            scene.camera.eye = dvec3(3e267, -3e267, 1e267) * numbers.random.within(0.0, 1.0);
+        }
+        // More than a square of the grid, but few pixels.
+        let [width, height] = [(37, 3), (3, 35), (7, 9)][seed as usize % 3].into();
+        (scene.image.width, scene.image.height) = (width, height);
+        scene.sampler.count = Count::PerPixel(1 + numbers.below(9));
+        let whole = Area::whole(width, height);
+        let (x, y) = (numbers.below(width.into()), numbers.below(height.into()));
+        let crop = Area {
+            x: x as u32,
+            y: y as u32,
+            width: 1 + numbers.below(u64::from(width) - x) as u32,
+            height: 1 + numbers.below(u64::from(height) - y) as u32,
+        };
+        let world = World::new(&scene);
+        for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
+            scene.sampler.method = method;
+            let sampling = Sampling::new(&scene.sampler, width, height);
+            let picture = |part: Area| match method {
+                Method::Exact => render_exact(&world, part, &control).unwrap().film,
+                _ => render::render(&world, &sampling, part, &control).unwrap(),
+            };
+            let (all, part) = (picture(whole), picture(crop));
+            for (x, y) in crop.iter() {
+                let here = part.pixel(x - crop.x, y - crop.y);
+                assert_eq!(
+                    here,
+                    all.pixel(x, y),
+                    "{seed}, {method:?}: {x}, {y} in {crop}"
+                );
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 1000, "{compared}");
 }
 
 /// Planes that are one in hundreds of bits but not in more; a view so wide that Z is no normal number, before a near plane; a board that an

@@ -1,6 +1,6 @@
 //! The homography from a pixel to a checkerboard, and what the rounding of its forms may do.
 //!
-//! In: a board's three linear forms as the tracer has them for a spot. Out: places and depths on the floor, the depth's slopes and the density of the floor in
+//! In: a board's three linear forms as the tracer has them for a sub-pixel. Out: places and depths on the floor, the depth's slopes and the density of the floor in
 //! the picture, and a bound on how far roundings move what a polygon shows (a first-order perturbation of the forms by four roundings each,
 //! taken back to the picture by the inverse of their matrix).
 
@@ -121,7 +121,7 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Of a board as a spot sees it.
+    /// Of a board as a sub-pixel sees it.
     pub fn of(seen: &tracer::Board) -> Self {
         Self::new(seen.across, seen.below)
     }

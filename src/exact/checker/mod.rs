@@ -1,6 +1,6 @@
 //! The integral of a checkerboard's sign over a convex polygon of the picture.
 //!
-//! In: a board's forms in a spot ([`homography`]) and a polygon. Out: by how much more of it shows the first colour than the second, with a bound.
+//! In: a board's forms in a sub-pixel ([`homography`]) and a polygon. Out: by how much more of it shows the first colour than the second, with a bound.
 //!
 //! - Near squares are cut out of the picture one by one ([`near`]).
 //! - Beyond them Green's theorem makes of the integral a sum over the lines that the polygon's sides cross ([`boundary`]), which [`tail`] adds up where those

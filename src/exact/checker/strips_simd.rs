@@ -26,7 +26,7 @@ use super::{
 };
 use crate::{
     math::ROUND,
-    tracer::{Boards, Live, PIXELS, Views, World},
+    tracer::{Boards, Candidate, PIXELS, Views, World, board},
 };
 
 /// At most so many lines cut the pixels into strips, and so many cross those.
@@ -42,7 +42,7 @@ type Row = [f64; PIXELS];
 /// The factors of a linear form.
 type Form = [Row; 3];
 
-/// Sides of strips: parts of the spot's four, and a chord for each line.
+/// Sides of strips: parts of the sub-pixel's four, and a chord for each line.
 const SIDES: usize = 4 * (STRIPS + 1) + STRIPS;
 
 /// A pixel that shows nothing but a checkerboard.
@@ -53,7 +53,7 @@ pub(in crate::exact) struct BoardPixel {
     /// Its row.
     pub y: u32,
     /// The checkerboard.
-    pub live: Live,
+    pub candidate: Candidate,
 }
 
 /// The pixels that wait.
@@ -85,10 +85,10 @@ impl<'a> Waiting<'a> {
     /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where something else has to be
     /// tried.
     pub fn push(&mut self, pixel: BoardPixel, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        let object = pixel.live.object;
+        let object = pixel.candidate.object;
         if !matches!(self.boards, Some((known, _)) if known == object) {
             self.look(tell);
-            self.boards = self.world.boards(object).map(|boards| (object, boards));
+            self.boards = board::boards(self.world, object).map(|boards| (object, boards));
         }
         self.next.push(pixel);
         if self.next.len() == PIXELS {
@@ -549,7 +549,7 @@ mod tests {
         exact::{budget::Budget, checker::Homography},
         scene,
         source::{Source, Sources},
-        tracer::Spot,
+        tracer::{SubPixel, candidates},
     };
     use proptest::prelude::*;
     use std::{collections::HashMap, sync::atomic::AtomicBool};
@@ -578,14 +578,14 @@ mod tests {
         world: &World,
         order: impl IntoIterator<Item = (u32, u32)>,
     ) -> HashMap<(u32, u32), Option<Sum>> {
-        let live = world.everything()[0];
+        let candidate = candidates::everything(world)[0];
         let mut waiting = Waiting::new(world);
         let mut known = HashMap::new();
         let mut tell = |pixel: BoardPixel, sum| {
             assert!(known.insert((pixel.x, pixel.y), sum).is_none());
         };
         for (x, y) in order {
-            waiting.push(BoardPixel { x, y, live }, &mut tell);
+            waiting.push(BoardPixel { x, y, candidate }, &mut tell);
         }
         waiting.finish(&mut tell);
         known
@@ -654,7 +654,7 @@ mod tests {
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };
-                let seen = world.board(0, Spot::pixel(x, y)).expect("a board");
+                let seen = board::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
                 let cancel = AtomicBool::new(false);
                 let budget = Budget::of_pixel(1, &cancel);
                 let other = Homography::of(&seen).over(&PIXEL, &budget);

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     scene::{Scene, Shape},
-    tracer::World,
+    tracer::{World, ray},
 };
 
 /// What was counted and measured, of the textbook's formulas and of ours.
@@ -130,7 +130,7 @@ impl Trial {
             let error = self.distance(theirs.t, theirs.point, &t, &point);
             tally.errors([Some(error), None]);
         }
-        let (_, hits) = self.world.ray(pixels);
+        let (_, hits) = ray(&self.world, pixels);
         let error = match hits.iter().find(|hit| hit.visible) {
             Some(hit) if hit.object == seen.object => self.distance(hit.t, hit.point, &t, &point),
             _ => f64::INFINITY,

@@ -1,11 +1,11 @@
 //! Curves that are one: of objects in one plane, or side by side, many are.
+//!
+//! In: the curves of a sub-pixel. Out: the same without repetitions. Two are one if their forms, divided by the leading factor, differ by no more
+//! than roundings; the one that is left takes over the other's error and the difference.
 
 use crate::math::{Double, Real};
 
 use super::super::curve::{Conic, Curve, Line};
-
-/// Fewer curves than these are not sorted to find those that are equal.
-const CURVES_WORTH_SORTING: usize = 8;
 
 /// Lines are one if no factor of their forms differs by more than a few roundings.
 const SAME_LINE: f64 = 4.0 * f64::UNIT;
@@ -26,7 +26,7 @@ struct Scaled<'a> {
 
 /// Leaves one of the curves that are equal. What it is off is as much as it was of any of them.
 pub(super) fn merge(curves: &mut Vec<Curve>) {
-    if curves.len() < CURVES_WORTH_SORTING {
+    if curves.len() < 2 {
         return;
     }
     let mut rads: Vec<f64> = curves.iter().map(Curve::rad).collect();

@@ -1,4 +1,7 @@
-//! Where in a spot an object is met, at most. Where two objects cross each other matters only where both are.
+//! Where in a sub-pixel an object is met, at most. Where two objects cross each other matters only where both are.
+//!
+//! In: the lines of an outline. Out: a convex polygon, cut by them from the sub-pixel (Sutherland and Hodgman, 1974). Errors: each line is moved
+//! outwards by its own and by [`MARGIN`].
 
 use glam::DVec2;
 
@@ -10,17 +13,17 @@ use super::super::curve::{Curve, Line};
 /// of a polygon's vertices come to: each lies on a side that is cut to within a few of them, and no form's slopes are greater than 2.
 const MARGIN: f64 = 4096.0 * f64::UNIT;
 
-/// A part of a spot in which all the rays are that meet an object.
+/// A part of a sub-pixel in which all the rays are that meet an object.
 #[derive(Debug)]
 pub(super) struct Reach {
     /// A convex polygon, its vertices in order.
     polygon: Vec<DVec2>,
-    /// The lines that cut it from the spot: their forms are not negative where the object is met.
+    /// The lines that cut it from the sub-pixel: their forms are not negative where the object is met.
     sides: Vec<Line>,
 }
 
 impl Reach {
-    /// All of the spot.
+    /// All of the sub-pixel.
     pub fn whole() -> Self {
         Self {
             polygon: [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
@@ -30,7 +33,7 @@ impl Reach {
         }
     }
 
-    /// What the lines of an outline leave of the spot. The forms of all of them are positive inside.
+    /// What the lines of an outline leave of the sub-pixel. The forms of all of them are positive inside.
     pub fn within(outline: Vec<Curve>) -> Self {
         let mut reach = Self::whole();
         for curve in outline {

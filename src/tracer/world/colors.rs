@@ -1,4 +1,6 @@
 //! The colours that can be seen, and which of them an object has.
+//!
+//! In: the objects and the background. Out: the palette of distinct colours, and each object's slots in it.
 
 use std::collections::HashMap;
 

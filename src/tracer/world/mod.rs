@@ -1,69 +1,53 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
+//!
+//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks the objects on its way down the quadtree; where
+//! `f64` leaves the nearest in doubt it is asked again in double-double, and in the end in big numbers.
 
 mod colors;
-mod crowd;
-mod kept;
-mod level;
-mod order;
+pub(super) mod depth_order;
+mod precise_cache;
+mod precision;
 mod prepare;
-mod ray;
 
-pub use self::ray::Hit;
+pub(super) use self::{
+    precise_cache::Held,
+    precision::{Geometry, Level},
+};
 
-pub(super) use self::{kept::Held, level::Level};
-
-use std::cmp::Ordering;
+use std::{cmp::Ordering, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
-use self::{
-    colors::Colors,
-    level::{Frame, Numbers},
-};
+use self::{colors::Colors, prepare::prepare};
 use super::{
     camera::{Basis, Direction, Point},
-    crossing::Crossing,
-    hierarchy::{Descent, Hierarchy, Nearness},
-    object::Object,
-    outlook::Live,
+    hit::Crossing,
+    quadtree::{Descent, Nearness, Quadtree},
+    shape::Object,
 };
 use crate::{
+    area::Area,
+    cancel::{self, Cancelled},
     color::Color,
     math::{Big, Double, Doubt, Real},
+    scene::Scene,
 };
 
 /// The scene prepared for one picture: made once, then asked at any sample point from any thread.
 #[derive(Debug)]
 pub struct World {
     basis: Basis,
-    /// What the objects are prepared from.
-    numbers: Vec<Numbers>,
-    /// The objects for `f64`.
-    objects: Vec<Object<f64>>,
-    pub(super) hierarchy: Hierarchy,
-    pub(super) fast: Frame<f64>,
-    double: Frame<Double>,
-    big: Frame<Big>,
+    pub(super) geometry: Geometry,
+    pub(super) quadtree: Quadtree,
     colors: Colors,
-}
-
-/// The precisions, as what may be asked for by number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// `f64` alone: may be in doubt.
-    Single,
-    /// Double-double alone: may be in doubt.
-    Double,
-    /// Big numbers: decides everything.
-    Big,
 }
 
 /// What is seen at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Seen {
-    object: usize,
+pub(super) struct Seen {
+    pub(super) object: usize,
     /// Whether it is the object's second crossing, the first being nearer than the near plane.
-    second: bool,
+    pub(super) second: bool,
     /// Whether it is a checkerboard's second colour.
     odd: bool,
 }
@@ -78,9 +62,47 @@ struct Nearest<T: Real> {
 }
 
 impl World {
+    /// Prepares a scene for the sample points of its picture.
+    pub fn new(scene: &Scene) -> Self {
+        Self::reaching(scene, reach(scene))
+    }
+
+    /// The same, given up soon after the flag is set.
+    ///
+    /// # Errors
+    ///
+    /// The flag is set.
+    pub fn new_unless(scene: &Scene, cancel: &AtomicBool) -> Result<Self, Cancelled> {
+        let world = Self::as_far(scene, reach(scene), cancel);
+        cancel::unless_set(cancel, world)
+    }
+
+    /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
+    pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
+        Self::as_far(scene, reach, &cancel::NEVER)
+    }
+
+    fn as_far(scene: &Scene, reach: DVec2, cancel: &AtomicBool) -> Self {
+        let basis = Basis::new(&scene.camera, &scene.image);
+        let (geometry, quadtree) = prepare(scene, &basis, reach, cancel);
+        let objects = &scene.objects[..geometry.numbers.len()];
+        Self {
+            colors: Colors::new(objects, scene.image.background),
+            basis,
+            geometry,
+            quadtree,
+        }
+    }
+
     /// The camera's axes.
     pub fn basis(&self) -> &Basis {
         &self.basis
+    }
+
+    /// All pixels of the picture.
+    pub fn picture(&self) -> Area {
+        let half = self.geometry.fast.camera.half;
+        Area::whole((2.0 * half.x) as u32, (2.0 * half.y) as u32)
     }
 
     /// The distinct colours that can be seen: the objects' in the order of the file, the background last.
@@ -92,7 +114,7 @@ impl World {
     /// the offset from that pixel's centre, x to the right and y down, each in [−1/2, 1/2).
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
-        let point = self.fast.camera.sample_point(x, y, offset);
+        let point = self.geometry.fast.camera.sample_point(x, y, offset);
         match self.seen_fast(&point) {
             Ok(seen) => self.slot(seen),
             Err(Doubt) => self.slot(self.seen_after_doubt(&point)),
@@ -100,15 +122,15 @@ impl World {
     }
 
     /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may be seen.
-    pub fn slot_among<'a>(
+    pub fn slot_among(
         &self,
         x: u32,
         y: u32,
         offset: DVec2,
-        among: impl Iterator<Item = &'a Live> + Clone,
+        among: impl Iterator<Item = usize> + Clone,
     ) -> usize {
-        let point = self.fast.camera.sample_point(x, y, offset);
-        let among = || among.clone().map(|live| live.object);
+        let point = self.geometry.fast.camera.sample_point(x, y, offset);
+        let among = || among.clone();
         let seen = self.seen_among::<f64>(&point, among());
         let seen = seen.or_else(|Doubt| self.seen_among::<Double>(&point, among()));
         let seen = seen.or_else(|Doubt| self.seen_among::<Big>(&point, among()));
@@ -116,15 +138,12 @@ impl World {
         self.slot(seen.unwrap_or_default())
     }
 
-    /// What [`slot_at`](World::slot_at) answers in one precision alone and without the hierarchy, or `None` if that is in doubt.
-    pub fn slot_in(&self, precision: Precision, x: u32, y: u32, offset: DVec2) -> Option<usize> {
-        let point = self.fast.camera.sample_point(x, y, offset);
-        let seen = match precision {
-            Precision::Single => self.seen::<f64>(&point),
-            Precision::Double => self.seen::<Double>(&point),
-            Precision::Big => self.seen::<Big>(&point),
-        };
-        seen.ok().map(|seen| self.slot(seen))
+    /// What [`slot_at`](World::slot_at) answers in one precision alone and without the quadtree, or `None` if that is in doubt.
+    #[cfg(test)]
+    pub(super) fn slot_by<T: Level>(&self, x: u32, y: u32, offset: DVec2) -> Option<usize> {
+        let point = self.geometry.fast.camera.sample_point(x, y, offset);
+        let seen = self.seen::<T>(&point).ok()?;
+        Some(self.slot(seen))
     }
 
     /// The slots of the palette that an object's colour has, and a checkerboard's second one.
@@ -139,56 +158,39 @@ impl World {
 
     /// How many objects there are.
     pub fn len(&self) -> usize {
-        self.objects.len()
+        self.geometry.objects.len()
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.objects.is_empty()
+        self.geometry.objects.is_empty()
     }
 
-    /// What is seen as far as `f64` can tell, by way of the hierarchy.
+    /// What is seen as far as `f64` can tell, by way of the quadtree.
     #[inline]
     fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
-        let r = self.fast.camera.direction(point);
-        match self.hierarchy.at(&r) {
+        let r = self.geometry.fast.camera.direction(point);
+        match self.quadtree.at(&r) {
             Some(descent) => {
-                let nearest = self.nearest_on(descent, &r, |_| ())?;
+                let nearest = self.nearest_on(descent, &r)?;
                 self.with_color(&r, nearest)
             }
             None => self.seen::<f64>(point),
         }
     }
 
-    /// How many objects a ray asks whether it meets them.
-    pub fn asked(&self, x: u32, y: u32, offset: DVec2) -> usize {
-        let point = self.fast.camera.sample_point(x, y, offset);
-        let r = self.fast.camera.direction(&point);
-        let Some(descent) = self.hierarchy.at(&r) else {
-            return self.len();
-        };
-        let mut asked = 0;
-        match self.nearest_on(descent, &r, |_| asked += 1) {
-            Ok(_) => asked,
-            // Then all are asked whose bounds hold the point.
-            Err(Doubt) => self.candidates(&point).len(),
-        }
-    }
-
-    /// The nearest crossing with the objects on the way down the hierarchy; `ask` is told each of them that is asked.
+    /// The nearest crossing with the objects on the way down the quadtree.
     #[inline]
     fn nearest_on(
         &self,
         mut descent: Descent,
         r: &Direction<f64>,
-        mut ask: impl FnMut(usize),
     ) -> Result<Option<Nearest<f64>>, Doubt> {
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
         while let Some(mut list) = descent.next(bar) {
             while let Some(index) = list.next(bar) {
-                ask(index);
                 self.raise(r, index, &mut nearest, &mut bar)?;
             }
         }
@@ -214,20 +216,20 @@ impl World {
 
     #[cfg(test)]
     pub(super) fn double_camera(&self) -> &super::camera::Camera<Double> {
-        &self.double.camera
+        &self.geometry.double.camera
     }
 
     /// How many objects were prepared in the higher precisions and kept.
     #[cfg(test)]
     pub(super) fn prepared(&self) -> usize {
-        self.double.prepared() + self.big.prepared()
+        self.geometry.double.prepared() + self.geometry.big.prepared()
     }
 
     /// How much memory it takes by object, spheres alone being in it and none of them kept in a higher precision.
     #[cfg(test)]
     pub(super) fn bytes_per_object(&self) -> f64 {
-        let each = size_of::<Object<f64>>() + size_of::<Numbers>() + size_of::<u32>();
-        each as f64 + self.hierarchy.bytes() as f64 / self.len() as f64
+        let each = size_of::<Object<f64>>() + size_of::<precision::Numbers>() + size_of::<u32>();
+        each as f64 + self.quadtree.bytes() as f64 / self.len() as f64
     }
 
     /// What is seen where `f64` was in doubt.
@@ -235,12 +237,12 @@ impl World {
     fn seen_after_doubt(&self, point: &Point) -> Option<Seen> {
         let candidates = self.candidates(point);
         let among = || candidates.iter().copied();
-        let r = self.double.camera.direction(point);
+        let r = self.geometry.double.camera.direction(point);
         match self.seen_in_direction(&r, among()) {
             Ok(seen) => seen,
             // The last precision is never in doubt.
             Err(Doubt) => {
-                let r = self.big.camera.direction(point);
+                let r = self.geometry.big.camera.direction(point);
                 self.seen_in_direction(&r, among()).unwrap_or_default()
             }
         }
@@ -248,8 +250,8 @@ impl World {
 
     /// The objects that the ray through a point may meet, in file order.
     pub(super) fn candidates(&self, point: &Point) -> Vec<usize> {
-        let r = self.fast.camera.direction(point);
-        let Some(mut descent) = self.hierarchy.at(&r) else {
+        let r = self.geometry.fast.camera.direction(point);
+        let Some(mut descent) = self.quadtree.at(&r) else {
             return (0..self.len()).collect();
         };
         let mut candidates = Vec::new();
@@ -261,7 +263,7 @@ impl World {
     }
 
     fn seen<T: Level>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
-        let r = T::frame(self).camera.direction(point);
+        let r = T::frame(&self.geometry).camera.direction(point);
         self.seen_in_direction(&r, 0..self.len())
     }
 
@@ -271,13 +273,13 @@ impl World {
         point: &Point,
         among: impl Iterator<Item = usize>,
     ) -> Result<Option<Seen>, Doubt> {
-        let r = T::frame(self).camera.direction(point);
+        let r = T::frame(&self.geometry).camera.direction(point);
         self.seen_in_direction(&r, among)
     }
 
     /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
     #[inline]
-    fn seen_in_direction<T: Level>(
+    pub(super) fn seen_in_direction<T: Level>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
@@ -296,7 +298,7 @@ impl World {
         let Some(Nearest { object, second, .. }) = nearest else {
             return Ok(None);
         };
-        let odd = T::object(self, object).is_odd(r)?;
+        let odd = T::object(&self.geometry, object).is_odd(r)?;
         Ok(Some(Seen {
             object,
             second,
@@ -337,7 +339,7 @@ impl World {
         index: usize,
         nearest: &mut Option<Nearest<T>>,
     ) -> Result<bool, Doubt> {
-        let object = T::object(self, index);
+        let object = T::object(&self.geometry, index);
         let Some(first) = object.first(r)? else {
             return Ok(false);
         };
@@ -345,7 +347,11 @@ impl World {
             return Ok(false);
         };
         if let Some(best) = nearest {
-            match self.order((index, &crossing), (best.object, &best.crossing))? {
+            match depth_order::order(
+                &self.geometry,
+                (index, &crossing),
+                (best.object, &best.crossing),
+            )? {
                 Ordering::Greater => {}
                 Ordering::Equal if index < best.object => {}
                 _ => return Ok(false),
@@ -368,21 +374,25 @@ impl World {
         object: &Object<T>,
         r: &Direction<T>,
     ) -> Result<Option<(bool, Crossing<T>)>, Doubt> {
-        let frame = T::frame(self);
+        let frame = T::frame(&self.geometry);
         let mut chosen = (false, first);
         if let Some(near) = &frame.near
-            && self.order_to_clip(index, &chosen.1, near, r)? != Ordering::Less
+            && depth_order::order_to_clip(&self.geometry, index, &chosen.1, near, r)?
+                != Ordering::Less
         {
             let Some(second) = object.second(r) else {
                 return Ok(None);
             };
-            if self.order_to_clip(index, &second, near, r)? != Ordering::Less {
+            if depth_order::order_to_clip(&self.geometry, index, &second, near, r)?
+                != Ordering::Less
+            {
                 return Ok(None);
             }
             chosen = (true, second);
         }
         if let Some(far) = &frame.far
-            && self.order_to_clip(index, &chosen.1, far, r)? != Ordering::Greater
+            && depth_order::order_to_clip(&self.geometry, index, &chosen.1, far, r)?
+                != Ordering::Greater
         {
             return Ok(None);
         }
@@ -396,4 +406,9 @@ impl World {
             Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],
         }
     }
+}
+
+/// From the picture's centre to its edges, in pixels.
+fn reach(scene: &Scene) -> DVec2 {
+    DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0
 }

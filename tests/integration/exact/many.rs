@@ -1,6 +1,6 @@
 //! Many objects in one pixel.
 
-use pinhole::tracer::Spot;
+use pinhole::tracer::{SubPixel, boundaries, candidates};
 
 use super::*;
 
@@ -29,16 +29,16 @@ fn objects_that_no_ray_meets_together_have_no_curves_between_them() {
     for rows in [3, 5, 8] {
         let scene = read(&side_by_side(&mut random, rows));
         let world = World::new(&scene);
-        let (everything, mut live) = (world.everything(), Vec::new());
-        let spot = Spot::pixel(0, 0);
-        world.live_in(spot, &everything, &mut live);
-        assert_eq!(live.len(), (rows * rows) as usize, "all are seen");
-        let (most, mut curves) = (3 * live.len(), Vec::new());
+        let (everything, mut candidates) = (candidates::everything(&world), Vec::new());
+        let sub_pixel = SubPixel::pixel(0, 0);
+        boundaries::narrowed(&world, sub_pixel, &everything, &mut candidates);
+        assert_eq!(candidates.len(), (rows * rows) as usize, "all are seen");
+        let (most, mut curves) = (3 * candidates.len(), Vec::new());
         let cancel = AtomicBool::new(false);
-        let found = world.curves(spot, &live, most, &cancel, &mut curves);
+        let found = boundaries::curves(&world, sub_pixel, &candidates, most, &cancel, &mut curves);
         assert!(found.is_ok(), "more than {most}");
         let fewer = curves.len() - 1;
-        let found = world.curves(spot, &live, fewer, &cancel, &mut curves);
+        let found = boundaries::curves(&world, sub_pixel, &candidates, fewer, &cancel, &mut curves);
         assert!(found.is_err(), "no more than {fewer}");
         adds_up(&scene, &format!("{rows} rows of triangles"));
     }

@@ -16,8 +16,7 @@ use pinhole::{
     },
     sampling::Sampling,
     scene::{Checkerboard, Lens, Scene, Shape, Triangle, View},
-    source::{Source, Sources},
-    tracer::{Precision, World},
+    tracer::World,
 };
 
 use crate::exact::read;
@@ -124,55 +123,6 @@ fn agrees(scene: &Scene, points: usize) -> usize {
         boundaries += 1;
     }
     boundaries
-}
-
-#[test]
-fn f64_alone_decides_nearly_everything() {
-    let shapes = [
-        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
-        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
-        cuboid(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
-        floor(),
-    ];
-    let scene = scene(camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0)), &shapes);
-    let world = World::new(&scene);
-    let mut random = Random(2);
-    let mut doubts = 0;
-    for _ in 0..20_000 {
-        let (x, y) = (random.bits() as u32 % SIZE, random.bits() as u32 % SIZE);
-        let offset = random.offset();
-        let double = world.slot_in(Precision::Double, x, y, offset);
-        match world.slot_in(Precision::Single, x, y, offset) {
-            None => doubts += 1,
-            single => assert_eq!(single, double),
-        }
-    }
-    // The rows at the horizon leave doubts of about 1e-10 of the samples.
-    assert_eq!(doubts, 0);
-}
-
-#[test]
-fn the_examples_are_the_same_without_the_hierarchy() {
-    let folder = format!("{}/examples", env!("CARGO_MANIFEST_DIR"));
-    let files = std::fs::read_dir(folder).unwrap();
-    let paths = files.map(|entry| entry.unwrap().path());
-    let mut random = Random(3);
-    for path in paths.filter(|path| path.extension().is_some_and(|ending| ending == "scn")) {
-        let text = std::fs::read_to_string(&path).unwrap();
-        let sources = Sources::new(Source::from_text("a.scn", text));
-        let scene = pinhole::scene::read(&sources).scene.unwrap();
-        let world = World::new(&scene);
-        let size = [scene.image.width, scene.image.height].map(u64::from);
-        for _ in 0..3000 {
-            let [x, y] = size.map(|size| (random.bits() % size) as u32);
-            let offset = random.offset();
-            let plain = [Precision::Single, Precision::Double, Precision::Big]
-                .into_iter()
-                .find_map(|precision| world.slot_in(precision, x, y, offset));
-            let found = world.slot_at(x, y, offset);
-            assert_eq!(Some(found), plain, "{path:?}, pixel {x}, {y} at {offset}");
-        }
-    }
 }
 
 #[test]

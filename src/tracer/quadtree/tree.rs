@@ -1,4 +1,7 @@
-//! The cells of a hierarchy, and the objects listed in them.
+//! The cells of a quadtree, and the objects listed in them.
+//!
+//! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A cell is divided while it holds many objects; an
+//! object larger than its quarters stays in it. Within a cell, bounds are kept in 256 parts of its side, rounded outwards.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
@@ -7,8 +10,8 @@ use rayon::prelude::*;
 use super::grid::{Item, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
-/// A cell with no more objects is not divided.
-const OBJECTS_A_CELL: usize = 32;
+/// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take the same time within a twentieth.
+pub const OBJECTS_A_CELL: usize = 32;
 
 /// A cell with more objects is divided by several threads.
 const OBJECTS_A_THREAD: usize = 1 << 14;
@@ -66,12 +69,12 @@ fn units_of(level: u32, part: u8) -> (u32, u32) {
 impl Tree {
     /// The tree of all cells. Cancelled, it lacks some of the items.
     pub(super) fn of(items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        Self::new(Place::ROOT, items, cancel)
+        Self::new(CellSquare::ROOT, items, cancel)
     }
 
     /// The same, by several threads.
     pub(super) fn of_many(items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        Self::by_threads(Place::ROOT, items, cancel)
+        Self::by_threads(CellSquare::ROOT, items, cancel)
     }
 
     /// How many bytes it takes.
@@ -81,35 +84,35 @@ impl Tree {
     }
 
     /// The tree of a cell.
-    fn new(place: Place, items: Vec<Item>, cancel: &AtomicBool) -> Self {
+    fn new(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
         // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
         let mut stack = items;
         let mut tree = Self::empty();
-        tree.divide(0, place, &mut stack, 0, cancel);
+        tree.divide(0, square, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
         tree.entries.shrink_to_fit();
         tree
     }
 
     /// The tree of a cell, by several threads.
-    fn by_threads(place: Place, items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        if items.len() <= OBJECTS_A_THREAD || place.level == 0 {
-            return Self::new(place, items, cancel);
+    fn by_threads(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        if items.len() <= OBJECTS_A_THREAD || square.level == 0 {
+            return Self::new(square, items, cancel);
         }
         if cancel::is_set(cancel) {
             return Self::empty();
         }
         let mut tree = Self::empty();
-        let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| place.keeps(item));
-        tree.list(0, place, &own);
+        let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| square.keeps(item));
+        tree.list(0, square, &own);
         let quarters = [0, 1, 2, 3].map(|quarter| {
-            let place = place.quarter(quarter);
-            let items = below.iter().filter(|item| item.meets(&place.bounds()));
-            (place, items.copied().collect::<Vec<_>>())
+            let square = square.quarter(quarter);
+            let items = below.iter().filter(|item| item.meets(&square.bounds()));
+            (square, items.copied().collect::<Vec<_>>())
         });
         drop((own, below));
         let quarters = quarters.into_par_iter();
-        let quarters = quarters.map(|(place, items)| Self::by_threads(place, items, cancel));
+        let quarters = quarters.map(|(square, items)| Self::by_threads(square, items, cancel));
         tree.join(quarters.collect());
         tree
     }
@@ -125,7 +128,7 @@ impl Tree {
     fn divide(
         &mut self,
         cell: usize,
-        place: Place,
+        square: CellSquare,
         stack: &mut Vec<Item>,
         start: usize,
         cancel: &AtomicBool,
@@ -133,18 +136,18 @@ impl Tree {
         if cancel::is_set(cancel) {
             return;
         }
-        if stack.len() - start <= OBJECTS_A_CELL || place.level == 0 {
-            return self.list(cell, place, &stack[start..]);
+        if stack.len() - start <= OBJECTS_A_CELL || square.level == 0 {
+            return self.list(cell, square, &stack[start..]);
         }
-        stack[start..].sort_by_key(|item| !place.keeps(item));
-        let own = stack[start..].partition_point(|item| place.keeps(item));
-        self.list(cell, place, &stack[start..start + own]);
+        stack[start..].sort_by_key(|item| !square.keeps(item));
+        let own = stack[start..].partition_point(|item| square.keeps(item));
+        self.list(cell, square, &stack[start..start + own]);
         let (start, end) = (start + own, stack.len());
         let quarters = self.cells.len();
         self.cells.extend([Cell::EMPTY; 4]);
         self.cells[cell].quarters = quarters as u32;
         for quarter in 0..4 {
-            let below = place.quarter(quarter);
+            let below = square.quarter(quarter);
             let bounds = below.bounds();
             for index in start..end {
                 let item = stack[index];
@@ -160,10 +163,10 @@ impl Tree {
     }
 
     /// Lists items in a cell, behind all lists so far.
-    fn list(&mut self, cell: usize, place: Place, items: &[Item]) {
+    fn list(&mut self, cell: usize, square: CellSquare, items: &[Item]) {
         let start = self.entries.len();
         self.entries
-            .extend(items.iter().map(|item| place.entry(item)));
+            .extend(items.iter().map(|item| square.entry(item)));
         let list = &mut self.entries[start..];
         list.sort_unstable_by_key(|entry| (Reverse(entry.nearest), entry.object));
         self.cells[cell] = Cell {
@@ -213,12 +216,12 @@ impl Cell {
 
 /// Where a cell is, and that its side is 2^level.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct CellSquare {
     corner: [u32; 2],
     level: u32,
 }
 
-impl Place {
+impl CellSquare {
     pub(super) const ROOT: Self = Self {
         corner: [0; 2],
         level: LEVELS,

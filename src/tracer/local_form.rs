@@ -1,6 +1,9 @@
-//! Forms in a pixel: functions of the offset from its centre, each with one bound on the error of all its values there.
+//! Linear and quadratic forms in the coordinates of a pixel or of a rectangle of pixels.
+//!
+//! In: a form over the view plane, and the pixel. Out: the same form as a function of the offset from the pixel's centre, in units of its sides.
+//! Errors: one bound for all values there, the form's own taken twice (its factors, its value at the centre) and the roundings of its evaluation.
 
-use super::super::{
+use super::{
     camera::{Camera, Direction},
     form::Form,
 };
@@ -11,7 +14,7 @@ use crate::{
 
 /// A linear form of the offset, and a bound on the error of its computed values in the pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Local {
+pub struct LocalForm {
     /// Factors of x, y and 1.
     pub(super) factors: [f64; 3],
     pub(super) rad: f64,
@@ -19,18 +22,18 @@ pub struct Local {
 
 /// A linear form in units of its error.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line(pub(super) [f64; 3]);
+pub(super) struct ScaledLine(pub(super) [f64; 3]);
 
 /// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of its values.
 #[derive(Clone, Copy, Debug)]
-pub struct Conic {
+pub struct LocalQuadratic {
     pub(super) factors: [f64; 6],
     pub(super) rad: f64,
 }
 
 /// A pixel, or a rectangle of pixels; the offsets of its forms are in units of its sides.
 #[derive(Clone, Debug)]
-pub struct Here {
+pub struct PixelFrame {
     /// The ray through its centre.
     pub center: Direction<f64>,
     /// Its sides in units of X and Y.
@@ -50,7 +53,7 @@ pub(super) enum Side {
 /// Roundings on the way to a value of a local form, generously counted.
 pub(super) const ROUNDINGS: f64 = 16.0 * f64::UNIT;
 
-impl Local {
+impl LocalForm {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -68,8 +71,8 @@ impl Local {
         side(self.factors[2], self.spread() * UP, self.rad)
     }
 
-    pub(super) fn line(&self) -> Line {
-        Line(self.factors.map(|factor| factor / self.rad))
+    pub(super) fn line(&self) -> ScaledLine {
+        ScaledLine(self.factors.map(|factor| factor / self.rad))
     }
 
     #[inline(always)]
@@ -89,7 +92,7 @@ impl Local {
     }
 }
 
-impl Here {
+impl PixelFrame {
     pub(super) fn new(camera: &Camera<f64>, area: Area) -> Self {
         Self {
             center: camera.direction(&camera.middle(area)),
@@ -114,15 +117,15 @@ fn side(center: f64, spread: f64, rad: f64) -> Side {
 
 impl Form<f64> {
     /// The form in a pixel. Its own error bound counts twice: for its factors, and for its value at the pixel's centre.
-    pub(super) fn local(&self, here: &Here) -> Local {
+    pub(super) fn local(&self, frame: &PixelFrame) -> LocalForm {
         let [a, b, _] = *self.factors();
-        let [width, height] = here.sides;
-        let factors = [a * width, b * height, self.at(&here.center).mid];
-        Local::new(factors, 2.0 * self.rad())
+        let [width, height] = frame.sides;
+        let factors = [a * width, b * height, self.at(&frame.center).mid];
+        LocalForm::new(factors, 2.0 * self.rad())
     }
 }
 
-impl Conic {
+impl LocalQuadratic {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();

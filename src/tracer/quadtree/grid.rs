@@ -1,12 +1,15 @@
-//! The grid in which a hierarchy counts: whole numbers for places in the view plane and for how near an object is.
+//! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near an object is.
+//!
+//! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of an `f64`. Both conversions are monotone, and
+//! bounds are rounded outwards.
 
 use crate::tracer::{
+    bounds2d::Extent,
     camera::{Direction, Window},
-    cover::{Patch, Range},
-    extent::Extent,
+    interval::{Patch, Range},
 };
 
-/// The side of the root is 2 to this power: units are far smaller than pixels in a picture of any common size.
+/// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred thousand pixels wide is a hundred of them.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle in the units of the grid, ends included.
@@ -88,35 +91,13 @@ impl Rectangle {
     pub(super) fn side(&self) -> u32 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) + 1
     }
-
-    /// The least that holds both.
-    fn with(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1].map(|i| self.low[i].min(other.low[i])),
-            high: [0, 1].map(|i| self.high[i].max(other.high[i])),
-        }
-    }
 }
 
 impl Item {
-    /// Adds what it is elsewhere.
-    pub fn add(&mut self, other: &Self) {
-        self.bounds = self.bounds.with(&other.bounds);
-    }
-
     /// Whether it may be met in a rectangle.
     #[inline]
     pub fn meets(&self, rectangle: &Rectangle) -> bool {
         self.bounds.meets(rectangle)
-    }
-
-    /// Whether a ray in these units may meet it.
-    #[inline]
-    pub fn holds(&self, at: [u32; 2]) -> bool {
-        let holds = |axis: usize| {
-            (self.bounds.low[axis] <= at[axis]) & (at[axis] <= self.bounds.high[axis])
-        };
-        holds(0) & holds(1)
     }
 
     /// Whether it may be met everywhere in a rectangle.

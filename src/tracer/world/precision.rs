@@ -1,19 +1,19 @@
-//! The camera and the objects in each precision.
+//! The camera and the objects in each precision: `f64`, double-double, and big numbers, which decide everything.
+//!
+//! In: the numbers of the scene. Out: frames and objects in the precision that is asked for; beyond `f64` they are prepared when they are
+//! first asked for. What a decision in one precision leaves in doubt, by the bounds on its errors, is asked of the next.
 
 use glam::{DVec2, DVec3};
 
-use super::{
-    World,
-    kept::{Held, Kept},
-};
+use super::precise_cache::{Held, Kept};
 use crate::{
     math::{Ball, Big, Double, Real, exact::Plane},
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
-        crossing::Part,
         form::Form,
-        object::Object,
+        hit::SurfacePart,
+        shape::Object,
         sphere::Sphere,
     },
 };
@@ -25,6 +25,18 @@ pub enum Numbers {
     Sphere(DVec3, f64),
     /// All of any other shape.
     Other(Box<Shape>),
+}
+
+/// The camera and the objects, in each precision.
+#[derive(Debug)]
+pub struct Geometry {
+    /// What the objects are prepared from.
+    pub numbers: Vec<Numbers>,
+    /// The objects for `f64`.
+    pub objects: Vec<Object<f64>>,
+    pub fast: Frame<f64>,
+    pub double: Frame<Double>,
+    pub big: Frame<Big>,
 }
 
 /// The camera and some objects in one precision.
@@ -63,12 +75,12 @@ impl<T: Real> Frame<T> {
 
 /// A precision that the world is held in.
 pub trait Level: Real {
-    fn frame(world: &World) -> &Frame<Self>;
+    fn frame(geometry: &Geometry) -> &Frame<Self>;
 
     /// An object in this precision, prepared when it is asked for.
-    fn object(world: &World, index: usize) -> Held<'_, Self> {
-        let Frame { camera, kept, .. } = Self::frame(world);
-        let prepare = || world.numbers[index].object(camera);
+    fn object(geometry: &Geometry, index: usize) -> Held<'_, Self> {
+        let Frame { camera, kept, .. } = Self::frame(geometry);
+        let prepare = || geometry.numbers[index].object(camera);
         kept.object(index, prepare)
     }
 }
@@ -82,8 +94,8 @@ impl Numbers {
     }
 
     /// The plane of a flat part.
-    pub(super) fn plane(&self, part: Part) -> Option<Plane> {
-        let (Self::Other(shape), Part::Plane(index)) = (self, part) else {
+    pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
+        let (Self::Other(shape), SurfacePart::Plane(index)) = (self, part) else {
             return None;
         };
         Some(match **shape {
@@ -116,24 +128,24 @@ impl Numbers {
 
 impl Level for f64 {
     #[inline]
-    fn frame(world: &World) -> &Frame<Self> {
-        &world.fast
+    fn frame(geometry: &Geometry) -> &Frame<Self> {
+        &geometry.fast
     }
 
     #[inline]
-    fn object(world: &World, index: usize) -> Held<'_, Self> {
-        Held::Always(&world.objects[index])
+    fn object(geometry: &Geometry, index: usize) -> Held<'_, Self> {
+        Held::Always(&geometry.objects[index])
     }
 }
 
 impl Level for Double {
-    fn frame(world: &World) -> &Frame<Self> {
-        &world.double
+    fn frame(geometry: &Geometry) -> &Frame<Self> {
+        &geometry.double
     }
 }
 
 impl Level for Big {
-    fn frame(world: &World) -> &Frame<Self> {
-        &world.big
+    fn frame(geometry: &Geometry) -> &Frame<Self> {
+        &geometry.big
     }
 }

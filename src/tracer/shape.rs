@@ -1,13 +1,16 @@
 //! Any object, prepared for one picture.
+//!
+//! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer asks of every kind of object: crossings of a ray,
+//! intervals over a rectangle, the curves that bound it. Each kind answers for itself; here is only the choice between them.
 
 use super::{
     camera::{Camera, Direction, Window},
     checkerboard::Checkerboard,
-    cover::{Cover, Patch, Range},
-    crossing::{Crossing, Part},
     cuboid::Cuboid,
-    curve::{Crossings, Curve, Place, Surface},
+    curve::{Crossings, Curve, SubPixelFrame, Surface},
     form::Form,
+    hit::{Crossing, SurfacePart},
+    interval::{Cover, Patch, Range},
     sphere::Sphere,
     triangle::Triangle,
 };
@@ -77,11 +80,11 @@ impl<T: Real> Object<T> {
     }
 
     /// The form of the inverse depth of a flat part.
-    pub fn plane(&self, part: Part) -> Option<&Form<T>> {
+    pub fn plane(&self, part: SurfacePart) -> Option<&Form<T>> {
         match (self, part) {
-            (Self::Triangle(triangle), Part::Plane(_)) => Some(&triangle.plane),
-            (Self::Checkerboard(checkerboard), Part::Plane(_)) => Some(&checkerboard.plane),
-            (Self::Cuboid(cuboid), Part::Plane(index)) => cuboid.face(index),
+            (Self::Triangle(triangle), SurfacePart::Plane(_)) => Some(&triangle.plane),
+            (Self::Checkerboard(checkerboard), SurfacePart::Plane(_)) => Some(&checkerboard.plane),
+            (Self::Cuboid(cuboid), SurfacePart::Plane(index)) => cuboid.face(index),
             _ => None,
         }
     }
@@ -96,17 +99,6 @@ impl Object<f64> {
             Self::Triangle(triangle) => triangle.cover(patch),
             Self::Cuboid(cuboid) => cuboid.cover(patch),
             Self::Checkerboard(checkerboard) => checkerboard.cover(patch),
-        }
-    }
-
-    /// About how many forms tell where and how deep it is: of a box with two or three faces in sight as many as of two triangles.
-    pub fn forms(&self) -> usize {
-        match self {
-            Self::EdgeOn => 0,
-            Self::Checkerboard(_) => 2,
-            Self::Sphere(_) => 3,
-            Self::Triangle(_) => 4,
-            Self::Cuboid(_) => 8,
         }
     }
 
@@ -127,22 +119,22 @@ impl<T: Real> Object<T> {
     }
 
     /// The part that one of the surfaces of its first crossings is, if that is flat.
-    pub fn first_part(&self, at: usize) -> Part {
+    pub fn first_part(&self, at: usize) -> SurfacePart {
         match self {
-            Self::Cuboid(cuboid) => Part::Plane(cuboid.first_index(at)),
-            Self::Sphere(_) => Part::Entry,
-            Self::EdgeOn | Self::Triangle(_) | Self::Checkerboard(_) => Part::Plane(0),
+            Self::Cuboid(cuboid) => SurfacePart::Plane(cuboid.first_index(at)),
+            Self::Sphere(_) => SurfacePart::Entry,
+            Self::EdgeOn | Self::Triangle(_) | Self::Checkerboard(_) => SurfacePart::Plane(0),
         }
     }
 
     /// What bounds the rays that meet it; each line's form is not negative where it is met.
-    pub fn outline(&self, place: &Place<T>) -> Vec<Curve> {
-        let line = |form: &Form<T>| place.line(form);
+    pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Curve> {
+        let line = |form: &Form<T>| frame.line(form);
         match self {
             Self::EdgeOn => Vec::new(),
-            Self::Sphere(sphere) => place.silhouette(sphere),
+            Self::Sphere(sphere) => frame.silhouette(sphere),
             Self::Triangle(triangle) => triangle.edges.iter().map(line).collect(),
-            Self::Cuboid(cuboid) => cuboid.sides().map(|form| place.line(&form)).collect(),
+            Self::Cuboid(cuboid) => cuboid.sides().map(|form| frame.line(&form)).collect(),
             Self::Checkerboard(checkerboard) => vec![line(&checkerboard.plane)],
         }
     }

@@ -1,29 +1,32 @@
 //! The squares of a checkerboard at the corners of many pixels at once.
 //!
+//! In: a block of pixels in which a board is all that is seen. Out: runs of pixels that show one colour, and the squares that each other pixel
+//! shows.
+//!
 //! Where a board alone is seen, most parts of the picture end as pixels, which have their corners in common. So the squares that the
 //! corners of a block lie in are computed row by row, in plain arrays, which the compiler makes vectors of: a ratio of linear forms is
 //! the greatest and the least at corners, and a pixel whose corners lie in one square, each farther from its edge than errors reach, shows nothing
 //! else.
 
-use std::ops::ControlFlow;
+use std::{array, ops::ControlFlow};
 
 use multiversion::multiversion;
 
 use super::{
-    super::{object::Object, outlook::Live, quartering::Part, world::World},
-    local::{Here, Local, ROUNDINGS},
-    squares::Squares,
+    checkerboard::Checkerboard,
+    local_form::{LocalForm, PixelFrame, ROUNDINGS},
+    shape::Object,
+    world::{Level, World},
 };
 use crate::{
     area::Area,
-    math::{ROUND, UP},
-    tracer::{checkerboard::Checkerboard, world::Level},
+    math::{ROUND, UP, floor},
 };
 
-/// The greatest side of a block, in pixels.
-const SIDE: usize = 32;
+/// The greatest side of a block, in pixels: that of the squares that quartering begins with.
+pub(super) const SIDE: usize = 32;
 
-/// Its corners in a row, and so many more that vectors of eight make them up.
+/// Its corners in a row, 33, and so many more that vectors of eight make them up.
 const LANES: usize = 40;
 
 /// The squares of a board that a pixel shows.
@@ -45,76 +48,60 @@ struct Mesh {
 }
 
 /// A row of corners.
-struct Corners {
+struct CornerRow {
     /// Their squares in x and in z; NaN where that is not certain.
     squares: [[f64; LANES]; 2],
     /// 1, or −1 in the squares of the second colour, if the board begins with the first.
     sign: [f64; LANES],
 }
 
-impl World {
-    /// Shows `visit` the pixels of a part of the picture in which a checkerboard is all that is seen, in runs of one colour and singly, with
-    /// what they show of the board if that is known. `None` if the part is too large for that or the board too far.
-    pub(in super::super) fn checks(
-        &self,
-        part: Area,
-        live: &[Live],
-        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
-    ) -> Option<ControlFlow<()>> {
-        let [Live { object, .. }] = *live else {
-            return None;
-        };
-        if part.width as usize > SIDE || part.height as usize > SIDE {
-            return None;
-        }
-        let Object::Checkerboard(board) = &*f64::object(self, object) else {
-            return None;
-        };
-        let mesh = Mesh::new(board, &Here::new(&f64::frame(self).camera, part), part)?;
-        let slots = self.slots(object);
-        let [mut above, mut below] = [Corners::new(), Corners::new()];
-        mesh.corners(0, &mut above);
-        for row in 0..part.height {
-            mesh.corners(row + 1, &mut below);
-            let flow = mesh.row(row, &above, &below, |area, seen| match seen {
-                Seen::One(odd) => {
-                    let slot = slots[usize::from(odd)];
-                    visit(Part::Flat { area, slot }, None)
-                }
-                Seen::Some(checks) => {
-                    let (x, y) = (area.x, area.y);
-                    visit(Part::Open { x, y, live }, Some(checks))
-                }
-                Seen::Unknown => match self.only_square(area, object) {
-                    Some(odd) => {
-                        let slot = slots[usize::from(odd)];
-                        visit(Part::Flat { area, slot }, None)
-                    }
-                    None => {
-                        let (x, y) = (area.x, area.y);
-                        visit(Part::Open { x, y, live }, None)
-                    }
-                },
-            });
-            if flow.is_break() {
-                return Some(flow);
-            }
-            std::mem::swap(&mut above, &mut below);
-        }
-        Some(ControlFlow::Continue(()))
-    }
-}
-
 /// What pixels show of a board.
-enum Seen<'a> {
+#[derive(Clone, Copy, Debug)]
+pub enum Shown<'a> {
     /// One square, or squares of one colour side by side; whether that is the second.
     One(bool),
-    /// A few.
+    /// A few squares of one pixel.
     Some(&'a Checks),
+    /// One pixel, of which that is not known.
     Unknown,
 }
 
-impl Corners {
+/// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is seen, show of it: in runs of one colour and
+/// singly. `None` if the object is none or the board too far. The part's sides are at most [`SIDE`].
+pub fn show(
+    world: &World,
+    part: Area,
+    object: usize,
+    each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
+) -> Option<ControlFlow<()>> {
+    let Object::Checkerboard(board) = &*f64::object(&world.geometry, object) else {
+        return None;
+    };
+    let mesh = Mesh::new(
+        board,
+        &PixelFrame::new(&f64::frame(&world.geometry).camera, part),
+        part,
+    )?;
+    let [mut above, mut below] = [CornerRow::new(), CornerRow::new()];
+    mesh.corners(0, &mut above);
+    for row in 0..part.height {
+        mesh.corners(row + 1, &mut below);
+        let flow = mesh.row(row, &above, &below, |area, seen| match seen {
+            // Of a pixel by itself errors are smaller.
+            Shown::Unknown if part.pixels() > 1 => {
+                show(world, area, object, each).unwrap_or_else(|| each(area, Shown::Unknown))
+            }
+            _ => each(area, seen),
+        });
+        if flow.is_break() {
+            return Some(flow);
+        }
+        std::mem::swap(&mut above, &mut below);
+    }
+    Some(ControlFlow::Continue(()))
+}
+
+impl CornerRow {
     fn new() -> Self {
         Self {
             squares: [[0.0; LANES]; 2],
@@ -130,8 +117,8 @@ impl Corners {
 
 impl Mesh {
     /// `None` if the board is too far for its squares to be told apart so.
-    fn new(board: &Checkerboard<f64>, here: &Here, block: Area) -> Option<Self> {
-        let squares = Squares::new(board, here);
+    fn new(board: &Checkerboard<f64>, frame: &PixelFrame, block: Area) -> Option<Self> {
+        let squares = Squares::new(board, frame);
         let Squares { across, below, .. } = squares;
         let least = below.factors[2] - below.spread() * UP;
         if least <= 4.0 * below.rad {
@@ -158,21 +145,21 @@ impl Mesh {
         })
     }
 
-    fn corners(&self, row: u32, out: &mut Corners) {
+    fn corners(&self, row: u32, out: &mut CornerRow) {
         let y = middle(2 * row, self.block.height);
         let length = (self.block.width as usize + 1).next_multiple_of(8);
         corners_widely(self, y, length, out);
     }
 
     #[inline(always)]
-    fn evaluate(&self, y: f64, length: usize, out: &mut Corners) {
+    fn evaluate(&self, y: f64, length: usize, out: &mut CornerRow) {
         const ONE: u64 = 1.0f64.to_bits();
         let Squares { across, below, .. } = &self.squares;
         let [n0, n1, l] = [&across[0], &across[1], below].map(|local| {
             let [a, b, c] = local.factors;
             (a, b * y + c)
         });
-        let Corners {
+        let CornerRow {
             squares: [first, second],
             sign,
         } = out;
@@ -202,9 +189,9 @@ impl Mesh {
     fn row(
         &self,
         row: u32,
-        above: &Corners,
-        below: &Corners,
-        mut each: impl FnMut(Area, Seen) -> ControlFlow<()>,
+        above: &CornerRow,
+        below: &CornerRow,
+        mut each: impl FnMut(Area, Shown) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut shown = [0.0; SIDE];
         compare_widely(above, below, &mut shown);
@@ -220,8 +207,8 @@ impl Mesh {
             };
             if sign == 0.0 {
                 match self.checks(row, first, above, below) {
-                    Some(checks) => each(area, Seen::Some(&checks))?,
-                    None => each(area, Seen::Unknown)?,
+                    Some(checks) => each(area, Shown::Some(&checks))?,
+                    None => each(area, Shown::Unknown)?,
                 }
                 first += 1;
                 continue;
@@ -229,14 +216,20 @@ impl Mesh {
             let rest = shown[first..].iter();
             let length = rest.take_while(|&&other| other == sign).count();
             area.width = length as u32;
-            each(area, Seen::One((sign < 0.0) ^ self.squares.odd))?;
+            each(area, Shown::One((sign < 0.0) ^ self.squares.odd))?;
             first += length;
         }
         ControlFlow::Continue(())
     }
 
     /// What a pixel shows, if it is certain in which squares its corners lie.
-    fn checks(&self, row: u32, column: usize, above: &Corners, below: &Corners) -> Option<Checks> {
+    fn checks(
+        &self,
+        row: u32,
+        column: usize,
+        above: &CornerRow,
+        below: &CornerRow,
+    ) -> Option<Checks> {
         let corners = [
             above.at(column),
             above.at(column + 1),
@@ -256,10 +249,10 @@ impl Mesh {
         let x = middle(2 * column as u32 + 1, width);
         let y = middle(2 * row + 1, height);
         let [width, height] = [width, height].map(f64::from);
-        let local = |block: &Local| {
+        let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
             // The form of the block is off by its error, and the value at the pixel's centre by as much again.
-            Local::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
+            LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let Squares { across, below, odd } = &self.squares;
         Some(Checks {
@@ -279,13 +272,13 @@ fn middle(halves: u32, pixels: u32) -> f64 {
 }
 
 #[multiversion(targets = "simd")]
-fn corners_widely(mesh: &Mesh, y: f64, length: usize, out: &mut Corners) {
+fn corners_widely(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
     mesh.evaluate(y, length, out);
 }
 
 /// The sign of each pixel whose corners lie in one square, and 0 for all others.
 #[multiversion(targets = "simd")]
-fn compare_widely(above: &Corners, below: &Corners, out: &mut [f64; SIDE]) {
+fn compare_widely(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     let [a, b] = [&above.squares[0], &below.squares[0]];
     let [c, d] = [&above.squares[1], &below.squares[1]];
     for i in 0..SIDE {
@@ -293,4 +286,53 @@ fn compare_widely(above: &Corners, below: &Corners, out: &mut [f64; SIDE]) {
         let second = (c[i] == c[i + 1]) & (c[i] == d[i]) & (c[i] == d[i + 1]);
         out[i] = if first & second { above.sign[i] } else { 0.0 };
     }
+}
+
+/// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Squares {
+    pub(super) across: [LocalForm; 2],
+    pub(super) below: LocalForm,
+    pub(super) odd: bool,
+}
+
+/// The corners of a pixel, or of a part of the picture, from its middle.
+const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
+
+impl Squares {
+    pub(super) fn new(board: &Checkerboard<f64>, frame: &PixelFrame) -> Self {
+        Self {
+            across: board.across.each_ref().map(|form| form.local(frame)),
+            below: board.below.local(frame),
+            odd: board.odd,
+        }
+    }
+
+    /// From which to which square there are any in the pixel, in x and in z: perhaps one square more than there are. `None` if that
+    /// is not certain.
+    pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
+        let least = self.below.factors[2] - self.below.spread() * UP;
+        if least <= 4.0 * self.below.rad {
+            return None;
+        }
+        let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
+        let [x, z] = self.across.each_ref().map(|across| {
+            // A ratio of linear forms is the greatest and the least at corners.
+            let values: [f64; 4] = array::from_fn(|i| {
+                let (x, y) = CORNERS[i];
+                across.at(x, y) * inverse[i]
+            });
+            let low = values.into_iter().fold(f64::INFINITY, f64::min);
+            let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let size = low.abs().max(high.abs());
+            let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
+            (slack < 0.25).then(|| (floor(low - slack), floor(high + slack)))
+        });
+        Some([x?, z?])
+    }
+}
+
+pub(super) fn is_odd(whole: f64) -> bool {
+    // `ranges` answers for numbers far below 2^53.
+    whole as i64 & 1 == 1
 }

@@ -1,51 +1,19 @@
 //! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
+//!
+//! In: a prepared pixel, and a chunk of its samples. Out: what each sees, and how often each colour is seen. For each surface in turn its boundary
+//! forms are evaluated at all samples, then its pattern and its depth. Errors: a value within its form's bound of 0, or two depths within theirs of
+//! each other, make the sample one in doubt, which the world is asked for again.
 
 use multiversion::multiversion;
 
 use super::{
-    Depth, Pattern, Pixel, Surface,
-    local::{Conic, Line, Local, ROUNDINGS},
-    squares::Squares,
+    super::{
+        checker_corners::Squares,
+        local_form::{LocalForm, LocalQuadratic, ROUNDINGS, ScaledLine},
+    },
+    pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, Pixel, PixelSurface},
 };
 use crate::math::{ROUND, UP, Vectors};
-
-/// So many samples are evaluated at a time.
-pub(super) const CHUNK_SAMPLES: usize = 64;
-
-/// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1, its second colour 2i + 2.
-pub(super) const BACKGROUND: f64 = 0.0;
-pub(super) const DOUBT: f64 = -1.0;
-
-/// The samples of a chunk.
-#[derive(Debug)]
-pub(super) struct Lanes {
-    /// What is seen so far.
-    pub(super) seen: [f64; CHUNK_SAMPLES],
-    /// How deep that lies.
-    nearest: [f64; CHUNK_SAMPLES],
-    /// How certainly a surface is hit.
-    margin: [f64; CHUNK_SAMPLES],
-    /// What is seen of it.
-    shown: [f64; CHUNK_SAMPLES],
-    /// Its inverse depth.
-    depth: [f64; CHUNK_SAMPLES],
-    /// The product of signs.
-    sign: [f64; CHUNK_SAMPLES],
-}
-
-impl Default for Lanes {
-    fn default() -> Self {
-        let zeros = [0.0; CHUNK_SAMPLES];
-        Self {
-            seen: zeros,
-            nearest: zeros,
-            margin: zeros,
-            shown: zeros,
-            depth: zeros,
-            sign: zeros,
-        }
-    }
-}
 
 #[multiversion(targets = "simd")]
 fn see_widely(pixel: &mut Pixel, points: At, count: usize) {
@@ -108,12 +76,12 @@ impl Pixel {
     }
 }
 
-impl Surface {
+impl PixelSurface {
     /// Which colour each sample shows that hits it.
     #[inline(always)]
     fn show(
         &self,
-        lines: &[Line],
+        lines: &[ScaledLine],
         points: At,
         sign: &mut [f64; CHUNK_SAMPLES],
         shown: &mut [f64; CHUNK_SAMPLES],
@@ -136,7 +104,7 @@ impl Surface {
 /// Which side of an odd number of lines a sample is on.
 #[inline(always)]
 fn between(
-    lines: &[Line],
+    lines: &[ScaledLine],
     [even, odd]: [f64; 2],
     [x, y]: At,
     sign: &mut [f64; CHUNK_SAMPLES],
@@ -146,7 +114,7 @@ fn between(
         let beyond = if value < -1.0 { odd } else { DOUBT };
         if value > 1.0 { even } else { beyond }
     };
-    if let [Line([a, b, c])] = lines {
+    if let [ScaledLine([a, b, c])] = lines {
         for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
             *shown = side(a * x + b * y + c);
         }
@@ -156,7 +124,7 @@ fn between(
     let sign = &mut sign[..least.len()];
     sign.fill(1.0);
     least.fill(f64::INFINITY);
-    for Line([a, b, c]) in lines {
+    for ScaledLine([a, b, c]) in lines {
         let samples = x.iter().zip(y);
         for ((sign, least), (&x, &y)) in sign.iter_mut().zip(&mut *least).zip(samples) {
             let value = a * x + b * y + c;
@@ -175,7 +143,7 @@ fn between(
 #[inline(always)]
 fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
     const ONE: u64 = 1.0f64.to_bits();
-    let Local { factors: l, rad } = squares.below;
+    let LocalForm { factors: l, rad } = squares.below;
     let [n0, n1] = squares.across.map(|across| across.factors);
     let rads = squares.across.map(|across| across.rad);
     for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
@@ -208,7 +176,7 @@ fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut 
 impl Lanes {
     /// The least of the boundaries' values, in units of their errors.
     #[inline(always)]
-    fn margin(&mut self, edges: &[Line], conic: Option<&Conic>, [x, y]: At) {
+    fn margin(&mut self, edges: &[ScaledLine], conic: Option<&LocalQuadratic>, [x, y]: At) {
         let margin = &mut self.margin[..x.len()];
         match conic {
             None => margin.fill(f64::INFINITY),
@@ -218,7 +186,7 @@ impl Lanes {
                 }
             }
         }
-        for Line([a, b, c]) in edges {
+        for ScaledLine([a, b, c]) in edges {
             for ((margin, &x), &y) in margin.iter_mut().zip(x).zip(y) {
                 let value = a * x + b * y + c;
                 *margin = if value < *margin { value } else { *margin };
@@ -238,7 +206,7 @@ impl Lanes {
 
     /// The inverse depths of a surface.
     #[inline(always)]
-    fn depths(&mut self, depth: &Depth, planes: &[Local], [x, y]: At) {
+    fn depths(&mut self, depth: &Depth, planes: &[LocalForm], [x, y]: At) {
         let out = &mut self.depth[..x.len()];
         match *depth {
             Depth::Unknown => out.fill(f64::NAN),

@@ -1,24 +1,42 @@
-//! A checkerboard as pixels see it, several at a time: the same that [`World::board`] says of one spot, by the same operations on plain
-//! arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
+//! A checkerboard in the coordinates of pixels and of parts of them: three linear forms, whose ratios are places on the board.
+//!
+//! In: the board, and a sub-pixel or eight pixels. Out: the forms N₀, N₁ and ℓ, moved to a corner of squares near to the pixel, with bounds on their
+//! errors: for one sub-pixel in any precision, by [`SubPixelFrame::together`]; for eight pixels in double-double, by the same operations on
+//! plain arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
 
 use glam::DVec2;
 use multiversion::multiversion;
 
 use super::{
-    object::Object,
-    outlook::LOOSE_LINE,
+    curve::{LOOSE_LINE, SubPixelFrame},
+    shape::Object,
+    sub_pixel::SubPixel,
     world::{Level, World},
 };
-use crate::math::{Double, ROUND, Real};
+use crate::math::{Big, Double, ROUND, Real};
 
-/// So many pixels at a time.
+/// So many pixels at a time: as many numbers as the widest vectors have.
 pub const PIXELS: usize = 8;
 
-/// Forms are prepared here if their largest factors are between this and its inverse, so that products of a few neither overflow nor vanish.
+/// Forms are prepared here if their largest factors are between this and its inverse, so that products of five neither overflow nor vanish.
 const SMALL: f64 = 1e-60;
 
-/// From how many squares on a pixel's nearest square is not told here.
+/// From how many squares on a pixel's nearest one is not told here: far below 2^51, up to which [`ROUND`] rounds.
 const FAR: f64 = 1e9;
+
+/// A checkerboard in a sub-pixel: the point (x, y) shows the board's point (N₀/ℓ, N₁/ℓ), in squares from
+/// a corner of squares near to the sub-pixel, where ℓ > 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// The factors of x, y and 1 in N₀ and N₁.
+    pub across: [[f64; 3]; 2],
+    /// Those of ℓ.
+    pub below: [f64; 3],
+    /// How far a value of each of these forms may be from the true one, but for the rounding of the factors.
+    pub rads: [f64; 3],
+    /// Whether the square [0, 1)² has the second colour.
+    pub odd: bool,
+}
 
 /// What all pixels have in common of a checkerboard.
 #[derive(Clone, Debug)]
@@ -42,33 +60,75 @@ pub struct Views {
     pub across: [[[f64; PIXELS]; 3]; 2],
     /// Those of ℓ.
     pub below: [[f64; PIXELS]; 3],
-    /// How far a value of these forms may be from the true one, but for the rounding of the factors; infinite where [`World::board`] should
+    /// How far a value of these forms may be from the true one, but for the rounding of the factors; infinite where [`board`] should
     /// be asked.
     pub rad: [f64; PIXELS],
     /// −1 where the square [0, 1)² has the second colour, else 1.
     pub sign: [f64; PIXELS],
 }
 
-impl World {
-    /// An object in pixels, if it is a checkerboard.
-    pub fn boards(&self, object: usize) -> Option<Boards> {
-        let object = Double::object(self, object);
-        let Object::Checkerboard(board) = &*object else {
-            return None;
-        };
-        let camera = &Double::frame(self).camera;
-        let [a, b] = &board.across;
-        let forms = [a, b, &board.below];
-        Some(Boards {
-            forms: forms.map(|form| *form.factors()),
-            slopes: forms.map(|form| {
-                let [x, y, _] = form.factors();
-                [x, y].map(|factor| factor.times(&camera.pitch))
-            }),
-            rads: forms.map(|form| form.rad()),
-            pitch: camera.pitch,
-            half: camera.half,
-            odd: board.odd,
+/// An object in pixels, if it is a checkerboard.
+pub fn boards(world: &World, object: usize) -> Option<Boards> {
+    let object = Double::object(&world.geometry, object);
+    let Object::Checkerboard(board) = &*object else {
+        return None;
+    };
+    let camera = &Double::frame(&world.geometry).camera;
+    let [a, b] = &board.across;
+    let forms = [a, b, &board.below];
+    Some(Boards {
+        forms: forms.map(|form| *form.factors()),
+        slopes: forms.map(|form| {
+            let [x, y, _] = form.factors();
+            [x, y].map(|factor| factor.times(&camera.pitch))
+        }),
+        rads: forms.map(|form| form.rad()),
+        pitch: camera.pitch,
+        half: camera.half,
+        odd: board.odd,
+    })
+}
+
+/// An object's squares in a sub-pixel, if it is a checkerboard.
+pub fn board(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
+    let board = board_in::<Double>(world, object, sub_pixel)?;
+    match board.doubt() < LOOSE_LINE {
+        true => Some(board),
+        false => board_in::<Big>(world, object, sub_pixel),
+    }
+}
+
+fn board_in<T: Level>(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
+    let object = T::object(&world.geometry, object);
+    let Object::Checkerboard(board) = &*object else {
+        return None;
+    };
+    let frame = SubPixelFrame::new(&T::frame(&world.geometry).camera, sub_pixel);
+    let [a, b] = &board.across;
+    let (lines, is_moved) = frame.together([a, b], &board.below);
+    let rads = lines.each_ref().map(|line| line.rad);
+    let factors = lines.map(|line| line.factors);
+    let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
+    Some(Board {
+        across: [a, b],
+        below,
+        rads,
+        odd: board.odd ^ is_moved,
+    })
+}
+
+impl Board {
+    /// How far the value of a form may be from the true one, by the size of its terms; infinite where squares are too small for the range of
+    /// `f64`.
+    pub fn doubt(&self) -> f64 {
+        let [a, b] = &self.across;
+        let forms = [a, b, &self.below].into_iter().zip(self.rads);
+        forms.fold(0.0, |doubt, ([x, y, z], rad)| {
+            let size = 0.5 * (x.abs() + y.abs()) + z.abs();
+            match size.is_finite() && size > 0.0 {
+                true => doubt.max(rad / size),
+                false => f64::INFINITY,
+            }
         })
     }
 }
@@ -79,7 +139,7 @@ impl Boards {
         see_widely(self, columns, rows, out);
     }
 
-    /// As `Place::together` has it, step by step.
+    /// As `SubPixelFrame::together` has it, step by step.
     #[inline(always)]
     fn see(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
         const ONE: u64 = 1.0f64.to_bits();
@@ -189,7 +249,7 @@ mod tests {
     use crate::{
         scene,
         source::{Source, Sources},
-        tracer::Spot,
+        tracer::SubPixel,
     };
 
     fn world(camera: &str) -> World {
@@ -217,7 +277,7 @@ mod tests {
             ),
         ] {
             let world = world(camera);
-            let boards = world.boards(0).expect("a checkerboard");
+            let boards = boards(&world, 0).expect("a checkerboard");
             let mut views = Views::default();
             let mut compared = 0;
             for row in (0..480).step_by(8) {
@@ -228,9 +288,7 @@ mod tests {
                     if views.rad[i].is_infinite() {
                         continue;
                     }
-                    let one = world
-                        .board(0, Spot::pixel(columns[i], rows[i]))
-                        .expect("it");
+                    let one = board(&world, 0, SubPixel::pixel(columns[i], rows[i])).expect("it");
                     let scale = one.below[2] / views.below[2][i];
                     assert_eq!(libm::frexp(scale).0, 0.5, "a power of two");
                     let scaled = |form: &[[f64; PIXELS]; 3]| form.map(|factor| factor[i] * scale);

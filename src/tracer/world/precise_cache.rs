@@ -1,15 +1,17 @@
-//! The objects that were asked for last in a higher precision.
+//! The cache of objects in a higher precision.
+//!
+//! In: an object's index, and how it is prepared. Out: the object, prepared now or kept since it was last asked for.
 
 use std::{
     ops::Deref,
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 
-use crate::{math::Real, tracer::object::Object};
+use crate::{math::Real, tracer::shape::Object};
 
 /// Places for as many objects as people write by hand and more. It is a prime number, so that objects in rows, whose indices often are a
 /// power of two or of ten apart, do not take each other's.
-const PLACES: usize = 4093;
+const SLOTS: usize = 4093;
 
 /// Objects in one precision, each prepared when it is first asked for and kept, of many until another takes its place.
 ///
@@ -22,10 +24,10 @@ pub enum Kept<T: Real> {
     /// A place for each object, which threads read without waiting for each other.
     All(Vec<OnceLock<Object<T>>>),
     /// Places that several objects share.
-    Last(Vec<Place<T>>),
+    Last(Vec<CacheSlot<T>>),
 }
 
-type Place<T> = Mutex<Option<Arc<Prepared<T>>>>;
+type CacheSlot<T> = Mutex<Option<Arc<Prepared<T>>>>;
 
 /// An object that was prepared.
 #[derive(Debug)]
@@ -57,9 +59,9 @@ impl<T: Real> Deref for Held<'_, T> {
 impl<T: Real> Kept<T> {
     /// Places for the objects of a scene, of which there are so many.
     pub fn new(objects: usize) -> Self {
-        match objects <= PLACES {
+        match objects <= SLOTS {
             true => Self::All((0..objects).map(|_| OnceLock::new()).collect()),
-            false => Self::Last((0..PLACES).map(|_| Mutex::default()).collect()),
+            false => Self::Last((0..SLOTS).map(|_| Mutex::default()).collect()),
         }
     }
 
@@ -71,7 +73,7 @@ impl<T: Real> Kept<T> {
             Self::All(places) => return Held::Always(places[index].get_or_init(prepare)),
             Self::Last(places) => places,
         };
-        let place = &places[index % PLACES];
+        let place = &places[index % SLOTS];
         let kept = lock(place).clone();
         if let Some(kept) = kept
             && kept.index == index
@@ -116,10 +118,10 @@ mod tests {
 
     #[test]
     fn an_object_is_prepared_once_until_another_takes_its_place() {
-        let kept = Kept::new(3 * PLACES);
+        let kept = Kept::new(3 * SLOTS);
         let asked = |index| times(&kept, index);
         assert_eq!([1, 2, 1, 2].map(asked), [1, 1, 0, 0]);
-        assert_eq!([PLACES + 1, 1, 1, 2].map(asked), [1, 1, 0, 0]);
+        assert_eq!([SLOTS + 1, 1, 1, 2].map(asked), [1, 1, 0, 0]);
         assert_eq!(kept.len(), 2);
     }
 

@@ -1,15 +1,18 @@
 //! Where in the view plane an object may be seen, and how near it is at most.
 //!
+//! In: an object. Out: its bounds in X and Y, of which the quadtree is built, and a bound on its inverse depth. A sphere's are the tangents from
+//! the eye, those of a triangle and of a box the extremes of their corners.
+//!
 //! The bounds are those of the object's convex hull, and wider than all roundings on the way by far more than the last
 //! precision cannot tell: outside of them every decision says for certain that the object is missed.
 
 use super::{
     camera::Camera,
-    cover::{Patch, Range},
     cuboid,
-    object::Object,
+    interval::{Patch, Range},
+    shape::Object,
     sphere::Sphere,
-    triangle::{Corners, Triangle},
+    triangle::{Triangle, Vertices},
 };
 use crate::{
     math::{Ball3, Double, Radius, Real, UP},
@@ -57,7 +60,7 @@ impl Object<f64> {
             (Self::Sphere(sphere), _) => of_sphere(sphere, fast.window.z),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), fast.window.z),
             _ => match &corners {
-                Some(Corners { points, exponent }) => {
+                Some(Vertices { points, exponent }) => {
                     let scale = libm::ldexp(1.0, *exponent);
                     of_corners(points, fast.window.z).times_nearest(scale)
                 }

@@ -1,4 +1,6 @@
-//! The way down to the objects that a ray may meet.
+//! The point query: the way down to the objects that one ray may meet.
+//!
+//! In: a place in the grid. Out: the lists of the cells that hold it, from the root down, each ended where the rest is hidden.
 
 use super::{
     grid::{LEVELS, Nearness},

@@ -1,4 +1,4 @@
-//! Where a ray meets a surface.
+//! Where a ray meets a surface: the inverse depth of the crossing, and which part of the surface it lies in.
 
 use crate::math::{Ball, Real};
 
@@ -8,12 +8,12 @@ pub struct Crossing<T: Real> {
     /// 1/λ for the point λr, > 0: the nearest crossing has the greatest one.
     pub inverse_depth: Ball<T>,
     /// Which part of the object's surface.
-    pub part: Part,
+    pub part: SurfacePart,
 }
 
 /// A part of an object's surface that one formula gives the depth of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum SurfacePart {
     /// The side of a sphere where a ray enters.
     Entry,
     /// The side of a sphere where a ray leaves.

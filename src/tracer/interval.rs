@@ -1,5 +1,7 @@
 //! What is certain of an object over a whole rectangle of the picture.
 //!
+//! In: an object's forms, and a rectangle of the view plane. Out: whether all of its rays meet the object, and the interval of its inverse depths.
+//!
 //! The ranges of an object's forms over the rectangle, widened by the error bounds of its decisions, so that what is said here of
 //! the rectangle is also what every sample in it says.
 
@@ -10,7 +12,7 @@ use crate::{area::Area, math::UP};
 use super::{
     camera::{Camera, Direction},
     form::Form,
-    outlook::Spot,
+    sub_pixel::SubPixel,
 };
 
 /// A rectangle of the view plane.
@@ -51,10 +53,10 @@ impl Patch {
         }
     }
 
-    /// The square of a spot.
-    pub fn of_spot(camera: &Camera<f64>, spot: Spot) -> Self {
-        let half = 0.5 * spot.side * camera.pitch * UP + f64::MIN_POSITIVE;
-        let middle = camera.sample_point(spot.x, spot.y, spot.offset(DVec2::ZERO));
+    /// The square of a sub-pixel.
+    pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
+        let half = 0.5 * sub_pixel.side * camera.pitch * UP + f64::MIN_POSITIVE;
+        let middle = camera.sample_point(sub_pixel.x, sub_pixel.y, sub_pixel.offset(DVec2::ZERO));
         Self {
             center: camera.direction(&middle),
             half: [half; 2],

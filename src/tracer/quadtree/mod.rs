@@ -8,29 +8,30 @@
 //! Cells are counted in whole numbers, into which a coordinate's conversion is monotone: what it rounds never separates a point from
 //! bounds that hold it by more than one, and bounds are one wider.
 
-mod descent;
 mod grid;
-mod search;
+mod point_query;
+mod rectangle_query;
 mod tree;
 
 use std::sync::atomic::AtomicBool;
 
-use self::{grid::Rectangle, search::Search, tree::Tree};
-use super::{camera::Direction, cover::Patch};
+use self::{rectangle_query::Search, tree::Tree};
+use super::{camera::Direction, interval::Patch};
 use crate::threads::Threads;
 
-pub use self::descent::Descent;
 pub use self::grid::{Grid, Item, Nearness};
+pub use self::point_query::Descent;
+pub use self::tree::OBJECTS_A_CELL;
 
 /// The objects that may be seen, by where in the view plane they are.
 #[derive(Debug)]
-pub struct Hierarchy {
+pub struct Quadtree {
     grid: Grid,
     tree: Tree,
 }
 
-impl Hierarchy {
-    /// A hierarchy over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
+impl Quadtree {
+    /// A quadtree over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
     pub fn new(
         grid: Grid,
         items: Vec<Item>,
@@ -50,30 +51,18 @@ impl Hierarchy {
         Some(Descent::new(&self.tree, self.grid.units(r)?))
     }
 
-    /// Where a direction lies in the units of bounds; none outside of the window.
-    #[inline]
-    pub fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
-        self.grid.units(r)
-    }
-
-    /// What holds all rays through a patch; none outside of the window.
-    #[inline]
-    pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
-        self.grid.rectangle(patch)
-    }
-
-    /// The objects that rays through a rectangle may meet, the one that may be nearest first, with bounds of what they are in it. Left out are
-    /// those that one hides which fills the rectangle: `behind` tells what is not nearer than one that may. Whether that is so: if they seem to
-    /// be more than `most`, it is not, and they are neither all of them nor in order.
-    #[must_use]
+    /// The objects that rays through a patch may meet, in file order, but for those that one hides which fills the patch: `behind` tells what is not
+    /// nearer than one that may. None if they seem to be more than `most`.
     pub fn within(
         &self,
-        rectangle: &Rectangle,
+        patch: &Patch,
         most: usize,
         behind: impl FnMut(u32) -> Nearness,
-        out: &mut Vec<Item>,
-    ) -> bool {
-        Search::new(&self.tree, rectangle, most, behind, out).run()
+    ) -> Option<Vec<u32>> {
+        match self.grid.rectangle(patch) {
+            Some(rectangle) => Search::new(&self.tree, &rectangle, most, behind).run(),
+            None => Some(Vec::new()),
+        }
     }
 
     /// How many bytes it takes.

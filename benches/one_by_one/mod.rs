@@ -1,0 +1,40 @@
+//! A picture sample by sample, as plainly as it can be: what culling is compared with, by tests and by benchmarks.
+
+use pinhole::{
+    area::Area,
+    film::{Film, mean},
+    sampling::Sampling,
+    tracer::World,
+};
+
+/// The light of a part of the picture.
+pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
+    /// So many points are placed at a time.
+    const CHUNK: u64 = 1 << 12;
+    let palette = world.palette().iter();
+    let colors: Vec<_> = palette.map(|color| color.to_linear()).collect();
+    let mut offsets = Vec::new();
+    let mut counts = vec![0; colors.len()];
+    let mut pixel = |(x, y): (u32, u32)| {
+        counts.fill(0);
+        let samples = sampling.count(x, y);
+        let mut first = 0;
+        while first < samples {
+            let end = samples.min(first + CHUNK);
+            offsets.clear();
+            sampling.points(x, y, samples, first..end, &mut offsets);
+            for &offset in &offsets {
+                counts[world.slot_at(x, y, offset)] += 1;
+            }
+            first = end;
+        }
+        match samples {
+            0 => colors[world.background()],
+            _ => mean(counts.iter().copied().zip(colors.iter().copied())),
+        }
+    };
+    let pixels: Vec<_> = part.iter().map(&mut pixel).collect();
+    let mut film = Film::new(part.width, part.height).expect("memory for a picture");
+    film.put(Area::whole(part.width, part.height), &pixels);
+    film
+}

@@ -1,0 +1,256 @@
+//! What may be seen in a part of the picture.
+//!
+//! In: the world, and a rectangle of its view plane. Out: the objects that are not certain to be missed or hidden there. The method is interval
+//! arithmetic: the range of each object's forms over the rectangle, widened by the errors of its decisions. An object that every ray of the
+//! rectangle meets hides all whose greatest inverse depth is below its least one.
+
+use glam::DVec2;
+
+use crate::{
+    area::Area,
+    math::{Big, Double, Doubt},
+};
+
+use super::{
+    curve::{Crossings, Surface},
+    interval::{Patch, Range},
+    quadtree::Nearness,
+    shape::Object,
+    sub_pixel::SubPixel,
+    world::{Level, World, depth_order},
+};
+
+/// An object that may be seen in a part of the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// Its index in the file.
+    pub object: usize,
+    /// Whether every ray through the part meets it, between the near and the far plane.
+    pub is_whole: bool,
+    /// Holds the inverse depths of what may be seen of it.
+    pub(super) inverse_depth: Range,
+    /// Where it may be seen: not only where rays meet it first if the near plane may cut it there.
+    pub(super) crossings: Crossings,
+}
+
+impl Candidate {
+    /// Whether the near plane may cut it.
+    pub(super) fn is_cut(&self) -> bool {
+        self.crossings != Crossings::First
+    }
+}
+
+/// All objects, as candidates for any part of the picture.
+pub fn everything(world: &World) -> Vec<Candidate> {
+    let candidate = |object| Candidate {
+        object,
+        is_whole: false,
+        inverse_depth: Range::ALL,
+        crossings: match world.geometry.fast.near {
+            Some(_) => Crossings::Both,
+            None => Crossings::First,
+        },
+    };
+    (0..world.len()).map(candidate).collect()
+}
+
+/// Of some candidates, in file order, those that may be seen in a part of the picture.
+pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Candidate>) {
+    let patch = Patch::new(&world.geometry.fast.camera, part);
+    visible_among(
+        world,
+        &patch,
+        among.iter().map(|candidate| candidate.object),
+        out,
+    );
+}
+
+/// All that may be seen in a part of the picture; whether that is so: of more than `most` it is not known.
+#[must_use]
+pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) -> bool {
+    let patch = Patch::new(&world.geometry.fast.camera, part);
+    let [near, far] = clips_over(world, &patch);
+    let behind = |object: u32| match cover(world, object as usize, &patch, near, far) {
+        Some(candidate) if candidate.is_whole => Nearness::below(candidate.inverse_depth.low),
+        _ => Nearness::NONE,
+    };
+    let Some(objects) = world.quadtree.within(&patch, most, behind) else {
+        return false;
+    };
+    visible_among(
+        world,
+        &patch,
+        objects.iter().map(|&object| object as usize),
+        out,
+    );
+    true
+}
+
+/// The inverse depths of the near and the far plane over a patch, where there are any.
+pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Range>; 2] {
+    [&world.geometry.fast.near, &world.geometry.fast.far]
+        .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
+}
+
+pub(super) fn visible_among(
+    world: &World,
+    patch: &Patch,
+    among: impl Iterator<Item = usize>,
+    out: &mut Vec<Candidate>,
+) {
+    out.clear();
+    let [near, far] = clips_over(world, patch);
+    // The nearest of what is met everywhere hides what is farther.
+    let mut hidden = f64::NEG_INFINITY;
+    for object in among {
+        let Some(candidate) = cover(world, object, patch, near, far) else {
+            continue;
+        };
+        if candidate.inverse_depth.high < hidden {
+            continue;
+        }
+        if candidate.is_whole {
+            hidden = hidden.max(candidate.inverse_depth.low);
+        }
+        out.push(candidate);
+    }
+    out.retain(|candidate| candidate.inverse_depth.high >= hidden);
+    if out.len() > 1 {
+        drop_covered(world, patch, out);
+    }
+}
+
+/// The object in a part of the picture, if it may be seen there.
+pub(super) fn cover(
+    world: &World,
+    index: usize,
+    patch: &Patch,
+    near: Option<Range>,
+    far: Option<Range>,
+) -> Option<Candidate> {
+    let object = f64::object(&world.geometry, index);
+    let cover = object.cover(patch)?;
+    let mut candidate = Candidate {
+        object: index,
+        is_whole: cover.is_whole,
+        inverse_depth: cover.inverse_depth.or_all(),
+        crossings: Crossings::First,
+    };
+    if let Some(near) = near
+        && candidate.inverse_depth.high >= near.low
+    {
+        let behind = match object.behind(patch) {
+            Some(behind) => behind.or_all(),
+            // It has but one surface, which the near plane takes away as a whole or in part.
+            None if candidate.inverse_depth.low > near.high => return None,
+            None => candidate.inverse_depth,
+        };
+        if behind.low > near.high {
+            return None;
+        }
+        if candidate.inverse_depth.low > near.high {
+            candidate.crossings = Crossings::Second;
+            candidate.inverse_depth = behind;
+            candidate.is_whole &= behind.high < near.low;
+        } else {
+            candidate.crossings = Crossings::Both;
+            candidate.inverse_depth.low = candidate.inverse_depth.low.min(behind.low);
+            candidate.is_whole = false;
+        }
+    }
+    if let Some(far) = far {
+        if candidate.inverse_depth.high < far.low {
+            return None;
+        }
+        candidate.is_whole &= candidate.inverse_depth.low > far.high;
+    }
+    Some(candidate)
+}
+
+/// Removes flat objects that lie behind the nearest one all over the patch, though their depths there overlap, or in the same plane as one that
+/// comes before them in the file. Of layers the nearest one hides all others; of those in one plane it is the first.
+fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
+    let is_flat = |candidate: &&Candidate| {
+        !matches!(
+            *f64::object(&world.geometry, candidate.object),
+            Object::Sphere(_)
+        )
+    };
+    let may_cover = |candidate: &&Candidate| candidate.is_whole && !candidate.is_cut();
+    let fronts = candidates.iter().filter(may_cover).filter(is_flat);
+    let nearest = fronts.max_by(|a, b| {
+        let nearer = a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
+        nearer.then(b.object.cmp(&a.object))
+    });
+    if let Some(front) = nearest.map(|candidate| candidate.object) {
+        candidates.retain(|back| {
+            back.object == front || back.is_cut() || !covers(world, front, back.object, patch)
+        });
+    }
+}
+
+/// Whether an object that every ray through a patch meets hides another there by the forms of their planes.
+pub(super) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
+    let ahead = |a: &Surface<f64>, i: usize, b: &Surface<f64>, j: usize| {
+        let (Surface::Plane(a), Surface::Plane(b)) = (a, b) else {
+            return false;
+        };
+        if a.minus(b).over(patch).low > 0.0 {
+            return true;
+        }
+        // Only planes that are equal in `f64` can be one.
+        front < back && a.equals(b) && {
+            let part = |object, at| (object, f64::object(&world.geometry, object).first_part(at));
+            depth_order::is_one_plane(&world.geometry, part(front, i), part(back, j))
+        }
+    };
+    let (a, b) = (
+        f64::object(&world.geometry, front),
+        f64::object(&world.geometry, back),
+    );
+    let (planes_a, planes_b) = (a.surfaces(Crossings::First), b.surfaces(Crossings::First));
+    let mut pairs = planes_b.iter().enumerate().map(|(j, b)| {
+        let mut fronts = planes_a.iter().enumerate();
+        match a.is_seen_from_inside() {
+            true => fronts.any(|(i, a)| ahead(a, i, b, j)),
+            false => fronts.all(|(i, a)| ahead(a, i, b, j)),
+        }
+    });
+    match b.is_seen_from_inside() {
+        true => pairs.all(|covered| covered),
+        false => pairs.any(|covered| covered),
+    }
+}
+
+/// The object that is seen at a point of a sub-pixel, of some that may be; and whether the last precision was not asked, in which what it does
+/// not tell apart counts as equal.
+pub fn object_at(
+    world: &World,
+    sub_pixel: SubPixel,
+    at: DVec2,
+    candidates: &[Candidate],
+) -> (Option<usize>, bool) {
+    let offset = sub_pixel.offset(at);
+    let point = world
+        .geometry
+        .fast
+        .camera
+        .sample_point(sub_pixel.x, sub_pixel.y, offset);
+    let among = || candidates.iter().map(|candidate| candidate.object);
+    let fast = world.nearest(
+        &f64::frame(&world.geometry).camera.direction(&point),
+        among(),
+    );
+    let seen = fast.or_else(|Doubt| {
+        let r = Double::frame(&world.geometry).camera.direction(&point);
+        world.nearest(&r, among())
+    });
+    let is_sure = seen.is_ok();
+    let seen = seen.or_else(|Doubt| {
+        let r = Big::frame(&world.geometry).camera.direction(&point);
+        world.nearest(&r, among())
+    });
+    // The last precision is never in doubt.
+    let object = seen.unwrap_or_default().map(|(object, _)| object);
+    (object, is_sure)
+}

@@ -1,0 +1,84 @@
+//! The rectangle query: the objects that rays through a rectangle may meet.
+//!
+//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, but for those behind one that fills it.
+
+use super::{
+    grid::{Nearness, Rectangle},
+    tree::{CellSquare, Tree},
+};
+
+/// An object is listed in no more cells than this: it is no longer than the cells that list it, and meets two of them along each axis.
+const CELLS: usize = 4;
+
+/// A search for the objects that rays through a rectangle may meet.
+pub(super) struct Search<'a, F> {
+    tree: &'a Tree,
+    rectangle: &'a Rectangle,
+    /// More entries than this are of too many objects.
+    most: usize,
+    /// What is not nearer than this is behind an object, if that fills the rectangle.
+    behind: F,
+    /// What is not nearer than this is hidden.
+    hidden: Nearness,
+    found: Vec<(Nearness, u32)>,
+}
+
+impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
+    pub(super) fn new(tree: &'a Tree, rectangle: &'a Rectangle, most: usize, behind: F) -> Self {
+        Self {
+            tree,
+            rectangle,
+            most: most.saturating_mul(CELLS),
+            behind,
+            hidden: Nearness::NONE,
+            found: Vec::new(),
+        }
+    }
+
+    /// The objects, in file order; none if they are too many.
+    pub(super) fn run(mut self) -> Option<Vec<u32>> {
+        self.below(0, CellSquare::ROOT)?;
+        let mut objects: Vec<u32> = self
+            .found
+            .iter()
+            .filter(|(nearest, _)| *nearest > self.hidden)
+            .map(|&(_, object)| object)
+            .collect();
+        objects.sort_unstable();
+        // Those that lie in several cells.
+        objects.dedup();
+        Some(objects)
+    }
+
+    /// Adds what a cell lists, and then what those below it do: the large objects come first, which may hide the others. None if that is too much.
+    fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
+        let cell = self.tree.cells[cell as usize];
+        if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {
+            return Some(());
+        }
+        // An object in a smaller cell is too small to hide anything. One that lies in several cells may fill what the rectangle has of this one.
+        let part = (square.side() >= self.rectangle.side())
+            .then(|| self.rectangle.within(&square.bounds()));
+        for entry in &self.tree.entries[cell.start as usize..cell.end as usize] {
+            if entry.nearest <= self.hidden {
+                break;
+            }
+            let item = square.item(entry);
+            if item.meets(self.rectangle) {
+                if self.found.len() == self.most {
+                    return None;
+                }
+                self.found.push((item.nearest, item.object));
+                if part.is_some_and(|part| item.may_fill(&part)) {
+                    self.hidden = self.hidden.max((self.behind)(entry.object));
+                }
+            }
+        }
+        if cell.quarters > 0 {
+            for quarter in 0..4 {
+                self.below(cell.quarters + quarter, square.quarter(quarter))?;
+            }
+        }
+        Some(())
+    }
+}

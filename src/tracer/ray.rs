@@ -1,0 +1,116 @@
+//! All crossings of one ray, for people.
+//!
+//! In: the world, and a point of the picture. Out: the ray's direction and its crossings, the nearest first, computed in big numbers, so that each
+//! number printed is the true one rounded.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    hit::Crossing,
+    world::{Geometry, Level, World, depth_order},
+};
+use crate::{
+    color::Color,
+    math::{Ball, Ball3, Big, Real},
+};
+
+/// A crossing of a ray with a surface, for people: numbers are right to the last bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The object's index in the file.
+    pub object: usize,
+    /// The distance from the eye, in metres.
+    pub t: f64,
+    /// The distance along the view direction, in metres.
+    pub depth: f64,
+    /// The point, in the world.
+    pub point: DVec3,
+    /// The colour there.
+    pub color: Color,
+    /// Whether it is the one that is seen.
+    pub visible: bool,
+}
+
+/// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
+/// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
+/// the reach that the world was made for.
+pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
+    let camera = &world.geometry.big.camera;
+    let point = camera.picture_point(pixels);
+    let r = camera.direction(&point);
+    let candidates = world.candidates(&point);
+    let mut crossings = Vec::new();
+    for &index in &candidates {
+        let object = Big::object(&world.geometry, index);
+        let first = object.first(&r).unwrap_or_default();
+        let second = first.as_ref().and_then(|_| object.second(&r));
+        crossings.extend(first.map(|crossing| (index, false, crossing)));
+        crossings.extend(second.map(|crossing| (index, true, crossing)));
+    }
+    sort(&world.geometry, &mut crossings);
+
+    let among = candidates.iter().copied();
+    let seen = world.seen_in_direction(&r, among).unwrap_or_default();
+    let along = [&r.x, &r.y, &r.z].map(rounded);
+    let turned: Ball3<Big> = [0, 1, 2].map(|i| {
+        let part = |j: usize| &camera.axes[j][i] * &along[j];
+        part(0) + part(1) + part(2)
+    });
+    let length = rounded(&r.square).sqrt();
+    let direction = turned.each_ref().map(|x| settled(&(x / &length))).into();
+    let hit = |(index, second, crossing): (usize, bool, Crossing<Big>)| {
+        let lambda = Ball::exact(1.0) / &crossing.inverse_depth;
+        let lambda = lambda.scaled(-camera.exponent);
+        let coordinate = |i: usize| settled(&(Ball::exact(camera.eye[i]) + &lambda * &turned[i]));
+        let odd = Big::object(&world.geometry, index)
+            .is_odd(&r)
+            .unwrap_or_default();
+        Hit {
+            object: index,
+            t: settled(&(&lambda * &length)),
+            depth: settled(&(&lambda * &along[2])),
+            point: [0, 1, 2].map(coordinate).into(),
+            color: world.palette()[world.slots(index)[usize::from(odd)]],
+            visible: seen.is_some_and(|seen| seen.object == index && seen.second == second),
+        }
+    };
+    (direction, crossings.into_iter().map(hit).collect())
+}
+
+/// Sorts by depth; what cannot be told apart stands in file order.
+fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
+    // First by the computed depths, which is an order; then by pairs, as the tracer compares them.
+    crossings.sort_by(|(.., a), (.., b)| {
+        let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
+        difference.to_f64().total_cmp(&0.0)
+    });
+    for end in 1..crossings.len() {
+        let mut at = end;
+        while at > 0 {
+            let ((i, _, a), (j, _, b)) = (&crossings[at - 1], &crossings[at]);
+            if i <= j || depth_order::order(geometry, (*i, a), (*j, b)) != Ok(Ordering::Equal) {
+                break;
+            }
+            crossings.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+}
+
+/// A coordinate or the square of a ray's direction, with what its few roundings may have cost.
+fn rounded(x: &Big) -> Ball<Big> {
+    Ball {
+        rad: x.magnitude() * (32.0 * Big::UNIT),
+        mid: x.clone(),
+    }
+}
+
+/// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no height of 1e-97.
+fn settled(x: &Ball<Big>) -> f64 {
+    match x.sign() {
+        Ok(Ordering::Equal) => 0.0,
+        _ => x.mid.to_finite(),
+    }
+}

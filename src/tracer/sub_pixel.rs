@@ -1,0 +1,45 @@
+//! A pixel, or a square part of one: where exact pictures are computed.
+//!
+//! In: a pixel, and quarterings. Out: points of the part as offsets from the pixel's centre, without error: sides are powers of two.
+
+use glam::DVec2;
+
+/// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
+/// down.
+#[derive(Clone, Copy, Debug)]
+pub struct SubPixel {
+    /// The pixel's column.
+    pub x: u32,
+    /// The pixel's row.
+    pub y: u32,
+    /// Its centre, as an offset from the pixel's.
+    center: DVec2,
+    /// Its side, in pixels: a power of two.
+    pub side: f64,
+}
+
+impl SubPixel {
+    /// A whole pixel.
+    pub fn pixel(x: u32, y: u32) -> Self {
+        Self {
+            x,
+            y,
+            center: DVec2::ZERO,
+            side: 1.0,
+        }
+    }
+
+    /// Its four quarters.
+    pub fn quarters(self) -> [Self; 4] {
+        [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)].map(|(x, y)| Self {
+            center: self.offset(DVec2::new(x, y)),
+            side: 0.5 * self.side,
+            ..self
+        })
+    }
+
+    /// A point of it as an offset from the pixel's centre.
+    pub(super) fn offset(&self, at: DVec2) -> DVec2 {
+        self.center + at * self.side
+    }
+}
