@@ -86,13 +86,7 @@ pub fn show(
     mesh.corners(0, &mut above);
     for row in 0..part.height {
         mesh.corners(row + 1, &mut below);
-        let flow = mesh.row(row, &above, &below, |area, seen| match seen {
-            // Of a pixel by itself errors are smaller.
-            Shown::Unknown if part.pixels() > 1 => {
-                show(world, area, object, each).unwrap_or_else(|| each(area, Shown::Unknown))
-            }
-            _ => each(area, seen),
-        });
+        let flow = mesh.row(row, &above, &below, each);
         if flow.is_break() {
             return Some(flow);
         }
@@ -191,7 +185,7 @@ impl Mesh {
         row: u32,
         above: &CornerRow,
         below: &CornerRow,
-        mut each: impl FnMut(Area, Shown) -> ControlFlow<()>,
+        each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut shown = [0.0; SIDE];
         compare_widely(above, below, &mut shown);

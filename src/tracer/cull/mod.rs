@@ -2,7 +2,8 @@
 //!
 //! In: the world, and an area of its picture. Out: the parts of that area, one after the other. The method is Warnock's subdivision
 //! ("A hidden surface algorithm for computer generated halftone pictures", 1969): an area is quartered until it shows one colour, is a pixel, or
-//! has more candidates than its samples are worth. Sampled and exact pictures share it: what is certain of a part is so for every ray through it.
+//! has more candidates than its samples are worth. The samples of its pixels are traced among the candidates then, or by the quadtree if those
+//! are many. Sampled and exact pictures share it: what is certain of a part is so for every ray through it.
 //!
 //! Areas are those of one fixed grid over the whole picture, whatever part of it is asked for, so that a pixel's candidates do not depend on that.
 
@@ -168,17 +169,14 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
             }
             _ => {}
         }
-        if candidates.len() > self.quartering.most(area) {
-            // The quadtree would ask of a ray as many objects as a cell lists.
-            if candidates.len() > OBJECTS_A_CELL {
-                return self.show(Part::Plain { area }, None);
-            }
+        let is_worth_more = candidates.len() <= self.quartering.most(area);
+        // A cell of the quadtree lists as many, of which each sample would be asked instead.
+        if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
+            return self.show(Part::Plain { area }, None);
+        }
+        if !is_worth_more || area.pixels() == 1 {
             let mut pixels = area.iter();
             return pixels.try_for_each(|(x, y)| self.show(Part::Open { x, y, candidates }, None));
-        }
-        if area.pixels() == 1 {
-            let Area { x, y, .. } = area;
-            return self.show(Part::Open { x, y, candidates }, None);
         }
         let mut below = take(room, depth);
         let wanted = self.wanted;
