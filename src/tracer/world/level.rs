@@ -7,7 +7,7 @@ use super::{
     kept::{Held, Kept},
 };
 use crate::{
-    math::{Ball, Big, Double, Real, exact::Plane},
+    math::{Ball, Big, Double, Real, predicates::Plane},
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
