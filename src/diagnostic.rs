@@ -71,10 +71,14 @@ pub struct Label {
 
 impl Diagnostic {
     /// Reads a stage's problem; its labels are spans that went through [`Span`]'s conversion to miette's.
-    pub fn from_problem(problem: &dyn miette::Diagnostic) -> Self {
-        let labels = problem.labels().into_iter().flatten().map(|label| Label {
-            span: from_miette(*label.inner()),
-            message: label.label().unwrap_or_default().to_owned(),
+    pub fn from_problem(problem: &dyn miette::Diagnostic, sources: &Sources) -> Self {
+        let labels = problem.labels().into_iter().flatten().map(|label| {
+            let source = sources.at(label.offset());
+            let start = label.offset() - source.start();
+            Label {
+                span: Span::new(source, start, start + label.len()),
+                message: label.label().unwrap_or_default().to_owned(),
+            }
         });
         Self {
             severity: match problem.severity() {
@@ -99,7 +103,7 @@ impl Diagnostic {
             is_needless: problem.is_needless(),
             is_of_syntax: problem.is_of_syntax(),
             is_fix_doubtful: problem.is_fix_doubtful(),
-            ..Self::from_problem(problem)
+            ..Self::from_problem(problem, sources)
         }
     }
 
@@ -119,29 +123,12 @@ pub fn sort(diagnostics: &mut [Diagnostic]) {
     });
 }
 
-// miette's spans know no source, so on the way through its derive the number of the source stands in the high bits of the
-// offset: 0 for the file, 1 for the first argument. That leaves a terabyte for the text of each.
-const OFFSET_BITS: u32 = 40;
-const _: () = assert!(usize::BITS == 64, "spans need an address of 64 bits");
-
+// miette's spans know no source, so on the way through its derive they count from the start of the first text.
 impl From<Span> for SourceSpan {
     fn from(span: Span) -> Self {
-        let source = match span.source {
-            SourceId::File => 0,
-            SourceId::Set(index) => index as usize + 1,
-        };
-        let offset = (source << OFFSET_BITS) | span.start;
-        (offset, span.end.saturating_sub(span.start)).into()
+        let length = span.end.saturating_sub(span.start);
+        (span.source.start() + span.start, length).into()
     }
-}
-
-fn from_miette(span: SourceSpan) -> Span {
-    let source = match span.offset() >> OFFSET_BITS {
-        0 => SourceId::File,
-        number => SourceId::Set(u32::try_from(number - 1).unwrap_or(u32::MAX)),
-    };
-    let start = span.offset() & ((1 << OFFSET_BITS) - 1);
-    Span::new(source, start, start + span.len())
 }
 
 /// Every diagnostic as a line of JSON, as the command line's contract says.

@@ -38,18 +38,30 @@ pub(crate) enum Threads {
 }
 
 impl Threads {
-    /// So many, or as many as are available; those that this is already done on, if they are as many.
+    /// So many, or as many as are available; those that this is already done on, if they are as many, or if the system starts none.
     ///
     /// # Errors
     ///
-    /// If the system starts none.
+    /// If not even the calling thread can be had.
     pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, ThreadPoolBuildError> {
         let wanted = threads.map_or_else(available, |threads| threads.get().min(MOST));
         match rayon::current_thread_index() {
             Some(_) if rayon::current_num_threads() == wanted => Ok(Self::These),
-            _ => {
-                let pool = ThreadPoolBuilder::new().num_threads(wanted).build()?;
-                Ok(Self::Started(pool))
+            _ => Self::started(ThreadPoolBuilder::new().num_threads(wanted).build()),
+        }
+    }
+
+    /// A pool, or, where it could not be built, as in a browser, those that this is done on: rayon takes a thread that is in no pool for one that is a
+    /// pool by itself, for good.
+    fn started(
+        built: Result<ThreadPool, ThreadPoolBuildError>,
+    ) -> Result<Self, ThreadPoolBuildError> {
+        match built {
+            Ok(pool) => Ok(Self::Started(pool)),
+            Err(_) if rayon::current_thread_index().is_some() => Ok(Self::These),
+            Err(_) => {
+                let alone = ThreadPoolBuilder::new().num_threads(1);
+                alone.use_current_thread().build().map(Self::Started)
             }
         }
     }
@@ -67,7 +79,7 @@ impl Threads {
 ///
 /// # Errors
 ///
-/// If the system starts none.
+/// If not even the calling thread can be had.
 pub(crate) fn install<R: Send>(
     threads: Option<NonZero<usize>>,
     work: impl FnOnce() -> R + Send,
@@ -77,7 +89,28 @@ pub(crate) fn install<R: Send>(
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
+    use rayon::prelude::*;
+
     use super::*;
+
+    /// Twice, as the second time the calling thread is in a pool.
+    #[test]
+    fn where_no_thread_can_be_started_the_calling_one_does_it() {
+        for _ in 0..2 {
+            let unsupported = |_| Err(io::ErrorKind::Unsupported.into());
+            let builder = ThreadPoolBuilder::new().spawn_handler(unsupported);
+            let threads = Threads::started(builder.num_threads(2).build());
+            let threads = threads.expect("this thread can be had");
+            let caller = thread::current().id();
+            let work = || {
+                let here = (0..1000).into_par_iter();
+                here.filter(|_| thread::current().id() == caller).count()
+            };
+            assert_eq!(threads.install(work), 1000);
+        }
+    }
 
     #[test]
     fn what_is_done_on_as_many_threads_starts_no_others() {

@@ -78,10 +78,11 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     if mistakes.is_empty() {
         // A field that its block does not know is reported for that alone; so is one for a word that belongs to its neighbour.
         mistakes.extend(without_value(&survey.parsed.tree).map(|name| {
-            Diagnostic::from_problem(&Problem::FieldWithoutValue {
+            let problem = Problem::FieldWithoutValue {
                 name: name.text.to_owned(),
                 span: name.span,
-            })
+            };
+            Diagnostic::from_problem(&problem, &sources)
         }));
     }
     mistakes

@@ -10,9 +10,8 @@ pub struct Doubt;
 
 /// A real number known to lie within `rad` of `mid`.
 ///
-/// Every operation bounds what its operands' radii and its own rounding contribute; the constants are generous (a rounding
-/// counts four times over), which costs nothing but an occasional question to the next precision. A radius that is infinite
-/// or NaN, as after an overflow, holds every number.
+/// Every operation bounds what its operands' radii and its own rounding contribute. A radius that is infinite or NaN, as after an overflow, holds every
+/// number.
 #[derive(Clone, Debug)]
 pub struct Ball<T: Real> {
     /// The computed number.
@@ -21,8 +20,12 @@ pub struct Ball<T: Real> {
     pub rad: T::Radius,
 }
 
-/// Radii are computed in `f64`, to be rounded up: a few dozen roundings are less than this factor.
+/// A factor that rounds a radius up: it was computed in `f64`, by fewer than 2^12 roundings of 2^−53 each, which 2^−40 is more than.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
+
+/// What a rounding counts, in [`UNIT`](Real::UNIT)s of the computed number. It is off by one unit of the true number, and that is less than two of the
+/// computed one; twice as much costs nothing but an occasional question to the next precision.
+const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
     /// A number that is known exactly.
@@ -38,7 +41,7 @@ impl<T: Real> Ball<T> {
         let rounding = if mid.is_zero() {
             T::Radius::ZERO
         } else {
-            mid.magnitude() * (4.0 * T::UNIT) + T::TINY
+            mid.magnitude() * (ROUNDING * T::UNIT) + T::TINY
         };
         Self {
             mid,
@@ -69,6 +72,7 @@ impl<T: Real> Ball<T> {
     /// Whether the relative error is far below what an `f64` tells, so that exact arithmetic would add nothing to it but the
     /// last decisions of [`Double`](super::Double), which allow for it.
     pub fn is_precise(&self) -> bool {
+        /// A relative error: 27 bits below the 53 of an `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
         self.rad <= self.size() * PRECISE
     }

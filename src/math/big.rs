@@ -3,26 +3,27 @@
 use std::cmp::Ordering;
 
 use dashu_float::{FBig, round::mode::HalfEven};
-use dashu_int::{Sign, ops::BitTest};
+use dashu_int::Sign;
 
-use super::{Angle, Radius, Real, Wide};
+use super::Angle;
 
 /// A binary floating-point number with 320 bits and an exponent that does not run out.
 #[derive(Clone, Debug)]
-pub struct Big(Float);
+pub struct Big(pub(super) Float);
 
 /// A float whose precision is that of its operands; 0 stands for unlimited, exact as long as nothing is divided.
-type Float = FBig<HalfEven, 2>;
+pub(super) type Float = FBig<HalfEven, 2>;
 
 /// Bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer than about 2^−90, and one closer than
 /// that counts as a tie anyway; what remains is far more than the intermediate steps of any formula here lose.
-const PRECISION: usize = 320;
+pub(super) const PRECISION: usize = 320;
 
-/// Further bits for the few steps that cancel.
+/// Further bits for the few steps that cancel: as many as a result has, so that these are left where as many cancel.
 const GUARD: usize = 320;
 
 impl Big {
-    fn round(x: Float) -> Self {
+    /// The nearest with so many bits.
+    pub(super) fn round(x: Float) -> Self {
         Self(x.with_precision(PRECISION).value())
     }
 
@@ -33,7 +34,7 @@ impl Big {
     }
 
     /// π/2.
-    pub fn quarter_turn() -> Self {
+    pub(super) fn quarter_turn() -> Self {
         Self::round(Float::pi(PRECISION + GUARD) / wide(2.0))
     }
 
@@ -45,9 +46,9 @@ impl Big {
 
     /// The nearest finite `f64`, and not 0 for what is not 0.
     pub fn to_finite(&self) -> f64 {
-        let x = self.to_f64().clamp(f64::MIN, f64::MAX);
-        match x == 0.0 && !self.is_zero() {
-            true if self.is_negative() => -f64::from_bits(1),
+        let x = self.0.to_f64().value().clamp(f64::MIN, f64::MAX);
+        match x == 0.0 && !is_zero(&self.0) {
+            true if self.0.sign() == Sign::Negative => -f64::from_bits(1),
             true => f64::from_bits(1),
             false => x,
         }
@@ -75,7 +76,8 @@ pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     left.cmp(&Float::ZERO)
 }
 
-fn is_zero(x: &Float) -> bool {
+/// Whether it is zero, of either sign.
+pub(super) fn is_zero(x: &Float) -> bool {
     x.repr().is_pos_zero() || x.repr().is_neg_zero()
 }
 
@@ -99,75 +101,13 @@ fn wide(x: f64) -> Float {
 }
 
 /// A finite `f64` as a number whose sums and products are exact.
-fn exact(x: f64) -> Float {
+pub(super) fn exact(x: f64) -> Float {
     // Numbers of a scene are finite, and so are sample points; anything else would be a mistake of ours, and zero keeps it
     // from becoming a panic.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);
     float.with_precision(0).value()
-}
-
-impl Real for Big {
-    type Radius = Wide;
-
-    const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
-    /// A big number does not underflow.
-    const TINY: Wide = Wide::ZERO;
-    const LAST: bool = true;
-
-    fn from_f64(x: f64) -> Self {
-        Self::round(exact(x))
-    }
-    fn difference(a: f64, b: f64) -> Self {
-        Self::round(exact(a) - exact(b))
-    }
-    fn from_big(x: &Self) -> Self {
-        x.clone()
-    }
-    fn to_f64(&self) -> f64 {
-        self.0.to_f64().value()
-    }
-    fn magnitude(&self) -> Wide {
-        let repr = self.0.repr();
-        let bits = repr.significand().bit_len() as isize;
-        // Between 1/2 and 1, without regard to its exponent.
-        let fraction = self.0.clone() >> (repr.exponent() + bits);
-        let exponent = (repr.exponent() + bits) as i64;
-        Wide::new(fraction.to_f64().value().abs(), exponent)
-    }
-    fn is_negative(&self) -> bool {
-        !is_zero(&self.0) && self.0.sign() == Sign::Negative
-    }
-    fn is_zero(&self) -> bool {
-        is_zero(&self.0)
-    }
-    fn plus(&self, other: &Self) -> Self {
-        Self(&self.0 + &other.0)
-    }
-    fn minus(&self, other: &Self) -> Self {
-        Self(&self.0 - &other.0)
-    }
-    fn times(&self, other: &Self) -> Self {
-        Self(&self.0 * &other.0)
-    }
-    fn over(&self, other: &Self) -> Self {
-        Self(&self.0 / &other.0)
-    }
-    fn sqrt(&self) -> Self {
-        Self(self.0.sqrt())
-    }
-    fn negated(&self) -> Self {
-        Self(-self.0.clone())
-    }
-    fn scaled(&self, exponent: i32) -> Self {
-        Self(self.0.clone() << exponent as isize)
-    }
-    fn floor(&self) -> (Self, bool) {
-        let floor = self.0.floor();
-        let odd = (floor.to_int().value() & dashu_int::IBig::ONE) == dashu_int::IBig::ONE;
-        (Self::round(floor), odd)
-    }
 }
 
 /// A number made of `f64` by sums, differences and products alone, without any rounding.

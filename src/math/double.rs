@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Angle, Ball, Big, Real, sine};
+use super::{Big, Real};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
@@ -40,8 +40,10 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
 /// a · b as a rounded product and its exact error (Dekker, with Veltkamp's splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
+    /// 2^27 + 1: the upper part of a number of 53 bits has 26 of them, and the lower part 26 with its sign.
+    const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
-        let scaled = x * 134_217_729.0; // 2^27 + 1
+        let scaled = x * SPLIT;
         let high = scaled - (scaled - x);
         (high, x - high)
     }
@@ -78,7 +80,7 @@ impl Real for Double {
     /// What a rounded quotient leaves, a − hi·b, is an `f64` (Boldo and Daumas, "Representable correcting terms for possibly
     /// underflowing floating point operations", 2003), so that the second part is rounded once, too.
     fn quotient(a: f64, b: f64) -> Self {
-        // Within these neither the quotient nor what is left under- or overflows.
+        // 2^±400: the quotient lies within 2^±801 then, and what is left, a multiple of the last bits of both, within 2^−906 and 2^801.
         const RANGE: RangeInclusive<f64> =
             f64::from_bits((1023 - 400) << 52)..=f64::from_bits((1023 + 400) << 52);
         if !RANGE.contains(&a.abs()) || !RANGE.contains(&b.abs()) {
@@ -100,9 +102,6 @@ impl Real for Double {
     }
     fn is_zero(&self) -> bool {
         self.hi == 0.0
-    }
-    fn sin_cos(angle: Angle) -> (Ball<Self>, Ball<Self>) {
-        sine::sin_cos(angle)
     }
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {

@@ -42,8 +42,13 @@ impl Radius for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
+    #[inline]
     fn scaled(self, exponent: i32) -> Self {
-        super::Real::scaled(&self, exponent)
+        match exponent {
+            // A power of two that is a normal number; a product is rounded as `ldexp` rounds.
+            -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
+            _ => libm::ldexp(self, exponent),
+        }
     }
     fn exponent(self) -> i32 {
         libm::frexp(self.min(f64::MAX)).1
@@ -66,6 +71,9 @@ pub struct Wide {
 }
 
 impl Wide {
+    /// An exponent: what is 2^1000 times smaller is far less than [`UP`](super::UP) adds, and no underflow beside a mantissa from 1 to 2.
+    const FAR: i64 = 1000;
+
     /// mantissa · 2^exponent for any mantissa ≥ 0.
     pub fn new(mantissa: f64, exponent: i64) -> Self {
         if mantissa == 0.0 || !mantissa.is_finite() {
@@ -107,8 +115,7 @@ impl Add for Wide {
                 ..large
             };
         }
-        // What is 2^1000 times smaller is less than what the sum is rounded up by.
-        let shift = (large.exponent - small.exponent).min(1000);
+        let shift = (large.exponent - small.exponent).min(Self::FAR);
         let sum = large.mantissa + libm::ldexp(small.mantissa, -(shift as i32));
         Self::new(sum, large.exponent)
     }
@@ -163,15 +170,19 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        (self.exponent + of_mantissa).clamp(-(1 << 20), 1 << 20) as i32
+        /// Far beyond the exponents of `f64`, so that nothing that is scaled by it is one, and small enough to be added and negated.
+        const MOST: i64 = 1 << 20;
+        (self.exponent + of_mantissa).clamp(-MOST, MOST) as i32
     }
     fn without(self, other: Self) -> Self {
-        let shift = (self.exponent - other.exponent).clamp(0, 1000);
+        let shift = (self.exponent - other.exponent).clamp(0, Self::FAR);
         let rest = self.mantissa - libm::ldexp(other.mantissa, -(shift as i32));
         Self::new(rest.max(0.0), self.exponent)
     }
     fn to_f64(self) -> f64 {
-        libm::ldexp(self.mantissa, self.exponent.clamp(-1100, 1100) as i32)
+        /// Beyond the exponents of `f64`, which are −1074 to 1023.
+        const MOST: i64 = 1100;
+        libm::ldexp(self.mantissa, self.exponent.clamp(-MOST, MOST) as i32)
     }
 }
 

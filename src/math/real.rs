@@ -2,7 +2,12 @@
 
 use std::fmt::Debug;
 
-use super::{Angle, Ball, Big, Radius};
+use dashu_int::{IBig, Sign, ops::BitTest};
+
+use super::{
+    Big, Radius, Wide,
+    big::{PRECISION, exact, is_zero},
+};
 
 /// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`], from fast to precise.
 ///
@@ -37,12 +42,6 @@ pub trait Real: Clone + Debug + Sized {
     fn is_negative(&self) -> bool;
     /// Whether it is zero, and not merely too small for an `f64`.
     fn is_zero(&self) -> bool;
-
-    /// Sine and cosine of an angle, each within a few units; of a multiple of 90° exactly 0 and ±1.
-    fn sin_cos(angle: Angle) -> (Ball<Self>, Ball<Self>) {
-        let (sin, cos) = Big::sin_cos(angle);
-        (Ball::from_big(&sin), Ball::from_big(&cos))
-    }
 
     /// self + other.
     fn plus(&self, other: &Self) -> Self;
@@ -80,7 +79,9 @@ pub fn floor(x: f64) -> f64 {
 
 impl Real for f64 {
     type Radius = f64;
+    /// Half a unit in the last of 53 places.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
+    /// An underflow loses half a subnormal number's unit, 2^−1075, and this is 2^−1022.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -135,16 +136,75 @@ impl Real for f64 {
     }
     #[inline]
     fn scaled(&self, exponent: i32) -> Self {
-        match exponent {
-            // A power of two that is a normal number; a product is rounded as `ldexp` rounds.
-            -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
-            _ => libm::ldexp(*self, exponent),
-        }
+        Radius::scaled(*self, exponent)
     }
     #[inline]
     fn floor(&self) -> (Self, bool) {
+        /// Every `f64` from here on is even, as it has 53 bits.
+        const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
-        // Every f64 from 2^53 on is even, and below 2^63 the conversion is exact.
-        (floor, floor.abs() < 9.1e15 && floor as i64 & 1 == 1)
+        (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)
+    }
+}
+
+impl Real for Big {
+    type Radius = Wide;
+
+    const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
+    /// A big number does not underflow.
+    const TINY: Wide = Wide::ZERO;
+    const LAST: bool = true;
+
+    fn from_f64(x: f64) -> Self {
+        Self::round(exact(x))
+    }
+    fn difference(a: f64, b: f64) -> Self {
+        Self::round(exact(a) - exact(b))
+    }
+    fn from_big(x: &Self) -> Self {
+        x.clone()
+    }
+    fn to_f64(&self) -> f64 {
+        self.0.to_f64().value()
+    }
+    fn magnitude(&self) -> Wide {
+        let repr = self.0.repr();
+        let bits = repr.significand().bit_len() as isize;
+        // Between 1/2 and 1, without regard to its exponent.
+        let fraction = self.0.clone() >> (repr.exponent() + bits);
+        let exponent = (repr.exponent() + bits) as i64;
+        Wide::new(fraction.to_f64().value().abs(), exponent)
+    }
+    fn is_negative(&self) -> bool {
+        !is_zero(&self.0) && self.0.sign() == Sign::Negative
+    }
+    fn is_zero(&self) -> bool {
+        is_zero(&self.0)
+    }
+    fn plus(&self, other: &Self) -> Self {
+        Self(&self.0 + &other.0)
+    }
+    fn minus(&self, other: &Self) -> Self {
+        Self(&self.0 - &other.0)
+    }
+    fn times(&self, other: &Self) -> Self {
+        Self(&self.0 * &other.0)
+    }
+    fn over(&self, other: &Self) -> Self {
+        Self(&self.0 / &other.0)
+    }
+    fn sqrt(&self) -> Self {
+        Self(self.0.sqrt())
+    }
+    fn negated(&self) -> Self {
+        Self(-self.0.clone())
+    }
+    fn scaled(&self, exponent: i32) -> Self {
+        Self(self.0.clone() << exponent as isize)
+    }
+    fn floor(&self) -> (Self, bool) {
+        let floor = self.0.floor();
+        let odd = (floor.to_int().value() & IBig::ONE) == IBig::ONE;
+        (Self::round(floor), odd)
     }
 }

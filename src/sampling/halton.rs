@@ -33,7 +33,10 @@ impl Halton {
         for (axis, (out, inverse)) in out.into_iter().zip(inverses).enumerate() {
             let shift = key.bits(axis as u64);
             let place = |inverse: u64| lattice::offset_of_bits(inverse.wrapping_add(shift));
-            match self.inverses[axis].get(range.start as usize..range.end as usize) {
+            // Both ends are at most `STORED` then, and fit any kind of index.
+            let is_stored = range.end <= self.inverses[axis].len() as u64;
+            let stored = is_stored.then_some(range.start as usize..range.end as usize);
+            match stored.and_then(|range| self.inverses[axis].get(range)) {
                 Some(inverses) => {
                     for (out, &inverse) in out.iter_mut().zip(inverses) {
                         *out = place(inverse);

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::{schema::Field, value::Value};
-use crate::{math::exact, numbers};
+use crate::{math::predicates, numbers};
 
 /// A value that a field can have, given the values of the others in its block. Where none that is tried fits, it is the field's own
 /// example.
@@ -70,7 +70,7 @@ fn looking(field: &Field, example: &str, given: &dyn Fn(&str) -> Option<DVec3>) 
             // Nothing is known that it could contradict.
             _ => return true,
         };
-        !exact::cross_is_zero(value("up").unwrap_or(DVec3::Y), view.0, view.1)
+        !predicates::cross_is_zero(value("up").unwrap_or(DVec3::Y), view.0, view.1)
     };
     let mut texts = vec![example.to_owned()];
     texts.extend(others.map(numbers::short_vector));

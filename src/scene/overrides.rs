@@ -30,8 +30,7 @@ pub struct Override<'s> {
 /// Reads the arguments.
 pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<Override<'s>> {
     let mut overrides: Vec<Override<'s>> = Vec::new();
-    for (index, source) in sources.sets.iter().enumerate() {
-        let id = SourceId::Set(u32::try_from(index).unwrap_or(u32::MAX));
+    for (id, source) in sources.sets() {
         match one(source.text(), id) {
             Err(problem) => diagnostics.push(Diagnostic::fixable(problem.as_ref(), sources)),
             Ok((block, name, start)) => {

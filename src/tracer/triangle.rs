@@ -15,7 +15,7 @@ use super::{
     interval::{Cover, Patch},
 };
 use crate::{
-    math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross},
+    math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross, sin_cos},
     scene,
 };
 
@@ -195,7 +195,7 @@ fn offsets<T: Real>(shape: &scene::Triangle) -> [Ball3<T>; 3] {
     let mean_x = (&c + &apex_x) / &three;
     let mean_y = &apex_y / &three;
 
-    let (sin, cos) = T::sin_cos(shape.spin);
+    let (sin, cos) = sin_cos::<T>(shape.spin);
     let (right, top) = plane_axes::<T>(shape.normal);
     [
         (-&mean_x, -&mean_y),

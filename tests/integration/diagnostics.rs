@@ -96,9 +96,9 @@ fn under(
     }
     let text = sources.get(source);
     let (from, to) = (text.place(start), text.place(end));
-    let (line, shift) = match source {
-        SourceId::File => (from.line, 0),
-        SourceId::Set(index) => (sets[index as usize].0, SET.len()),
+    let (line, shift) = match sources.sets().position(|(id, _)| id == source) {
+        None => (from.line, 0),
+        Some(index) => (sets[index].0, SET.len()),
     };
     let column = from.column - 1 + shift;
     assert!(column >= 2, "{label:?}: indent the scene by two columns");

@@ -4,7 +4,7 @@ use glam::DVec3;
 use pinhole::{
     math::Angle,
     scene::{self, Count, Cuboid, Lens, Scene, Shape, Sphere, View},
-    source::{Source, SourceId, Sources},
+    source::{Source, Sources},
 };
 
 const SCENE: &str = "let h = 1
@@ -27,17 +27,15 @@ fn read(sets: &[&str]) -> Scene {
 }
 
 /// Code, argument (counted from 1; 0 is the file) and text of the first label of every diagnostic.
-fn problems(text: &str, sets: &[&str]) -> Vec<(String, u32, String)> {
+fn problems(text: &str, sets: &[&str]) -> Vec<(String, usize, String)> {
     let sources = Sources::new(Source::from_text("test.scn", text)).with_sets(sets);
     let found = scene::read(&sources).diagnostics;
     found
         .iter()
         .map(|diagnostic| {
             let span = diagnostic.labels[0].span;
-            let source = match span.source {
-                SourceId::File => 0,
-                SourceId::Set(index) => index + 1,
-            };
+            let source = sources.sets().position(|(id, _)| id == span.source);
+            let source = source.map_or(0, |index| index + 1);
             let code = diagnostic.code.replace("pinhole::", "");
             (code, source, sources.text(span).to_owned())
         })
@@ -45,7 +43,7 @@ fn problems(text: &str, sets: &[&str]) -> Vec<(String, u32, String)> {
 }
 
 #[track_caller]
-fn assert_problem(sets: &[&str], code: &str, argument: u32, under: &str) {
+fn assert_problem(sets: &[&str], code: &str, argument: usize, under: &str) {
     let expected = (code.to_owned(), argument, under.to_owned());
     assert_eq!(problems(SCENE, sets), [expected], "{sets:?}");
 }
@@ -223,6 +221,6 @@ fn the_file_comes_before_the_arguments() {
     let text =
         "camera { eye (0, 2, 8) lookat (0, 1, 0) } sphere Ball { center (0, 0, 0) color olvie }";
     let found = problems(text, &["Ball.radius=red", "x=1"]);
-    let order: Vec<u32> = found.iter().map(|problem| problem.1).collect();
+    let order: Vec<usize> = found.iter().map(|problem| problem.1).collect();
     assert_eq!(order, [0, 1, 2]);
 }

@@ -10,7 +10,7 @@ use std::{
 
 use pinhole::{
     diagnostic::Diagnostic,
-    source::{Source, SourceId, Span},
+    source::{Source, SourceId, Sources, Span},
     syntax::{
         self, Parsed,
         tree::{Block, Definition, Element, Field, Item, Value, ValueKind},
@@ -159,8 +159,9 @@ fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     for comment in &parsed.comments {
         printer.line(&format!("comment {}", printer.under(*comment)));
     }
+    let sources = Sources::new(source.clone());
     for problem in &parsed.problems {
-        let diagnostic = Diagnostic::from_problem(problem);
+        let diagnostic = Diagnostic::from_problem(problem, &sources);
         let place = source.place(diagnostic.labels[0].span.start);
         printer.line(&format!(
             "{}:{} {}: {}",

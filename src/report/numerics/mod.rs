@@ -98,7 +98,8 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolB
                 || vec![Tally::default(); cases.len()],
                 |mut tallies, index| {
                     // Block by block of all cases, so that the progress is even.
-                    let (block, at) = (index / cases.len() as u64, index as usize % cases.len());
+                    let count = cases.len() as u64;
+                    let (block, at) = (index / count, (index % count) as usize);
                     let count = BLOCK.min(inputs_per_case - block * BLOCK);
                     let mut tally = Tally::default();
                     (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     color::Color,
     diagnostic::{Edit, Fix},
-    math::{Angle, exact},
+    math::{Angle, predicates},
     numbers,
     scene::{
         self, Camera, Count, Image, Lens, Method, Object, Sampler, Shape, View, css,
@@ -275,7 +275,7 @@ impl<'s> Lowering<'s> {
             View::Lookat(point) => (eye, point),
             View::Direction(direction) => (DVec3::ZERO, direction),
         };
-        if !exact::cross_is_zero(up, from, to) {
+        if !predicates::cross_is_zero(up, from, to) {
             return;
         }
         // Against up, the top of the picture is the part of the level direction across up; along up, the opposite.
@@ -283,7 +283,7 @@ impl<'s> Lowering<'s> {
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
-        let along = exact::dot_sign(up, from, to).is_gt();
+        let along = predicates::dot_sign(up, from, to).is_gt();
         let top = if along { -across } else { across };
         let vector = numbers::short_vector(top / top.abs().max_element());
         let shown = axis_name(top).unwrap_or_else(|| format!("towards {vector}"));
@@ -378,7 +378,7 @@ impl<'s> Lowering<'s> {
 
     fn triangle(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
         let sides = fields.vector("sides")?;
-        if !exact::forms_triangle(sides.to_array()) {
+        if !predicates::forms_triangle(sides.to_array()) {
             let [a, b, c] = sides.to_array();
             let (longest, [one, other], place) = if a >= b && a >= c {
                 (a, [b, c], "first")
@@ -422,7 +422,7 @@ impl<'s> Lowering<'s> {
             Some(_) => (fields.vector("min"), fields.vector("max")),
             None => match (fields.vector("center"), fields.vector("size")) {
                 (Some(center), Some(size)) => {
-                    let (min, max) = exact::box_corners(center, size);
+                    let (min, max) = predicates::box_corners(center, size);
                     (Some(min), Some(max))
                 }
                 _ => (None, None),

@@ -138,8 +138,8 @@ fn counted(diagnostics: &[Diagnostic]) -> HashMap<Said, usize> {
 fn diagnostics_with(sources: &Sources, fix: &Fix) -> Vec<Diagnostic> {
     let file = diagnostic::apply(fix, SourceId::File, sources.file.text());
     let file = Source::from_text(sources.file.name(), file);
-    let sets = (0_u32..).zip(&sources.sets);
-    let sets = sets.map(|(index, set)| diagnostic::apply(fix, SourceId::Set(index), set.text()));
+    let sets = sources.sets();
+    let sets = sets.map(|(id, set)| diagnostic::apply(fix, id, set.text()));
     let sources = Sources::new(file).with_sets(sets);
     let mut found = Vec::new();
     let overrides = overrides::read(&sources, &mut found);

@@ -16,6 +16,7 @@ pub use parts::parse_in_parts;
 
 use std::{borrow::Cow, collections::BTreeMap, ops::Range, sync::atomic::AtomicBool, thread};
 
+use miette::Diagnostic as _;
 use pest::{Parser as _, iterators::Pair};
 
 use super::{
@@ -27,7 +28,6 @@ use super::{
 };
 use crate::{
     cancel,
-    diagnostic::Diagnostic,
     source::{Source, SourceId, Span},
 };
 
@@ -161,7 +161,7 @@ impl<'s> Parser<'s> {
         if let Some(start) = unclosed {
             // What the comment took is no second mistake.
             self.problems
-                .retain(|problem| starts_before(problem, start));
+                .retain(|problem| starts_before(problem, self.id.start() + start));
             let span = Span::new(self.id, start, start + 2);
             self.problems.push(Problem::UnclosedComment { span });
         }
@@ -408,11 +408,10 @@ fn with_blanks<'s>(text: Cow<'s, str>, places: &[Range<usize>]) -> Cow<'s, str> 
     Cow::Owned(read)
 }
 
-fn starts_before(problem: &Problem, offset: usize) -> bool {
+fn starts_before(problem: &Problem, place: usize) -> bool {
     if matches!(problem, Problem::UnclosedBlock { .. }) {
         return false;
     }
-    let diagnostic = Diagnostic::from_problem(problem);
-    let first = diagnostic.labels.first();
-    first.is_none_or(|label| label.span.end < offset)
+    let first = problem.labels().and_then(|mut labels| labels.next());
+    first.is_none_or(|label| label.offset() + label.len() < place)
 }

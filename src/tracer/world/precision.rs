@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::precise_cache::{Held, Kept};
 use crate::{
-    math::{Ball, Big, Double, Real, exact::Plane},
+    math::{Ball, Big, Double, Real, predicates::Plane},
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},

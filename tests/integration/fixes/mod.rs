@@ -25,10 +25,8 @@ fn diagnostics(sources: &Sources) -> Vec<Diagnostic> {
 
 /// The texts with a fix.
 fn fixed(sources: &Sources, fix: &Fix) -> Sources {
-    let sets = (0_u32..).zip(&sources.sets);
-    let sets: Vec<String> = sets
-        .map(|(index, set)| apply(fix, SourceId::Set(index), set.text()))
-        .collect();
+    let sets = sources.sets();
+    let sets = sets.map(|(id, set)| apply(fix, id, set.text()));
     let file = apply(fix, SourceId::File, sources.file.text());
     Sources::new(Source::from_text("a.scn", file)).with_sets(sets)
 }

@@ -59,7 +59,7 @@ impl Plane {
     }
 }
 
-/// Sizes of numbers of which products are had without error. All are multiples of 2^−452, and so are their differences; products of two such
+/// Sizes, in any unit, of numbers of which products are had without error. All are multiples of 2^−452, and so are their differences; products of two such
 /// are multiples of 2^−904, far above the least f64, and below 2^802.
 const TAME: RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
 
