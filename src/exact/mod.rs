@@ -215,6 +215,7 @@ impl<'a> Integrator<'a> {
                     x,
                     y,
                     candidates: live,
+                    ..
                 } => match live {
                     [only] if self.is_floor(only) => {
                         waiting.push(BoardPixel { x, y, live: *only }, &mut |floor, sum| {
