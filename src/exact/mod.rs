@@ -173,7 +173,9 @@ impl<'a> Integrator<'a> {
             }
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
-                Part::Open { x, y, candidates } => match candidates {
+                Part::Open {
+                    x, y, candidates, ..
+                } => match candidates {
                     [only] if self.is_floor(only) => {
                         waiting.push(
                             BoardPixel {

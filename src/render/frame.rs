@@ -60,12 +60,17 @@ impl<P: film::Pixel> Frame<'_, P> {
             unreported: 0,
             rays: 0,
         };
-        let mut visit = |part: Part, checks: Option<&Checks>| match part {
+        let mut visit = |part: Part| match part {
             Part::Flat { area, slot } => {
                 film.fill(area, self.shown[slot]);
                 self.go_on()
             }
-            Part::Open { x, y, candidates } => self.pixel(
+            Part::Open {
+                x,
+                y,
+                candidates,
+                checks,
+            } => self.pixel(
                 [x, y],
                 Trace::Together(candidates, checks),
                 &mut film,
@@ -76,7 +81,7 @@ impl<P: film::Pixel> Frame<'_, P> {
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], Trace::OneByOne, &mut film, tally))
             }
         };
-        let flow = self.quartering.parts_and_checks(tile, room, &mut visit);
+        let flow = self.quartering.parts(tile, room, &mut visit);
         (self.control.progress)(film.unreported);
         self.rays.fetch_add(film.rays, Ordering::Relaxed);
         flow.is_continue().then_some(film.pixels)

@@ -113,7 +113,11 @@ impl<P: film::Pixel> Means<P> {
             self.0.resize(KEPT, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;
-        let place = (count as usize).wrapping_add(other as usize * 7 + a * 67 + b * 131) % KEPT;
+        // Which place it is does not matter, so that counts may lose their high bits.
+        let place = (count as usize)
+            .wrapping_add((other as usize).wrapping_mul(7))
+            .wrapping_add(a * 67 + b * 131)
+            % KEPT;
         let kept = &mut self.0[place];
         if kept.0 != seen {
             let light = mean(seen.into_iter().map(|(slot, count)| (count, colors[slot])));

@@ -53,6 +53,8 @@ pub enum Part<'a> {
         y: u32,
         /// The objects that may be seen there, in file order.
         candidates: &'a [Candidate],
+        /// What it shows of a board, where that is known.
+        checks: Option<&'a Checks>,
     },
     /// More may be seen than is worth to know: its samples are traced one by one.
     Plain {
@@ -85,16 +87,6 @@ impl<'a> Quartering<'a> {
         room: &mut Room,
         visit: &mut impl FnMut(Part) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        self.parts_and_checks(wanted, room, &mut |part, _| visit(part))
-    }
-
-    /// The same, with what an open pixel shows of a board, where that is known.
-    pub fn parts_and_checks(
-        &self,
-        wanted: Area,
-        room: &mut Room,
-        visit: &mut impl FnMut(Part, Option<&Checks>) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
         let whole = self.world.picture();
         wanted.grid(GRID).try_for_each(|square| {
             let area = square.common(whole);
@@ -107,7 +99,7 @@ impl<'a> Quartering<'a> {
             let flow = match candidates::within(self.world, area, self.most(area), &mut candidates)
             {
                 true => cut.cut(area, &candidates, 1, room),
-                false => cut.show(Part::Plain { area }, None),
+                false => cut.show(Part::Plain { area }),
             };
             room.candidates[0] = candidates;
             flow
@@ -129,7 +121,7 @@ struct Cut<'a, 'b, V> {
     visit: &'b mut V,
 }
 
-impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
+impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
     /// Cuts an area by what may be seen in it.
     fn cut(
         &mut self,
@@ -142,26 +134,29 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
         match candidates {
             [] => {
                 let slot = world.background();
-                return self.show(Part::Flat { area, slot }, None);
+                return self.show(Part::Flat { area, slot });
             }
             [only] if only.is_whole => {
                 let slots = world.slots(only.object);
                 let [slot, second] = slots;
                 if slot == second {
-                    return self.show(Part::Flat { area, slot }, None);
+                    return self.show(Part::Flat { area, slot });
                 }
                 let show = &mut |area: Area, seen: Shown| {
-                    let Area { x, y, .. } = area;
-                    match seen {
+                    let checks = match seen {
                         Shown::One(odd) => {
                             let slot = slots[usize::from(odd)];
-                            self.show(Part::Flat { area, slot }, None)
+                            return self.show(Part::Flat { area, slot });
                         }
-                        Shown::Some(checks) => {
-                            self.show(Part::Open { x, y, candidates }, Some(checks))
-                        }
-                        Shown::Unknown => self.show(Part::Open { x, y, candidates }, None),
-                    }
+                        Shown::Some(checks) => Some(checks),
+                        Shown::Unknown => None,
+                    };
+                    self.show(Part::Open {
+                        x: area.x,
+                        y: area.y,
+                        candidates,
+                        checks,
+                    })
                 };
                 if let Some(flow) = checker_corners::show(world, area, only.object, show) {
                     return flow;
@@ -172,11 +167,18 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
         let is_worth_more = candidates.len() <= self.quartering.most(area);
         // A cell of the quadtree lists as many, of which each sample would be asked instead.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
-            return self.show(Part::Plain { area }, None);
+            return self.show(Part::Plain { area });
         }
         if !is_worth_more || area.pixels() == 1 {
             let mut pixels = area.iter();
-            return pixels.try_for_each(|(x, y)| self.show(Part::Open { x, y, candidates }, None));
+            return pixels.try_for_each(|(x, y)| {
+                self.show(Part::Open {
+                    x,
+                    y,
+                    candidates,
+                    checks: None,
+                })
+            });
         }
         let mut below = take(room, depth);
         let wanted = self.wanted;
@@ -190,7 +192,7 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
     }
 
     /// Shows what is wanted of a part.
-    fn show(&mut self, part: Part, checks: Option<&Checks>) -> ControlFlow<()> {
+    fn show(&mut self, part: Part) -> ControlFlow<()> {
         let part = match part {
             Part::Flat { area, slot } => Part::Flat {
                 area: area.common(self.wanted),
@@ -206,7 +208,7 @@ impl<V: FnMut(Part, Option<&Checks>) -> ControlFlow<()>> Cut<'_, '_, V> {
             Part::Open { x, y, .. } => Area::pixel(x, y).meets(self.wanted),
         };
         match is_wanted {
-            true => (self.visit)(part, checks),
+            true => (self.visit)(part),
             false => ControlFlow::Continue(()),
         }
     }

@@ -148,9 +148,9 @@ fn a_pixel_has_the_same_candidates_in_every_part() {
             let flow = parts.parts(wanted, &mut Room::default(), &mut |part| {
                 let (area, text) = match part {
                     Part::Flat { area, slot } => (area, format!("{slot}")),
-                    Part::Open { x, y, candidates } => {
-                        (Area::pixel(x, y), format!("{candidates:?}"))
-                    }
+                    Part::Open {
+                        x, y, candidates, ..
+                    } => (Area::pixel(x, y), format!("{candidates:?}")),
                     Part::Plain { area } => (area, "plain".to_owned()),
                 };
                 for (x, y) in area.iter() {
