@@ -18,6 +18,7 @@
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
 mod arrangement;
+pub mod boundaries;
 mod branches;
 mod budget;
 mod checker;
@@ -39,7 +40,7 @@ use glam::DVec2;
 
 use crate::{
     area::Area,
-    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World, boundaries, candidates},
+    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World, candidates},
 };
 
 use self::{

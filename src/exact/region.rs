@@ -10,10 +10,14 @@ use glam::DVec2;
 
 use crate::{
     math::Real,
-    tracer::{Candidate, SubPixel, World, board, candidates},
+    tracer::{Candidate, SubPixel, World, candidates},
 };
 
-use super::{budget::Budget, checker::Homography, conic_segment::Arc};
+use super::{
+    budget::Budget,
+    checker::{Homography, forms},
+    conic_segment::Arc,
+};
 
 /// Units of work of a region: for itself, and for each object that its ray may meet.
 const REGION_WORK: f64 = 4.0;
@@ -181,7 +185,7 @@ impl<'a> Regions<'a> {
 impl Checkered {
     /// An object as a sub-pixel sees it, if it is a checkerboard.
     fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
-        let seen = board::board(world, object, sub_pixel)?;
+        let seen = forms::board(world, object, sub_pixel)?;
         Some(Self {
             board: Homography::of(&seen),
             odd: seen.odd,

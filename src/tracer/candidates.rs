@@ -28,14 +28,14 @@ pub struct Candidate {
     /// Whether every ray through the part meets it, between the near and the far plane.
     pub is_whole: bool,
     /// Holds the inverse depths of what may be seen of it.
-    pub(super) inverse_depth: Range,
+    pub(crate) inverse_depth: Range,
     /// Where it may be seen: not only where rays meet it first if the near plane may cut it there.
-    pub(super) crossings: Crossings,
+    pub(crate) crossings: Crossings,
 }
 
 impl Candidate {
     /// Whether the near plane may cut it.
-    pub(super) fn is_cut(&self) -> bool {
+    pub(crate) fn is_cut(&self) -> bool {
         self.crossings != Crossings::First
     }
 }
@@ -92,7 +92,7 @@ pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Range>; 2] {
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
-pub(super) fn visible_among(
+pub(crate) fn visible_among(
     world: &World,
     patch: &Patch,
     among: impl Iterator<Item = usize>,
@@ -190,7 +190,7 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
 }
 
 /// Whether an object that every ray through a patch meets hides another there by the forms of their planes.
-pub(super) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
+pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let ahead = |a: &Surface<f64>, i: usize, b: &Surface<f64>, j: usize| {
         let (Surface::Plane(a), Surface::Plane(b)) = (a, b) else {
             return false;

@@ -13,7 +13,7 @@ use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pix
 
 /// The error of a line's form, in units of its greatest slope, from which on double-double was not enough: eight roundings of an `f64`, more than
 /// the three of its factors come to.
-pub(super) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
+pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A boundary in a pixel.
 #[derive(Clone, Debug)]

@@ -27,8 +27,6 @@ mod bounds2d;
 mod quadtree;
 mod world;
 
-pub mod board;
-pub mod boundaries;
 pub mod candidates;
 mod checker_corners;
 mod cull;
@@ -38,14 +36,18 @@ pub mod samples;
 #[cfg(test)]
 mod tests;
 
-pub use board::{Board, Boards, PIXELS, Views};
 pub use camera::{Basis, Point};
 pub use candidates::Candidate;
 pub use checker_corners::Checks;
 pub use cull::{GRID, Part, Quartering, Room};
 pub use curve::{Conic, Curve, Line};
+pub(crate) use curve::{Crossings, LOOSE_LINE, SubPixelFrame, Surface};
+pub(crate) use hit::Crossing;
+pub(crate) use interval::Patch;
 pub use ray::{Hit, ray};
 pub use samples::Pixel;
+pub(crate) use shape::Object;
 pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
 pub use world::World;
+pub(crate) use world::{Held, Level};

@@ -39,7 +39,7 @@ impl SubPixel {
     }
 
     /// A point of it as an offset from the pixel's centre.
-    pub(super) fn offset(&self, at: DVec2) -> DVec2 {
+    pub(crate) fn offset(&self, at: DVec2) -> DVec2 {
         self.center + at * self.side
     }
 }

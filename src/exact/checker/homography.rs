@@ -7,10 +7,8 @@
 use glam::DVec2;
 
 use super::super::clip::{Chord, measure, split};
-use crate::{
-    math::{Double, Real, two_product},
-    tracer,
-};
+use super::forms::Board;
+use crate::math::{Double, Real, two_product};
 
 /// The unit roundoff of `f64`.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
@@ -122,7 +120,7 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 
 impl Homography {
     /// Of a board as a sub-pixel sees it.
-    pub fn of(seen: &tracer::Board) -> Self {
+    pub fn of(seen: &Board) -> Self {
         Self::new(seen.across, seen.below)
     }
 

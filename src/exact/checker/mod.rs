@@ -11,6 +11,7 @@
 
 mod boundary;
 mod crossings;
+pub(super) mod forms;
 mod homography;
 mod near;
 mod special;

@@ -21,12 +21,13 @@ use multiversion::multiversion;
 
 use super::{
     super::clip::PIXEL,
+    forms::{self, Boards, PIXELS, Views},
     homography::{Sum, UNIT},
     special::square_wave,
 };
 use crate::{
     math::ROUND,
-    tracer::{Boards, Candidate, PIXELS, Views, World, board},
+    tracer::{Candidate, World},
 };
 
 /// At most so many lines cut the pixels into strips, and so many cross those.
@@ -88,7 +89,7 @@ impl<'a> Waiting<'a> {
         let object = pixel.candidate.object;
         if !matches!(self.boards, Some((known, _)) if known == object) {
             self.look(tell);
-            self.boards = board::boards(self.world, object).map(|boards| (object, boards));
+            self.boards = forms::boards(self.world, object).map(|boards| (object, boards));
         }
         self.next.push(pixel);
         if self.next.len() == PIXELS {
@@ -654,7 +655,7 @@ mod tests {
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };
-                let seen = board::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
+                let seen = forms::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
                 let cancel = AtomicBool::new(false);
                 let budget = Budget::of_pixel(1, &cancel);
                 let other = Homography::of(&seen).over(&PIXEL, &budget);

@@ -9,7 +9,7 @@ mod precise_cache;
 mod precision;
 mod prepare;
 
-pub(super) use self::{
+pub(crate) use self::{
     precise_cache::Held,
     precision::{Geometry, Level},
 };
@@ -37,7 +37,7 @@ use crate::{
 #[derive(Debug)]
 pub struct World {
     basis: Basis,
-    pub(super) geometry: Geometry,
+    pub(crate) geometry: Geometry,
     pub(super) quadtree: Quadtree,
     colors: Colors,
 }

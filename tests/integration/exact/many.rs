@@ -1,6 +1,9 @@
 //! Many objects in one pixel.
 
-use pinhole::tracer::{SubPixel, boundaries, candidates};
+use pinhole::{
+    exact::boundaries,
+    tracer::{SubPixel, candidates},
+};
 
 use super::*;
 

@@ -7,13 +7,10 @@
 use glam::DVec2;
 use multiversion::multiversion;
 
-use super::{
-    curve::{LOOSE_LINE, SubPixelFrame},
-    shape::Object,
-    sub_pixel::SubPixel,
-    world::{Level, World},
+use crate::{
+    math::{Big, Double, ROUND, Real},
+    tracer::{LOOSE_LINE, Level, Object, SubPixel, SubPixelFrame, World},
 };
-use crate::math::{Big, Double, ROUND, Real};
 
 /// So many pixels at a time: as many numbers as the widest vectors have.
 pub const PIXELS: usize = 8;

@@ -3,9 +3,10 @@
 //! In: the curves of a sub-pixel. Out: the same without repetitions. Two are one if their forms, divided by the leading factor, differ by no more
 //! than roundings; the one that is left takes over the other's error and the difference.
 
-use crate::math::{Double, Real};
-
-use super::super::curve::{Conic, Curve, Line};
+use crate::{
+    math::{Double, Real},
+    tracer::{Conic, Curve, Line},
+};
 
 /// Lines are one if no factor of their forms differs by more than a few roundings.
 const SAME_LINE: f64 = 4.0 * f64::UNIT;

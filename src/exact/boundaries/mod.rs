@@ -14,23 +14,19 @@ use std::{
 
 use glam::DVec2;
 
-use crate::math::{Big, Double};
-
 use self::reach::Reach;
-use super::{
-    candidates::{self, Candidate},
-    curve::{Crossings, Curve, LOOSE_LINE, SubPixelFrame, Surface},
-    hit::Crossing,
-    interval::Patch,
-    shape::Object,
-    sub_pixel::SubPixel,
-    world::{Held, Level, World},
+use crate::{
+    math::{Big, Double},
+    tracer::{
+        Candidate, Crossing, Crossings, Curve, Held, LOOSE_LINE, Level, Object, Patch, SubPixel,
+        SubPixelFrame, Surface, World, candidates,
+    },
 };
 
 /// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Of more objects than so many times as many as there may be curves, no curves are asked for: to prepare the objects takes longer than to quarter the spot.
+/// Of more objects than so many times as many as there may be curves, no curves are asked for: to prepare the objects takes longer than to quarter the sub-pixel.
 /// (Fewer may be equal.)
 const HEAP: usize = 16;
 

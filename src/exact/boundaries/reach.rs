@@ -5,9 +5,11 @@
 
 use glam::DVec2;
 
-use crate::math::{Real, UP};
-
-use super::super::curve::{Curve, Line};
+use crate::{
+    exact::clip::{PIXEL, split},
+    math::{Real, UP},
+    tracer::{Curve, Line},
+};
 
 /// A value of a line's form is taken for negative only from so far below what is not known of it. That is much more than all that roundings
 /// of a polygon's vertices come to: each lies on a side that is cut to within a few of them, and no form's slopes are greater than 2.
@@ -26,9 +28,7 @@ impl Reach {
     /// All of the sub-pixel.
     pub fn whole() -> Self {
         Self {
-            polygon: [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
-                .map(DVec2::from)
-                .to_vec(),
+            polygon: PIXEL.to_vec(),
             sides: Vec::new(),
         }
     }
@@ -72,18 +72,12 @@ impl Reach {
 
 /// The part of a polygon where a form may not be negative. NaN leaves all of it.
 fn cut(polygon: &[DVec2], line: &Line) -> Vec<DVec2> {
+    let form = |at| {
+        let most = at_most(line, at);
+        if most.is_nan() { 0.0 } else { most }
+    };
     let mut part = Vec::with_capacity(polygon.len() + 1);
-    let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    for (here, next) in ends {
-        let (a, b) = (at_most(line, *here), at_most(line, *next));
-        let is_outside = a < 0.0;
-        if !is_outside {
-            part.push(*here);
-        }
-        if a * b < 0.0 {
-            part.push(here + (next - here) * (a / (a - b)));
-        }
-    }
+    split(polygon, form, &mut Vec::new(), &mut part);
     part
 }
 
