@@ -326,23 +326,27 @@ impl Sphere<f64> {
         ]
     }
 
-    /// The ranges of Q and of c·r over a rectangle: Q's by its gradient at the centre and its second derivatives.
+    /// The ranges of Q and of c·r over a rectangle: Q's by the extremes of its expansion about the centre along each axis, and a bound on what is mixed.
     fn ranges(&self, patch: &Patch) -> (Range, Range) {
         let [cx, cy, cz] = self.center;
         let r = &patch.center;
         let [hx, hy] = patch.half;
         let [q, along_x, along_y] = self.expanded(r);
-        let (xx, yy) = (
-            self.square - cy * cy - cz * cz,
-            self.square - cx * cx - cz * cz,
+        let x = (
+            along_x.abs() * hx,
+            (self.square - cy * cy - cz * cz) * hx * hx,
         );
-        let first = 2.0 * (along_x.abs() * hx + along_y.abs() * hy);
+        let y = (
+            along_y.abs() * hy,
+            (self.square - cx * cx - cz * cz) * hy * hy,
+        );
         let mixed = 2.0 * (cx * cy).abs() * hx * hy;
-        let (xx, yy) = (xx * hx * hx, yy * hy * hy);
-        let slack = (first + mixed + 2.0 * self.rad_q) * UP;
+        let sizes = 2.0 * (x.0 + y.0) + x.1.abs() + y.1.abs() + mixed;
+        // The expansion is made of the same products as Q, and the rectangle is within the window.
+        let slack = mixed + 4.0 * self.rad_q + sizes * (UP - 1.0);
         let q = Range {
-            low: q - slack + (xx.min(0.0) + yy.min(0.0)) * UP,
-            high: q + slack + (xx.max(0.0) + yy.max(0.0)) * UP,
+            low: q - greatest(x.0, -x.1) - greatest(y.0, -y.1) - slack,
+            high: q + greatest(x.0, x.1) + greatest(y.0, y.1) + slack,
         };
         let b = cx * r.x + cy * r.y + cz * r.z;
         let spread = cx.abs() * hx + cy.abs() * hy;
@@ -406,6 +410,11 @@ impl Sphere<Double> {
             rad_b: (self.rad_b + rad_b) * UP,
         }
     }
+}
+
+/// The greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at the end, or where it is level before that.
+fn greatest(a: f64, b: f64) -> f64 {
+    if a < -b { a * a / -b } else { 2.0 * a + b }
 }
 
 /// C = c·c − R², scaled, with a small relative error, and its exact sign.
