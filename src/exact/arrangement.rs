@@ -18,8 +18,8 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it. Nor is it cut: of roundings that are all
-/// there is of it each line makes two more.
+/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it. Nor is it cut: slivers
+/// that are made of roundings would double with each line. 2⁻⁴⁶ square pixels are a polygon whose sides are some 10⁷ roundings long.
 const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// A polygon whose vertices have a mean value h of a line's form has no more area than this, by their number and |h|: one of n has a value of at most

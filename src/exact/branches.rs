@@ -386,8 +386,8 @@ impl Piece {
     /// By how much it may rise above another one over the same range of x, and how far they may be apart, where both are arcs that are nearly
     /// parallel, however close: point by point of their parameter, with the first one's chord level.
     ///
-    /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. What its x is off counts by the
-    /// steepest tangent; and other weights move it by no more than where its tangents meet is away from it. Of narrow arcs that place is
+    /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. An error in x counts by the
+    /// steepest tangent; and a different weight moves a point by at most its distance from the control point. Of narrow arcs that place is
     /// uncertain along them, where little depends on it. A point is off by less than eight times what the area is by the width; and by what x is rounded,
     /// which moves no more area than roundings of it by the arc's height.
     fn between(&self, other: &Self) -> Option<[f64; 2]> {

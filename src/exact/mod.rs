@@ -64,7 +64,8 @@ const MORE_CURVES: usize = 4;
 const MOST_QUARTERINGS: usize = 16;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
-/// Units of work of a piece: for itself, for each object in it, and for each object or pair of objects that is asked for curves.
+/// Units of work (some 50 ns each) of a piece: for itself, for each object in it, and for each object or pair of objects that is asked for curves. What they are is
+/// not critical: they only end what takes too long.
 const PIECE_WORK: f64 = 100.0;
 const OBJECT_WORK: f64 = 4.0;
 const LOOK_WORK: f64 = 8.0;
@@ -102,7 +103,7 @@ enum State {
     /// Too many curves pass through it: nothing is computed of it yet.
     Crowded,
     Computed,
-    /// Computed, and not worth quartering: that left more than half as much in doubt, here or in what this is a quarter of.
+    /// Computed; quartering it, or its parent, did not halve the bound.
     Final,
 }
 
@@ -191,7 +192,7 @@ impl<'a> Integrator<'a> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // Does not come: whatever it costs, the picture is to be known.
+                // The quartering of an exact picture shows none; should it, the pixels are right all the same.
                 Part::Plain { area } => {
                     let candidates = candidates::everything(self.world);
                     for (x, y) in area.iter() {

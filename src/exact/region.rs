@@ -15,7 +15,7 @@ use crate::{
 
 use super::{
     budget::Budget,
-    checker::{Homography, forms},
+    checker::{Homography, board_forms},
     conic_segment::Arc,
 };
 
@@ -97,6 +97,8 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         }
         let Some(at) = self.board(object) else {
+            // Nothing else has two colours.
+            self.doubt(region.area);
             return self.shares.add(first, region.area);
         };
         let checkered = &self.boards[at].1;
@@ -185,7 +187,7 @@ impl<'a> Regions<'a> {
 impl Checkered {
     /// An object as a sub-pixel sees it, if it is a checkerboard.
     fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
-        let seen = forms::board(world, object, sub_pixel)?;
+        let seen = board_forms::board(world, object, sub_pixel)?;
         Some(Self {
             board: Homography::of(&seen),
             odd: seen.odd,

@@ -22,15 +22,21 @@ use super::{
 /// Curves may be out of order by so much: the rounding of a y.
 const TIE: f64 = 16.0 * f64::UNIT;
 
-/// Curves that are nowhere farther apart are not told apart.
+/// Curves that are nowhere farther apart than this, in pixels, are not told apart: a thousand roundings of a coordinate, and 10⁻¹³ of area.
 const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// So much area may be doubtful in a slab.
+/// So much area, in square pixels, may be doubtful in a slab before it is cut: half a rounding of the mean.
 const CRUMB: f64 = 1.0 / (1u64 << 54) as f64;
 
-/// Slabs are not cut when they are narrower than this, nor when there are so many more than there were, those that may yet be cut among them.
+/// Slabs narrower than this, in pixels, are not cut, nor any once `MANY` have been added to the first ones, counting those still queued: what is left in doubt
+/// then is in the bound.
 const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
 const MANY: usize = 4096;
+
+/// Steps of the false position: halving alone gets from a pixel to a rounding in 53.
+const STEPS: usize = 60;
+/// A slab is not cut nearer to its end than by this part of its width, by which nothing is gained.
+const MARGIN: f64 = 1.0 / 1024.0;
 
 /// What rounding may do to the area of a region in a slab, for each part of its width: two y of at most 1/2, each off by a few
 /// units of its last place.
@@ -219,7 +225,7 @@ fn crossing(lower: &Track, upper: &Track, a: &Piece, b: &Piece, left: f64, right
     let (mut gap_out, mut gap_in) = (gap(out), gap(inside));
     let mut last = Ordering::Equal;
     // The Illinois variant of the false position: an end that stays twice has its value halved.
-    for _ in 0..60 {
+    for _ in 0..STEPS {
         let mut at = inside - gap_in * (inside - out) / (gap_in - gap_out);
         if !((at > out.min(inside)) && (at < out.max(inside))) {
             at = 0.5 * (out + inside);
@@ -243,8 +249,7 @@ fn crossing(lower: &Track, upper: &Track, a: &Piece, b: &Piece, left: f64, right
             last = Ordering::Less;
         }
     }
-    // Not so near an end that nothing is gained.
-    let margin = (right - left) / 1024.0;
+    let margin = (right - left) * MARGIN;
     if inside > left + margin.min(NARROW) && inside < right - margin.min(NARROW) {
         inside
     } else {

@@ -14,8 +14,8 @@ pub struct Form<T: Real> {
     factors: [T; 3],
     /// How far a computed value may be from the true one.
     rad: T::Radius,
-    /// The same by |X|, |Y| and |Z|, in the last precision: nobody is asked after it, and in the middle of the widest views its values are next
-    /// to nothing beside all others.
+    /// The same by |X|, |Y| and |Z|, in the last precision. None follows it, so that there the error is bounded for each ray: in the middle
+    /// of the widest views values are far smaller than elsewhere.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 

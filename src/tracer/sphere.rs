@@ -97,7 +97,7 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = match T::LAST {
-            // After it nobody is asked: in the middle of the widest views this ray's own are next to nothing.
+            // No precision follows it, so that the error is bounded for this ray: in the middle of the widest views it is far smaller than elsewhere.
             true => self.radii_of(r),
             false => (self.rad_q, self.rad_b),
         };

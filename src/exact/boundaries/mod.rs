@@ -1,7 +1,8 @@
 //! The boundaries of what is seen in a pixel, or in a part of one.
 //!
 //! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
-//! near and the far plane cut them. They are had in double-double, and again in the last precision where that leaves too much in doubt.
+//! near and the far plane cut them. They are computed in double-double, and again in the last precision where that leaves too much in doubt. Candidates that
+//! are hidden all over a sub-pixel are dropped first ([`narrowed`]).
 
 mod equal;
 mod reach;

@@ -11,7 +11,7 @@ use crate::{
     tracer::{Curve, Line},
 };
 
-/// A value of a line's form is taken for negative only from so far below what is not known of it. That is much more than all that roundings
+/// A value of a line's form counts as negative only if it is below −(error + this). That is much more than all roundings
 /// of a polygon's vertices come to: each lies on a side that is cut to within a few of them, and no form's slopes are greater than 2.
 const MARGIN: f64 = 4096.0 * f64::UNIT;
 

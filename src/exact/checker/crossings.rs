@@ -1,6 +1,6 @@
 //! The lines that one edge of a polygon crosses, and the sum over them one by one.
 //!
-//! In: the series X of [`boundary`](super::boundary) along an edge, and where its first line is crossed. Out: Σ (−1)^j X over crossings, in lanes that the
+//! In: the series X of [`green`](super::green) along an edge, and where its first line is crossed. Out: Σ (−1)^j X over crossings, in lanes that the
 //! compiler makes vectors of, with a bound: the terms that the series is cut off by, and roundings.
 
 use super::homography::{Sum, UNIT};

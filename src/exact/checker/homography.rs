@@ -7,13 +7,13 @@
 use glam::DVec2;
 
 use super::super::clip::{Chord, measure, split};
-use super::forms::Board;
+use super::board_forms::Board;
 use crate::math::{Double, Real, two_product};
 
 /// The unit roundoff of `f64`.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// Forms of about the same size have no smaller determinant: less is taken for this.
+/// A determinant of less than this, of forms whose largest factors are about 1, is taken for singular and replaced by it.
 const LEAST_DETERMINANT: f64 = 1e-100;
 
 /// If roundings displace points by no more than this, in pixels, a corner that only they keep off the horizon is said to be on it.

@@ -3,15 +3,15 @@
 //! In: a board's forms in a sub-pixel ([`homography`]) and a polygon. Out: by how much more of it shows the first colour than the second, with a bound.
 //!
 //! - Near squares are cut out of the picture one by one ([`near`]).
-//! - Beyond them Green's theorem makes of the integral a sum over the lines that the polygon's sides cross ([`boundary`]), which [`tail`] adds up where those
+//! - Beyond them Green's theorem makes of the integral a sum over the lines that the polygon's sides cross ([`green`]), which [`tail`] adds up where those
 //!   lines are very many, or never end: toward the horizon, and where a side hardly recedes.
 //! - Pixels of a board alone, with few of its lines, are computed eight at a time ([`strips_simd`]).
 //!
 //! What roundings of the forms displace is added to every bound. Where more is in doubt than the polygon's area, the answer is the mean of both colours.
 
-mod boundary;
+pub(super) mod board_forms;
 mod crossings;
-pub(super) mod forms;
+mod green;
 mod homography;
 mod near;
 mod special;
@@ -66,7 +66,7 @@ impl Homography {
             });
         }
         if far.len() > 2 {
-            sum.add(boundary::sum(self, &far, &visible, budget).within(&far));
+            sum.add(green::sum(self, &far, &visible, budget).within(&far));
         }
         if polygon.iter().any(|&at| self.is_beside_horizon(at)) {
             // Said to be on the horizon, such corners displace what is seen once more as roundings do.

@@ -21,7 +21,7 @@ use multiversion::multiversion;
 
 use super::{
     super::clip::PIXEL,
-    forms::{self, Boards, PIXELS, Views},
+    board_forms::{self, Boards, PIXELS, Views},
     homography::{Sum, UNIT},
     special::square_wave,
 };
@@ -89,7 +89,7 @@ impl<'a> Waiting<'a> {
         let object = pixel.candidate.object;
         if !matches!(self.boards, Some((known, _)) if known == object) {
             self.look(tell);
-            self.boards = forms::boards(self.world, object).map(|boards| (object, boards));
+            self.boards = board_forms::boards(self.world, object).map(|boards| (object, boards));
         }
         self.next.push(pixel);
         if self.next.len() == PIXELS {
@@ -655,7 +655,7 @@ mod tests {
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };
-                let seen = forms::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
+                let seen = board_forms::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
                 let cancel = AtomicBool::new(false);
                 let budget = Budget::of_pixel(1, &cancel);
                 let other = Homography::of(&seen).over(&PIXEL, &budget);

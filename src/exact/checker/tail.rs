@@ -1,6 +1,6 @@
 //! Sums over the very many lines that an edge crosses, or that never end.
 //!
-//! In: an edge's crossings with the lines of one family, and the series X of [`boundary`](super::boundary). Out: Σ (−1)^j X with a bound: what is neglected of waves
+//! In: an edge's crossings with the lines of one family, and the series X of [`green`](super::green). Out: Σ (−1)^j X with a bound: what is neglected of waves
 //! and of the series, and the roundings of what is added.
 //!
 //! Crossing j lies at t_j = t + τj, m_j = g(w + j), and s changes its sign at every one. With
@@ -23,11 +23,11 @@ use super::special::{Complex, integrals, phase, square, times, turned_times};
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
-/// What is neglected of the modes, in square pixels.
+/// What is neglected of the modes, in square pixels: a thousandth of the bound that is asked for.
 const NEGLECTED: f64 = 1e-12;
-/// Where m changes by less than one part in so many, it is taken to be the same at all crossings.
+/// Where m changes by less than one part in so many, it is taken to be the same at all crossings; the bound adds 4/STEADY of the sum for that.
 const STEADY: f64 = 3e6;
-/// The waves that have modes; of the later ones just the size is known.
+/// The terms of X that are summed by Fourier modes; later terms are only bounded.
 const WAVES: usize = 3;
 
 /// Up to so many crossings are added one by one where m grows, and where it hardly does: sums of waves take about as long.
@@ -38,9 +38,9 @@ const MOST: f64 = 300_000.0;
 /// A sum of more than so many crossings that is no greater than this, in square pixels, is neglected.
 const DENSE: f64 = 512.0;
 const CRUMB: f64 = 2e-12;
-/// The time that a wave takes, in crossings.
+/// The time that a mode takes, in crossings.
 const MODE_COST: f64 = 2.0;
-/// The waves that are always computed; a later one may be skipped where it is small.
+/// The modes up to this one are always computed; a later one may be skipped where it is small.
 const FIRST_MODES: f64 = 31.0;
 /// Shares of the tolerance, which together are less than all of it: of a sum or of modes that are left out, of what V_s lacks in the first wave, and of
 /// waves that have no modes.
@@ -54,7 +54,7 @@ const SMALL_ANGLE: f64 = 0.2;
 const PART_OF_SQUARE: f64 = 0.99;
 /// Up to this |θ| Taylor's series stand for the rest of the pole: the next term, θ⁹/47900160, is 100 roundings of the 500 that V may be off by.
 const NEAR_POLE: f64 = 0.2;
-/// Units of work for a crossing, and for a wave.
+/// Units of work (some 50 ns each) for a crossing, and for a mode.
 const CROSSING_WORK: f64 = 1.0 / 32.0;
 const MODE_WORK: f64 = 1.0 / 4.0;
 
@@ -123,7 +123,7 @@ fn start(all: &Crossings, series: &Series, tolerance: f64) -> f64 {
     let g = all.rise;
     let factor = series.factors[1].abs();
     // The cheapest: (m − m_0)/g crossings and κ/2m modes.
-    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * LEFT_OUT * tolerance)).sqrt();
+    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / tolerance).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
     // Where so little is left that it may be neglected, the first term's bound being ½/π of its factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * LEFT_OUT * tolerance)).sqrt() + g;
@@ -160,9 +160,9 @@ fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64, budge
     let w = depth / g;
     let f = &series.factors;
     // The amplitudes of the three waves in the mode n = 1, in which w^(−2−k) is still missing.
-    let mut amplitudes = [0.0; 3];
+    let mut amplitudes = [0.0; WAVES];
     let mut amplitude = 4.0 / (PI * PI * PI) / (g * g * g);
-    for k in 1..=3.min(series.terms) {
+    for k in 1..=WAVES.min(series.terms) {
         amplitudes[k - 1] = f[k] * amplitude;
         amplitude /= PI * g;
     }

@@ -1,4 +1,5 @@
-//! The board's integral over a polygon of many squares, along its boundary, by Green's theorem with periodic Euler polynomials.
+//! The board's integral over a polygon of many squares, along its boundary, by Green's theorem with periodic Euler polynomials. Symbols are those of
+//! [`Homography`].
 //!
 //! In: a convex polygon in which m changes little from square to square, which may reach to the horizon. Out: the integral of the board's sign, with a bound: what the
 //! series neglects, what is neglected of sums over crossings, roundings, and what roundings of the forms displace.

@@ -2,7 +2,7 @@
 //!
 //! In: the board, and a sub-pixel or eight pixels. Out: the forms N₀, N₁ and ℓ, moved to a corner of squares near to the pixel, with bounds on their
 //! errors: for one sub-pixel in any precision, by [`SubPixelFrame::together`]; for eight pixels in double-double, by the same operations on
-//! plain arrays, which the compiler makes vectors of. Only of two corners of squares that are equally near to the pixel it may be the other one.
+//! plain arrays, which the compiler makes vectors of. When two corners of squares are equally near to the pixel, the two ways may choose different ones.
 
 use glam::DVec2;
 use multiversion::multiversion;
@@ -50,7 +50,7 @@ pub struct Boards {
     odd: bool,
 }
 
-/// A checkerboard in some pixels, as [`Board`](super::Board) has it, but for a common factor of its forms.
+/// A checkerboard in some pixels, as [`Board`] has it, but for a common factor of its forms.
 #[derive(Clone, Debug, Default)]
 pub struct Views {
     /// The factors of x, y and 1 in N₀ and N₁.
