@@ -106,17 +106,25 @@ fn main() {
 /// A floor of which a pixel sees many squares nearly everywhere.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
+/// Where Weyl's sequence of an irrational step is at an index, from −size/2 to size/2.
+fn place(index: u32, step: f64, size: f64) -> f64 {
+    ((f64::from(index) * step).fract() - 0.5) * size
+}
+
+/// Places all over the picture.
+fn center(index: u32) -> [f64; 3] {
+    [
+        place(index, 0.618_033_988_749_895, 12.0),
+        place(index, 0.754_877_666_246_693, 7.0),
+        place(index, 0.569_840_290_998_053, 4.0),
+    ]
+}
+
 /// Spheres of about a pixel in size, all over the picture.
 fn tiny(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
-        // Weyl's sequences in three irrational steps.
-        let place = |step: f64, size: f64| ((f64::from(i) * step).fract() - 0.5) * size;
-        let (x, y, z) = (
-            place(0.618_033_988_749_895, 12.0),
-            place(0.754_877_666_246_693, 7.0),
-            place(0.569_840_290_998_053, 4.0),
-        );
+        let [x, y, z] = center(i);
         text += &format!("sphere {{ center ({x}, {y}, {z}) radius 0.02 }}\n");
     }
     text
@@ -127,17 +135,12 @@ fn tiny(count: u32) -> String {
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
-        let place = |step: f64, size: f64| ((f64::from(i) * step).fract() - 0.5) * size;
-        let (x, y, z) = (
-            place(0.618_033_988_749_895, 12.0),
-            place(0.754_877_666_246_693, 7.0),
-            place(0.569_840_290_998_053, 4.0),
-        );
+        let [x, y, z] = center(i);
         let (nx, ny) = (
-            place(0.414_213_562_373_095, 1.0),
-            place(0.732_050_807_568_877, 1.0),
+            place(i, 0.414_213_562_373_095, 1.0),
+            place(i, 0.732_050_807_568_877, 1.0),
         );
-        let spin = place(0.236_067_977_499_79, 360.0);
+        let spin = place(i, 0.236_067_977_499_79, 360.0);
         text += &format!(
             "triangle {{ centroid ({x}, {y}, {z}) normal ({nx}, {ny}, 1) sides (4, 4, 0.02) spin {spin}deg }}\n"
         );

@@ -2,12 +2,13 @@
 //!
 //! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in linear light, with a bound on
 //! its error. In ordinary views (a vertical field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within
-//! 1e±9 or 0) the bound is at most 1e-9; in others it is what it is, up to 1 for the mean colour, within a second a pixel.
+//! 1e±9 or 0) the bound is at most 1e-9; in others it is what it is, up to 1 for the mean colour. A pixel takes a
+//! second at most, and a few milliseconds for each object in it (`budget`).
 //!
 //! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:
 //!
 //! 1. The picture is quartered until a part shows one colour for certain, or is a single pixel. Pixels that show nothing but a checkerboard, and few of its
-//!    lines, are computed eight at a time (`checker::strips_simd`).
+//!    lines, are computed eight at a time (`checker::board_pixels`).
 //! 2. In any other pixel the boundaries of what may be seen there cut it into regions: convex polygons where all are lines
 //!    (`arrangement`), slabs between neighbouring curves where some are conics (`slabs`). A pixel with too many curves is quartered first.
 //! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen there (`region`). Boundaries that
@@ -47,7 +48,7 @@ use self::{
     budget::Budget,
     checker::{
         Sum, UNIT,
-        strips_simd::{BoardPixel, Waiting},
+        board_pixels::{BoardPixel, Waiting},
     },
     region::{Regions, Shares},
 };
@@ -337,7 +338,9 @@ impl<'a> Integrator<'a> {
     /// What is said of a sub-pixel of which nothing is computed: all of it may be what its middle is not.
     fn in_doubt(&self, sub_pixel: SubPixel, candidates: &[Candidate]) -> Shares {
         let (seen, _) = candidates::object_at(self.world, sub_pixel, DVec2::ZERO, candidates);
-        let slot = seen.map_or(self.colors.len() - 1, |object| self.world.slots(object)[0]);
+        let slot = seen.map_or(self.world.background(), |object| {
+            self.world.slots(object)[0]
+        });
         Shares {
             by_slot: vec![(slot, 1.0)],
             bound: 1.0,

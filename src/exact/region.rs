@@ -4,8 +4,6 @@
 //! seen; a checkerboard is divided further by `checker` and `conic_segment`. The bound adds what those say, what was said to be in doubt, and by how much the
 //! regions together are not the whole sub-pixel.
 
-use std::mem;
-
 use glam::DVec2;
 
 use crate::{
@@ -89,8 +87,7 @@ impl<'a> Regions<'a> {
     /// Adds a region in which no boundary lies.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
-            let background = self.world.palette().len() - 1;
-            return self.shares.add(background, region.area);
+            return self.shares.add(self.world.background(), region.area);
         };
         let [first, second] = self.world.slots(object);
         if first == second {
@@ -145,8 +142,8 @@ impl<'a> Regions<'a> {
     }
 
     /// The shares of all that was added.
-    pub fn finish(mut self) -> Shares {
-        let mut shares = mem::take(&mut self.shares);
+    pub fn finish(self) -> Shares {
+        let mut shares = self.shares;
         // What the regions leave out of the sub-pixel, or count twice, may have any colour.
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();

@@ -83,8 +83,7 @@ pub(super) struct Crossings {
     pub depth: f64,
     /// m's step from line to line.
     pub rise: f64,
-    pub lines: f64,
-    /// The same exactly.
+    /// How many there are, a whole number; infinite for an edge that ends at the horizon.
     pub count: Double,
 }
 

@@ -18,7 +18,7 @@
 use super::super::{budget::Budget, clip::measure};
 use super::crossings::{Crossings, MAX_TERMS, Series};
 use super::homography::{Corner, Homography, Sum, UNIT, Visible};
-use super::special::{turn_exactly, waves};
+use super::special::{square_wave, turn, turn_exactly, waves};
 use super::tail;
 use crate::math::{Double, Real};
 use glam::DVec2;
@@ -137,7 +137,7 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 ) -> (f64, f64) {
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
-        let mut waves = waves::<MOST, ROWS>(turned(&place(corner, i)));
+        let mut waves = waves::<MOST, ROWS>(turn(corner.floor[i]));
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;
@@ -157,33 +157,17 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// Where a corner is along an axis of the floor.
-fn place(corner: &Corner, axis: usize) -> Double {
-    Double::from_f64(corner.floor[axis])
-}
-
-/// A place without whole turns, in half turns.
-fn turned(place: &Double) -> f64 {
-    turn_exactly(place).to_f64()
-}
-
-/// The last whole number before a place, and s there.
-fn floor(place: &Double) -> (Double, f64) {
-    let (square, is_odd) = place.floor();
-    (square, if is_odd { -1.0 } else { 1.0 })
-}
-
 /// An edge from its near end to its far one. `c` counts the lines of the family that it crosses less, t those of the other.
 struct Edge {
     /// +1 or −1 where the boundary runs from near to far or back, times the sign before ρ ∫ s dX.
     sign: f64,
     /// How Ψ at the edge's end, in the boundary's sense, counts: 1 where t is b, else 0.
     potential: f64,
-    c: Double,
-    t: Double,
+    c: f64,
+    t: f64,
     depth: f64,
     /// The far end's c, t and m, unless it is on the horizon.
-    end: Option<(Double, Double, f64)>,
+    end: Option<(f64, f64, f64)>,
     /// How many lines it crosses of the family that it crosses less, infinite for the horizon.
     count: Double,
     /// t's change to the far end, infinite for the horizon.
@@ -209,7 +193,7 @@ impl Edge {
         }
         let step = |i: usize| match far.depth.is_infinite() {
             true => far.floor[i].abs(),
-            false => place(far, i).minus(&place(near, i)).hi.abs(),
+            false => (far.floor[i] - near.floor[i]).abs(),
         };
         let mut edge = Self::along(board, near, far, step(0) <= step(1))?;
         if !forward {
@@ -223,8 +207,8 @@ impl Edge {
         let (c, t) = if by_b { (0, 1) } else { (1, 0) };
         let endless = far.depth.is_infinite();
         let exactly = |i: usize| match endless {
-            true => place(far, i),
-            false => place(far, i).minus(&place(near, i)),
+            true => Double::from_f64(far.floor[i]),
+            false => Double::difference(far.floor[i], near.floor[i]),
         };
         let (across, along) = (exactly(c), exactly(t));
         if along.hi == 0.0 {
@@ -232,17 +216,17 @@ impl Edge {
         }
         let lines = match endless {
             true => Double::from_f64(f64::INFINITY),
-            false => floor(&place(far, c)).0.minus(&floor(&place(near, c)).0),
+            false => Double::difference(far.floor[c].floor(), near.floor[c].floor()),
         };
         let rise = if endless { 1.0 } else { far.depth - near.depth };
         let per_line = along.over(&across);
         Some(Self {
             sign: if by_b { 1.0 } else { -1.0 },
             potential: if by_b { 1.0 } else { 0.0 },
-            c: place(near, c),
-            t: place(near, t),
+            c: near.floor[c],
+            t: near.floor[t],
             depth: near.depth,
-            end: (!endless).then(|| (place(far, c), place(far, t), far.depth)),
+            end: (!endless).then(|| (far.floor[c], far.floor[t], far.depth)),
             count: match lines.is_negative() {
                 true => lines.negated(),
                 false => lines,
@@ -263,33 +247,32 @@ impl Edge {
     /// ρ ∫ s(c) dX from near to far.
     fn integral(&self, board: &Homography, terms: usize, share: f64, budget: &Budget) -> Sum {
         let series = self.series(board, terms);
-        let (square, start) = floor(&self.c);
+        let square = self.c.floor();
+        let start = square_wave(square);
         let mut sum = Sum {
-            value: -start * series.at(turned(&self.t), self.depth),
+            value: -start * series.at(turn(self.t), self.depth),
             bound: 0.0,
         };
-        let lines = self.lines();
         if let Some((c, t, depth)) = self.end {
-            sum.value += floor(&c).1 * series.at(turned(&t), depth);
+            sum.value += square_wave(c.floor()) * series.at(turn(t), depth);
         }
         let ends = series.size(1, self.depth);
-        if lines > 0.0 && self.rho != 0.0 {
-            let within = self.c.minus(&square);
+        if self.count.hi > 0.0 && self.rho != 0.0 {
+            let within = Double::difference(self.c, square);
             let first = match self.sense > 0.0 {
                 true => Double::from_f64(1.0).minus(&within),
                 false => within,
             };
-            let t = first.times(&self.stride).plus(&self.t);
+            let t = first.times(&self.stride).plus(&Double::from_f64(self.t));
             let crossings = Crossings {
                 turned: [t, self.stride].map(|x| turn_exactly(&x)),
                 depth: self.depth + first.hi * self.rise,
                 rise: self.rise,
-                lines,
                 count: self.count,
             };
             // s jumps by −2s where the first line is crossed, and by turns from there.
             let tolerance = share
-                * if lines.is_finite() {
+                * if self.end.is_some() {
                     FINITE_TAIL
                 } else {
                     ENDLESS_TAIL
@@ -309,11 +292,6 @@ impl Edge {
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.misfit * all);
         sum
-    }
-
-    /// How many lines it crosses of the family that it crosses less.
-    fn lines(&self) -> f64 {
-        self.count.hi
     }
 
     fn series(&self, board: &Homography, terms: usize) -> Series {

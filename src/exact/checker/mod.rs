@@ -5,17 +5,18 @@
 //! - Near squares are cut out of the picture one by one ([`near`]).
 //! - Beyond them Green's theorem makes of the integral a sum over the lines that the polygon's sides cross ([`green`]), which [`tail`] adds up where those
 //!   lines are very many, or never end: toward the horizon, and where a side hardly recedes.
-//! - Pixels of a board alone, with few of its lines, are computed eight at a time ([`strips_simd`]).
+//! - Pixels of a board alone, with few of its lines, are computed eight at a time ([`board_pixels`], [`strips_simd`]).
 //!
 //! What roundings of the forms displace is added to every bound. Where more is in doubt than the polygon's area, the answer is the mean of both colours.
 
 pub(super) mod board_forms;
+pub(super) mod board_pixels;
 mod crossings;
 mod green;
 mod homography;
 mod near;
 mod special;
-pub(super) mod strips_simd;
+mod strips_simd;
 mod tail;
 
 use glam::DVec2;

@@ -1,8 +1,7 @@
-//! Pixels that show nothing but a checkerboard and few of its lines, eight at a time: most pixels of most pictures.
+//! The integral of the board's sign over eight pixels at once, in lanes, which the compiler makes vectors of.
 //!
-//! In: such pixels one by one, in any order. Out: their integrals of the board's sign, with the bounds that `near` would have. Pixels that as many lines of either
-//! family cross wait for each other and are then computed in lanes, which the compiler makes vectors of. A pixel's sum is made of its own numbers,
-//! by the same operations whichever others it is computed with, so that it depends neither on their order nor on which part of a picture is wanted.
+//! In: eight pixels that show nothing but a checkerboard, crossed by as many lines of either family. Out: their integrals, each with a bound: roundings of areas,
+//! and how far each line may be from the computed one.
 //!
 //! The lines of one family, of which there are fewer, cut the pixel into strips; in strip i the sign of their squares is σ_i. Beyond
 //! line k of the other family lies the signed area W_k = Σ σ_i·|strip i ∩ H_k|, W_0 being all of it, and the sign changes from
@@ -21,18 +20,14 @@ use multiversion::multiversion;
 
 use super::{
     super::clip::PIXEL,
-    board_forms::{self, Boards, PIXELS, Views},
+    board_forms::{PIXELS, Views},
     homography::{Sum, UNIT},
     special::square_wave,
 };
-use crate::{
-    math::ROUND,
-    tracer::{Candidate, World},
-};
+use crate::math::ROUND;
 
-/// At most so many lines cut the pixels into strips, and so many cross those.
-const STRIPS: usize = 6;
-const MOST: usize = 32;
+/// At most so many lines cut the pixels into strips.
+pub(super) const STRIPS: usize = 6;
 
 /// A family whose lines are farther away than this, in squares, is left to others: sums of numbers of lines are exact below.
 const OUT_OF_REACH: f64 = 1e9;
@@ -46,106 +41,9 @@ type Form = [Row; 3];
 /// Sides of strips: parts of the sub-pixel's four, and a chord for each line.
 const SIDES: usize = 4 * (STRIPS + 1) + STRIPS;
 
-/// A pixel that shows nothing but a checkerboard.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::exact) struct BoardPixel {
-    /// Its column.
-    pub x: u32,
-    /// Its row.
-    pub y: u32,
-    /// The checkerboard.
-    pub candidate: Candidate,
-}
-
-/// The pixels that wait.
-#[derive(Debug)]
-pub(in crate::exact) struct Waiting<'a> {
-    world: &'a World,
-    /// Pixels not looked at so far, all of one checkerboard.
-    next: Vec<BoardPixel>,
-    /// That checkerboard, as an object of the scene, and what its pixels have in common.
-    boards: Option<(usize, Boards)>,
-    views: Views,
-    corners: Corners,
-    groups: Groups<BoardPixel>,
-}
-
-impl<'a> Waiting<'a> {
-    /// None so far.
-    pub fn new(world: &'a World) -> Self {
-        Self {
-            world,
-            next: Vec::with_capacity(PIXELS),
-            boards: None,
-            views: Views::default(),
-            corners: Corners::default(),
-            groups: Groups::default(),
-        }
-    }
-
-    /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where something else has to be
-    /// tried.
-    pub fn push(&mut self, pixel: BoardPixel, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        let object = pixel.candidate.object;
-        if !matches!(self.boards, Some((known, _)) if known == object) {
-            self.look(tell);
-            self.boards = board_forms::boards(self.world, object).map(|boards| (object, boards));
-        }
-        self.next.push(pixel);
-        if self.next.len() == PIXELS {
-            self.look(tell);
-        }
-    }
-
-    /// Computes all that still wait.
-    pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        self.look(tell);
-        for group in self.groups.all() {
-            compute(group, tell);
-        }
-    }
-
-    /// Sorts the pixels that come next by what crosses them.
-    fn look(&mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        let Some(&last) = self.next.last() else {
-            return;
-        };
-        let Some((_, boards)) = &self.boards else {
-            self.next.drain(..).for_each(|pixel| tell(pixel, None));
-            return;
-        };
-        let (mut columns, mut rows) = ([last.x; PIXELS], [last.y; PIXELS]);
-        for (i, pixel) in self.next.iter().enumerate() {
-            (columns[i], rows[i]) = (pixel.x, pixel.y);
-        }
-        boards.at(&columns, &rows, &mut self.views);
-        self.corners.look(&self.views);
-        for (i, pixel) in self.next.drain(..).enumerate() {
-            let Some(group) = self.groups.of(&self.corners, i) else {
-                tell(pixel, None);
-                continue;
-            };
-            if group.push(pixel, &self.views, &self.corners, i) {
-                compute(group, tell);
-            }
-        }
-    }
-}
-
-/// The integrals of a group's pixels, after which it is empty.
-fn compute(group: &mut Group<BoardPixel>, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-    if group.pixels.is_empty() {
-        return;
-    }
-    let sums = group.sums();
-    for (i, pixel) in group.pixels.drain(..).enumerate() {
-        tell(pixel, Some(sums.of(i)));
-    }
-}
-
 /// In which squares some pixels have their corners.
 #[derive(Debug, Default)]
-struct Corners {
+pub(super) struct Corners {
     /// By family and corner, the lower one's number.
     pub squares: [[Row; 4]; 2],
     /// By family, the number of the first square.
@@ -153,20 +51,6 @@ struct Corners {
     /// By family, how many lines cross the pixel; infinite where its corners do not show it.
     pub lines: [Row; 2],
 }
-
-/// Pixels that the same numbers of lines cross.
-#[derive(Debug)]
-struct Group<P> {
-    /// Which pixels they are: no more than are computed together.
-    pub pixels: Vec<P>,
-    lines: Lines,
-    /// How many lines of either family cross each of them, fewer first.
-    crossing: [usize; 2],
-}
-
-/// All groups there may be.
-#[derive(Debug)]
-struct Groups<P>(Vec<Group<P>>);
 
 impl Corners {
     /// Of pixels that see a board so.
@@ -223,49 +107,6 @@ impl Corners {
     }
 }
 
-impl<P> Default for Groups<P> {
-    fn default() -> Self {
-        let crossings = (0..=STRIPS).flat_map(|few| (0..=MOST).map(move |many| [few, many]));
-        let group = |crossing| Group {
-            pixels: Vec::new(),
-            lines: Lines::default(),
-            crossing,
-        };
-        Self(crossings.map(group).collect())
-    }
-}
-
-impl<P> Groups<P> {
-    /// All of them.
-    pub fn all(&mut self) -> impl Iterator<Item = &mut Group<P>> {
-        self.0.iter_mut()
-    }
-
-    /// Where a pixel goes; none if too many lines cross it.
-    pub fn of(&mut self, corners: &Corners, pixel: usize) -> Option<&mut Group<P>> {
-        let [a, b] = corners.lines.each_ref().map(|lines| lines[pixel]);
-        let (few, many) = if a <= b { (a, b) } else { (b, a) };
-        if !(few <= STRIPS as f64 && many <= MOST as f64) {
-            return None;
-        }
-        self.0.get_mut(few as usize * (MOST + 1) + many as usize)
-    }
-}
-
-impl<P> Group<P> {
-    /// Adds a pixel to those of which there are fewer than can be computed together; says whether there is no room for more.
-    pub fn push(&mut self, at: P, views: &Views, corners: &Corners, pixel: usize) -> bool {
-        self.lines.set(self.pixels.len(), views, corners, pixel);
-        self.pixels.push(at);
-        self.pixels.len() == PIXELS
-    }
-
-    /// The integrals over its pixels.
-    pub fn sums(&self) -> Sums {
-        self.lines.sums(self.crossing)
-    }
-}
-
 #[multiversion(targets = "simd")]
 fn look_widely(views: &Views, corners: &mut Corners) {
     corners.see(views);
@@ -273,7 +114,7 @@ fn look_widely(views: &Views, corners: &mut Corners) {
 
 /// The boards of some pixels, the family with fewer lines first.
 #[derive(Debug, Default)]
-struct Lines {
+pub(super) struct Lines {
     few: Family,
     many: Family,
     below: Form,
@@ -300,7 +141,7 @@ struct Sides {
 }
 
 /// What several pixels sum up to; positive for the first colour.
-struct Sums {
+pub(super) struct Sums {
     values: Row,
     bounds: Row,
 }
@@ -541,130 +382,4 @@ fn nearest(x: f64) -> f64 {
 #[multiversion(targets = "simd")]
 fn sums_widely(pixels: &Lines, lines: [usize; 2]) -> Sums {
     pixels.compute(lines)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        exact::{budget::Budget, checker::Homography},
-        scene,
-        source::{Source, Sources},
-        tracer::{SubPixel, candidates},
-    };
-    use proptest::prelude::*;
-    use std::{collections::HashMap, sync::atomic::AtomicBool};
-
-    const SIZE: [u32; 2] = [24, 18];
-
-    fn world(camera: &str, square: f64) -> World {
-        let [width, height] = SIZE;
-        let text = format!(
-            "image {{ width {width} height {height} background black }}\ncamera {{ {camera} }}\n\
-             checkerboard {{ y 0.25 square {square} colors (gray, white) }}"
-        );
-        let sources = Sources::new(Source::from_text("a.scn", &text));
-        World::new(&scene::read(&sources).scene.expect("a scene"))
-    }
-
-    fn pixels() -> Vec<(u32, u32)> {
-        let [width, height] = SIZE;
-        (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .collect()
-    }
-
-    /// The sums of some pixels that come in this order.
-    fn sums(
-        world: &World,
-        order: impl IntoIterator<Item = (u32, u32)>,
-    ) -> HashMap<(u32, u32), Option<Sum>> {
-        let candidate = candidates::everything(world)[0];
-        let mut waiting = Waiting::new(world);
-        let mut known = HashMap::new();
-        let mut tell = |pixel: BoardPixel, sum| {
-            assert!(known.insert((pixel.x, pixel.y), sum).is_none());
-        };
-        for (x, y) in order {
-            waiting.push(BoardPixel { x, y, candidate }, &mut tell);
-        }
-        waiting.finish(&mut tell);
-        known
-    }
-
-    #[test]
-    fn no_pixel_depends_on_those_it_is_computed_with() {
-        for camera in [
-            "eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75",
-            "eye (0.3, 40, 0.2) lookat (0, 0, 0.1) roll 20deg fov 5deg",
-            "eye (-7, 2, 1e6) lookat (-6.4, 0, 1000001) fov 60deg",
-        ] {
-            let world = world(camera, 0.7);
-            let all = sums(&world, pixels());
-            assert_eq!(all.len(), pixels().len());
-            let some = |step: usize| pixels().into_iter().step_by(step);
-            let by_column = |(x, y): &(u32, u32)| (*x, *y);
-            let mut columns = pixels();
-            columns.sort_by_key(by_column);
-            let orders = [
-                pixels().into_iter().rev().collect(),
-                columns,
-                some(3).collect(),
-                some(7).collect(),
-                vec![(11, 17)],
-            ];
-            let bits = |sum: &Option<Sum>| sum.map(|sum| [sum.value, sum.bound].map(f64::to_bits));
-            for order in orders {
-                let count = order.len();
-                let found = sums(&world, order);
-                assert_eq!(found.len(), count);
-                for (pixel, sum) in found {
-                    assert_eq!(bits(&sum), bits(&all[&pixel]), "{camera} at {pixel:?}");
-                }
-            }
-        }
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(300))]
-
-        #[test]
-        fn it_is_what_clipping_square_by_square_gives(
-            place in prop::array::uniform2(-9.0..9.0_f64),
-            offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
-            // As powers of ten.
-            height in -1.0..2.0_f64,
-            square in -1.0..3.0_f64,
-            yaw in 0.0..360.0_f64,
-            down in 0.0..89.0_f64,
-            roll in 0.0..360.0_f64,
-            fov in prop::sample::select(vec![0.01, 1.0, 20.0, 60.0, 120.0, 170.0]),
-        ) {
-            let [x, z] = place;
-            let (yaw, down) = (yaw.to_radians(), down.to_radians());
-            let (x, y, z) = (x + offset, 0.25 + libm::pow(10.0, height), z);
-            let ahead = [libm::cos(yaw), -libm::tan(down), libm::sin(yaw)].map(|step| 1e3 * step);
-            let camera = format!(
-                "eye ({x}, {y}, {z}) lookat ({}, {}, {}) roll {roll}deg fov {fov}deg",
-                x + ahead[0], y + ahead[1], z + ahead[2]
-            );
-            let world = world(&camera, libm::pow(10.0, square));
-            let mut compared = 0;
-            for ((x, y), sum) in sums(&world, pixels()) {
-                // None where too many lines cross; not a number where squares are as large as numbers can be.
-                let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
-                    continue;
-                };
-                let seen = board_forms::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
-                let cancel = AtomicBool::new(false);
-                let budget = Budget::of_pixel(1, &cancel);
-                let other = Homography::of(&seen).over(&PIXEL, &budget);
-                let value = if seen.odd { -other.value } else { other.value };
-                let off = (sum.value - value).abs();
-                prop_assert!(off <= sum.bound + other.bound, "{camera} at {x}, {y}: {sum:?} and {other:?}");
-                compared += 1;
-            }
-            prop_assert!(compared > 0 || fov < 1.0 || square < 0.0, "{camera}");
-        }
-    }
 }

@@ -60,12 +60,13 @@ const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Σ (−1)^j X over all crossings, of which as much as `tolerance` may be neglected.
 pub(super) fn sum(all: &Crossings, series: &Series, tolerance: f64, budget: &Budget) -> Sum {
-    let trivial = all.lines
+    let lines = all.count.hi;
+    let trivial = lines
         * (1..=series.terms)
             .map(|k| series.size(k, all.depth))
             .sum::<f64>();
-    let is_crumb = all.lines > DENSE && trivial <= CRUMB.min(tolerance);
-    let is_little = all.lines > SHORT && trivial <= LEFT_OUT * tolerance;
+    let is_crumb = lines > DENSE && trivial <= CRUMB.min(tolerance);
+    let is_little = lines > SHORT && trivial <= LEFT_OUT * tolerance;
     let trivial_sum = Sum {
         value: 0.0,
         bound: trivial,
@@ -78,29 +79,29 @@ pub(super) fn sum(all: &Crossings, series: &Series, tolerance: f64, budget: &Bud
     if is_crumb || is_little {
         return trivial_sum;
     }
-    let is_level = all.rise * all.lines < all.depth;
-    if all.lines <= if is_level { SHORT_LEVEL } else { SHORT } {
-        return one_by_one(all.lines).unwrap_or(trivial_sum);
+    let is_level = all.rise * lines < all.depth;
+    if lines <= if is_level { SHORT_LEVEL } else { SHORT } {
+        return one_by_one(lines).unwrap_or(trivial_sum);
     }
     if is_level {
         // Where m hardly grows the waves of the ends do not fall off.
         let sum = level(all, series, trivial, tolerance, budget);
-        let is_better_one_by_one = sum.bound > tolerance && all.lines <= MOST;
-        let other = is_better_one_by_one.then(|| one_by_one(all.lines));
+        let is_better_one_by_one = sum.bound > tolerance && lines <= MOST;
+        let other = is_better_one_by_one.then(|| one_by_one(lines));
         return other.flatten().unwrap_or(sum);
     }
     let direct = ((start(all, series, tolerance) - all.depth) / all.rise)
         .ceil()
         .clamp(0.0, MOST);
-    if direct + SHORT >= all.lines && all.lines <= MOST {
-        return one_by_one(all.lines).unwrap_or(trivial_sum);
+    if direct + SHORT >= lines && lines <= MOST {
+        return one_by_one(lines).unwrap_or(trivial_sum);
     }
     let Some(mut sum) = one_by_one(direct) else {
         return trivial_sum;
     };
     let ends = [
         Some(Double::from_f64(direct)),
-        all.lines.is_finite().then_some(all.count),
+        lines.is_finite().then_some(all.count),
     ];
     let share = tolerance / ends.iter().flatten().count() as f64;
     for (end, lines) in ends.iter().enumerate() {
@@ -273,7 +274,7 @@ fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
 
 /// The same over an edge on which m hardly changes, where |X| adds up to no more than `trivial`; of which as much as `tolerance` may be neglected.
 fn level(all: &Crossings, series: &Series, trivial: f64, tolerance: f64, budget: &Budget) -> Sum {
-    let lines = all.lines;
+    let lines = all.count.hi;
     let size = |k: usize| lines * series.size(k, all.depth);
     let middle = all.depth + 0.5 * lines * all.rise;
     let is_steady = all.rise * lines * STEADY < middle;
