@@ -277,8 +277,11 @@ impl<T: Real> Camera<T> {
     }
 }
 
-/// The power of two that brings the farthest lengths of a scene well within the range of `f64`, 0 if they are. Lengths that
-/// are 2^−1400 of them, and more, still are.
+/// Binary exponents between which lengths are left as they are: squares of lengths up to the greatest, and of all that are at least 2^−200 of the least, are
+/// well within the range of `f64`, which is 2^−1022 to 2^1024.
+const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
+
+/// The power of two that brings the farthest lengths of a scene between those of [`LENGTHS`], 0 if they are.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let eye = scene.camera.eye;
     let farthest = scene
@@ -298,9 +301,9 @@ fn exponent_of_lengths(scene: &Scene) -> i32 {
         })
         .fold(0.0, f64::max);
     match libm::frexp(farthest.min(f64::MAX)).1 {
-        exponent if exponent > 400 => 400 - exponent,
-        exponent if exponent < -300 => -exponent,
-        _ => 0,
+        exponent if LENGTHS.contains(&exponent) => 0,
+        exponent if exponent > 0 => LENGTHS.end() - exponent,
+        exponent => -exponent,
     }
 }
 

@@ -23,6 +23,13 @@ use crate::{
     math::{ROUND, UP, floor},
 };
 
+/// The form below a quotient is at least so many times as great as its error: then (a ± e)/(l ± f) is within 4/3 of (e + f·|a/l|)/l of a/l, and this takes
+/// the place of the 4/3.
+const CLEAR: f64 = 4.0;
+
+/// Places that are off by more than this, in squares, tell nothing worth having: only the half of each square that is away from its lines would be certain.
+const UNSURE: f64 = 0.25;
+
 /// The greatest side of a block, in pixels: that of the squares that quartering begins with.
 pub(super) const SIDE: usize = 32;
 
@@ -115,16 +122,16 @@ impl Mesh {
         let squares = Squares::new(board, frame);
         let Squares { across, below, .. } = squares;
         let least = below.factors[2] - below.spread() * UP;
-        if least <= 4.0 * below.rad {
+        if least <= CLEAR * below.rad {
             return None;
         }
         let slack = across.map(|across| {
             let greatest = (across.factors[2].abs() + across.spread() + across.rad) / least;
             // As in `Squares::ranges`.
-            let inherited = (across.rad + greatest * below.rad) * 4.0 / least;
+            let inherited = (across.rad + greatest * below.rad) * CLEAR / least;
             (inherited + (greatest + 1.0) * ROUNDINGS) * UP
         });
-        if !slack.iter().all(|&slack| slack < 0.25) {
+        if !slack.iter().all(|&slack| slack < UNSURE) {
             return None;
         }
         let mut columns = [0.0; LANES];
@@ -306,7 +313,7 @@ impl Squares {
     /// is not certain.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.below.factors[2] - self.below.spread() * UP;
-        if least <= 4.0 * self.below.rad {
+        if least <= CLEAR * self.below.rad {
             return None;
         }
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
@@ -319,8 +326,8 @@ impl Squares {
             let low = values.into_iter().fold(f64::INFINITY, f64::min);
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let size = low.abs().max(high.abs());
-            let slack = (across.rad + size * self.below.rad) * 4.0 / least + size * ROUNDINGS;
-            (slack < 0.25).then(|| (floor(low - slack), floor(high + slack)))
+            let slack = (across.rad + size * self.below.rad) * CLEAR / least + size * ROUNDINGS;
+            (slack < UNSURE).then(|| (floor(low - slack), floor(high + slack)))
         });
         Some([x?, z?])
     }

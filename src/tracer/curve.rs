@@ -11,6 +11,9 @@ use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
 use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
 
+/// From how many squares on a board is not moved nearer to a sub-pixel: from 2^52 on a rounded quotient may not be the nearest whole number.
+const MOST_SQUARES: f64 = (1u64 << 52) as f64;
+
 /// The error of a line's form, in units of its greatest slope, from which on double-double was not enough: eight roundings of an `f64`, more than
 /// the three of its factors come to.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
@@ -126,8 +129,7 @@ impl<T: Real> SubPixelFrame<T> {
         let local = forms.map(|form| {
             let (factors, own_rad) = self.local(form);
             let times = (corner(&factors) / steep).round();
-            // From 2^52 on a rounded number may not be near.
-            if !(times.abs() < 4e15 && steep > 0.0) {
+            if !(times.abs() < MOST_SQUARES && steep > 0.0) {
                 return (factors, own_rad);
             }
             odd ^= times as i64 & 1 == 1;

@@ -7,7 +7,7 @@
 use super::{
     board_forms::{self, Boards, PIXELS, Views},
     homography::Sum,
-    strips_simd::{Corners, Lines, STRIPS, Sums},
+    strips_simd::{Corners, Lines, Room, STRIPS},
 };
 use crate::tracer::{Candidate, World};
 
@@ -36,6 +36,7 @@ pub(in crate::exact) struct Waiting<'a> {
     views: Views,
     corners: Corners,
     groups: Groups,
+    room: Room,
 }
 
 impl<'a> Waiting<'a> {
@@ -48,6 +49,7 @@ impl<'a> Waiting<'a> {
             views: Views::default(),
             corners: Corners::default(),
             groups: Groups::default(),
+            room: Room::default(),
         }
     }
 
@@ -69,7 +71,7 @@ impl<'a> Waiting<'a> {
     pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
         self.look(tell);
         for group in self.groups.all() {
-            compute(group, tell);
+            compute(group, &mut self.room, tell);
         }
     }
 
@@ -94,18 +96,18 @@ impl<'a> Waiting<'a> {
                 continue;
             };
             if group.push(pixel, &self.views, &self.corners, i) {
-                compute(group, tell);
+                compute(group, &mut self.room, tell);
             }
         }
     }
 }
 
 /// The integrals of a group's pixels, after which it is empty.
-fn compute(group: &mut Group, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+fn compute(group: &mut Group, room: &mut Room, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
     if group.pixels.is_empty() {
         return;
     }
-    let sums = group.sums();
+    let sums = group.lines.sums(group.crossing, room);
     for (i, pixel) in group.pixels.drain(..).enumerate() {
         tell(pixel, Some(sums.of(i)));
     }
@@ -160,11 +162,6 @@ impl Group {
         self.lines.set(self.pixels.len(), views, corners, pixel);
         self.pixels.push(at);
         self.pixels.len() == PIXELS
-    }
-
-    /// The integrals over its pixels.
-    pub fn sums(&self) -> Sums {
-        self.lines.sums(self.crossing)
     }
 }
 

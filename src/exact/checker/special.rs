@@ -27,10 +27,11 @@ pub(super) fn turn_exactly(x: &Double) -> Double {
 }
 
 /// n times an angle that is given without whole turns, without whole turns: to within a rounding of itself, however small that is, as long as
-/// double-double numbers tell.
+/// double-double numbers tell. n is below 2^51.
 pub(super) fn turned_times(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
-    turn(hi) + (lo + n * angle.lo)
+    let turns = (0.5 * hi + ROUND) - ROUND;
+    (hi - 2.0 * turns) + (lo + n * angle.lo)
 }
 
 pub(super) fn times(a: Complex, b: Complex) -> Complex {

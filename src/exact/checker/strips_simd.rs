@@ -133,11 +133,21 @@ struct Family {
 }
 
 /// Directed sides of strips, from `start` on by `step`, one of each pixel, with the signs of the strips that they bound.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     start: [Row; 2],
     step: [Row; 2],
     sign: Row,
+}
+
+/// Room for the sides of strips, which is used again.
+#[derive(Debug)]
+pub(super) struct Room([Sides; SIDES]);
+
+impl Default for Room {
+    fn default() -> Self {
+        Self([Sides::default(); SIDES])
+    }
 }
 
 /// What several pixels sum up to; positive for the first colour.
@@ -179,17 +189,12 @@ impl Lines {
     }
 
     /// The integrals over the pixels, which so many lines of either family cross.
-    pub fn sums(&self, lines: [usize; 2]) -> Sums {
-        sums_widely(self, lines)
+    pub fn sums(&self, lines: [usize; 2], room: &mut Room) -> Sums {
+        sums_widely(self, lines, room)
     }
 
     #[inline(always)]
-    fn compute(&self, [few, many]: [usize; 2]) -> Sums {
-        let mut sides = [Sides {
-            start: [[0.0; PIXELS]; 2],
-            step: [[0.0; PIXELS]; 2],
-            sign: [0.0; PIXELS],
-        }; SIDES];
+    fn compute(&self, [few, many]: [usize; 2], Room(sides): &mut Room) -> Sums {
         let sides = &mut sides[..4 * (few + 1) + few];
         let failed = self.strips(few, sides);
         let (mut sums, mut lengths, mut offs) = ([0.0; PIXELS], [0.0; PIXELS], [0.0; PIXELS]);
@@ -380,6 +385,6 @@ fn nearest(x: f64) -> f64 {
 }
 
 #[multiversion(targets = "simd")]
-fn sums_widely(pixels: &Lines, lines: [usize; 2]) -> Sums {
-    pixels.compute(lines)
+fn sums_widely(pixels: &Lines, lines: [usize; 2], room: &mut Room) -> Sums {
+    pixels.compute(lines, room)
 }

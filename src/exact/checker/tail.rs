@@ -39,7 +39,7 @@ const MOST: f64 = 300_000.0;
 const DENSE: f64 = 512.0;
 const CRUMB: f64 = 2e-12;
 /// The time that a mode takes, in crossings.
-const MODE_COST: f64 = 2.0;
+const MODE_COST: f64 = 4.0;
 /// The modes up to this one are always computed; a later one may be skipped where it is small.
 const FIRST_MODES: f64 = 31.0;
 /// Shares of the tolerance, which together are less than all of it: of a sum or of modes that are left out, of what V_s lacks in the first wave, and of

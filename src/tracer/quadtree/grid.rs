@@ -9,6 +9,9 @@ use crate::tracer::{
     interval::{Patch, Range},
 };
 
+/// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of pixels at its rim, roundings included, are inside.
+const WIDER: f64 = 1.125;
+
 /// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred thousand pixels wide is a hundred of them.
 pub(super) const LEVELS: u32 = 24;
 
@@ -110,7 +113,7 @@ impl Item {
 impl Grid {
     /// The grid of a window.
     pub fn new(window: &Window<f64>) -> Self {
-        let half = window.x.max(window.y) * 1.125;
+        let half = window.x.max(window.y) * WIDER;
         let mut grid = Self {
             least: -half,
             per_unit: f64::from(1 << LEVELS) / (2.0 * half),

@@ -21,6 +21,9 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
+/// Forms of a board with greater errors than this are left to higher precisions: products with numbers of squares would be infinite.
+const LARGEST: f64 = 1e250;
+
 /// A square of a board is told by lines if no more than this many of them pass through the pixel, else by division. Measured: 3 to 12 make no
 /// difference, and division alone makes figure 9.9 a ninth slower.
 const LINES: usize = 6;
@@ -201,7 +204,7 @@ impl Pixel {
         let squares = Squares::new(board, frame);
         let Squares { across, below, .. } = &squares;
         let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
-        if !sizes.iter().all(|&rad| rad < 1e250) {
+        if !sizes.iter().all(|&rad| rad < LARGEST) {
             return Err(Hard);
         }
         match squares.ranges() {
