@@ -63,7 +63,7 @@ pub struct Span<'a> {
 
 /// A track over a range of x, between its chord and two of its tangents.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
+pub struct Section {
     /// y at the left, in the middle, and at the right.
     pub y: [f64; 3],
     /// The arc, where it is not straight; and 1 if it bulges to greater y, −1 if to smaller.
@@ -133,7 +133,7 @@ impl Graph {
     }
 
     /// The same of the place and the root, in double-double.
-    fn closely(&self, x: f64, side: f64) -> End<Double> {
+    fn end_in_double(&self, x: f64, side: f64) -> End<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
         let at = Double::from_f64(x);
@@ -160,9 +160,9 @@ impl Graph {
 }
 
 impl<'a> Span<'a> {
-    /// One of the two functions as a track and its piece, where it is a number at all and may be seen in the pixel; that is none
+    /// One of the two functions as a track and its section, where it is a number at all and may be seen in the pixel; that is none
     /// if it turns too much to be followed at once.
-    pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Piece>)> {
+    pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
@@ -175,17 +175,17 @@ impl<'a> Span<'a> {
         if y.iter().all(|y| *y > beyond) || y.iter().all(|y| *y < -beyond) {
             return None;
         }
-        let straight = Piece {
+        let straight = Section {
             y,
             arc: None,
             slack: 0.0,
         };
         let (start, end) = (DVec2::new(x[0], y[0]), DVec2::new(x[2], y[2]));
         let width = end.x - start.x;
-        let piece = match self.arc([start, end], side) {
+        let section = match self.arc([start, end], side) {
             Some((arc, off)) => {
                 let bulge = 1f64.copysign((end - start).perp_dot(arc.control - start));
-                Some(Piece {
+                Some(Section {
                     arc: Some((bulge, arc)),
                     slack: off / width,
                     ..straight
@@ -194,13 +194,13 @@ impl<'a> Span<'a> {
             // Too flat for its tangents to be told apart.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
-                (sagitta.abs() <= flat).then_some(Piece {
+                (sagitta.abs() <= flat).then_some(Section {
                     slack: 2.0 * sagitta.abs() + flat,
                     ..straight
                 })
             }
         };
-        Some((Track::Branch { graph, side }, piece))
+        Some((Track::Branch { graph, side }, section))
     }
 
     /// The arc from its first point to its last, if the two tangents meet between them; and by how much the area between it and its chord may
@@ -217,7 +217,7 @@ impl<'a> Span<'a> {
         // Of a conic that is next to nothing but a line hardly more than roundings is left of the gradient.
         let is_good = tangents.off <= GOOD * (end.x - start.x);
         if !is_good {
-            let ends = ends.map(|at| graph.closely(at.x, side));
+            let ends = ends.map(|at| graph.end_in_double(at.x, side));
             tangents = Tangents::new(&graph.factors, &ends);
         }
         let Tangents { control, w2, off } = tangents;
@@ -327,8 +327,8 @@ impl Track<'_> {
     }
 
     /// A straight track from `left` to `right`.
-    pub fn straight(&self, left: f64, right: f64) -> Piece {
-        Piece {
+    pub fn straight(&self, left: f64, right: f64) -> Section {
+        Section {
             y: [left, 0.5 * (left + right), right].map(|x| self.y(x)),
             arc: None,
             slack: 0.0,
@@ -336,8 +336,8 @@ impl Track<'_> {
     }
 }
 
-impl Piece {
-    /// A piece of the line y = const.
+impl Section {
+    /// A section of the line y = const.
     pub fn level(y: f64) -> Self {
         Self {
             y: [y; 3],
@@ -369,9 +369,9 @@ impl Piece {
         at + up * self.slack
     }
 
-    /// By how much this piece may rise above another one over the same range of x, at most.
+    /// By how much this section may rise above another one over the same range of x, at most.
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
-        let controls = [self, other].map(|piece| piece.arc.map(|(_, arc)| arc.control.x));
+        let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
         // Both hulls are straight between these places.
         let hulls = places

@@ -48,7 +48,7 @@ use self::{
     budget::Budget,
     checker::{
         Sum, UNIT,
-        board_pixels::{BoardPixel, Waiting},
+        board_pixels::{BoardBatches, BoardPixel},
     },
     region::{Regions, Shares},
 };
@@ -73,7 +73,7 @@ const LOOK_WORK: f64 = 8.0;
 
 /// A pixel computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pixel {
+pub struct ExactPixel {
     /// Its mean in linear light.
     pub mean: [f64; 3],
     /// How far each channel may be from the true mean.
@@ -156,18 +156,18 @@ impl<'a> Integrator<'a> {
     }
 
     /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends within a pixel, too.
-    pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<Pixel>> {
-        let black = Pixel {
+    pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel>> {
+        let black = ExactPixel {
             mean: [0.0; 3],
             bound: 0.0,
         };
-        let mut film = Film {
+        let mut film = PartPixels {
             part,
             pixels: vec![black; part.pixels() as usize],
         };
         let mut curves = Vec::new();
         let mut room = Room::default();
-        let mut waiting = Waiting::new(self.world);
+        let mut batches = BoardBatches::new(self.world);
         // Pixels of a checkerboard for which that is not enough.
         let mut others = Vec::new();
         let flow = self.quartering.parts(part, &mut room, &mut |part| {
@@ -180,7 +180,7 @@ impl<'a> Integrator<'a> {
                     x, y, candidates, ..
                 } => match candidates {
                     [only] if self.is_floor(only) => {
-                        waiting.push(
+                        batches.push(
                             BoardPixel {
                                 x,
                                 y,
@@ -203,7 +203,7 @@ impl<'a> Integrator<'a> {
             }
             ControlFlow::Continue(())
         });
-        waiting.finish(&mut |floor, sum| self.set(floor, sum, &mut film, &mut others));
+        batches.finish(&mut |floor, sum| self.set(floor, sum, &mut film, &mut others));
         for BoardPixel { x, y, candidate } in others {
             if cancel.load(Relaxed) {
                 break;
@@ -221,7 +221,7 @@ impl<'a> Integrator<'a> {
         candidates: &[Candidate],
         curves: &mut Vec<Curve>,
         cancel: &AtomicBool,
-    ) -> Pixel {
+    ) -> ExactPixel {
         let budget = Budget::of_pixel(candidates.len(), cancel);
         let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
@@ -280,7 +280,7 @@ impl<'a> Integrator<'a> {
         &self,
         floor: BoardPixel,
         sum: Option<Sum>,
-        film: &mut Film,
+        film: &mut PartPixels,
         others: &mut Vec<BoardPixel>,
     ) {
         let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + 8.0 * UNIT));
@@ -347,7 +347,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> Pixel {
+    fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> ExactPixel {
         let mut mean = [0.0; 3];
         match by_slot {
             [(slot, _)] => mean = self.colors[*slot],
@@ -361,25 +361,25 @@ impl<'a> Integrator<'a> {
                 mean = mean.map(|sum| (sum / total).clamp(0.0, 1.0));
             }
         }
-        Pixel { mean, bound }
+        ExactPixel { mean, bound }
     }
 }
 
 /// The pixels of a part of the picture.
-struct Film {
+struct PartPixels {
     part: Area,
-    pixels: Vec<Pixel>,
+    pixels: Vec<ExactPixel>,
 }
 
-impl Film {
+impl PartPixels {
     fn fill(&mut self, part: Area, mean: [f64; 3]) {
         for y in part.y..part.y + part.height {
             let start = self.part.index(part.x, y);
-            self.pixels[start..start + part.width as usize].fill(Pixel { mean, bound: 0.0 });
+            self.pixels[start..start + part.width as usize].fill(ExactPixel { mean, bound: 0.0 });
         }
     }
 
-    fn set(&mut self, x: u32, y: u32, pixel: Pixel) {
+    fn set(&mut self, x: u32, y: u32, pixel: ExactPixel) {
         let index = self.part.index(x, y);
         self.pixels[index] = pixel;
     }

@@ -14,7 +14,7 @@ use glam::DVec2;
 use crate::{math::Real, tracer::Curve};
 
 use super::{
-    branches::{Graph, Piece, Track},
+    branches::{Graph, Section, Track},
     conic_segment::Arc,
     region::{Region, Regions, Shares},
 };
@@ -132,31 +132,31 @@ impl Sweep<'_> {
     fn slab(&mut self, left: f64, right: f64, is_last: bool) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let mut doubtful = 0.0;
-        let mut pieces: Vec<(Track, Piece)> =
+        let mut sections: Vec<(Track, Section)> =
             Vec::with_capacity(self.lines.len() + self.graphs.len());
         let lines = self.lines.iter();
-        pieces.extend(lines.map(|line| (*line, line.straight(left, right))));
+        sections.extend(lines.map(|line| (*line, line.straight(left, right))));
         for graph in &self.graphs {
             let Some(span) = graph.span(left, right) else {
                 continue;
             };
-            for (track, piece) in [-1.0, 1.0].into_iter().filter_map(|side| span.branch(side)) {
-                match piece {
-                    Some(piece) => pieces.push((track, piece)),
+            for (track, section) in [-1.0, 1.0].into_iter().filter_map(|side| span.branch(side)) {
+                match section {
+                    Some(section) => sections.push((track, section)),
                     None if is_last => doubtful += width.min(1.0),
                     None => return Some(middle),
                 }
             }
         }
-        pieces.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
-        let place = |y: f64| pieces.partition_point(|(_, piece)| piece.y[1] < y);
+        sections.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
+        let place = |y: f64| sections.partition_point(|(_, section)| section.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
         // The pixel's sides in order with what lies outside of them, and neighbours inside with each other.
-        let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Piece::level(y)));
-        let below = pieces[..first].iter().map(|below| (below, &bottom));
-        let above = pieces[end..].iter().map(|above| (&top, above));
+        let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Section::level(y)));
+        let below = sections[..first].iter().map(|below| (below, &bottom));
+        let above = sections[end..].iter().map(|above| (&top, above));
         let mut inside = vec![&bottom];
-        inside.extend(&pieces[first..end]);
+        inside.extend(&sections[first..end]);
         inside.push(&top);
         let neighbors = inside.windows(2).map(|pair| (pair[0], pair[1]));
         for ((lower, a), (upper, b)) in below.chain(neighbors).chain(above) {
@@ -182,7 +182,7 @@ impl Sweep<'_> {
 }
 
 /// Adds the region between two neighbours.
-fn add(regions: &mut Regions, lower: &Piece, upper: &Piece, left: f64, right: f64) {
+fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right: f64) {
     // What is steep may leave the pixel in a slab that is cut no more.
     let area = (upper.integral(left, right) - lower.integral(left, right)).min(right - left);
     regions.doubt((right - left) * (ROUNDING + lower.slack + upper.slack));
@@ -212,7 +212,7 @@ fn add(regions: &mut Regions, lower: &Piece, upper: &Piece, left: f64, right: f6
 }
 
 /// Where to cut a slab in which two tracks may cross: at their crossing, if the order at one end is not that in the middle.
-fn crossing(lower: &Track, upper: &Track, a: &Piece, b: &Piece, left: f64, right: f64) -> f64 {
+fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);
     let (mut out, mut inside) = if b.y[0] < a.y[0] {

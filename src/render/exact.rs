@@ -96,7 +96,7 @@ fn render_exact_as<P: film::Pixel>(
                     last
                 })
                 .collect();
-            let is_certain = |(pixel, bound): &(&exact::Pixel, &f32)| {
+            let is_certain = |(pixel, bound): &(&exact::ExactPixel, &f32)| {
                 P::is_certain(pixel.mean, f64::from(**bound), &encoder)
             };
             let certain = pixels.iter().zip(&bounds).filter(is_certain).count();

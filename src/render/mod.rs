@@ -4,10 +4,10 @@
 //! cut into tiles, which the threads take as they come; neither the number of threads nor the tiles nor the part asked for can change a bit
 //! of a pixel.
 //!
-//! `sampled` renders with samples, whose tiles `frame` makes; `exact` renders without. What both have in common is here.
+//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without. What both have in common is here.
 
 mod exact;
-mod frame;
+mod renderer;
 mod sampled;
 mod tally;
 mod tile;

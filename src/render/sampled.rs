@@ -1,12 +1,12 @@
 //! A part of the picture with samples.
 //!
-//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut into tiles for the threads; `frame` makes each.
+//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut into tiles for the threads; `renderer` makes each.
 
 use std::sync::{Mutex, PoisonError, atomic::AtomicU64};
 
 use rayon::prelude::*;
 
-use super::{Control, RenderError, finished, frame::Frame, tally::Tally, wanted};
+use super::{Control, RenderError, finished, renderer::Renderer, tally::Tally, wanted};
 use crate::{
     area::Area,
     film::{self, Encoder, Film},
@@ -62,7 +62,7 @@ fn film_and_rays<P: film::Pixel>(
         .collect();
     let encoder = Encoder::new();
     let shown: Vec<_> = colors.iter().map(|&light| P::of(light, &encoder)).collect();
-    let frame = Frame {
+    let renderer = Renderer {
         world,
         sampling,
         colors: &colors,
@@ -77,7 +77,7 @@ fn film_and_rays<P: film::Pixel>(
         wanted(part, side, control).par_bridge().for_each_init(
             || (Tally::new(colors.len()), Room::default()),
             |(tally, room), tile| {
-                let Some(pixels) = frame.tile(tile, tally, room) else {
+                let Some(pixels) = renderer.tile(tile, tally, room) else {
                     return;
                 };
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
@@ -85,7 +85,7 @@ fn film_and_rays<P: film::Pixel>(
             },
         );
     })?;
-    Ok((finished(film, control)?, frame.rays.into_inner()))
+    Ok((finished(film, control)?, renderer.rays.into_inner()))
 }
 
 /// The side of the tiles: smaller where pixels have many samples.

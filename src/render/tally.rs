@@ -3,7 +3,7 @@
 use crate::{
     film::{self, Encoder, mean},
     sampling::Points,
-    tracer::Pixel,
+    tracer::PreparedPixel,
 };
 
 /// What a thread counts with.
@@ -11,7 +11,7 @@ pub(super) struct Tally<P> {
     pub(super) counts: Counts,
     pub(super) means: Means<P>,
     /// The pixel, prepared.
-    pub(super) pixel: Pixel,
+    pub(super) pixel: PreparedPixel,
     /// Room for the points.
     pub(super) points: Points,
 }
@@ -21,7 +21,7 @@ impl<P> Tally<P> {
         Self {
             counts: Counts::new(slots),
             means: Means(Vec::new()),
-            pixel: Pixel::default(),
+            pixel: PreparedPixel::default(),
             points: Points::default(),
         }
     }

@@ -188,14 +188,14 @@ impl Sampling {
         };
         let out = out.room(range.clone().count());
         match vectors {
-            Vectors::Widest => place_widely(pattern, key, range, out),
+            Vectors::Widest => place_simd(pattern, key, range, out),
             Vectors::Baseline => pattern.place(key, range, out),
         }
     }
 }
 
 #[multiversion(targets = "simd")]
-fn place_widely(pattern: &Pattern, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
+fn place_simd(pattern: &Pattern, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
     pattern.place(key, range, out);
 }
 

@@ -10,7 +10,7 @@ use super::{
     camera::Camera,
     cuboid,
     interval::{Patch, Range},
-    shape::Object,
+    object::Object,
     sphere::Sphere,
     triangle::{Triangle, Vertices},
 };

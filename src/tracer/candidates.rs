@@ -14,10 +14,10 @@ use crate::{
 use super::{
     curve::{Crossings, Surface},
     interval::{Patch, Range},
+    object::Object,
     quadtree::Nearness,
-    shape::Object,
     sub_pixel::SubPixel,
-    world::{Level, World, depth_order},
+    world::{Precision, World, depth_order},
 };
 
 /// An object that may be seen in a part of the picture.

@@ -15,8 +15,8 @@ use multiversion::multiversion;
 use super::{
     checkerboard::Checkerboard,
     local_form::{LocalForm, PixelFrame, ROUNDINGS},
-    shape::Object,
-    world::{Level, World},
+    object::Object,
+    world::{Precision, World},
 };
 use crate::{
     area::Area,
@@ -149,7 +149,7 @@ impl Mesh {
     fn corners(&self, row: u32, out: &mut CornerRow) {
         let y = middle(2 * row, self.block.height);
         let length = (self.block.width as usize + 1).next_multiple_of(8);
-        corners_widely(self, y, length, out);
+        corners_simd(self, y, length, out);
     }
 
     #[inline(always)]
@@ -195,7 +195,7 @@ impl Mesh {
         each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut shown = [0.0; SIDE];
-        compare_widely(above, below, &mut shown);
+        compare_simd(above, below, &mut shown);
         let shown = &shown[..self.block.width as usize];
         let mut first = 0;
         while first < shown.len() {
@@ -273,13 +273,13 @@ fn middle(halves: u32, pixels: u32) -> f64 {
 }
 
 #[multiversion(targets = "simd")]
-fn corners_widely(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
+fn corners_simd(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
     mesh.evaluate(y, length, out);
 }
 
 /// The sign of each pixel whose corners lie in one square, and 0 for all others.
 #[multiversion(targets = "simd")]
-fn compare_widely(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
+fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     let [a, b] = [&above.squares[0], &below.squares[0]];
     let [c, d] = [&above.squares[1], &below.squares[1]];
     for i in 0..SIDE {

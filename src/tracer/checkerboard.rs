@@ -8,8 +8,8 @@ use std::cmp::Ordering;
 
 use super::{
     camera::{Camera, Direction, Window},
+    crossing::{Crossing, SurfacePart},
     form::{Form, axis_vector, inverse_depth},
-    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch},
 };
 use crate::{

@@ -10,8 +10,8 @@
 //! what that leaves in doubt is decided in double-double, and what that leaves in doubt, in big numbers.
 
 mod camera;
+mod crossing;
 mod form;
-mod hit;
 mod local_form;
 mod sub_pixel;
 
@@ -19,7 +19,7 @@ mod checkerboard;
 mod cuboid;
 mod curve;
 mod interval;
-mod shape;
+mod object;
 mod sphere;
 mod triangle;
 
@@ -39,15 +39,15 @@ mod tests;
 pub use camera::{Basis, Point};
 pub use candidates::Candidate;
 pub use checker_corners::Checks;
+pub(crate) use crossing::Crossing;
 pub use cull::{GRID, Part, Quartering, Room};
 pub use curve::{Conic, Curve, Line};
 pub(crate) use curve::{Crossings, LOOSE_LINE, SubPixelFrame, Surface};
-pub(crate) use hit::Crossing;
 pub(crate) use interval::Patch;
+pub(crate) use object::Object;
 pub use ray::{Hit, ray};
-pub use samples::Pixel;
-pub(crate) use shape::Object;
+pub use samples::PreparedPixel;
 pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
 pub use world::World;
-pub(crate) use world::{Held, Level};
+pub(crate) use world::{Held, Precision};

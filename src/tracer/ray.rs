@@ -8,8 +8,8 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3};
 
 use super::{
-    hit::Crossing,
-    world::{Geometry, Level, World, depth_order},
+    crossing::Crossing,
+    world::{Geometry, Precision, World, depth_order},
 };
 use crate::{
     color::Color,

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
-    hit::{Crossing, SurfacePart},
+    crossing::{Crossing, SurfacePart},
     interval::{Cover, Patch, Range},
     local_form::{LocalForm, LocalQuadratic, PixelFrame},
 };

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
-use super::{SubPixel, World, bounds2d::Extent, candidates, shape::Object, world::Level};
+use super::{SubPixel, World, bounds2d::Extent, candidates, object::Object, world::Precision};
 use crate::{
     area::Area,
     math::{Ball, Big, Double},

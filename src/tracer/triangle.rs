@@ -10,8 +10,8 @@ use glam::DVec3;
 
 use super::{
     camera::{Camera, Direction, Window},
+    crossing::{Crossing, SurfacePart},
     form::{Form, inverse_depth},
-    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch},
 };
 use crate::{

@@ -19,8 +19,8 @@ use self::reach::Reach;
 use crate::{
     math::{Big, Double},
     tracer::{
-        Candidate, Crossing, Crossings, Curve, Held, LOOSE_LINE, Level, Object, Patch, SubPixel,
-        SubPixelFrame, Surface, World, candidates,
+        Candidate, Crossing, Crossings, Curve, Held, LOOSE_LINE, Object, Patch, Precision,
+        SubPixel, SubPixelFrame, Surface, World, candidates,
     },
 };
 
@@ -33,7 +33,7 @@ const HEAP: usize = 16;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+enum Origin {
     /// An object's outline.
     Outline(usize),
     /// An object and the near or the far plane.
@@ -43,7 +43,7 @@ enum Source {
 }
 
 /// The boundaries of what may be seen in a sub-pixel, in one precision.
-struct Boundaries<'a, T: Level> {
+struct Boundaries<'a, T: Precision> {
     world: &'a World,
     candidates: &'a [Candidate],
     objects: Vec<Held<'a, T>>,
@@ -85,16 +85,16 @@ pub fn curves(
     let mut of_lacking = Vec::new();
     let mut looks = 0;
     let mut room = most;
-    let mut take = |source| {
+    let mut take = |origin| {
         looks += 1;
         let before = out.len();
-        let is_whole = boundaries.push(source, out);
+        let is_whole = boundaries.push(origin, out);
         if !out[before..].iter().all(Curve::is_tight) {
             out.truncate(before);
-            loose.push(source);
+            loose.push(origin);
         } else if !is_whole {
             of_lacking.extend(out.drain(before..));
-            lacking.push(source);
+            lacking.push(origin);
         }
         if out.len() > room {
             equal::merge(out);
@@ -115,11 +115,11 @@ pub fn curves(
         out.append(&mut of_lacking);
     } else {
         let boundaries = Boundaries::<Big>::new(world, sub_pixel, candidates, &reaches);
-        for source in loose.into_iter().chain(lacking) {
+        for origin in loose.into_iter().chain(lacking) {
             if cancel.load(Ordering::Relaxed) {
                 return Err(looks);
             }
-            boundaries.push(source, out);
+            boundaries.push(origin, out);
         }
     }
     equal::merge(out);
@@ -135,7 +135,7 @@ fn may_cross(world: &World, sub_pixel: SubPixel, a: Candidate, b: Candidate) -> 
     let candidates = [a, b];
     let reaches = reaches(world, sub_pixel, &candidates);
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, &candidates, &reaches);
-    !boundaries.push(Source::Pair(0, 1), &mut curves) || !curves.is_empty()
+    !boundaries.push(Origin::Pair(0, 1), &mut curves) || !curves.is_empty()
 }
 
 /// Where each of some objects is met in a sub-pixel, at most.
@@ -194,7 +194,7 @@ fn drop_behind_middle(
     });
 }
 
-impl<'a, T: Level> Boundaries<'a, T> {
+impl<'a, T: Precision> Boundaries<'a, T> {
     fn new(
         world: &'a World,
         sub_pixel: SubPixel,
@@ -214,11 +214,11 @@ impl<'a, T: Level> Boundaries<'a, T> {
     }
 
     /// The outlines, and what the near and the far plane cut, until one says that it is enough.
-    fn outlines(&self, mut take: impl FnMut(Source) -> ControlFlow<()>) -> ControlFlow<()> {
+    fn outlines(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
         for (i, candidate) in self.candidates.iter().enumerate() {
             if !candidate.is_whole {
-                take(Source::Outline(i))?;
-                take(Source::Clips(i))?;
+                take(Origin::Outline(i))?;
+                take(Origin::Clips(i))?;
             }
         }
         ControlFlow::Continue(())
@@ -228,7 +228,7 @@ impl<'a, T: Level> Boundaries<'a, T> {
     fn pairs(
         &self,
         cancel: &AtomicBool,
-        mut take: impl FnMut(Source) -> ControlFlow<()>,
+        mut take: impl FnMut(Origin) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         for (i, a) in self.candidates.iter().enumerate() {
             if cancel.load(Ordering::Relaxed) {
@@ -238,20 +238,20 @@ impl<'a, T: Level> Boundaries<'a, T> {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
                 if !apart {
-                    take(Source::Pair(i, j))?;
+                    take(Origin::Pair(i, j))?;
                 }
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Adds a source's curves that may pass through the sub-pixel, and through where its objects are met. Says whether all surfaces of it that are
+    /// Adds a origin's curves that may pass through the sub-pixel, and through where its objects are met. Says whether all surfaces of it that are
     /// seen there cross each other somewhere, as all do that are not equal.
-    fn push(&self, source: Source, out: &mut Vec<Curve>) -> bool {
-        let met = match source {
-            Source::Outline(_) => [None; 2],
-            Source::Clips(i) => [Some(i), None],
-            Source::Pair(i, j) => [Some(i), Some(j)],
+    fn push(&self, origin: Origin, out: &mut Vec<Curve>) -> bool {
+        let met = match origin {
+            Origin::Outline(_) => [None; 2],
+            Origin::Clips(i) => [Some(i), None],
+            Origin::Pair(i, j) => [Some(i), Some(j)],
         };
         let mut push = |curve: Curve| {
             let is_met = |i: &usize| match &curve {
@@ -267,12 +267,12 @@ impl<'a, T: Level> Boundaries<'a, T> {
             Some(curve) => push(curve),
             None => all = false,
         };
-        match source {
-            Source::Outline(i) => {
+        match origin {
+            Origin::Outline(i) => {
                 let outline = self.objects[i].outline(&self.frame);
                 outline.into_iter().for_each(push);
             }
-            Source::Clips(i) => {
+            Origin::Clips(i) => {
                 let frame = T::frame(&self.world.geometry);
                 for clip in [&frame.near, &frame.far].into_iter().flatten() {
                     for surface in &self.surfaces(i) {
@@ -280,7 +280,7 @@ impl<'a, T: Level> Boundaries<'a, T> {
                     }
                 }
             }
-            Source::Pair(i, j) => {
+            Origin::Pair(i, j) => {
                 if self.reaches[i].is_apart(&self.reaches[j]) {
                     return true;
                 }

@@ -1,7 +1,7 @@
 //! A checkerboard in the coordinates of pixels and of parts of them: three linear forms, whose ratios are places on the board.
 //!
 //! In: the board, and a sub-pixel or eight pixels. Out: the forms N₀, N₁ and ℓ, moved to a corner of squares near to the pixel, with bounds on their
-//! errors: for one sub-pixel in any precision, by [`SubPixelFrame::together`]; for eight pixels in double-double, by the same operations on
+//! errors: for one sub-pixel in any precision, by [`SubPixelFrame::board_forms`]; for eight pixels in double-double, by the same operations on
 //! plain arrays, which the compiler makes vectors of. When two corners of squares are equally near to the pixel, the two ways may choose different ones.
 
 use glam::DVec2;
@@ -9,7 +9,7 @@ use multiversion::multiversion;
 
 use crate::{
     math::{Big, Double, ROUND, Real},
-    tracer::{LOOSE_LINE, Level, Object, SubPixel, SubPixelFrame, World},
+    tracer::{LOOSE_LINE, Object, Precision, SubPixel, SubPixelFrame, World},
 };
 
 /// So many pixels at a time: as many numbers as the widest vectors have.
@@ -95,14 +95,14 @@ pub fn board(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board>
     }
 }
 
-fn board_in<T: Level>(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
+fn board_in<T: Precision>(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Board> {
     let object = T::object(&world.geometry, object);
     let Object::Checkerboard(board) = &*object else {
         return None;
     };
     let frame = SubPixelFrame::new(&T::frame(&world.geometry).camera, sub_pixel);
     let [a, b] = &board.across;
-    let (lines, is_moved) = frame.together([a, b], &board.below);
+    let (lines, is_moved) = frame.board_forms([a, b], &board.below);
     let rads = lines.each_ref().map(|line| line.rad);
     let factors = lines.map(|line| line.factors);
     let [a, b, below] = factors.map(|factors| factors.map(|c| c.hi));
@@ -133,10 +133,10 @@ impl Board {
 impl Boards {
     /// What the pixels of these columns and rows see.
     pub fn at(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
-        see_widely(self, columns, rows, out);
+        see_simd(self, columns, rows, out);
     }
 
-    /// As `SubPixelFrame::together` has it, step by step.
+    /// As `SubPixelFrame::board_forms` has it, step by step.
     #[inline(always)]
     fn see(&self, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
         const ONE: u64 = 1.0f64.to_bits();
@@ -236,7 +236,7 @@ impl Doubles {
 }
 
 #[multiversion(targets = "simd")]
-fn see_widely(boards: &Boards, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
+fn see_simd(boards: &Boards, columns: &[u32; PIXELS], rows: &[u32; PIXELS], out: &mut Views) {
     boards.see(columns, rows, out);
 }
 

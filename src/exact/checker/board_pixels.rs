@@ -11,7 +11,7 @@ use super::{
 };
 use crate::tracer::{Candidate, World};
 
-/// At most so many lines cross the strips. For each pair of numbers there is a group of pixels, and pixels with more lines are few.
+/// At most so many lines cross the strips. For each pair of numbers there is a batch of pixels, and pixels with more lines are few.
 const MOST: usize = 32;
 
 /// A pixel that shows nothing but a checkerboard.
@@ -27,7 +27,7 @@ pub(in crate::exact) struct BoardPixel {
 
 /// The pixels that wait.
 #[derive(Debug)]
-pub(in crate::exact) struct Waiting<'a> {
+pub(in crate::exact) struct BoardBatches<'a> {
     world: &'a World,
     /// Pixels not looked at so far, all of one checkerboard.
     next: Vec<BoardPixel>,
@@ -35,11 +35,11 @@ pub(in crate::exact) struct Waiting<'a> {
     boards: Option<(usize, Boards)>,
     views: Views,
     corners: Corners,
-    groups: Groups,
+    batches: Batches,
     room: Room,
 }
 
-impl<'a> Waiting<'a> {
+impl<'a> BoardBatches<'a> {
     /// None so far.
     pub fn new(world: &'a World) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl<'a> Waiting<'a> {
             boards: None,
             views: Views::default(),
             corners: Corners::default(),
-            groups: Groups::default(),
+            batches: Batches::default(),
             room: Room::default(),
         }
     }
@@ -70,8 +70,8 @@ impl<'a> Waiting<'a> {
     /// Computes all that still wait.
     pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
         self.look(tell);
-        for group in self.groups.all() {
-            compute(group, &mut self.room, tell);
+        for batch in self.batches.all() {
+            compute(batch, &mut self.room, tell);
         }
     }
 
@@ -91,31 +91,31 @@ impl<'a> Waiting<'a> {
         boards.at(&columns, &rows, &mut self.views);
         self.corners.look(&self.views);
         for (i, pixel) in self.next.drain(..).enumerate() {
-            let Some(group) = self.groups.of(&self.corners, i) else {
+            let Some(batch) = self.batches.of(&self.corners, i) else {
                 tell(pixel, None);
                 continue;
             };
-            if group.push(pixel, &self.views, &self.corners, i) {
-                compute(group, &mut self.room, tell);
+            if batch.push(pixel, &self.views, &self.corners, i) {
+                compute(batch, &mut self.room, tell);
             }
         }
     }
 }
 
-/// The integrals of a group's pixels, after which it is empty.
-fn compute(group: &mut Group, room: &mut Room, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-    if group.pixels.is_empty() {
+/// The integrals of a batch's pixels, after which it is empty.
+fn compute(batch: &mut Batch, room: &mut Room, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+    if batch.pixels.is_empty() {
         return;
     }
-    let sums = group.lines.sums(group.crossing, room);
-    for (i, pixel) in group.pixels.drain(..).enumerate() {
+    let sums = batch.lines.sums(batch.crossing, room);
+    for (i, pixel) in batch.pixels.drain(..).enumerate() {
         tell(pixel, Some(sums.of(i)));
     }
 }
 
 /// Pixels that the same numbers of lines cross.
 #[derive(Debug)]
-struct Group {
+struct Batch {
     /// Which pixels they are: no more than are computed together.
     pub pixels: Vec<BoardPixel>,
     lines: Lines,
@@ -123,30 +123,30 @@ struct Group {
     crossing: [usize; 2],
 }
 
-/// All groups there may be.
+/// All batches there may be.
 #[derive(Debug)]
-struct Groups(Vec<Group>);
+struct Batches(Vec<Batch>);
 
-impl Default for Groups {
+impl Default for Batches {
     fn default() -> Self {
         let crossings = (0..=STRIPS).flat_map(|few| (0..=MOST).map(move |many| [few, many]));
-        let group = |crossing| Group {
+        let batch = |crossing| Batch {
             pixels: Vec::new(),
             lines: Lines::default(),
             crossing,
         };
-        Self(crossings.map(group).collect())
+        Self(crossings.map(batch).collect())
     }
 }
 
-impl Groups {
+impl Batches {
     /// All of them.
-    pub fn all(&mut self) -> impl Iterator<Item = &mut Group> {
+    pub fn all(&mut self) -> impl Iterator<Item = &mut Batch> {
         self.0.iter_mut()
     }
 
     /// Where a pixel goes; none if too many lines cross it.
-    pub fn of(&mut self, corners: &Corners, pixel: usize) -> Option<&mut Group> {
+    pub fn of(&mut self, corners: &Corners, pixel: usize) -> Option<&mut Batch> {
         let [a, b] = corners.lines.each_ref().map(|lines| lines[pixel]);
         let (few, many) = if a <= b { (a, b) } else { (b, a) };
         if !(few <= STRIPS as f64 && many <= MOST as f64) {
@@ -156,7 +156,7 @@ impl Groups {
     }
 }
 
-impl Group {
+impl Batch {
     /// Adds a pixel to those of which there are fewer than can be computed together; says whether there is no room for more.
     pub fn push(&mut self, at: BoardPixel, views: &Views, corners: &Corners, pixel: usize) -> bool {
         self.lines.set(self.pixels.len(), views, corners, pixel);
@@ -202,15 +202,15 @@ mod tests {
         order: impl IntoIterator<Item = (u32, u32)>,
     ) -> HashMap<(u32, u32), Option<Sum>> {
         let candidate = candidates::everything(world)[0];
-        let mut waiting = Waiting::new(world);
+        let mut batches = BoardBatches::new(world);
         let mut known = HashMap::new();
         let mut tell = |pixel: BoardPixel, sum| {
             assert!(known.insert((pixel.x, pixel.y), sum).is_none());
         };
         for (x, y) in order {
-            waiting.push(BoardPixel { x, y, candidate }, &mut tell);
+            batches.push(BoardPixel { x, y, candidate }, &mut tell);
         }
-        waiting.finish(&mut tell);
+        batches.finish(&mut tell);
         known
     }
 

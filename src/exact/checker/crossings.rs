@@ -77,7 +77,7 @@ impl Series {
 }
 
 /// The lines of one family that an edge crosses: t and m at the first, and how many there are.
-pub(super) struct Crossings {
+pub(super) struct LineCrossings {
     /// t and its step from line to line, without whole turns, in half turns.
     pub turned: [Double; 2],
     pub depth: f64,
@@ -87,7 +87,7 @@ pub(super) struct Crossings {
     pub count: Double,
 }
 
-impl Crossings {
+impl LineCrossings {
     /// Σ (−1)^j X over the first `lines` crossings, one by one.
     ///
     /// In blocks over which m grows by half at most, each with as many terms as it needs for `tolerance`.
@@ -179,7 +179,7 @@ impl Crossings {
 
 /// Σ (−1)^j X over so many crossings after those that are done, of the series so many terms.
 #[multiversion(targets = "simd")]
-fn block(crossings: &Crossings, series: &Series, terms: usize, [done, count]: [f64; 2]) -> f64 {
+fn block(crossings: &LineCrossings, series: &Series, terms: usize, [done, count]: [f64; 2]) -> f64 {
     match terms {
         1 => crossings.block::<1, 3>(series, done, count),
         2 => crossings.block::<2, 4>(series, done, count),

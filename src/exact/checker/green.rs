@@ -16,7 +16,7 @@
 //! and the family that it crosses less may be chosen.
 
 use super::super::{budget::Budget, clip::measure};
-use super::crossings::{Crossings, MAX_TERMS, Series};
+use super::crossings::{LineCrossings, MAX_TERMS, Series};
 use super::homography::{Corner, Homography, Sum, UNIT, Visible};
 use super::special::{square_wave, turn, turn_exactly, waves};
 use super::tail;
@@ -264,7 +264,7 @@ impl Edge {
                 false => within,
             };
             let t = first.times(&self.stride).plus(&Double::from_f64(self.t));
-            let crossings = Crossings {
+            let crossings = LineCrossings {
                 turned: [t, self.stride].map(|x| turn_exactly(&x)),
                 depth: self.depth + first.hi * self.rise,
                 rise: self.rise,

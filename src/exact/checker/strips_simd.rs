@@ -36,7 +36,7 @@ const OUT_OF_REACH: f64 = 1e9;
 type Row = [f64; PIXELS];
 
 /// The factors of a linear form.
-type Form = [Row; 3];
+type FormRows = [Row; 3];
 
 /// Sides of strips: parts of the sub-pixel's four, and a chord for each line.
 const SIDES: usize = 4 * (STRIPS + 1) + STRIPS;
@@ -55,7 +55,7 @@ pub(super) struct Corners {
 impl Corners {
     /// Of pixels that see a board so.
     pub fn look(&mut self, views: &Views) {
-        look_widely(views, self);
+        look_simd(views, self);
     }
 
     #[inline(always)]
@@ -108,7 +108,7 @@ impl Corners {
 }
 
 #[multiversion(targets = "simd")]
-fn look_widely(views: &Views, corners: &mut Corners) {
+fn look_simd(views: &Views, corners: &mut Corners) {
     corners.see(views);
 }
 
@@ -117,7 +117,7 @@ fn look_widely(views: &Views, corners: &mut Corners) {
 pub(super) struct Lines {
     few: Family,
     many: Family,
-    below: Form,
+    below: FormRows,
     rad: Row,
     /// Of each pixel, −1 where square [0, 1)² has the second colour.
     sign: Row,
@@ -128,7 +128,7 @@ pub(super) struct Lines {
 /// The lines of one family.
 #[derive(Debug, Default)]
 struct Family {
-    across: Form,
+    across: FormRows,
     first: Row,
 }
 
@@ -190,7 +190,7 @@ impl Lines {
 
     /// The integrals over the pixels, which so many lines of either family cross.
     pub fn sums(&self, lines: [usize; 2], room: &mut Room) -> Sums {
-        sums_widely(self, lines, room)
+        sums_simd(self, lines, room)
     }
 
     #[inline(always)]
@@ -385,6 +385,6 @@ fn nearest(x: f64) -> f64 {
 }
 
 #[multiversion(targets = "simd")]
-fn sums_widely(pixels: &Lines, lines: [usize; 2], room: &mut Room) -> Sums {
+fn sums_simd(pixels: &Lines, lines: [usize; 2], room: &mut Room) -> Sums {
     pixels.compute(lines, room)
 }

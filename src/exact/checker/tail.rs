@@ -17,7 +17,7 @@
 //! Lerch series has more than another that begins where the edge ends; or a geometric sum, where m does not change.
 
 use super::super::budget::Budget;
-use super::crossings::{Crossings, Series};
+use super::crossings::{LineCrossings, Series};
 use super::homography::{Sum, UNIT};
 use super::special::{Complex, integrals, phase, square, times, turned_times};
 use crate::math::{Double, Real};
@@ -59,7 +59,7 @@ const CROSSING_WORK: f64 = 1.0 / 32.0;
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Σ (−1)^j X over all crossings, of which as much as `tolerance` may be neglected.
-pub(super) fn sum(all: &Crossings, series: &Series, tolerance: f64, budget: &Budget) -> Sum {
+pub(super) fn sum(all: &LineCrossings, series: &Series, tolerance: f64, budget: &Budget) -> Sum {
     let lines = all.count.hi;
     let trivial = lines
         * (1..=series.terms)
@@ -120,7 +120,7 @@ fn absolute(series: &Series, k: usize, depth: f64, rise: f64) -> f64 {
 }
 
 /// The depth from which to sum by modes.
-fn start(all: &Crossings, series: &Series, tolerance: f64) -> f64 {
+fn start(all: &LineCrossings, series: &Series, tolerance: f64) -> f64 {
     let g = all.rise;
     let factor = series.factors[1].abs();
     // The cheapest: (m − m_0)/g crossings and κ/2m modes.
@@ -146,7 +146,13 @@ fn start(all: &Crossings, series: &Series, tolerance: f64) -> f64 {
 }
 
 /// Σ (−1)^j X from crossing `direct` on, with j counted from there.
-fn rest(all: &Crossings, direct: &Double, series: &Series, tolerance: f64, budget: &Budget) -> Sum {
+fn rest(
+    all: &LineCrossings,
+    direct: &Double,
+    series: &Series,
+    tolerance: f64,
+    budget: &Budget,
+) -> Sum {
     let g = all.rise;
     let depth = all.depth + direct.hi * g;
     let everything: f64 = (1..=series.terms)
@@ -273,7 +279,13 @@ fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
 }
 
 /// The same over an edge on which m hardly changes, where |X| adds up to no more than `trivial`; of which as much as `tolerance` may be neglected.
-fn level(all: &Crossings, series: &Series, trivial: f64, tolerance: f64, budget: &Budget) -> Sum {
+fn level(
+    all: &LineCrossings,
+    series: &Series,
+    trivial: f64,
+    tolerance: f64,
+    budget: &Budget,
+) -> Sum {
     let lines = all.count.hi;
     let size = |k: usize| lines * series.size(k, all.depth);
     let middle = all.depth + 0.5 * lines * all.rise;

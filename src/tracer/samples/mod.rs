@@ -18,7 +18,7 @@ use self::pixel::{BACKGROUND, CHUNK_SAMPLES, ColorCount, DOUBT, Pattern};
 use super::{candidates::Candidate, checker_corners::Checks, world::World};
 use crate::math::Vectors;
 
-pub use self::pixel::Pixel;
+pub use self::pixel::PreparedPixel;
 
 /// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but a board and that is known, what
 /// is seen of it.
@@ -27,7 +27,7 @@ pub fn prepare(
     [x, y]: [u32; 2],
     candidates: &[Candidate],
     checks: Option<&Checks>,
-    pixel: &mut Pixel,
+    pixel: &mut PreparedPixel,
 ) {
     (pixel.x, pixel.y) = (x, y);
     pixel.candidates.clear();
@@ -47,13 +47,13 @@ pub fn prepare(
 /// of times. The coordinates of the offsets are two lists, filled up with any others to a multiple of eight.
 pub fn count(
     world: &World,
-    pixel: &mut Pixel,
+    pixel: &mut PreparedPixel,
     [x, y]: [&[f64]; 2],
     samples: usize,
     vectors: Vectors,
     mut count: impl FnMut(usize, u64),
 ) {
-    let alone = |pixel: &Pixel, index: usize| {
+    let alone = |pixel: &PreparedPixel, index: usize| {
         let offset = DVec2::new(x[index], y[index]);
         let objects = pixel.candidates.iter().map(|candidate| candidate.object);
         world.slot_among(pixel.x, pixel.y, offset, objects)
@@ -83,7 +83,7 @@ pub fn count(
 }
 
 /// Lists the colours that may be seen in a pixel.
-fn may_see(world: &World, pixel: &mut Pixel) {
+fn may_see(world: &World, pixel: &mut PreparedPixel) {
     let color = |code: f64, slot: usize| ColorCount {
         code,
         slot,

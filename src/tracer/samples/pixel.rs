@@ -15,7 +15,7 @@ pub(super) const DOUBT: f64 = -1.0;
 
 /// A pixel's objects, prepared for many samples. Kept from pixel to pixel for its room.
 #[derive(Debug, Default)]
-pub struct Pixel {
+pub struct PreparedPixel {
     /// The candidates.
     pub(super) candidates: Vec<Candidate>,
     pub(super) x: u32,

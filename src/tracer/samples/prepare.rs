@@ -13,11 +13,11 @@ use super::{
         checkerboard::Checkerboard,
         form::Form,
         local_form::{LocalForm, PixelFrame, ROUNDINGS, Side},
-        shape::Object,
+        object::Object,
         sphere::Sphere,
-        world::{Level, World},
+        world::{Precision, World},
     },
-    pixel::{Depth, Pattern, Pixel, PixelSurface},
+    pixel::{Depth, Pattern, PixelSurface, PreparedPixel},
 };
 use crate::{area::Area, math::UP};
 
@@ -37,7 +37,7 @@ enum Met {
     No,
 }
 
-impl Pixel {
+impl PreparedPixel {
     pub(super) fn prepare(&mut self, world: &World) -> Result<(), Hard> {
         let frame = PixelFrame::new(
             &f64::frame(&world.geometry).camera,

@@ -11,23 +11,23 @@ use super::{
         checker_corners::Squares,
         local_form::{LocalForm, LocalQuadratic, ROUNDINGS, ScaledLine},
     },
-    pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, Pixel, PixelSurface},
+    pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, PixelSurface, PreparedPixel},
 };
 use crate::math::{ROUND, UP, Vectors};
 
 #[multiversion(targets = "simd")]
-fn see_widely(pixel: &mut Pixel, points: At, count: usize) {
+fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
     pixel.see(points, count);
 }
 
 /// Where samples lie: as many numbers of each coordinate, a multiple of eight for the widest vectors.
 pub(super) type At<'a> = [&'a [f64]; 2];
 
-impl Pixel {
+impl PreparedPixel {
     /// What the first `count` samples of a chunk see, and how often each colour is seen.
     pub(super) fn chunk(&mut self, points: At, count: usize, vectors: Vectors) {
         match vectors {
-            Vectors::Widest => see_widely(self, points, count),
+            Vectors::Widest => see_simd(self, points, count),
             Vectors::Baseline => self.see(points, count),
         }
     }

@@ -5,13 +5,13 @@
 
 use std::cmp::Ordering;
 
-use super::precision::{Geometry, Level, Numbers};
+use super::precision::{Geometry, Numbers, Precision};
 use crate::{
     math::{Big, Double, Doubt, Real},
     tracer::{
         camera::Direction,
+        crossing::{Crossing, SurfacePart},
         form::Form,
-        hit::{Crossing, SurfacePart},
     },
 };
 
@@ -81,7 +81,7 @@ pub(in crate::tracer) fn is_one_plane(
 
 /// Whether a flat part of an object lies in the near or in the far plane.
 #[cold]
-fn is_in_clip<T: Level>(geometry: &Geometry, (index, part): (usize, SurfacePart)) -> bool {
+fn is_in_clip<T: Precision>(geometry: &Geometry, (index, part): (usize, SurfacePart)) -> bool {
     let frame = T::frame(geometry);
     let object = T::object(geometry, index);
     let clips = [&frame.near, &frame.far];

@@ -11,7 +11,7 @@ mod prepare;
 
 pub(crate) use self::{
     precise_cache::Held,
-    precision::{Geometry, Level},
+    precision::{Geometry, Precision},
 };
 
 use std::{cmp::Ordering, sync::atomic::AtomicBool};
@@ -21,9 +21,9 @@ use glam::DVec2;
 use self::{colors::Colors, prepare::prepare};
 use super::{
     camera::{Basis, Direction, Point},
-    hit::Crossing,
+    crossing::Crossing,
+    object::Object,
     quadtree::{Descent, Nearness, Quadtree},
-    shape::Object,
 };
 use crate::{
     area::Area,
@@ -140,7 +140,7 @@ impl World {
 
     /// What [`slot_at`](World::slot_at) answers in one precision alone and without the quadtree, or `None` if that is in doubt.
     #[cfg(test)]
-    pub(super) fn slot_by<T: Level>(&self, x: u32, y: u32, offset: DVec2) -> Option<usize> {
+    pub(super) fn slot_by<T: Precision>(&self, x: u32, y: u32, offset: DVec2) -> Option<usize> {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
         let seen = self.seen::<T>(&point).ok()?;
         Some(self.slot(seen))
@@ -262,13 +262,13 @@ impl World {
         candidates
     }
 
-    fn seen<T: Level>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
+    fn seen<T: Precision>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
         let r = T::frame(&self.geometry).camera.direction(point);
         self.seen_in_direction(&r, 0..self.len())
     }
 
     #[inline]
-    fn seen_among<T: Level>(
+    fn seen_among<T: Precision>(
         &self,
         point: &Point,
         among: impl Iterator<Item = usize>,
@@ -279,7 +279,7 @@ impl World {
 
     /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
     #[inline]
-    pub(super) fn seen_in_direction<T: Level>(
+    pub(super) fn seen_in_direction<T: Precision>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
@@ -290,7 +290,7 @@ impl World {
 
     /// Adds which of an object's colours is seen.
     #[inline]
-    fn with_color<T: Level>(
+    fn with_color<T: Precision>(
         &self,
         r: &Direction<T>,
         nearest: Option<Nearest<T>>,
@@ -308,7 +308,7 @@ impl World {
 
     /// Of some objects, in file order, the one with the nearest crossing, and whether that is its second one.
     #[inline]
-    pub(super) fn nearest<T: Level>(
+    pub(super) fn nearest<T: Precision>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
@@ -318,7 +318,7 @@ impl World {
     }
 
     #[inline]
-    fn nearest_crossing<T: Level>(
+    fn nearest_crossing<T: Precision>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
@@ -333,7 +333,7 @@ impl World {
     /// Whether an object's crossing is nearer than the nearest so far, in whose place it is put then; of equal ones that of the object
     /// which comes first in the file is.
     #[inline]
-    fn meet<T: Level>(
+    fn meet<T: Precision>(
         &self,
         r: &Direction<T>,
         index: usize,
@@ -367,7 +367,7 @@ impl World {
 
     /// The first of an object's crossings that lies between the near and the far plane, and whether it is the second one.
     #[inline]
-    fn clip<T: Level>(
+    fn clip<T: Precision>(
         &self,
         index: usize,
         first: Crossing<T>,

@@ -7,7 +7,7 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 
-use crate::{math::Real, tracer::shape::Object};
+use crate::{math::Real, tracer::object::Object};
 
 /// Places for as many objects as people write by hand and more. It is a prime number, so that objects in rows, whose indices often are a
 /// power of two or of ten apart, do not take each other's.

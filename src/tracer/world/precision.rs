@@ -11,9 +11,9 @@ use crate::{
     scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
+        crossing::SurfacePart,
         form::Form,
-        hit::SurfacePart,
-        shape::Object,
+        object::Object,
         sphere::Sphere,
     },
 };
@@ -74,7 +74,7 @@ impl<T: Real> Frame<T> {
 }
 
 /// A precision that the world is held in.
-pub trait Level: Real {
+pub trait Precision: Real {
     fn frame(geometry: &Geometry) -> &Frame<Self>;
 
     /// An object in this precision, prepared when it is asked for.
@@ -126,7 +126,7 @@ impl Numbers {
     }
 }
 
-impl Level for f64 {
+impl Precision for f64 {
     #[inline]
     fn frame(geometry: &Geometry) -> &Frame<Self> {
         &geometry.fast
@@ -138,13 +138,13 @@ impl Level for f64 {
     }
 }
 
-impl Level for Double {
+impl Precision for Double {
     fn frame(geometry: &Geometry) -> &Frame<Self> {
         &geometry.double
     }
 }
 
-impl Level for Big {
+impl Precision for Big {
     fn frame(geometry: &Geometry) -> &Frame<Self> {
         &geometry.big
     }

@@ -17,8 +17,8 @@ use crate::{
     threads::Threads,
     tracer::{
         camera::Basis,
+        object::Object,
         quadtree::{Grid, Item, Quadtree},
-        shape::Object,
     },
 };
 

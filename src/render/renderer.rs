@@ -21,7 +21,7 @@ use crate::{
     film::{self, Encoder},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Candidate, Checks, Part, Pixel, Quartering, Room, World, samples},
+    tracer::{Candidate, Checks, Part, PreparedPixel, Quartering, Room, World, samples},
 };
 
 /// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
@@ -31,7 +31,7 @@ const WIDE_SAMPLES: u64 = 8;
 const SAMPLES_A_TASK: u64 = 1 << 12;
 
 /// What all tiles have in common.
-pub(super) struct Frame<'a, P> {
+pub(super) struct Renderer<'a, P> {
     pub(super) world: &'a World,
     pub(super) sampling: &'a Sampling,
     /// Of the palette, in linear light.
@@ -45,7 +45,7 @@ pub(super) struct Frame<'a, P> {
     pub(super) quartering: Quartering<'a>,
 }
 
-impl<P: film::Pixel> Frame<'_, P> {
+impl<P: film::Pixel> Renderer<'_, P> {
     /// The pixels of a tile, row by row; none once the render is cancelled.
     pub(super) fn tile(&self, tile: Area, tally: &mut Tally<P>, room: &mut Room) -> Option<Vec<P>> {
         let background = self.shown[self.world.background()];
@@ -127,7 +127,7 @@ impl<P: film::Pixel> Frame<'_, P> {
     }
 
     /// Prepares a pixel, where samples are traced together.
-    fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut Pixel) {
+    fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut PreparedPixel) {
         if let Trace::Together(candidates, checks) = trace {
             samples::prepare(self.world, at, candidates, checks, pixel);
         }

@@ -6,10 +6,10 @@
 use super::{
     camera::{Camera, Direction, Window},
     checkerboard::Checkerboard,
+    crossing::{Crossing, SurfacePart},
     cuboid::Cuboid,
     curve::{Crossings, Curve, SubPixelFrame, Surface},
     form::Form,
-    hit::{Crossing, SurfacePart},
     interval::{Cover, Patch, Range},
     sphere::Sphere,
     triangle::Triangle,
