@@ -86,8 +86,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         if sweep.regions.is_given_up() {
             break;
         }
-        let is_last = right - left < NARROW || sweep.slabs + slabs.len() >= many;
-        if let Some(at) = sweep.slab(left, right, is_last) {
+        if let Some(at) = sweep.slab(left, right, many.saturating_sub(slabs.len())) {
             slabs.extend([Slab(left, at), Slab(at, right)]);
         }
     }
@@ -128,9 +127,10 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Adds the regions of a slab, or says where it has to be cut; but not of the last ones.
-    fn slab(&mut self, left: f64, right: f64, is_last: bool) -> Option<f64> {
+    /// Adds the regions of a slab, or says where it has to be cut; that not if it is too narrow, or as many as may be are done.
+    fn slab(&mut self, left: f64, right: f64, may_be: usize) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
+        let is_last = width < NARROW || self.slabs >= may_be;
         let mut doubtful = 0.0;
         let mut sections: Vec<(Track, Section)> =
             Vec::with_capacity(self.lines.len() + self.graphs.len());

@@ -1,12 +1,11 @@
 //! Sine and cosine with a bound on their error.
+//!
+//! Degrees are reduced mod 360 without rounding before they become radians, so that multiples of 90° give exactly 0 and ±1
+//! however large they are. What is left is at most 45°.
 
-use std::{array, sync::LazyLock};
+use std::{array, ops::Neg, sync::LazyLock};
 
-use super::{
-    Angle, Ball, Big, Double, Real,
-    double::two_product,
-    trig::{reduced, turned},
-};
+use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
 /// More radians are left to [`Big`]: its π has digits enough. So many are less than 2^20 quarter turns, and miss 2^20 times what the π/2 below does, 2^−143,
 /// which is nothing beside a unit of double-double, 2^−102.
@@ -104,6 +103,32 @@ fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     };
     let rest = Ball::exact(radians) - product(first) - product(second);
     turned(series(&(rest - Ball::exact(quarters) * last)), quarters)
+}
+
+/// What is left of an angle in degrees, 45 at most, beside so many quarter turns. Every step is exact: a remainder is, and so is a difference to 90 of
+/// a number between 45 and 90 (Sterbenz).
+fn reduced(degrees: f64) -> (f64, f64) {
+    let within_turn = degrees % 360.0;
+    let mut rest = within_turn % 90.0;
+    let mut quarters = (within_turn - rest) / 90.0;
+    if rest > 45.0 {
+        rest -= 90.0;
+        quarters += 1.0;
+    } else if rest < -45.0 {
+        rest += 90.0;
+        quarters -= 1.0;
+    }
+    (rest, quarters)
+}
+
+/// Sine and cosine after so many quarter turns more.
+fn turned<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
+    match quarters.rem_euclid(4.0) as u8 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
 }
 
 /// Sine and cosine of r, |r| ≤ 0.8, by their series, from the smallest term to the largest.

@@ -121,23 +121,9 @@ fn terms(board: &Homography, nearest: f64, edges: &[Option<Edge>], area: f64) ->
 
 /// Ψ at a corner, and its size before anything cancels.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
-    match terms {
-        0..=2 => potential_of::<2, 4>(board, corner, terms),
-        3..=4 => potential_of::<4, 6>(board, corner, terms),
-        5..=7 => potential_of::<7, 9>(board, corner, terms),
-        8..=12 => potential_of::<12, 14>(board, corner, terms),
-        _ => potential_of::<MAX_TERMS, { MAX_TERMS + 2 }>(board, corner, terms),
-    }
-}
-
-fn potential_of<const MOST: usize, const ROWS: usize>(
-    board: &Homography,
-    corner: &Corner,
-    terms: usize,
-) -> (f64, f64) {
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
-        let mut waves = waves::<MOST, ROWS>(turn(corner.floor[i]));
+        let mut waves = waves(turn(corner.floor[i]), terms);
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;
@@ -195,16 +181,17 @@ impl Edge {
             true => far.floor[i].abs(),
             false => (far.floor[i] - near.floor[i]).abs(),
         };
-        let mut edge = Self::along(board, near, far, step(0) <= step(1))?;
+        let axes = if step(0) <= step(1) { [0, 1] } else { [1, 0] };
+        let mut edge = Self::along(board, near, far, axes)?;
         if !forward {
             edge.sign = -edge.sign;
         }
         Some(edge)
     }
 
-    /// An edge from its near end to its far one, summed along b or along a.
-    fn along(board: &Homography, near: &Corner, far: &Corner, by_b: bool) -> Option<Self> {
-        let (c, t) = if by_b { (0, 1) } else { (1, 0) };
+    /// An edge from its near end to its far one, whose lines of the axis c are summed along the axis t.
+    fn along(board: &Homography, near: &Corner, far: &Corner, [c, t]: [usize; 2]) -> Option<Self> {
+        let by_b = t == 1;
         let endless = far.depth.is_infinite();
         let exactly = |i: usize| match endless {
             true => Double::from_f64(far.floor[i]),

@@ -6,7 +6,7 @@
 //! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19): F_s(−y) is the conjugate of F_s(y), and
 //! F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). They are right to some 1e-14 of their value.
 
-use std::{array, f64::consts::FRAC_PI_2, sync::LazyLock};
+use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
@@ -134,32 +134,41 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
 /// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
 /// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
 /// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
-pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
-    waves_at::<TERMS, ROWS, 1>([t]).map(|[wave]| wave)
+pub(super) fn waves(t: f64, terms: usize) -> [f64; ORDERS] {
+    let (eta, sign) = from_middle(t);
+    let square = eta * eta;
+    let mut all = [0.0; ORDERS];
+    for k in 1..=terms + 1 {
+        let factors = FACTORS[k][..=k / 2].iter().rev();
+        let sum = factors.fold(0.0, |sum, factor| sum * square + factor);
+        all[k] = if k % 2 == 0 { sign } else { sign * eta } * sum;
+    }
+    all
 }
 
-/// The waves at several places: in each of the answer's rows one order, so that there must be two rows more than terms.
+/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. Half-way to t's
+/// last digits nothing is left to be said.
 #[inline(always)]
-pub(super) fn waves_at<const TERMS: usize, const ROWS: usize, const N: usize>(
-    t: [f64; N],
-) -> [[f64; N]; ROWS] {
-    // At a tie either neighbour will do, for the waves are continuous. Half-way to t's last digits nothing is left to be said.
-    let middle = t.map(|t| t - 0.5);
-    let shifted = middle.map(|middle| middle + ROUND);
-    let eta: [f64; N] = array::from_fn(|i| middle[i] - (shifted[i] - ROUND));
-    let sign = shifted.map(|s| f64::from_bits(1.0_f64.to_bits() | (s.to_bits() << 63)));
-    let square: [f64; N] = array::from_fn(|i| eta[i] * eta[i]);
-    let odd: [f64; N] = array::from_fn(|i| sign[i] * eta[i]);
-    let mut all = [[0.0; N]; ROWS];
+fn from_middle(t: f64) -> (f64, f64) {
+    let middle = t - 0.5;
+    let shifted = middle + ROUND;
+    let sign = f64::from_bits(1.0_f64.to_bits() | (shifted.to_bits() << 63));
+    (middle - (shifted - ROUND), sign)
+}
+
+/// The same where the number of terms is known to the compiler, which makes vectors of many of them. There must be two rows more than terms.
+#[inline(always)]
+pub(super) fn waves_of<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
+    let (eta, sign) = from_middle(t);
+    let (square, odd) = (eta * eta, sign * eta);
+    let mut all = [0.0; ROWS];
     // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them would not become vectors.
     macro_rules! order {
         ($k:literal, $first:expr, $($factor:literal)*) => {
             if TERMS + 1 >= $k {
-                all[$k] = array::from_fn(|i| {
-                    let mut sum = 0.0;
-                    $(sum = sum * square[i] + FACTORS[$k][$factor];)*
-                    $first[i] * sum
-                });
+                let mut sum = 0.0;
+                $(sum = sum * square + FACTORS[$k][$factor];)*
+                all[$k] = $first * sum;
             }
         };
     }
@@ -343,7 +352,7 @@ mod tests {
     #[test]
     fn waves_are_the_fourier_series() {
         for t in [-3.7, -1.0, -0.2, 0.0, 0.31, 0.5, 1.25, 2.0, 7.9] {
-            for (k, wave) in waves::<20, ORDERS>(t).into_iter().enumerate().skip(2) {
+            for (k, wave) in waves(t, 20).into_iter().enumerate().skip(2) {
                 let mut sum = 0.0;
                 for n in (1..4001).step_by(2) {
                     let x = f64::from(n) * PI;
