@@ -17,7 +17,7 @@ use super::{
     conic_segment::Arc,
 };
 
-/// Units of work of a region: for itself, and for each object that its ray may meet.
+/// Units of work (some 50 ns each, as in `budget`) of a region: for itself, and for each object that its ray may meet.
 const REGION_WORK: f64 = 4.0;
 const OBJECT_WORK: f64 = 0.5;
 

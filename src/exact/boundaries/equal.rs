@@ -8,10 +8,10 @@ use crate::{
     tracer::{Conic, Curve, Line},
 };
 
-/// Lines are one if no factor of their forms differs by more than a few roundings.
+/// Lines are one if no factor of their forms differs by more than this: each is divided, and so rounded twice, on both sides.
 const SAME_LINE: f64 = 4.0 * f64::UNIT;
 
-/// Conics are if their forms nowhere do in the pixel, by roundings of their factors.
+/// Conics are if their forms differ nowhere in the pixel by more than this: six differences of two products have 18 roundings, and the factors 12.
 const SAME_CONIC: f64 = 32.0 * Double::UNIT;
 
 /// A curve by its form divided by the leading factor: those of equal curves are the same.

@@ -28,7 +28,7 @@ use crate::{
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Of more objects than so many times as many as there may be curves, no curves are asked for: to prepare the objects takes longer than to quarter the sub-pixel.
-/// (Fewer may be equal.)
+/// (Fewer may be equal. Measured: a quarter and four times as many change no time.)
 const HEAP: usize = 16;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.

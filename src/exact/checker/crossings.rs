@@ -12,10 +12,11 @@ use multiversion::multiversion;
 
 /// The most terms of the asymptotic series.
 pub(super) const MAX_TERMS: usize = 20;
-/// Over so many blocks of crossings m grows by a factor of more than 1e20.
+/// Over so many blocks of crossings m grows by a factor of more than 1e20, as it grows by half in each: 1.5¹²⁸ = 3e22.
 const BLOCKS: f64 = 128.0;
 
-/// The crossings of a block: enough that choosing its number of terms is a small part of the work, and few enough for the roundings of a sum.
+/// The crossings of a block: enough that choosing its number of terms is a small part of the work, and few enough for the roundings of a sum. (Measured: a
+/// quarter and four times as many take the same time.)
 const LEAST_BLOCK: f64 = 16.0;
 const MOST_BLOCK: f64 = 4096.0;
 

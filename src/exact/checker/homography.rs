@@ -13,10 +13,12 @@ use crate::math::{Double, Real, two_product};
 /// The unit roundoff of `f64`.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// A determinant of less than this, of forms whose largest factors are about 1, is taken for singular and replaced by it.
+/// A determinant of less than this, of forms whose largest factors are about 1, is taken for singular and replaced by it, so that its inverse
+/// and products with that are numbers; what is computed then is in doubt as a whole.
 const LEAST_DETERMINANT: f64 = 1e-100;
 
-/// If roundings displace points by no more than this, in pixels, a corner that only they keep off the horizon is said to be on it.
+/// If roundings displace points by no more than this, in pixels, a corner that only they keep off the horizon is said to be on it: what that changes is in
+/// the bound, and a hundredth of what is asked for.
 const BESIDE: f64 = 1e-11;
 
 /// A displacement of no more area than this is not told more exactly: it is a thousandth of what is told as uncertain.

@@ -135,15 +135,13 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
 /// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
 /// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
 pub(super) fn waves(t: f64, terms: usize) -> [f64; ORDERS] {
-    let (eta, sign) = from_middle(t);
-    let square = eta * eta;
-    let mut all = [0.0; ORDERS];
-    for k in 1..=terms + 1 {
-        let factors = FACTORS[k][..=k / 2].iter().rev();
-        let sum = factors.fold(0.0, |sum, factor| sum * square + factor);
-        all[k] = if k % 2 == 0 { sign } else { sign * eta } * sum;
+    match terms {
+        0..=2 => waves_of::<2, ORDERS>(t),
+        3..=4 => waves_of::<4, ORDERS>(t),
+        5..=7 => waves_of::<7, ORDERS>(t),
+        8..=12 => waves_of::<12, ORDERS>(t),
+        _ => waves_of::<20, ORDERS>(t),
     }
-    all
 }
 
 /// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. Half-way to t's

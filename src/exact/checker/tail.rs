@@ -25,29 +25,26 @@ use std::f64::consts::PI;
 
 /// What is neglected of the modes, in square pixels: a thousandth of the bound that is asked for.
 const NEGLECTED: f64 = 1e-12;
-/// Where m changes by less than one part in so many, it is taken to be the same at all crossings; the bound adds 4/STEADY of the sum for that.
+/// Where m changes by less than one part in so many, it is taken to be the same at all crossings; the bound adds 4/STEADY of the sum for that, which is 1e-6 of
+/// something that is itself small where crossings are many. (Measured: a quarter and four times as much change no bound.)
 const STEADY: f64 = 3e6;
 /// The terms of X that are summed by Fourier modes; later terms are only bounded.
 const WAVES: usize = 3;
 
-/// Up to so many crossings are added one by one where m grows, and where it hardly does: sums of waves take about as long.
+/// Up to so many crossings are added one by one: 60 µs, at 3 ns each. (Measured: 5000 and 80,000 take the same time within a tenth.)
 const SHORT: f64 = 20_000.0;
-const SHORT_LEVEL: f64 = 100_000.0;
 /// No more crossings than these, nor waves, are added for an edge: that takes some milliseconds. Of the rest the bound says how much it may be.
 const MOST: f64 = 300_000.0;
-/// A sum of more than so many crossings that is no greater than this, in square pixels, is neglected.
-const DENSE: f64 = 512.0;
-const CRUMB: f64 = 2e-12;
-/// The time that a mode takes, in crossings.
+/// The time that a mode takes, in crossings: 12 ns against 3, as measured.
 const MODE_COST: f64 = 4.0;
-/// The modes up to this one are always computed; a later one may be skipped where it is small.
+/// The modes up to this one are always computed; a later one may be skipped where it is small. (Measured: 7 to 123 take the same time within a tenth.)
 const FIRST_MODES: f64 = 31.0;
 /// Shares of the tolerance, which together are less than all of it: of a sum or of modes that are left out, of what V_s lacks in the first wave, and of
-/// waves that have no modes.
+/// waves that have no modes. (Measured: the last two, a quarter and four times as great, change no time.)
 const LEFT_OUT: f64 = 0.25;
 const LACKING: f64 = 0.02;
 const LATER: f64 = 0.05;
-/// The series in 1/w is not used below this w: its terms fall by s/w and more.
+/// The series in 1/w is not used below this w: its terms fall by s/w and more, to a third each.
 const LEAST_W: f64 = 16.0;
 /// Below this |θ|, 2 − 2cos θ is θ² to within θ²/12, a third of a percent, and a computed cosine leaves little of it.
 const SMALL_ANGLE: f64 = 0.2;
@@ -65,7 +62,6 @@ pub(super) fn sum(all: &LineCrossings, series: &Series, tolerance: f64, budget: 
         * (1..=series.terms)
             .map(|k| series.size(k, all.depth))
             .sum::<f64>();
-    let is_crumb = lines > DENSE && trivial <= CRUMB.min(tolerance);
     let is_little = lines > SHORT && trivial <= LEFT_OUT * tolerance;
     let trivial_sum = Sum {
         value: 0.0,
@@ -76,14 +72,13 @@ pub(super) fn sum(all: &LineCrossings, series: &Series, tolerance: f64, budget: 
             .spend(lines * CROSSING_WORK)
             .then(|| all.one_by_one(series, lines, tolerance))
     };
-    if is_crumb || is_little {
+    if is_little {
         return trivial_sum;
     }
-    let is_level = all.rise * lines < all.depth;
-    if lines <= if is_level { SHORT_LEVEL } else { SHORT } {
+    if lines <= SHORT {
         return one_by_one(lines).unwrap_or(trivial_sum);
     }
-    if is_level {
+    if all.rise * lines < all.depth {
         // Where m hardly grows the waves of the ends do not fall off.
         let sum = level(all, series, trivial, tolerance, budget);
         let is_better_one_by_one = sum.bound > tolerance && lines <= MOST;
