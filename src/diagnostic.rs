@@ -7,10 +7,14 @@
 mod fix;
 #[cfg(feature = "cli")]
 mod report;
+#[cfg(feature = "cli")]
+mod visible;
 
 pub use fix::{Edit, Fix, Fixable, apply, with_comments};
 #[cfg(feature = "cli")]
-pub use report::{Drawing, Report, Style, printable};
+pub use report::{Drawing, Report, Style};
+#[cfg(feature = "cli")]
+pub use visible::visible;
 
 use std::fmt::Write;
 

@@ -8,6 +8,7 @@ use std::{
 
 use pinhole::{
     area::Area,
+    diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
     grade::{self, Grade},
     numbers::{grouped, short},
@@ -222,7 +223,7 @@ fn write_heat_map(
 ) -> Result<(), Trouble> {
     film::write_whole(path, cancel, |out| film::write_plain_png(map, out))
         .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))?;
-    output::to_people(&format!("{}: {legend}\n", shown(path)));
+    output::to_people(&format!("{}: {legend}\n", visible(&shown(path))));
     Ok(())
 }
 
@@ -244,10 +245,10 @@ impl Report {
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
-        let [a, b] = &self.names;
+        let [a, b] = self.names.each_ref().map(|name| visible(name));
         let b = match self.is_scene {
             true => format!("the exact picture of {b}"),
-            false => b.clone(),
+            false => b.into_owned(),
         };
         let tolerance = match self.tolerance {
             1.0 => "1 step".to_owned(),

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use diffy::Line;
 use pinhole::{
-    diagnostic::{Report, printable},
+    diagnostic::{Report, visible},
     film,
     format::format,
     source::{Source, Sources},
@@ -95,7 +95,7 @@ fn write(
 /// What would change, as a unified diff. Where lines end in different ways, carriage returns are shown: lines can differ in them alone.
 fn difference(source: &Source, formatted: &str) -> String {
     let patch = diffy::create_patch(source.text(), formatted);
-    let name = source.name();
+    let name = visible(source.name());
     let color = output::style().color;
     let text = source.text();
     let is_mixed = text.matches('\n').count() != text.matches("\r\n").count();
@@ -109,7 +109,7 @@ fn difference(source: &Source, formatted: &str) -> String {
                 Line::Context(value) => (' ', "", value),
             };
             let line = value.trim_end_matches(['\n', '\r']);
-            let mut line: String = line.chars().map(printable).collect();
+            let mut line = visible(line).into_owned();
             if is_mixed && value.trim_end_matches('\n').ends_with('\r') {
                 line.push('␍');
             }

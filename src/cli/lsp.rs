@@ -3,18 +3,21 @@
 use std::{io, path::PathBuf};
 
 use etcetera::BaseStrategy;
-use pinhole::lsp::{self, Ended};
+use pinhole::{
+    diagnostic::visible,
+    lsp::{Server, stdio},
+};
 
 use super::{Status, Trouble, output};
 
 /// Talks to an editor until it ends.
 pub fn run() -> Result<Status, Trouble> {
-    let log = |message: &str| output::to_people(&format!("{message}\n"));
-    let ended = lsp::serve(io::stdin(), &mut io::stdout().lock(), pages(), log);
-    match ended {
-        Ok(Ended::Properly) => Ok(Status::Done),
+    let log = |message: &str| output::to_people(&format!("{}\n", visible(message)));
+    let server = Server::new(pages(), log);
+    match stdio::serve(server, io::stdin(), &mut io::stdout().lock(), log) {
+        Ok(true) => Ok(Status::Done),
         // The protocol asks for a status of 1.
-        Ok(Ended::Abruptly) => Ok(Status::SceneErrors),
+        Ok(false) => Ok(Status::SceneErrors),
         Err(error) => Err(Trouble(format!("cannot write to standard output: {error}"))),
     }
 }

@@ -28,12 +28,14 @@ mod speed;
 mod watch;
 
 use std::{
+    borrow::Cow,
     fmt::{Display, Formatter},
+    io,
     process::ExitCode,
 };
 
 use clap::Parser;
-use pinhole::threads;
+use pinhole::{diagnostic::visible, threads};
 
 use self::{
     args::{Args, Command},
@@ -42,8 +44,10 @@ use self::{
 
 /// Runs the command that the arguments name.
 pub fn run() -> ExitCode {
-    // Help, version and wrong usage end here, the latter with status 2.
-    let args = Args::parse();
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(answer) => return tell(&answer),
+    };
     if let Some(wanted) = args.command.threads() {
         threads::limit(wanted);
     }
@@ -69,6 +73,26 @@ pub fn run() -> ExitCode {
             output::error(&trouble);
             Status::Trouble.into()
         }
+    }
+}
+
+/// Tells help or the version, or what is wrong with the arguments.
+fn tell(answer: &clap::Error) -> ExitCode {
+    let status = match answer.use_stderr() {
+        true => Status::Trouble,
+        false => Status::Done,
+    };
+    let plain = answer.to_string();
+    if let Cow::Owned(visible) = visible(&plain) {
+        output::to_people(&visible);
+        return status.into();
+    }
+    match answer.print() {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            output::error(&format!("cannot write to standard output: {error}"));
+            Status::Trouble.into()
+        }
+        _ => status.into(),
     }
 }
 

@@ -2,22 +2,44 @@
 
 use std::{
     env, fmt,
-    io::{self, ErrorKind, IsTerminal, Write},
+    io::{self, ErrorKind, IsTerminal, StdoutLock, Write},
 };
 
-use pinhole::diagnostic::{Drawing, Style};
+use pinhole::diagnostic::{Drawing, Style, visible};
 use terminal_size::{Width, terminal_size_of};
 
 use super::Trouble;
 
-/// Writes to standard output. A reader that has gone away, as `head` does, has had enough: that is no trouble.
+/// Writes to standard output.
 pub fn to_programs(bytes: &[u8]) -> Result<(), Trouble> {
-    let mut out = io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Trouble(format!("cannot write to standard output: {error}")))
+    let mut out = Programs::new();
+    let written = out.write_all(bytes).and_then(|()| out.flush());
+    written.map_err(|error| Trouble(format!("cannot write to standard output: {error}")))
+}
+
+/// Standard output. A reader that has gone away, as `head` does, has had enough: that is no trouble, and what is left goes nowhere.
+pub struct Programs(StdoutLock<'static>);
+
+impl Programs {
+    /// Nobody else writes to it meanwhile.
+    pub fn new() -> Self {
+        Self(io::stdout().lock())
+    }
+}
+
+impl Write for Programs {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
         }
-        _ => Ok(()),
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
+        }
     }
 }
 
@@ -47,6 +69,8 @@ pub fn worded_warning(message: &dyn fmt::Display) -> String {
 }
 
 fn worded(word: &str, color: &str, message: &dyn fmt::Display) -> String {
+    let message = message.to_string();
+    let message = visible(&message);
     match style().color {
         true => format!("\x1b[{color}m{word}:\x1b[0m {message}\n"),
         false => format!("{word}: {message}\n"),
@@ -89,10 +113,10 @@ pub fn page_style() -> Option<Style> {
     })
 }
 
-/// Whether a terminal may be written to in colour.
+/// Whether a terminal may be written to in colour: <https://no-color.org> and <https://bixense.com/clicolors>.
 fn has_color() -> bool {
-    let dumb = env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
-    !dumb && !is_set("NO_COLOR")
+    let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
+    !is("TERM", "dumb") && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
 }
 
 /// As no-color.org says: present and not empty.

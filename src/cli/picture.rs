@@ -238,7 +238,7 @@ impl Output {
     /// Writes the picture, of which as much was kept as it takes, unless `cancel` is set.
     pub fn write(&self, picture: &Picture, recipe: &Recipe, cancel: &AtomicBool) -> io::Result<()> {
         match self {
-            Self::Standard => film::write_stream(io::stdout().lock(), cancel, |out| {
+            Self::Standard => film::write_stream(output::Programs::new(), cancel, |out| {
                 write_png(picture, recipe, out)
             }),
             Self::File(path, format) => {

@@ -10,7 +10,10 @@ use miette::{
     SourceCode, SourceSpan, SpanContents,
 };
 
-use super::{Diagnostic, Label, Severity, clamp, summary};
+use super::{
+    Diagnostic, Label, Severity, clamp, summary,
+    visible::{is_invisible, push_visible, visible},
+};
 use crate::{
     explain::short,
     source::{Source, SourceId, Sources, Span},
@@ -111,16 +114,20 @@ impl<'s> Report<'s> {
             (true, Severity::Warning) => ("\x1b[1;33m", "\x1b[0m"),
         };
         let code = &diagnostic.code;
-        let mut text = format!("{on}{word}[{code}]:{off} {}\n", diagnostic.message);
+        let mut text = format!(
+            "{on}{word}[{code}]:{off} {}\n",
+            visible(&diagnostic.message)
+        );
         let excerpts = excerpts(diagnostic, self.sources);
         if excerpts.is_empty()
             && let Some(help) = &diagnostic.help
         {
-            let _ = writeln!(text, "  help: {help}");
+            let _ = writeln!(text, "  help: {}", visible(help));
         }
         let last = excerpts.len().saturating_sub(1);
         for (index, excerpt) in excerpts.into_iter().enumerate() {
-            let help = diagnostic.help.clone().filter(|_| index == last);
+            let help = diagnostic.help.as_ref().filter(|_| index == last);
+            let help = help.map(|help| visible(help).into_owned());
             text.push_str(&self.snippet(excerpt, help));
         }
         if self.style.drawing == Drawing::Ascii {
@@ -161,7 +168,7 @@ impl<'s> Report<'s> {
             "{} {}: {}\n",
             diagnostic.severity.word(),
             diagnostic.code,
-            diagnostic.message
+            visible(&diagnostic.message)
         );
         for label in &diagnostic.labels {
             let source = self.sources.get(label.span.source);
@@ -171,20 +178,20 @@ impl<'s> Report<'s> {
             let _ = write!(
                 text,
                 "  {}, line {}, column {}",
-                source.name(),
+                visible(source.name()),
                 place.line,
                 place.column
             );
             let one_line = under.lines().next().unwrap_or_default();
             if !one_line.is_empty() {
-                let shown: String = one_line.chars().take(60).map(printable).collect();
+                let shown: String = one_line.chars().take(60).collect();
                 let rest = if shown.len() < under.len() { "…" } else { "" };
-                let _ = write!(text, ", at `{shown}{rest}`");
+                let _ = write!(text, ", at `{}{rest}`", visible(&shown));
             }
-            let _ = writeln!(text, ": {}", label.message);
+            let _ = writeln!(text, ": {}", visible(&label.message));
         }
         if let Some(help) = &diagnostic.help {
-            let _ = writeln!(text, "  help: {help}");
+            let _ = writeln!(text, "  help: {}", visible(help));
         }
         text
     }
@@ -301,8 +308,8 @@ impl<'s> Excerpt<'s> {
             let inner = SourceSpan::from((start, end - start));
             // miette shows line and column of the primary label.
             excerpt.labels.push(match index {
-                0 => LabeledSpan::new_primary_with_span(Some(message.to_owned()), inner),
-                _ => LabeledSpan::new_with_span(Some(message.to_owned()), inner),
+                0 => LabeledSpan::new_primary_with_span(Some(visible(message).into_owned()), inner),
+                _ => LabeledSpan::new_with_span(Some(visible(message).into_owned()), inner),
             });
         }
         excerpt
@@ -324,12 +331,7 @@ impl<'s> Excerpt<'s> {
             if shown.start > range.start {
                 self.text.push('…');
             }
-            pieces.push(Piece {
-                start: self.text.len(),
-                shown: shown.clone(),
-            });
-            self.text
-                .extend(self.source.slice(shown.clone()).chars().map(printable));
+            self.push_pieces(shown.clone(), &mut pieces);
         }
         if pieces
             .last()
@@ -346,6 +348,32 @@ impl<'s> Excerpt<'s> {
             pieces,
         });
         self.text.push('\n');
+    }
+
+    /// Adds a part of a line. What is shown as its code is a piece of its own, as it takes more than its own bytes.
+    fn push_pieces(&mut self, shown: Range<usize>, pieces: &mut Vec<Piece>) {
+        let mut is_alone = true;
+        for (at, character) in self.source.slice(shown.clone()).char_indices() {
+            let at = shown.start + at;
+            let is_code = is_invisible(character);
+            if is_alone || is_code {
+                pieces.push(Piece {
+                    start: self.text.len(),
+                    shown: at..at,
+                });
+            }
+            is_alone = is_code;
+            push_visible(&mut self.text, character);
+            if let Some(piece) = pieces.last_mut() {
+                piece.shown.end = at + character.len_utf8();
+            }
+        }
+        if pieces.is_empty() {
+            pieces.push(Piece {
+                start: self.text.len(),
+                shown,
+            });
+        }
     }
 
     /// Where an offset of the source stands in the excerpt.
@@ -403,7 +431,7 @@ impl SourceCode for Excerpt<'_> {
             .find(|piece| piece.start <= span.offset())
             .map_or(0, |piece| piece.shown.start + (span.offset() - piece.start));
         Ok(Box::new(MietteSpanContents::new_named(
-            self.source.name().to_owned(),
+            visible(self.source.name()).into_owned(),
             data,
             (first.start, last.end - first.start).into(),
             first.number - 1,
@@ -455,14 +483,4 @@ fn shown_pieces(source: &Source, line: Range<usize>, labels: &[(Span, &str)]) ->
         pieces.push(line.start..to);
     }
     pieces
-}
-
-/// What stands for a character on a terminal: a control character would act on it. None is longer than the one byte that stands in for it, or it is shown
-/// by as many.
-pub fn printable(character: char) -> char {
-    match character {
-        '\t' => character,
-        _ if character.is_ascii_control() => '?',
-        _ => character,
-    }
 }

@@ -1,13 +1,15 @@
 //! The language server: the editor's answers, spoken in the Language Server Protocol.
 //!
-//! In: messages, as an editor writes them to standard input. Out: messages to standard output, and nothing else there.
-//! `documents` has the open texts, [`crate::editor`] the answers, `convert` makes the protocol's types of them; `pages` keeps what
-//! codes link to; `server` is one loop on one thread that takes messages in their order.
+//! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`) and knows neither threads nor streams, so that any host can carry
+//! it; [`stdio`] does over standard input and output. [`crate::editor`] has the answers, `answers` asks it, `convert` makes the protocol's types of them, and
+//! `pages` keeps what codes link to.
 
+mod answers;
 mod convert;
 mod documents;
 mod pages;
 mod server;
+pub mod stdio;
 mod uri;
 
-pub use server::{Ended, serve};
+pub use server::Server;

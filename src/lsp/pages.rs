@@ -50,7 +50,9 @@ impl Pages {
 
 /// Sees to it that a file has this text; others see the whole of it or what was there before.
 fn keep(path: &Path, text: &str) -> io::Result<()> {
-    if fs::read(path).is_ok_and(|found| found == text.as_bytes()) {
+    // What is no file, as a pipe, which nobody may ever write to, gives way to one.
+    let is_file = fs::symlink_metadata(path).is_ok_and(|found| found.is_file());
+    if is_file && fs::read(path).is_ok_and(|found| found == text.as_bytes()) {
         return Ok(());
     }
     let folder = path.parent().ok_or(io::ErrorKind::NotFound)?;
@@ -90,6 +92,15 @@ mod tests {
         let before = written().expect("a time");
         assert_eq!(pages().uri("bare_angle"), Some(uri));
         assert_eq!(written().expect("a time"), before);
+        // A pipe gives way.
+        #[cfg(unix)]
+        {
+            fs::remove_file(&file).expect("it is there");
+            let made = std::process::Command::new("mkfifo").arg(&file).status();
+            assert!(made.is_ok_and(|status| status.success()));
+            pages().uri("pinhole::bare_angle").expect("it is kept");
+            assert_eq!(read(), page);
+        }
         let files = fs::read_dir(file.with_file_name("")).expect("a folder");
         assert_eq!(files.count(), 1);
     }

@@ -6,7 +6,7 @@
 //! Events come in bursts, so the file is read once there was none for a moment. (notify's own debouncers do that too, but the small one
 //! forgets what kind an event is, and would be woken by our own reading, and the large one keeps books on files that were renamed,
 //! which nobody asks for here.) Once a second the file's time and length are looked at in any case, for folders without events, such as
-//! those on other machines, and for those that come and go.
+//! those on other machines, or where the system has no watch left, and for those that come and go.
 //!
 //! A save is told by the file's time, its length and which file it is, and not by the text alone: who saves the text that was there
 //! wants to see something happen. Whatever else an editor does to a file that it has written changes none of them.
@@ -18,7 +18,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         Arc, Weak,
-        mpsc::{self, Receiver, RecvTimeoutError},
+        mpsc::{self, Receiver, Sender},
     },
     thread,
     time::{Duration, Instant, SystemTime},
@@ -59,20 +59,23 @@ pub fn watch(
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
 ) -> notify::Result<Arc<Latest<Content>>> {
     let (sender, events) = mpsc::channel();
+    let own_sender = sender.clone();
+    let notifier = notify::recommended_watcher(move |event| {
+        // Where nobody listens any more, there is nothing to tell.
+        let _ = sender.send(event);
+    });
     let mut watcher = Watcher {
         path: path.to_owned(),
         read,
-        notifier: notify::recommended_watcher(move |event| {
-            // Where nobody listens any more, there is nothing to tell.
-            let _ = sender.send(event);
-        })?,
+        notifier: notifier.ok(),
         events,
+        _sender: own_sender,
         folders: BTreeSet::new(),
         names: Vec::new(),
         stamp: None,
         seen: None,
     };
-    watcher.follow()?;
+    watcher.follow();
     let latest = Arc::new(Latest::default());
     watcher.look(Instant::now(), &latest);
     let weak = Arc::downgrade(&latest);
@@ -86,8 +89,11 @@ pub fn watch(
 struct Watcher<R> {
     path: PathBuf,
     read: R,
-    notifier: RecommendedWatcher,
+    /// None where the system has none to give.
+    notifier: Option<RecommendedWatcher>,
     events: Receiver<notify::Result<Event>>,
+    /// It keeps the events open where nobody sends any.
+    _sender: Sender<notify::Result<Event>>,
     /// The folders that are watched.
     folders: BTreeSet<PathBuf>,
     /// What the file is called in them.
@@ -100,28 +106,30 @@ struct Watcher<R> {
 
 impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     fn run(mut self, latest: &Weak<Latest<Content>>) {
+        let mut next_look = Instant::now() + ANYWAY;
         loop {
-            let event = self.events.recv_timeout(ANYWAY);
+            let left = next_look.saturating_duration_since(Instant::now());
+            let event = self.events.recv_timeout(left);
             let since = Instant::now();
             let Some(latest) = latest.upgrade().filter(|latest| !latest.is_over()) else {
                 return;
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                Ok(_) => continue,
-                Err(RecvTimeoutError::Timeout) => {
+                // However much happens beside the file, it is looked at once a second.
+                Ok(_) if since < next_look => continue,
+                _ => {
+                    next_look = since + ANYWAY;
                     if stamp(&self.path) == self.stamp {
                         // Perhaps a folder is back, or a link leads elsewhere.
-                        let _ = self.follow();
+                        self.follow();
                         continue;
                     }
                     // It has changed without an event: what was watched is no longer there, or never told.
                     self.forget_folders();
                 }
-                Err(RecvTimeoutError::Disconnected) => return,
             }
-            // A folder that cannot be watched now is looked at once a second.
-            let _ = self.follow();
+            self.follow();
             self.look(since, &latest);
         }
     }
@@ -160,26 +168,30 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Watches the folders that matter now.
-    fn follow(&mut self) -> notify::Result<()> {
+    /// Watches the folders that matter now. One that cannot be watched is looked at once a second.
+    fn follow(&mut self) {
         let (folders, names) = places(&self.path);
         self.names = names;
+        let Some(notifier) = &mut self.notifier else {
+            return;
+        };
         for old in self.folders.difference(&folders) {
-            let _ = self.notifier.unwatch(old);
+            let _ = notifier.unwatch(old);
         }
         self.folders.retain(|folder| folders.contains(folder));
         for folder in folders {
-            if !self.folders.contains(&folder) {
-                self.notifier.watch(&folder, RecursiveMode::NonRecursive)?;
+            let is_new = !self.folders.contains(&folder);
+            if is_new && notifier.watch(&folder, RecursiveMode::NonRecursive).is_ok() {
                 self.folders.insert(folder);
             }
         }
-        Ok(())
     }
 
     fn forget_folders(&mut self) {
         for folder in std::mem::take(&mut self.folders) {
-            let _ = self.notifier.unwatch(&folder);
+            if let Some(notifier) = &mut self.notifier {
+                let _ = notifier.unwatch(&folder);
+            }
         }
     }
 
@@ -217,7 +229,11 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         let end = Instant::now() + ABSENCE;
         loop {
             let stamp = stamp(&self.path);
-            let bytes = (self.read)(&self.path);
+            // A pipe would never end.
+            let bytes = match fs::metadata(&self.path) {
+                Ok(found) if !found.is_file() => Err(io::Error::other("it is not a file")),
+                _ => (self.read)(&self.path),
+            };
             let is_there = match &bytes {
                 Ok(bytes) => !bytes.is_empty(),
                 Err(error) => error.kind() != io::ErrorKind::NotFound,

@@ -118,7 +118,7 @@ fn control_characters_are_not_printed() {
     let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
     assert_eq!(status, 1);
     assert!(
-        errors.contains("\n // ?[31mx\n-let a=1 // ?\n+let a = 1  // ?\n"),
+        errors.contains("\n // \\u{1b}[31mx\n-let a=1 // \\u{7}\n+let a = 1  // \\u{7}\n"),
         "{errors}"
     );
     let is_odd = |c: char| c.is_control() && c != '\n';

@@ -232,6 +232,41 @@ fn a_link_and_the_file_at_its_end_are_watched() {
 }
 
 #[test]
+fn what_no_event_tells_is_seen_however_much_else_happens() {
+    use std::os::unix::fs::symlink;
+    let [folder, middle, far] = [(); 3].map(|()| tempfile::tempdir().unwrap());
+    for color in ["red", "blue"] {
+        fs::write(far.path().join(color), scene(color)).unwrap();
+    }
+    let link = middle.path().join("middle");
+    symlink(far.path().join("red"), &link).unwrap();
+    symlink(&link, folder.path().join("a.scn")).unwrap();
+    let watch = Watch::start_in(folder, "a.scn", &[]);
+    watch.wait_for(RED);
+    // Nobody watches the folder of the link in the middle.
+    let other = middle.path().join("other");
+    symlink(far.path().join("blue"), &other).unwrap();
+    fs::rename(&other, &link).unwrap();
+    watch.wait("the picture is blue", || {
+        fs::write(watch.path("noise"), "").unwrap();
+        watch.color("a.png") == Some(BLUE)
+    });
+}
+
+#[test]
+fn a_pipe_in_the_files_place_is_waited_out() {
+    let watch = Watch::start(&scene("red"), &[]);
+    watch.wait_for(RED);
+    let made = Command::new("mkfifo").arg(watch.path("pipe")).status();
+    assert!(made.unwrap().success());
+    fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
+    watch.wait("it says so", || watch.count("it is not a file") > 0);
+    fs::write(watch.path("new"), scene("blue")).unwrap();
+    fs::rename(watch.path("new"), watch.path("a.scn")).unwrap();
+    watch.wait_for(BLUE);
+}
+
+#[test]
 fn broken_text_is_reported_and_the_last_picture_stays() {
     let watch = Watch::start(&scene("red"), &[]);
     watch.wait_for(RED);

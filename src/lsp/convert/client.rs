@@ -1,6 +1,7 @@
 //! What the client understands, and what the server offers it.
 
 use gen_lsp_types as lsp;
+use line_index::WideEncoding;
 use serde_json::Value;
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
@@ -73,11 +74,11 @@ fn is_in_terminal(name: &str) -> bool {
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),
-        "utf-16" => Some(Encoding::Utf16),
-        "utf-32" => Some(Encoding::Utf32),
+        "utf-16" => Some(Encoding::Wide(WideEncoding::Utf16)),
+        "utf-32" => Some(Encoding::Wide(WideEncoding::Utf32)),
         _ => None,
     });
-    known.unwrap_or(Encoding::Utf16)
+    known.unwrap_or(Encoding::Wide(WideEncoding::Utf16))
 }
 
 /// What the server offers.
@@ -86,8 +87,8 @@ pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
     lsp::ServerCapabilities {
         position_encoding: Some(match client.encoding {
             Encoding::Utf8 => lsp::PositionEncodingKind::UTF8,
-            Encoding::Utf16 => lsp::PositionEncodingKind::UTF16,
-            Encoding::Utf32 => lsp::PositionEncodingKind::UTF32,
+            Encoding::Wide(WideEncoding::Utf32) => lsp::PositionEncodingKind::UTF32,
+            Encoding::Wide(_) => lsp::PositionEncodingKind::UTF16,
         }),
         text_document_sync: Some(lsp::TextDocumentSync::Options(
             lsp::TextDocumentSyncOptions {

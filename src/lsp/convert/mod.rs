@@ -7,9 +7,12 @@ mod tokens;
 pub use client::{Client, capabilities};
 
 use gen_lsp_types as lsp;
+use line_index::WideEncoding;
+use serde_json::Value;
 
 use super::{
-    documents::{Change, Document, Encoding},
+    answers::{Refusal, parsed},
+    documents::{Change, Document, Place},
     pages::Pages,
     uri,
 };
@@ -40,8 +43,7 @@ fn count(number: usize) -> u32 {
 impl Page<'_> {
     /// The offset of a position.
     pub fn offset(&self, position: lsp::Position) -> usize {
-        let (line, column) = (position.line as usize, position.character as usize);
-        self.document.offset(line, column)
+        self.document.offset(place(position))
     }
 
     /// A span of the text from a range.
@@ -51,11 +53,8 @@ impl Page<'_> {
     }
 
     pub fn position(&self, offset: usize) -> lsp::Position {
-        let (line, column) = self.document.place(offset);
-        lsp::Position {
-            line: count(line),
-            character: count(column),
-        }
+        let (line, character) = self.document.place(offset);
+        lsp::Position { line, character }
     }
 
     pub fn range(&self, span: Span) -> lsp::Range {
@@ -142,7 +141,7 @@ impl Page<'_> {
             // Counted in UTF-16 units whatever the encoding of positions.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
-                count(Encoding::Utf16.columns(before))
+                count(WideEncoding::Utf16.measure(before))
             };
             lsp::ParameterInformation {
                 label: lsp::ParameterInformationLabel::Tuple((
@@ -319,20 +318,21 @@ impl Page<'_> {
     }
 }
 
-/// A change of a text.
-pub fn change(change: lsp::TextDocumentContentChangeEvent) -> Change {
-    use lsp::TextDocumentContentChangeEvent as Event;
-    let place = |position: lsp::Position| (position.line as usize, position.character as usize);
-    match change {
-        Event::TextDocumentContentChangePartial(part) => Change {
-            range: Some([place(part.range.start), place(part.range.end)]),
-            text: part.text,
-        },
-        Event::TextDocumentContentChangeWholeDocument(whole) => Change {
-            range: None,
-            text: whole.text,
-        },
-    }
+/// The changes of a text. They are taken apart here: to the protocol's type, a change whose range is none looks like one of the whole text.
+pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
+    let changes = params.get("contentChanges").cloned().unwrap_or_default();
+    let changes: Vec<Value> = parsed(changes)?;
+    let change = |change: Value| {
+        let text = parsed(change.get("text").cloned().unwrap_or_default())?;
+        let range: Option<lsp::Range> = parsed(change.get("range").cloned().unwrap_or_default())?;
+        let range = range.map(|range| [place(range.start), place(range.end)]);
+        Ok(Change { range, text })
+    };
+    changes.into_iter().map(change).collect()
+}
+
+fn place(position: lsp::Position) -> Place {
+    (position.line, position.character)
 }
 
 /// A colour as a client picks it.

@@ -2,8 +2,6 @@
 
 use serde_json::json;
 
-use lsp_server::Notification;
-
 use super::*;
 
 fn request(id: i32, method: &str, params: Value) -> Message {
@@ -39,24 +37,21 @@ fn hover(id: i32) -> Message {
     )
 }
 
-/// What is answered to messages that have all come before the first is taken.
+/// What is said when all messages have come before the first piece of work is done.
 fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
-    let (sender, receiver) = std::sync::mpsc::channel();
+    let mut server = Server::new(None, |_| {});
     let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
-    for message in [hello].into_iter().chain(messages) {
-        sender.send(Ok(message)).expect("it is kept");
+    assert_eq!(server.handle(hello).len(), 1);
+    let mut said: Vec<Message> = messages
+        .into_iter()
+        .flat_map(|message| server.handle(message))
+        .collect();
+    while server.is_busy() {
+        said.extend(server.advance(1));
     }
-    drop(sender);
-    let mut output = Vec::new();
-    let mut server = Server::new(&mut output, Pages::default(), |_| {});
-    let ended = server.run(&mut Inbox::new(receiver));
-    assert_eq!(ended.expect("a vector takes everything"), Ended::Abruptly);
-    let mut output = output.as_slice();
-    let mut answers = Vec::new();
-    while let Some(message) = Message::read(&mut output).expect("a message") {
-        answers.push(serde_json::to_value(message).expect("a value"));
-    }
-    answers.split_off(1)
+    said.iter()
+        .map(|message| serde_json::to_value(message).expect("a value"))
+        .collect()
 }
 
 #[test]
@@ -120,4 +115,23 @@ fn an_answer_that_fails_is_an_answer() {
     let answer = unharmed(|| panic!("on purpose"));
     let code = answer.err().map(|Refusal(code, _)| code as i32);
     assert_eq!(code, Some(ErrorCode::InternalError as i32));
+}
+
+#[test]
+fn a_change_that_is_none_changes_nothing() {
+    let change = |range: Value| {
+        let document = json!({ "uri": "file:///a.scn", "version": 2 });
+        let changes = json!([{ "range": range, "text": "oops" }]);
+        let params = json!({ "textDocument": document, "contentChanges": changes });
+        notification("textDocument/didChange", params)
+    };
+    let place = |line: i64, character: i64| json!({ "line": line, "character": character });
+    for (line, character) in [(-1, 0), (0, -1), (0, 1 << 40), (1 << 32, 0), (99, 0)] {
+        for (start, end) in [((0, 0), (line, character)), ((line, character), (0, 0))] {
+            let range = json!({ "start": place(start.0, start.1), "end": place(end.0, end.1) });
+            let found = answers(json!({}), vec![open("let a = 1"), change(range), hover(1)]);
+            let text = found[0]["result"]["contents"]["value"].to_string();
+            assert!(text.contains("let a = 1"), "{text}");
+        }
+    }
 }

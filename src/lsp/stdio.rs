@@ -1,11 +1,101 @@
-//! From bytes to messages: a header that announces a length, and so many bytes of JSON.
+//! The server on standard input and output, as editors start it.
+//!
+//! A thread of its own does nothing but read, so that all that has come is taken in before the next piece of work: what was cancelled in the meantime is not
+//! computed, and of several states of a text only the last is judged. Messages are read here rather than by lsp-server, which takes any length that is announced and
+//! ends at the first message that is none.
 
-use std::io::{self, BufRead, Read};
+use std::{
+    io::{self, BufRead, BufReader, Read, Write},
+    sync::mpsc::{self, Receiver, Sender},
+    thread,
+};
 
-use lsp_server::ErrorCode;
-use serde_json::Value;
+use lsp_server::{ErrorCode, Message};
+use serde_json::{Value, json};
 
-use super::Incoming;
+use super::Server;
+
+/// A message, or something that came in its place.
+type Incoming = Result<Message, Malformed>;
+
+/// Has a server talk to a client until it ends. Says whether it ended properly: by `exit` after `shutdown`.
+///
+/// # Errors
+///
+/// The output cannot be written to.
+pub fn serve(
+    mut server: Server,
+    input: impl Read + Send + 'static,
+    output: &mut dyn Write,
+    log: fn(&str),
+) -> io::Result<bool> {
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || read(input, &sender, log));
+    while let Some(incoming) = next_message(&receiver, &mut server, output)? {
+        match incoming {
+            Ok(message) => say(output, server.handle(message))?,
+            Err(malformed) => {
+                let Malformed { id, code, message } = malformed;
+                let error = json!({ "code": code as i32, "message": message });
+                // A response of lsp-server cannot have the id null.
+                let response = json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string();
+                write!(
+                    output,
+                    "Content-Length: {}\r\n\r\n{response}",
+                    response.len()
+                )?;
+                output.flush()?;
+            }
+        }
+        if let Some(properly) = server.ended() {
+            return Ok(properly);
+        }
+    }
+    Ok(false)
+}
+
+/// The next message, as soon as there is one; the server works while it waits. None if no more will come, and all is done.
+fn next_message(
+    messages: &Receiver<Incoming>,
+    server: &mut Server,
+    output: &mut dyn Write,
+) -> io::Result<Option<Incoming>> {
+    while server.is_busy() {
+        if let Ok(message) = messages.try_recv() {
+            return Ok(Some(message));
+        }
+        say(output, server.advance(1))?;
+    }
+    Ok(messages.recv().ok())
+}
+
+fn say(output: &mut dyn Write, messages: Vec<Message>) -> io::Result<()> {
+    messages
+        .into_iter()
+        .try_for_each(|message| message.write(&mut &mut *output))
+}
+
+fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
+    let mut input = BufReader::new(input);
+    loop {
+        match next(&mut input) {
+            Ok(Some(message)) => {
+                let is_exit =
+                    matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
+                // Behind `exit` nobody listens any more.
+                if sender.send(message).is_err() || is_exit {
+                    return;
+                }
+            }
+            Ok(None) => return,
+            Err(Failed::Once(what)) => log(&what),
+            Err(Failed::ForGood(what)) => {
+                log(&what);
+                return;
+            }
+        }
+    }
+}
 
 /// The longest message, in bytes. What announces more has lost its way, and what would follow it is anybody's guess.
 const LONGEST: u64 = 1 << 30;
@@ -15,17 +105,17 @@ const LONGEST_HEADER: u64 = 4096;
 
 /// Something that is not a message, and has an answer.
 #[derive(Debug)]
-pub struct Malformed {
+struct Malformed {
     /// The id that it has; null if it has none.
-    pub id: Value,
+    id: Value,
     /// What it lacks.
-    pub code: ErrorCode,
+    code: ErrorCode,
     /// The same in words.
-    pub message: String,
+    message: String,
 }
 
 /// Why nothing was read.
-pub enum Failed {
+enum Failed {
     /// The next message may be a right one.
     Once(String),
     /// Nothing can be read any more.
@@ -39,7 +129,7 @@ impl From<io::Error> for Failed {
 }
 
 /// The next message; none behind the last one.
-pub fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
+fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     let Some(length) = length(input)? else {
         return Ok(None);
     };

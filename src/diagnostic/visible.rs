@@ -1,0 +1,64 @@
+//! Text that a terminal may show.
+//!
+//! In: text from a scene, a file's name, a picture or an argument. Out: the same with everything made visible by which it could act on a terminal, or be shown in
+//! another order than it is written: control characters, C1 controls, and the controls of bidirectional text.
+
+use std::{borrow::Cow, fmt::Write};
+
+/// The text with such characters as `\u{1b}`; line feeds and tabs stay as they are.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(is_invisible) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len());
+    for character in text.chars() {
+        push_visible(&mut shown, character);
+    }
+    Cow::Owned(shown)
+}
+
+/// Adds a character as [`visible`] shows it.
+pub fn push_visible(text: &mut String, character: char) {
+    match is_invisible(character) {
+        // Writing to a string does not fail.
+        true => {
+            let _ = write!(text, "{}", character.escape_unicode());
+        }
+        false => text.push(character),
+    }
+}
+
+/// Whether a character is shown as its code.
+pub fn is_invisible(character: char) -> bool {
+    match character {
+        '\n' | '\t' => false,
+        // Unicode Standard Annex #9, table 4: the marks, embeddings, overrides and isolates.
+        '\u{061c}'
+        | '\u{200e}'
+        | '\u{200f}'
+        | '\u{202a}'..='\u{202e}'
+        | '\u{2066}'..='\u{2069}' => true,
+        _ => character.is_control(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_acts_on_a_terminal_is_shown_as_its_code() {
+        for (text, shown) in [
+            ("a\tb\n", "a\tb\n"),
+            ("\x1b]0;x\x07", "\\u{1b}]0;x\\u{7}"),
+            ("\u{9b}31m\u{7f}\r", "\\u{9b}31m\\u{7f}\\u{d}"),
+            (
+                "red \u{202e}der\u{202c} \u{2067}",
+                "red \\u{202e}der\\u{202c} \\u{2067}",
+            ),
+            ("é 🎱 e\u{301} \u{200d}", "é 🎱 e\u{301} \u{200d}"),
+        ] {
+            assert_eq!(visible(text), shown);
+        }
+    }
+}

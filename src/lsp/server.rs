@@ -1,0 +1,311 @@
+//! The server as a value: messages in, messages out.
+//!
+//! What a client tells is taken in at once, and what it asks is put into a queue, of which [`Server::advance`] answers a slice; so a host can
+//! see what has come in the meantime, as a request's cancelling. Each answer is about the text as it was when it was asked for: before a text changes, what waits
+//! about it is answered. Of several states of a text only the last is judged.
+
+use std::{
+    collections::{BTreeSet, HashMap, VecDeque},
+    panic::{self, AssertUnwindSafe},
+    path::PathBuf,
+};
+
+use gen_lsp_types as lsp;
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use serde_json::{Value, json};
+
+use super::{
+    answers::{Refusal, answer, diagnostics, parsed, written},
+    convert::{self, Client, Page},
+    documents::Document,
+    pages::Pages,
+};
+use crate::editor::Analysis;
+
+/// How far a conversation has come.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// The client has not introduced itself.
+    Silent,
+    /// The client has introduced itself.
+    Talking(Client),
+    /// The client has asked to shut down.
+    ShutDown,
+    /// The client has said `exit`, after `shutdown` or not.
+    Ended { properly: bool },
+}
+
+/// A language server that is talking to one client.
+#[derive(Debug)]
+pub struct Server {
+    phase: Phase,
+    documents: HashMap<lsp::Uri, Document>,
+    /// The requests that have no answer yet.
+    waiting: VecDeque<Request>,
+    /// The documents whose diagnostics are to be told.
+    changed: BTreeSet<String>,
+    pages: Pages,
+    log: fn(&str),
+}
+
+impl Server {
+    /// A server that nobody has spoken to. What cannot be understood is said to `log`. The pages of [`crate::explain`] that diagnostics link to are written to the
+    /// folder `pages`, an absolute path, as they are needed; without it, or where that fails, nothing is linked.
+    pub fn new(pages: Option<PathBuf>, log: fn(&str)) -> Self {
+        Self {
+            phase: Phase::Silent,
+            documents: HashMap::new(),
+            waiting: VecDeque::new(),
+            changed: BTreeSet::new(),
+            pages: Pages::new(pages),
+            log,
+        }
+    }
+
+    /// Whether the conversation has ended properly, by `exit` after `shutdown`; none while it goes on.
+    pub fn ended(&self) -> Option<bool> {
+        match self.phase {
+            Phase::Ended { properly } => Some(properly),
+            _ => None,
+        }
+    }
+
+    /// Takes a message in, and returns what has to be said before anything else.
+    pub fn handle(&mut self, message: Message) -> Vec<Message> {
+        match (message, &self.phase) {
+            (Message::Request(request), Phase::Talking(_)) if !is_of_life(&request) => {
+                self.waiting.push_back(request);
+                Vec::new()
+            }
+            (Message::Request(request), _) => {
+                let mut said = self.answer_all(|_| true);
+                said.push(self.answer_about_life(request));
+                said
+            }
+            (Message::Notification(notification), _) => self.notice(notification),
+            // Nothing was asked of the client.
+            (Message::Response(_), _) => Vec::new(),
+        }
+    }
+
+    /// Whether there is work left.
+    pub fn is_busy(&self) -> bool {
+        !self.waiting.is_empty() || !self.changed.is_empty()
+    }
+
+    /// Does so many pieces of the work that is left, and returns what is to be said of it. A piece is one text: everything that was asked about it, and what is wrong
+    /// with it.
+    pub fn advance(&mut self, budget: usize) -> Vec<Message> {
+        let mut said = Vec::new();
+        for _ in 0..budget {
+            let asked = self.waiting.front().map(uri);
+            let changed = || self.changed.first().map(|uri| Some(lsp::Uri(uri.clone())));
+            let Some(next) = asked.or_else(changed) else {
+                break;
+            };
+            let is_changed = next.as_ref().is_some_and(|uri| self.changed.remove(&uri.0));
+            said.extend(self.work_on(next.as_ref(), is_changed));
+        }
+        said
+    }
+
+    /// Answers what waits about such texts.
+    fn answer_all(&mut self, is_about: impl Fn(Option<&lsp::Uri>) -> bool) -> Vec<Message> {
+        let mut said = Vec::new();
+        while let Some(request) = self.waiting.iter().find(|it| is_about(uri(it).as_ref())) {
+            let uri = uri(request);
+            said.extend(self.work_on(uri.as_ref(), false));
+        }
+        said
+    }
+
+    /// Answers what waits about a text, or about none, and tells what is wrong with it if it has changed.
+    fn work_on(&mut self, wanted: Option<&lsp::Uri>, is_changed: bool) -> Vec<Message> {
+        let is_about = |request: &Request| uri(request).as_ref() == wanted;
+        let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
+        self.waiting = others;
+        let Phase::Talking(client) = &self.phase else {
+            return Vec::new();
+        };
+        let page = wanted.and_then(|uri| {
+            Some(Page {
+                client,
+                uri,
+                document: self.documents.get(uri)?,
+                pages: &self.pages,
+            })
+        });
+        let analysis = page.map(|page| Analysis::new(&page.document.sources));
+        let known = page.zip(analysis.as_ref());
+        let answers = asked.into_iter().map(|request| {
+            let id = request.id.clone();
+            response(id, unharmed(|| answer(request, known)))
+        });
+        let mut said: Vec<Message> = answers.collect();
+        // Others ask for it themselves.
+        if is_changed && !client.pulls_diagnostics {
+            let mut params = json!({ "uri": wanted, "diagnostics": [] });
+            // Nothing is wrong with a text that was closed.
+            if let Some((page, analysis)) = known {
+                params["version"] = page.document.version.into();
+                params["diagnostics"] = json!(diagnostics(page, analysis));
+            }
+            said.push(published(params));
+        }
+        said
+    }
+
+    /// The requests that begin and end a conversation, and all others before and after it.
+    fn answer_about_life(&mut self, request: Request) -> Message {
+        let refuse = |code, message: &str| Err(Refusal(code, message.to_owned()));
+        let answer = match (request.method.as_str(), self.phase) {
+            ("initialize", Phase::Silent) => self.initialize(&request.params),
+            (_, Phase::Silent) => refuse(
+                ErrorCode::ServerNotInitialized,
+                "`initialize` comes before everything else",
+            ),
+            ("initialize", _) => refuse(ErrorCode::InvalidRequest, "`initialize` comes once"),
+            ("shutdown", Phase::Talking(_)) => {
+                self.phase = Phase::ShutDown;
+                Ok(Value::Null)
+            }
+            _ => refuse(
+                ErrorCode::InvalidRequest,
+                "nothing but `exit` comes after `shutdown`",
+            ),
+        };
+        response(request.id, answer)
+    }
+
+    fn initialize(&mut self, params: &Value) -> Result<Value, Refusal> {
+        let client = Client::new(params);
+        self.phase = Phase::Talking(client);
+        written(&lsp::InitializeResult {
+            capabilities: convert::capabilities(&client),
+            server_info: Some(lsp::ServerInfo {
+                name: "pinhole".to_owned(),
+                version: Some(env!("CARGO_PKG_VERSION").to_owned()),
+            }),
+        })
+    }
+
+    /// What a client tells without asking.
+    fn notice(&mut self, notification: Notification) -> Vec<Message> {
+        let Notification { method, params } = notification;
+        if method == "exit" {
+            let properly = matches!(self.phase, Phase::ShutDown);
+            self.phase = Phase::Ended { properly };
+        }
+        let Phase::Talking(client) = self.phase else {
+            return Vec::new();
+        };
+        let about = params.pointer("/textDocument/uri").and_then(Value::as_str);
+        let about = about.map(|uri| lsp::Uri(uri.to_owned()));
+        let mut said = Vec::new();
+        if method.starts_with("textDocument/did") {
+            said = self.answer_all(|uri| uri.is_some() && uri == about.as_ref());
+        }
+        let noticed = match method.as_str() {
+            "textDocument/didOpen" => self.open(params, &client),
+            "textDocument/didChange" => self.change(&params),
+            "textDocument/didClose" => self.close(params),
+            "$/cancelRequest" => {
+                said = self.cancel(&params);
+                Ok(())
+            }
+            // Others are for servers that know more.
+            _ => Ok(()),
+        };
+        if let Err(Refusal(_, message)) = noticed {
+            (self.log)(&format!("{method}: {message}"));
+        }
+        said
+    }
+
+    fn open(&mut self, params: Value, client: &Client) -> Result<(), Refusal> {
+        let params: lsp::DidOpenTextDocumentParams = parsed(params)?;
+        let lsp::TextDocumentItem {
+            uri, version, text, ..
+        } = params.text_document;
+        let name = uri.0.rsplit('/').next().unwrap_or_default().to_owned();
+        self.changed.insert(uri.0.clone());
+        let document = Document::new(&name, version, text, client.encoding);
+        self.documents.insert(uri, document);
+        Ok(())
+    }
+
+    fn change(&mut self, params: &Value) -> Result<(), Refusal> {
+        let refuse = |message| Err(Refusal(ErrorCode::InvalidParams, message));
+        let text_document = params.get("textDocument").cloned().unwrap_or_default();
+        let lsp::VersionedTextDocumentIdentifier {
+            version,
+            text_document_identifier: lsp::TextDocumentIdentifier { uri },
+        } = parsed(text_document)?;
+        let changes = convert::changes(params)?;
+        let Some(document) = self.documents.get_mut(&uri) else {
+            return refuse(format!("{} is not open", uri.0));
+        };
+        // An old state that comes late would be put on top of a newer one.
+        if version < document.version {
+            return refuse(format!("version {version} of {} is stale", uri.0));
+        }
+        if let Err(message) = document.change(version, &changes) {
+            return refuse(message);
+        }
+        self.changed.insert(uri.0);
+        Ok(())
+    }
+
+    fn close(&mut self, params: Value) -> Result<(), Refusal> {
+        let params: lsp::DidCloseTextDocumentParams = parsed(params)?;
+        self.documents.remove(&params.text_document.uri);
+        self.changed.insert(params.text_document.uri.0);
+        Ok(())
+    }
+
+    /// Says of a request that still waits that it was cancelled.
+    fn cancel(&mut self, params: &Value) -> Vec<Message> {
+        let id = params.get("id").cloned().unwrap_or_default();
+        let id: Option<RequestId> = serde_json::from_value(id).ok();
+        let is_cancelled = |request: &Request| Some(&request.id) == id.as_ref();
+        let place = self.waiting.iter().position(is_cancelled);
+        let cancelled = place.and_then(|place| self.waiting.remove(place));
+        let refusal = Refusal(ErrorCode::RequestCanceled, "cancelled".to_owned());
+        let cancelled = cancelled.map(|request| response(request.id, Err(refusal)));
+        cancelled.into_iter().collect()
+    }
+}
+
+fn response(id: RequestId, answer: Result<Value, Refusal>) -> Message {
+    let response = match answer {
+        Ok(result) => Response::new_ok(id, result),
+        Err(Refusal(code, message)) => Response::new_err(id, code as i32, message),
+    };
+    response.into()
+}
+
+fn published(params: Value) -> Message {
+    Notification::new("textDocument/publishDiagnostics".to_owned(), params).into()
+}
+
+/// Whether a request is about the conversation itself.
+fn is_of_life(request: &Request) -> bool {
+    matches!(request.method.as_str(), "initialize" | "shutdown")
+}
+
+/// The document that a request is about.
+fn uri(request: &Request) -> Option<lsp::Uri> {
+    let uri = request.params.pointer("/textDocument/uri")?.as_str()?;
+    Some(lsp::Uri(uri.to_owned()))
+}
+
+/// An answer, or the refusal if giving it failed: the next request may fare better, and no text is touched by an answer.
+fn unharmed(answer: impl FnOnce() -> Result<Value, Refusal>) -> Result<Value, Refusal> {
+    panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
+        let message = "the answer failed, which is a mistake of Pinhole".to_owned();
+        Err(Refusal(ErrorCode::InternalError, message))
+    })
+}
+
+#[cfg(test)]
+mod tests;
