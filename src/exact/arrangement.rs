@@ -19,11 +19,11 @@ use super::{
 };
 
 /// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it. Nor is it cut: slivers
-/// that are made of roundings would double with each line. 2⁻⁴⁶ square pixels are a polygon whose sides are some 10⁷ roundings long.
+/// that are made of roundings would double with each line. 2⁻⁴⁶ square pixels are a polygon whose sides are some 10⁹ roundings long.
 const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// A polygon whose vertices have a mean value h of a line's form has no more area than this, by their number and |h|: one of n has a value of at most
-/// nh, at most 2nh from the line, whose greater slope is at least 1/2, and it is no longer than √2.
+/// If h is the mean of a line's form over the n vertices of a polygon that the line does not cut, the polygon has no more area than this times n·|h|: each value
+/// is at most n·|h|, so each vertex is at most 2n·|h| from the line, as the greater slope is at least 1/2; and the polygon is no longer than √2.
 const WIDE: f64 = 3.0;
 
 /// How far the roundings of a vertex may move it.

@@ -227,7 +227,7 @@ impl<'a> Span<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Arcs that turn by more than a right angle or so are better cut.
+        // Arcs whose tangents turn by more than 120° are cut: the weight is the cosine of half of that.
         const TURN: f64 = 0.5;
         let turns_little = arc.weight > TURN && arc.weight < 1.0 / TURN;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))

@@ -1,6 +1,6 @@
 //! How long a pixel may take.
 //!
-//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more is given the mean colour with
+//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more is given the colour in its middle with
 //! its whole area as its bound, so that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the same picture.
 
 use std::{

@@ -22,6 +22,7 @@ mod arrangement;
 pub mod boundaries;
 mod branches;
 mod budget;
+mod by_key;
 mod checker;
 mod clip;
 mod conic_segment;
@@ -31,7 +32,6 @@ mod slabs;
 mod tests;
 
 use std::{
-    cmp::Ordering,
     collections::BinaryHeap,
     ops::ControlFlow,
     sync::atomic::{AtomicBool, Ordering::Relaxed},
@@ -46,6 +46,7 @@ use crate::{
 
 use self::{
     budget::Budget,
+    by_key::ByKey,
     checker::{
         Sum, UNIT,
         board_pixels::{BoardBatches, BoardPixel},
@@ -106,7 +107,7 @@ enum State {
     /// Too many curves pass through it: nothing is computed of it yet.
     Crowded,
     Computed,
-    /// Computed; quartering it, or its parent, did not halve the bound.
+    /// Computed; quartering its parent did not halve the bound.
     Final,
 }
 
@@ -121,27 +122,6 @@ impl Piece {
         self.area() * self.shares.bound
     }
 }
-
-/// Pieces are in order by how far they may put the pixel off.
-impl Ord for Piece {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.bound().total_cmp(&other.bound())
-    }
-}
-
-impl PartialOrd for Piece {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Piece {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Piece {}
 
 impl<'a> Integrator<'a> {
     /// For the pixels of a prepared scene.
@@ -195,13 +175,8 @@ impl<'a> Integrator<'a> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // The quartering of an exact picture shows none; should it, the pixels are right all the same.
-                Part::Plain { area } => {
-                    let candidates = candidates::everything(self.world);
-                    for (x, y) in area.iter() {
-                        film.set(x, y, self.pixel(x, y, &candidates, &mut curves, cancel));
-                    }
-                }
+                // Infinitely many samples are worth any number of candidates.
+                Part::Plain { .. } => unreachable!("every part of an exact picture is quartered"),
             }
             ControlFlow::Continue(())
         });
@@ -229,9 +204,9 @@ impl<'a> Integrator<'a> {
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
         let mut bound = whole.bound();
         let mut together = Shares::default();
-        let mut open = BinaryHeap::from([whole]);
+        let mut open = BinaryHeap::from([ByKey(bound, whole)]);
         let mut quarterings = 0;
-        while let Some(worst) = open.pop() {
+        while let Some(ByKey(_, worst)) = open.pop() {
             let may_be_better = match worst.state {
                 State::Crowded => worst.sub_pixel.side > SMALLEST,
                 State::Computed => quarterings < MOST_QUARTERINGS,
@@ -260,9 +235,9 @@ impl<'a> Integrator<'a> {
                 }
             }
             bound += after - worst.bound();
-            open.extend(quarters);
+            open.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
         }
-        // Of one colour it is that; else a mean of some, which parts of it may be known better than.
+        // A mean of several colours adds the rounding of its sum.
         let rounding = if together.by_slot.len() > 1 {
             4.0 * UNIT
         } else {

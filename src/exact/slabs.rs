@@ -15,6 +15,7 @@ use crate::{math::Real, tracer::Curve};
 
 use super::{
     branches::{Graph, Section, Track},
+    by_key::ByKey,
     conic_segment::Arc,
     region::{Region, Regions, Shares},
 };
@@ -35,8 +36,6 @@ const MANY: usize = 4096;
 
 /// Steps of the false position: halving alone gets from a pixel to a rounding in 53.
 const STEPS: usize = 60;
-/// A slab is not cut nearer to its end than by this part of its width, by which nothing is gained.
-const MARGIN: f64 = 1.0 / 1024.0;
 
 /// What rounding may do to the area of a region in a slab, for each part of its width: two y of at most 1/2, each off by a few
 /// units of its last place.
@@ -81,43 +80,18 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     };
     // The widest first: where there are too many, narrow ones are left.
     let many = MANY + cuts.len();
-    let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| Slab(pair[0], pair[1])).collect();
-    while let Some(Slab(left, right)) = slabs.pop() {
+    let slab = |left: f64, right: f64| ByKey(right - left, [left, right]);
+    let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| slab(pair[0], pair[1])).collect();
+    while let Some(ByKey(_, [left, right])) = slabs.pop() {
         if sweep.regions.is_given_up() {
             break;
         }
         if let Some(at) = sweep.slab(left, right, many.saturating_sub(slabs.len())) {
-            slabs.extend([Slab(left, at), Slab(at, right)]);
+            slabs.extend([slab(left, at), slab(at, right)]);
         }
     }
     sweep.regions.finish()
 }
-
-/// What is between two x, in order by how wide it is, and from left to right.
-struct Slab(f64, f64);
-
-impl Ord for Slab {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let width = |Self(left, right): &Self| right - left;
-        width(self)
-            .total_cmp(&width(other))
-            .then(other.0.total_cmp(&self.0))
-    }
-}
-
-impl PartialOrd for Slab {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Slab {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Slab {}
 
 struct Sweep<'a> {
     lines: Vec<Track<'a>>,
@@ -249,8 +223,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
             last = Ordering::Less;
         }
     }
-    let margin = (right - left) * MARGIN;
-    if inside > left + margin.min(NARROW) && inside < right - margin.min(NARROW) {
+    // Nearer to an end nothing would be gained.
+    if inside > left + 0.5 * NARROW && inside < right - 0.5 * NARROW {
         inside
     } else {
         middle

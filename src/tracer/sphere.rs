@@ -378,7 +378,7 @@ impl<T: Real> Sphere<T> {
         self.side == Ordering::Equal
     }
 
-    /// Whether the eye is outside, well away from the surface.
+    /// Whether the eye is outside.
     pub fn is_outside(&self) -> bool {
         self.side == Ordering::Greater
     }

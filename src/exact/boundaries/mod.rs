@@ -27,7 +27,7 @@ use crate::{
 /// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Of more objects than so many times as many as there may be curves, no curves are asked for: to prepare the objects takes longer than to quarter the sub-pixel.
+/// With more objects than so many for each curve that there may be, no curves are asked for: to prepare the objects takes longer than to quarter the sub-pixel.
 /// (Fewer may be equal. Measured: a quarter and four times as many change no time.)
 const HEAP: usize = 16;
 

@@ -1,4 +1,4 @@
-//! Where in a sub-pixel an object is met, at most. Where two objects cross each other matters only where both are.
+//! A convex part of a sub-pixel in which all rays are that meet an object: where two objects cross each other matters only in both their parts.
 //!
 //! In: the lines of an outline. Out: a convex polygon, cut by them from the sub-pixel (Sutherland and Hodgman, 1974). Errors: each line is moved
 //! outwards by its own and by [`MARGIN`].

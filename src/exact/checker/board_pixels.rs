@@ -1,7 +1,7 @@
 //! Pixels that show nothing but a checkerboard and few of its lines: most pixels of most pictures. They are computed in batches of eight.
 //!
-//! In: such pixels one by one, in any order. Out: their integrals of the board's sign. Pixels that as many lines of either family cross wait for each other
-//! and are then computed together by `strips_simd`, which bounds the errors. A pixel's sum is made of its own numbers, by the same operations whichever
+//! In: such pixels one by one, in any order. Out: their integrals of the board's sign. Pixels are sorted by how many lines of either family cross them; eight with
+//! the same two numbers are computed at once by `strips_simd`, which bounds the errors. A pixel's sum is made of its own numbers, by the same operations whichever
 //! others it is computed with, so that it depends neither on their order nor on which part of a picture is wanted.
 
 use super::{

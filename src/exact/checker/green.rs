@@ -55,7 +55,7 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // Polygons that make up a pixel neglect no more together than one does, nor many edges more than four.
+    // Polygons that make up a pixel neglect no more together than one does, but for those below LEAST_SHARE, nor many edges more than four.
     let share = area.abs().max(LEAST_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -273,8 +273,8 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at either end is rounded. And K, which all of it has before it, does not quite fit the corners; nor do the slopes, whose powers
-        // are in the later terms, which are less.
+        // X at either end is rounded, by fewer than 32 operations. Every term is proportional to K, which is rounded, too; so are the slopes, whose powers are in the
+        // later terms, which are smaller.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.misfit * all);

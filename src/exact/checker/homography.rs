@@ -21,7 +21,7 @@ const LEAST_DETERMINANT: f64 = 1e-100;
 /// the bound, and a hundredth of what is asked for.
 const BESIDE: f64 = 1e-11;
 
-/// A displacement of no more area than this is not told more exactly: it is a thousandth of what is told as uncertain.
+/// Below this area the better bound on a displacement is not worth computing: it is far below what is asked for.
 const LITTLE: f64 = 1e-14;
 
 /// A number and a bound on its absolute error, in square pixels.

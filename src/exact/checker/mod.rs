@@ -36,7 +36,7 @@ pub(super) use self::{
 const FAR: f64 = 18.0;
 /// No more squares than these are cut out one by one wherever they are. (Measured: 6 to 96 take the same time.)
 const FEW: f64 = 24.0;
-/// No near square is cut out beyond this m, where the horizon is a few roundings away. (The largest factor of L is about 1.)
+/// No near square is cut out beyond this m, where the horizon is a thousand roundings away. (The largest factor of L is about 1.)
 const DEEP: f64 = 1e13;
 
 impl Homography {

@@ -144,8 +144,8 @@ pub(super) fn waves(t: f64, terms: usize) -> [f64; ORDERS] {
     }
 }
 
-/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. Half-way to t's
-/// last digits nothing is left to be said.
+/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. From 2^51 on
+/// t has no fraction left to tell of.
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;

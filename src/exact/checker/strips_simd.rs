@@ -1,6 +1,6 @@
 //! The integral of the board's sign over eight pixels at once, in lanes, which the compiler makes vectors of.
 //!
-//! In: eight pixels that show nothing but a checkerboard, crossed by as many lines of either family. Out: their integrals, each with a bound: roundings of areas,
+//! In: eight pixels that show nothing but a checkerboard, and are all crossed by the same number of lines of the one family and of the other. Out: their integrals, each with a bound: roundings of areas,
 //! and how far each line may be from the computed one.
 //!
 //! The lines of one family, of which there are fewer, cut the pixel into strips; in strip i the sign of their squares is σ_i. Beyond
@@ -235,7 +235,7 @@ impl Lines {
         }
     }
 
-    /// Adds how far line `line` of a family, counted from its first, may be from the computed one.
+    /// Adds how far line `line` of a family, counted from its first, may be from the computed one: its factors have three roundings, its value four.
     #[inline(always)]
     fn add_off(&self, family: &Family, line: f64, out: &mut Row) {
         for (i, out) in out.iter_mut().enumerate() {
@@ -243,7 +243,7 @@ impl Lines {
             let size = |k: usize| family.across[k][i].abs() + (n * self.below[k][i]).abs();
             let slope = |k: usize| (family.across[k][i] - n * self.below[k][i]).abs();
             let value =
-                6.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2)) + self.rad[i] * (1.0 + n.abs());
+                7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2)) + self.rad[i] * (1.0 + n.abs());
             *out += value / slope(0).max(slope(1));
         }
     }

@@ -52,7 +52,7 @@ const PART_OF_SQUARE: f64 = 0.99;
 /// Up to this |θ| Taylor's series stand for the rest of the pole: the next term, θ⁹/47900160, is 100 roundings of the 500 that V may be off by.
 const NEAR_POLE: f64 = 0.2;
 /// Units of work (some 50 ns each) for a crossing, and for a mode.
-const CROSSING_WORK: f64 = 1.0 / 32.0;
+const CROSSING_WORK: f64 = 1.0 / 16.0;
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Σ (−1)^j X over all crossings, of which as much as `tolerance` may be neglected.
@@ -79,7 +79,7 @@ pub(super) fn sum(all: &LineCrossings, series: &Series, tolerance: f64, budget: 
         return one_by_one(lines).unwrap_or(trivial_sum);
     }
     if all.rise * lines < all.depth {
-        // Where m hardly grows the waves of the ends do not fall off.
+        // Where m does not even double, the waves of the ends do not fall off.
         let sum = level(all, series, trivial, tolerance, budget);
         let is_better_one_by_one = sum.bound > tolerance && lines <= MOST;
         let other = is_better_one_by_one.then(|| one_by_one(lines));
@@ -233,7 +233,7 @@ fn rest(
     let later: f64 = (4..=series.terms)
         .map(|k| absolute(series, k, depth, g))
         .sum();
-    // V's are good to some 500 units in the last place of w^−2; rotation adds n of them, to the n-th mode.
+    // The integrals are good to 1e-14, which is 90 units in the last place, and V to 500 for certain, of w^−2; rotation adds n of them, to the n-th mode.
     let rounding = 1000.0 * UNIT * first * waves * u2;
     Sum {
         value,
@@ -273,7 +273,7 @@ fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
     (0.5 * turn[1] * gap - inverse, 0.5 * gap - inverse * inverse)
 }
 
-/// The same over an edge on which m hardly changes, where |X| adds up to no more than `trivial`; of which as much as `tolerance` may be neglected.
+/// The same over an edge on which m does not double, where |X| adds up to no more than `trivial`; of which as much as `tolerance` may be neglected.
 fn level(
     all: &LineCrossings,
     series: &Series,

@@ -241,10 +241,10 @@ impl CellSquare {
         1 << self.level
     }
 
-    /// Whether an object is larger than the cell's quarters, and so not listed below it.
+    /// Whether an object is as large as the cell's quarters or larger, and so not listed below it: a smaller one meets two of them along each axis.
     fn keeps(self, item: &Item) -> bool {
         let Rectangle { low, high } = item.bounds;
-        (0..2).any(|axis| high[axis] - low[axis] > 1 << (self.level - 1))
+        (0..2).any(|axis| high[axis] - low[axis] >= 1 << (self.level - 1))
     }
 
     /// A quarter: right of the first for 1 and 3, below it for 2 and 3.

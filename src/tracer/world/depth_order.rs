@@ -1,7 +1,8 @@
 //! Which of two crossings is nearer, and where they are in one surface, that none is.
 //!
 //! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths of one surface are in doubt at every sample
-//! point, and forms take long to prepare. So where depths are in doubt, objects' planes are compared by the numbers of the scene, without rounding.
+//! point, and forms take long to prepare. So where depths are in doubt, objects' planes are compared by the numbers of the scene, without rounding (the near and the far
+//! plane, which are no numbers of the scene, by their forms).
 
 use std::cmp::Ordering;
 
