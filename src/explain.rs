@@ -97,7 +97,7 @@ pub const GROUPS: &[Group] = &[
     },
     Group {
         name: "Colours",
-        pages: pages! { unknown_color bad_color_code color_range },
+        pages: pages! { unknown_color bad_color_code color_range unit_color },
     },
     Group {
         name: "Vectors",
@@ -118,7 +118,7 @@ pub const GROUPS: &[Group] = &[
     },
     Group {
         name: "Triangles and boxes",
-        pages: pages! { not_a_triangle empty_box box_too_large },
+        pages: pages! { not_a_triangle on_one_line empty_box box_too_large },
     },
     Group {
         name: "Samples",

@@ -193,8 +193,7 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     };
     let is_open = |field: &&Field| {
         let given = &situation.given;
-        let is_excluded = |given: &&str| field.excludes.contains(given);
-        !given.contains(&field.name) && !given.iter().any(is_excluded)
+        !given.contains(&field.name) && !row.excludes(field.name).any(|name| given.contains(&name))
     };
     let value_follows = situation.next.is_some_and(|next| {
         let starts_value = matches!(

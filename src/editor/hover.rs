@@ -132,12 +132,11 @@ pub(super) fn about_field(row: &Block, field: &Field) -> String {
             suggest::list(must.iter().map(String::as_str))
         );
     }
-    if !field.excludes.is_empty() {
-        let others: Vec<String> = field
-            .excludes
-            .iter()
-            .map(|name| format!("`{name}`"))
-            .collect();
+    let others: Vec<String> = row
+        .excludes(field.name)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    if !others.is_empty() {
         let others = suggest::choice(others.iter().map(String::as_str));
         text += &format!("; not together with {others}");
     }

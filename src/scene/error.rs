@@ -78,7 +78,7 @@ pub enum Problem {
     ConflictingFields {
         later: String,
         earlier: String,
-        why: String,
+        why: &'static str,
         #[label("this says it again, in another way")]
         second: Span,
         #[label("this says it already")]
@@ -414,6 +414,16 @@ pub enum Problem {
         instead: Vec<String>,
     },
 
+    #[error("the parts of a colour go from 0 to 255, and none of these is more than 1")]
+    #[diagnostic(code(pinhole::unit_color), severity(Warning), help("{help}"))]
+    UnitColor {
+        help: String,
+        #[label("almost black")]
+        span: Span,
+        /// What can stand in its place.
+        instead: Vec<String>,
+    },
+
     #[error("{message}")]
     #[diagnostic(code(pinhole::out_of_range), help("{help}"))]
     OutOfRange {
@@ -477,6 +487,21 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+    },
+
+    #[error("{message}")]
+    #[diagnostic(
+        code(pinhole::on_one_line),
+        help("move one of them, so that the three points are the corners of a triangle")
+    )]
+    OnOneLine {
+        message: String,
+        #[label("the third vertex")]
+        span: Span,
+        #[label("the second")]
+        second: Span,
+        #[label("the first")]
+        first: Span,
     },
 
     #[error("the box has no extent along {axis}")]

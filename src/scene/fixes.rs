@@ -48,6 +48,7 @@ impl Fixable for Problem {
             | Self::PartCount { span, instead, .. }
             | Self::ArgumentCount { span, instead, .. }
             | Self::ColorRange { span, instead, .. }
+            | Self::UnitColor { span, instead, .. }
             | Self::OutOfRange {
                 whole: span,
                 instead,
@@ -108,6 +109,7 @@ impl Fixable for Problem {
             | Self::PartType { .. }
             | Self::NumberTooLarge { .. }
             | Self::NotATriangle { .. }
+            | Self::OnOneLine { .. }
             | Self::BoxTooLarge { .. }
             | Self::TooManySamples { .. }
             | Self::SetWithoutEquals { .. }

@@ -13,7 +13,8 @@ use crate::{
     math::{Angle, predicates},
     numbers,
     scene::{
-        self, Camera, Count, Image, Lens, Method, Object, Sampler, Shape, View, css,
+        self, Camera, CenteredTriangle, Count, Image, Lens, Method, Object, Outline, Sampler,
+        Shape, View, css,
         error::Problem,
         level_direction,
         schema::{self, Kind, Literal, Preset},
@@ -23,6 +24,8 @@ use crate::{
     source::{SourceId, Span},
     suggest,
 };
+
+const VERTICES: [&str; 3] = ["v0", "v1", "v2"];
 
 impl<'s> Lowering<'s> {
     /// The parts of the scene; what failed is missing.
@@ -77,59 +80,64 @@ impl<'s> Lowering<'s> {
         if block.unfinished {
             return;
         }
-        let has = |name: &str| block.given(name).is_some() || block.meant.contains(&name);
-        let mut missing: Vec<String> = Vec::new();
-        let mut needed: Vec<&'static str> = Vec::new();
+        let has = |name: &&str| block.given(name).is_some() || block.meant.contains(name);
+        let rows = block.row.fields.iter();
+        let required = rows.filter(|row| row.preset == Preset::Required && !has(&row.name));
+        let mut needed: Vec<&'static str> = required.map(|row| row.name).collect();
+        let mut missing: Vec<String> = needed.iter().map(|name| format!("`{name}`")).collect();
+        // The other ways to give what is missing.
+        let mut others: Vec<Vec<&'static str>> = Vec::new();
         let mut half = None;
-        for row in block.row.fields {
-            if row.preset == Preset::Required && !has(row.name) {
-                missing.push(format!("`{}`", row.name));
-                needed.push(row.name);
-            }
-        }
-        // The other ways to give what is missing, each with the last of what is needed in its place.
-        let mut others: &[&[&'static str]] = &[];
-        if block.row.kind == Kind::Camera && !has("lookat") && !has("direction") {
-            missing.push("`lookat` or `direction`".to_owned());
-            needed.push("lookat");
-            others = &[&["direction"]];
-        }
-        if block.row.kind == Kind::Box && !has("center") {
-            match (has("min"), has("max")) {
-                (true, true) => {}
-                (false, false) => {
-                    missing.push("`center`, or `min` and `max`".to_owned());
-                    needed.push("center");
-                    others = match has("size") {
-                        true => &[],
-                        false => &[&["min", "max"]],
-                    };
+        for choice in block.row.choices {
+            let needs = |way: &&[&'static str]| -> Vec<&'static str> {
+                let alternative = |name: &&str| {
+                    let row = block.row.field(name);
+                    row.is_some_and(|row| row.preset == Preset::Alternative) && !has(name)
+                };
+                way.iter()
+                    .copied()
+                    .filter(|name| alternative(name))
+                    .collect()
+            };
+            let taken: Vec<_> = choice
+                .ways
+                .iter()
+                .filter(|way| way.iter().any(|name| has(name)))
+                .collect();
+            match taken.as_slice() {
+                // Without any, one is needed unless the defaults of one are enough.
+                [] => {
+                    let ways: Vec<_> = choice.ways.iter().map(needs).collect();
+                    if ways.iter().any(Vec::is_empty) {
+                        continue;
+                    }
+                    missing.push(either(&ways));
+                    let mut ways = ways.into_iter();
+                    let kept = needed.clone();
+                    needed.extend(ways.next().unwrap_or_default());
+                    others = ways.map(|way| [kept.clone(), way].concat()).collect();
                 }
-                (true, false) => {
-                    missing.push("`max` beside its `min`".to_owned());
-                    needed.push("max");
-                    half = block.given("min").map(|given| given.name);
+                [way] => {
+                    let names = needs(way);
+                    let given = way.iter().find_map(|name| block.given(name));
+                    if let ([_, ..], Some(given)) = (names.as_slice(), given) {
+                        half = Some(given.name);
+                        let beside = self.sources.text(given.name);
+                        missing.push(format!("{} beside its `{beside}`", quoted(&names)));
+                    } else {
+                        missing.extend(names.iter().map(|name| format!("`{name}`")));
+                    }
+                    needed.extend(names);
                 }
-                (false, true) => {
-                    missing.push("`min` beside its `max`".to_owned());
-                    needed.push("min");
-                    half = block.given("max").map(|given| given.name);
-                }
+                // They exclude each other, which is reported.
+                _ => {}
             }
         }
         if missing.is_empty() {
             return;
         }
         let all = suggest::list(missing.iter().map(String::as_str));
-        let kept = needed.len().saturating_sub(1);
-        let other = |other: &&[&'static str]| {
-            let kept = needed.iter().take(kept);
-            kept.chain(other.iter()).copied().collect()
-        };
-        let ways: Vec<Vec<&str>> = [needed.clone()]
-            .into_iter()
-            .chain(others.iter().map(other))
-            .collect();
+        let ways: Vec<Vec<&str>> = [needed.clone()].into_iter().chain(others).collect();
         let fixes = ways.iter().filter_map(|names| {
             let title = format!("add {}", quoted(names));
             self.add_fields(block, title, &examples(block, names))
@@ -141,7 +149,7 @@ impl<'s> Lowering<'s> {
             fixes,
             span: block.keyword,
             label: match missing.len() {
-                1 => "it is not given".to_owned(),
+                1 if needed.len() == 1 => "it is not given".to_owned(),
                 _ => "they are not given".to_owned(),
             },
             half,
@@ -243,9 +251,12 @@ impl<'s> Lowering<'s> {
         {
             self.empty_depth(block, near, far, given);
         }
-        let lens = match block.given("fov") {
-            Some(_) => fields.angle("fov").map(Lens::Fov),
-            None => fields.number("d").map(Lens::Distance),
+        let lens = if block.given("fov").is_some() {
+            fields.angle("fov").map(Lens::Fov)
+        } else if block.given("hfov").is_some() {
+            fields.angle("hfov").map(Lens::HorizontalFov)
+        } else {
+            fields.number("d").map(Lens::Distance)
         };
         Some(Camera {
             eye: eye?,
@@ -377,6 +388,45 @@ impl<'s> Lowering<'s> {
     }
 
     fn triangle(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
+        let is_given = |name: &&str| block.given(name).is_some();
+        let outline = match VERTICES.iter().any(|name| is_given(name)) {
+            true => self.vertices(block, fields)?,
+            false => self.centered(block, fields)?,
+        };
+        Some(Shape::Triangle(scene::Triangle {
+            outline,
+            color: fields.color("color")?,
+        }))
+    }
+
+    fn vertices(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Outline> {
+        let [a, b, c] = VERTICES.map(|name| fields.vector(name));
+        let vertices = [a?, b?, c?];
+        if !predicates::are_on_one_line(vertices) {
+            return Some(Outline::Vertices(vertices));
+        }
+        let [a, b, c] = vertices;
+        let equal = [
+            ("v1", "v0", a == b),
+            ("v2", "v0", a == c),
+            ("v2", "v1", b == c),
+        ];
+        let equal = equal.into_iter().find(|(.., are_equal)| *are_equal);
+        let [first, second, third] =
+            VERTICES.map(|name| block.given(name).map_or(block.keyword, |given| given.span));
+        self.problems.push(Problem::OnOneLine {
+            message: match equal {
+                Some((one, other, _)) => format!("`{one}` and `{other}` are the same point"),
+                None => "the vertices lie on one line, and form no triangle".to_owned(),
+            },
+            span: third,
+            second,
+            first,
+        });
+        None
+    }
+
+    fn centered(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Outline> {
         let sides = fields.vector("sides")?;
         if !predicates::forms_triangle(sides.to_array()) {
             let [a, b, c] = sides.to_array();
@@ -407,12 +457,11 @@ impl<'s> Lowering<'s> {
             });
             return None;
         }
-        Some(Shape::Triangle(scene::Triangle {
+        Some(Outline::Centered(CenteredTriangle {
             centroid: fields.vector("centroid")?,
             normal: fields.vector("normal")?,
             sides,
             spin: fields.angle("spin")?,
-            color: fields.color("color")?,
         }))
     }
 
@@ -474,6 +523,16 @@ impl<'s> Lowering<'s> {
             color: color?,
         }))
     }
+}
+
+/// The ways to give what is missing: `center`, or `min` and `max`.
+fn either(ways: &[Vec<&str>]) -> String {
+    let separator = match ways.iter().all(|way| way.len() == 1) {
+        true => " or ",
+        false => ", or ",
+    };
+    let ways: Vec<String> = ways.iter().map(|way| quoted(way)).collect();
+    ways.join(separator)
 }
 
 /// The values of a block's fields, defaults included. None where a value is missing or failed.

@@ -26,7 +26,7 @@ use super::{
     error::Problem,
     eval::{Names, predefined},
     overrides::Override,
-    schema::{self, Kind, Type},
+    schema,
     untangle::untangle,
     value::Value,
 };
@@ -348,36 +348,30 @@ impl<'s> Lowering<'s> {
 
     /// Two fields that exclude each other: the later one is labelled first.
     fn conflicts(&mut self, block: &Block<'s>, replaced: &[&str]) {
-        let mut reported = Vec::new();
-        for (row, given) in block.row.fields.iter().zip(&block.given) {
-            let Some(given) = given else { continue };
-            for (other, other_given) in block.row.fields.iter().zip(&block.given) {
-                let excluded = row.excludes.contains(&other.name);
-                let Some(earlier) = other_given.filter(|o| o.name.start < given.name.start) else {
-                    continue;
-                };
-                // One report for a box with center, size, min and max.
-                if !excluded || replaced.contains(&row.name) || !reported.is_empty() {
-                    continue;
-                }
-                reported.push(row.name);
-                let why = match block.row.kind {
-                    Kind::Camera if row.takes == Type::Vector => {
-                        "either a point or a direction says where the camera looks"
-                    }
-                    Kind::Camera => "either the distance or the angle says how much it sees",
-                    Kind::Sampler => "either one says how many samples there are",
-                    _ => "a box is given by center and size, or by min and max",
-                };
-                self.problems.push(Problem::ConflictingFields {
-                    later: row.name.to_owned(),
-                    earlier: other.name.to_owned(),
-                    why: why.to_owned(),
-                    second: given.name,
-                    first: earlier.name,
-                    fixes: self.one_of(block, [other, row]),
-                });
-            }
+        // One report for each choice: for a box with center, size, min and max.
+        for choice in block.row.choices {
+            let fields = choice.ways.iter().flat_map(|way| way.iter().copied());
+            let given =
+                fields.filter_map(|name| Some((block.row.field(name)?, block.given(name)?)));
+            let mut given: Vec<_> = given.collect();
+            given.sort_by_key(|(_, given)| given.name.start);
+            let [(first, earlier), ..] = given[..] else {
+                continue;
+            };
+            let excluded: Vec<&str> = block.row.excludes(first.name).collect();
+            let later = given.iter().find(|(row, _)| excluded.contains(&row.name));
+            let Some(&(second, later)) = later.filter(|(row, _)| !replaced.contains(&row.name))
+            else {
+                continue;
+            };
+            self.problems.push(Problem::ConflictingFields {
+                later: second.name.to_owned(),
+                earlier: first.name.to_owned(),
+                why: choice.why,
+                second: later.name,
+                first: earlier.name,
+                fixes: self.one_of(block, choice, [first, second]),
+            });
         }
     }
 

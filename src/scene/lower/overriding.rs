@@ -23,10 +23,9 @@ impl<'s> Lowering<'s> {
         for set in std::mem::take(&mut self.overrides).into_iter().rev() {
             let block = set.block.map(|block| block.text);
             let row = block.and_then(|block| schema::block(block).or(rows.get(block).copied()));
-            let row = row.and_then(|row| row.field(set.name.text));
             let excluded = row.is_some_and(|row| {
-                let mut others = row.excludes.iter();
-                others.any(|other| later.contains(&(block, *other)))
+                let mut others = row.excludes(set.name.text);
+                others.any(|other| later.contains(&(block, other)))
             });
             if later.insert((block, set.name.text)) && !excluded {
                 kept.push(set);
@@ -51,7 +50,7 @@ impl<'s> Lowering<'s> {
         for row in block.row.fields {
             if self.targets.contains_key(&(target, row.name)) {
                 replaced.push(row.name);
-                replaced.extend(row.excludes);
+                replaced.extend(block.row.excludes(row.name));
             }
         }
         replaced

@@ -47,10 +47,32 @@ pub struct Block {
     pub help: &'static str,
     /// Its fields.
     pub fields: &'static [Field],
+    /// What it says in one of several ways.
+    pub choices: &'static [Choice],
     /// Conditions between fields, each by its name.
     pub together: &'static [&'static str],
+    /// Other words that people try for several of its fields.
+    pub spreads: &'static [Spread],
     /// Other words that people try for it.
     pub also_tried: &'static [&'static str],
+}
+
+/// Ways to say the same thing, of which a block takes one.
+#[derive(Debug)]
+pub struct Choice {
+    /// Each way, with the fields that belong to it. A way that is taken needs those of them that are [alternatives](Preset::Alternative).
+    pub ways: &'static [&'static [&'static str]],
+    /// Why it is one of them.
+    pub why: &'static str,
+}
+
+/// A word that people try for several fields at once, with a list of their values.
+#[derive(Debug)]
+pub struct Spread {
+    /// The words.
+    pub words: &'static [&'static str],
+    /// The fields.
+    pub fields: &'static [&'static str],
 }
 
 /// What there is to know about a field.
@@ -64,12 +86,12 @@ pub struct Field {
     pub preset: Preset,
     /// What its value must be.
     pub must: &'static [Condition],
-    /// The fields that it excludes.
-    pub excludes: &'static [&'static str],
     /// What it is, in a line.
     pub help: &'static str,
     /// Other words that people try for it.
     pub also_tried: &'static [&'static str],
+    /// Words that people try for twice its value.
+    pub doubled: &'static [&'static str],
     /// A value that it can have, if neither its default nor any of its type will do.
     pub example: &'static str,
 }
@@ -138,7 +160,7 @@ impl Type {
 pub enum Preset {
     /// It must be given.
     Required,
-    /// It, or one of those that it excludes, must be given.
+    /// It must be given where its way of a [`Choice`] is taken.
     Alternative,
     /// Nothing.
     Nothing,
@@ -229,6 +251,20 @@ impl Block {
         self.fields.iter().map(|field| field.name)
     }
 
+    /// The fields that a field excludes: those of the other ways to say the same.
+    pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        let choices = self.choices.iter().map(|choice| choice.ways);
+        let holds = |way: &&&[&str]| way.contains(&field);
+        let choice = choices
+            .into_iter()
+            .find(|ways| ways.iter().any(|way| holds(&way)));
+        let others = choice
+            .into_iter()
+            .flatten()
+            .filter(move |way| !way.contains(&field));
+        others.flat_map(|way| way.iter().copied())
+    }
+
     /// The conditions that hold between a field and others, or something else: those that name it.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let rules = self.together.iter().copied();
@@ -244,7 +280,7 @@ impl Block {
         for field in self.fields {
             let is_excluded = least
                 .iter()
-                .any(|other| other.excludes.contains(&field.name));
+                .any(|other| self.excludes(other.name).any(|name| name == field.name));
             let is_needed = matches!(field.preset, Preset::Required | Preset::Alternative);
             if is_needed && !is_excluded {
                 least.push(field);
