@@ -4,6 +4,9 @@
 //! *Wrong*, *Right* and *Why*. The tests hold the codes of the stages and the pages together, and read the scenes: a wrong one has
 //! that mistake and no other, a right one none. How a page is shown (terminal, editor) is for others to say.
 
+/// The reference of the language, as Markdown.
+pub const LANGUAGE: &str = include_str!("../grammar/language.md");
+
 /// Pages on one subject.
 #[derive(Debug)]
 pub struct Group {
@@ -114,7 +117,7 @@ pub const GROUPS: &[Group] = &[
     },
     Group {
         name: "The camera",
-        pages: pages! { view_undefined up_parallel empty_depth },
+        pages: pages! { view_undefined up_parallel empty_depth nothing_seen },
     },
     Group {
         name: "Triangles and boxes",

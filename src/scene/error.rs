@@ -32,8 +32,8 @@ pub enum Problem {
         help: String,
         #[label("not a field of {noun}")]
         span: Span,
-        /// The name that was probably meant.
-        near: Option<String>,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("`{name}` has no value")]
@@ -110,6 +110,8 @@ pub enum Problem {
     MissingCamera {
         #[label("no `camera` in this text")]
         span: Span,
+        /// Whether there is nothing else either.
+        is_empty: bool,
     },
 
     #[error("the scene has no objects")]
@@ -466,9 +468,22 @@ pub enum Problem {
         fixes: Vec<Fix>,
     },
 
-    #[error("the camera looks straight along its up vector")]
+    #[error("{message}")]
+    #[diagnostic(code(pinhole::nothing_seen), severity(Warning), help("{help}"))]
+    NothingSeen {
+        message: &'static str,
+        help: String,
+        #[label("{label}")]
+        span: Span,
+        label: &'static str,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
+    },
+
+    #[error("{message}")]
     #[diagnostic(code(pinhole::up_parallel), severity(Warning), help("{help}"))]
     UpParallel {
+        message: &'static str,
         help: String,
         #[label("{label}")]
         span: Span,
@@ -633,6 +648,7 @@ impl Problem {
         matches!(
             self,
             Self::UnknownName { .. }
+                | Self::UnknownColor { .. }
                 | Self::UnknownFunction { .. }
                 | Self::UsedBeforeDefinition { .. }
         )

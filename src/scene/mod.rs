@@ -15,19 +15,23 @@
 )]
 
 pub mod css;
+pub mod describe;
 mod error;
 mod eval;
 mod examples;
+mod fix_all;
 mod fixes;
 mod lower;
 mod overrides;
 pub mod schema;
 mod survey;
+mod unseen;
 mod untangle;
 mod value;
 
 pub use eval::{example_call, predefined};
 pub use examples::example_beside;
+pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{read, read_in_parts, read_unless, survey};
 pub use survey::{Parts, Survey};
 pub use value::Value;
@@ -35,6 +39,13 @@ pub use value::Value;
 use glam::DVec3;
 
 use crate::{color::Color, diagnostic::Diagnostic, math::Angle, source::Span};
+
+/// The smallest scene that shows something: a sphere on a floor.
+pub const SMALLEST: &str = "\
+camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+sphere { center (0, 1, 0) }
+checkerboard {}
+";
 
 /// What reading a scene yields.
 #[derive(Clone, Debug)]

@@ -208,14 +208,17 @@ impl<'s> Evaluator<'_, 's> {
         let label = self.described(argument, found.kind());
         let written = self.quoted(argument.span);
         if takes == Type::Angle && found.kind() == Type::Number {
-            let [degrees, radians] = self.with_units(argument);
+            let [first, second] = self.units(argument);
             self.problems.push(Problem::BareAngle {
                 what: format!("the argument of `{}`", row.name),
                 written,
-                help: format!("write `{0}({degrees})` (or `{0}({radians})`)", row.name),
+                help: format!(
+                    "write `{0}({1})` (or `{0}({2})`)",
+                    row.name, first.shown, second.shown
+                ),
                 span: argument.span,
                 label,
-                instead: self.as_angle(argument).to_vec(),
+                instead: vec![first.text, second.text],
             });
             return;
         }
@@ -354,7 +357,7 @@ fn has_unit_parts(color: Color) -> bool {
 }
 
 /// The part from 0 to 255 that stands for one from 0 to 1.
-pub(super) fn in_bytes(part: f64) -> String {
+pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 

@@ -1,6 +1,6 @@
 //! Edits of whole fields, for problems of a block.
 
-use super::{Block, Lowering};
+use super::{Block, Given, Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
     scene::{
@@ -47,13 +47,20 @@ impl Lowering<'_> {
         Some(Fix::new(title, [Edit::new(span, added)]))
     }
 
-    /// Writes each of two corners in the place of the other.
-    pub(super) fn swapped(&self, min: Span, max: Span) -> Fix {
-        let edits = [(min, max), (max, min)];
-        Fix::new(
-            "swap `min` and `max`",
-            edits.map(|(place, other)| Edit::new(place, self.sources.text(other))),
-        )
+    /// Puts two corners in order: where `min` is greater than `max` on some axes, and nowhere equal, each number takes the other's place.
+    pub(super) fn in_order(&self, [min, max]: [Given; 2], is_greater: [bool; 3]) -> Fix {
+        let swapped: Vec<[Span; 2]> = match (min.parts, max.parts) {
+            (Some(low), Some(high)) => {
+                let parts = low.into_iter().zip(high).zip(is_greater);
+                let swapped = parts.filter(|(_, is_greater)| *is_greater);
+                swapped.map(|((low, high), _)| [low, high]).collect()
+            }
+            _ => vec![[min.span, max.span]],
+        };
+        let edits = swapped.into_iter().flat_map(|[one, other]| {
+            [(one, other), (other, one)].map(|(to, from)| Edit::new(to, self.sources.text(from)))
+        });
+        Fix::new("put the corners in order", edits)
     }
 
     /// Of two fields that exclude each other, keeps either one with what belongs to it: the fields of the other ways are removed. What

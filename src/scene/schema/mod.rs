@@ -9,9 +9,15 @@ mod blocks;
 mod words;
 
 pub use blocks::BLOCKS;
-pub use words::{CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names};
+pub use words::{
+    CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names, nearest_method,
+};
 
 use std::fmt;
+
+use super::value::Value;
+use crate::{math::compare_half_turns, suggest};
+use glam::DVec3;
 
 /// A kind of block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -142,6 +148,12 @@ impl Type {
         }
     }
 
+    /// The type without an article.
+    pub fn word(self) -> &'static str {
+        let noun = self.noun();
+        noun.split_once(' ').map_or(noun, |(_, word)| word)
+    }
+
     /// Two of the type.
     pub fn two(self) -> &'static str {
         match self {
@@ -219,6 +231,26 @@ pub enum Condition {
     EachMoreThanZero,
 }
 
+impl Condition {
+    /// Whether a value keeps it; one of another type has no say in it.
+    pub fn holds(&self, value: Value) -> bool {
+        let two_to = |power: u32| (1_u64 << power) as f64;
+        match (*self, value) {
+            (Self::Whole, Value::Number(x)) => x.fract() == 0.0,
+            (Self::MoreThan(bound), Value::Number(x)) => x > bound,
+            (Self::AtLeast(bound), Value::Number(x)) => x >= bound,
+            (Self::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
+            (Self::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
+            (Self::LessThanHalfTurn, Value::Angle(angle)) => {
+                compare_half_turns(angle, 0.0).is_gt() && compare_half_turns(angle, 1.0).is_lt()
+            }
+            (Self::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
+            (Self::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
+            _ => true,
+        }
+    }
+}
+
 /// What the value must be, in words.
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -289,19 +321,47 @@ impl Block {
         least
     }
 
-    /// The field that was probably meant, if any is near.
-    pub fn nearest_field(&self, written: &str) -> Option<&'static str> {
-        let tried = |field: &&Field| also(written, field.also_tried);
-        let tried = self.fields.iter().find(tried).map(|field| field.name);
-        tried.or_else(|| crate::suggest::nearest(written, self.field_names()))
+    /// The field that is written like this but for capitals and `_`, or that people try this word for.
+    pub fn field_tried(&self, written: &str) -> Option<&'static Field> {
+        let mut fields = self.fields.iter();
+        let same = fields.find(|field| is_among(written, &[field.name]));
+        same.or_else(|| {
+            self.fields
+                .iter()
+                .find(|field| is_among(written, field.also_tried))
+        })
     }
 
-    /// The field whose name another word was joined to: `centerball` is the center and `ball`.
-    pub fn joined_field(&self, written: &str) -> Option<&'static str> {
-        let joined = |name: &&str| name.len() > 2 && written.starts_with(*name);
-        self.field_names()
-            .filter(joined)
-            .max_by_key(|name| name.len())
+    /// The field that was probably meant, if any is near: by its letters, or by a word within what was written, as in `near_clip` and
+    /// `eyepoint`.
+    pub fn nearest_field(&self, written: &str) -> Option<&'static Field> {
+        if let Some(name) = suggest::nearest(written, self.field_names()) {
+            return self.field(name);
+        }
+        let words = suggest::words(written);
+        let named = |word: &&str| {
+            self.fields
+                .iter()
+                .find(|field| field.name.eq_ignore_ascii_case(word))
+        };
+        if let Some(field) = words.iter().find_map(named) {
+            return Some(field);
+        }
+        let tried = words.iter().rev().find_map(|word| self.field_tried(word));
+        tried.or_else(|| {
+            let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);
+            self.fields
+                .iter()
+                .filter(starts)
+                .max_by_key(|field| field.name.len())
+        })
+    }
+}
+
+impl Field {
+    /// Whether a value keeps its conditions; one of another type has no say in it.
+    pub fn allows(&self, value: Value) -> bool {
+        self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
@@ -312,10 +372,18 @@ pub fn block_names() -> impl Iterator<Item = &'static str> {
 
 /// The block that was probably meant, if any is near.
 pub fn nearest_block(written: &str) -> Option<&'static Block> {
-    let tried = BLOCKS.iter().find(|block| also(written, block.also_tried));
-    tried.or_else(|| crate::suggest::nearest(written, block_names()).and_then(block))
+    let tried = BLOCKS
+        .iter()
+        .find(|block| is_among(written, block.also_tried));
+    tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
 }
 
-fn also(written: &str, tried: &[&str]) -> bool {
-    tried.iter().any(|name| name.eq_ignore_ascii_case(written))
+/// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
+pub fn is_among(written: &str, words: &[&str]) -> bool {
+    let letters = |word: &'_ str| -> String {
+        let letters = word.chars().filter(|letter| *letter != '_');
+        letters.map(|letter| letter.to_ascii_lowercase()).collect()
+    };
+    let written = letters(written);
+    words.iter().any(|word| letters(word) == written)
 }
