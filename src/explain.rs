@@ -4,6 +4,9 @@
 //! *Wrong*, *Right* and *Why*. The tests hold the codes of the stages and the pages together, and read the scenes: a wrong one has
 //! that mistake and no other, a right one none. How a page is shown (terminal, editor) is for others to say.
 
+/// The reference of the language, as Markdown.
+pub const LANGUAGE: &str = include_str!("../grammar/language.md");
+
 /// Pages on one subject.
 #[derive(Debug)]
 pub struct Group {
@@ -97,7 +100,7 @@ pub const GROUPS: &[Group] = &[
     },
     Group {
         name: "Colours",
-        pages: pages! { unknown_color bad_color_code color_range },
+        pages: pages! { unknown_color bad_color_code color_range unit_color },
     },
     Group {
         name: "Vectors",
@@ -114,11 +117,11 @@ pub const GROUPS: &[Group] = &[
     },
     Group {
         name: "The camera",
-        pages: pages! { view_undefined up_parallel empty_depth },
+        pages: pages! { view_undefined up_parallel empty_depth nothing_seen },
     },
     Group {
         name: "Triangles and boxes",
-        pages: pages! { not_a_triangle empty_box box_too_large },
+        pages: pages! { not_a_triangle on_one_line empty_box box_too_large },
     },
     Group {
         name: "Samples",

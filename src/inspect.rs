@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::{
     math::{Big, Real},
     numbers::{grouped, short, short_vector},
-    scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Scene, Shape, Sphere},
+    scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere},
     source::Source,
     tracer::{Basis, vertices},
 };
@@ -52,6 +52,8 @@ pub struct CameraFacts {
     pub view_height: f64,
     /// The angle that the window's height takes up, in degrees.
     pub fov_deg: f64,
+    /// The angle that the window's width takes up, in degrees.
+    pub hfov_deg: f64,
     /// The near plane's depth.
     pub near: f64,
     /// The far plane's depth.
@@ -86,7 +88,7 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     Inspection {
         size: [scene.image.width, scene.image.height],
         vanishing_points: [0, 1, 2].map(|axis| vanishing_point(&scene.image, &basis, axis)),
-        camera: camera_facts(&scene.camera, &basis),
+        camera: camera_facts(&scene.camera, &scene.image, &basis),
         method: scene.sampler.method,
         per_pixel,
         total: total_samples(scene.sampler.count, &scene.image),
@@ -109,13 +111,16 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
     let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));
-    (camera_facts(camera, &basis), points)
+    (camera_facts(camera, image, &basis), points)
 }
 
-fn camera_facts(camera: &Camera, basis: &Basis) -> CameraFacts {
+fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
     let vector = |v: &[Big; 3]| v.each_ref().map(rounded).into();
     let view_height = Big::from_f64(camera.view_height);
     let slope = view_height.over(&basis.d).scaled(-1);
+    let [width, height] =
+        [image.width, image.height].map(|pixels| Big::from_f64(f64::from(pixels)));
+    let across = slope.times(&width).over(&height);
     CameraFacts {
         eye: camera.eye,
         u: vector(&basis.u),
@@ -124,6 +129,7 @@ fn camera_facts(camera: &Camera, basis: &Basis) -> CameraFacts {
         d: rounded(&basis.d),
         view_height: camera.view_height,
         fov_deg: rounded(&slope.atan_degrees().scaled(1)),
+        hfov_deg: rounded(&across.atan_degrees().scaled(1)),
         near: camera.near,
         far: camera.far,
         looks: match basis.looks {
@@ -185,6 +191,7 @@ impl Inspection {
                 "d": camera.d,
                 "view_height": camera.view_height,
                 "fov_deg": camera.fov_deg,
+                "hfov_deg": camera.hfov_deg,
                 "near": camera.near,
                 "far": camera.far,
                 "looks": camera.looks,
@@ -249,10 +256,11 @@ impl fmt::Display for Inspection {
         }
         writeln!(
             f,
-            "  d       {}, view height {}: a field of view of {} degrees",
+            "  d       {}, view height {}: a field of view of {} degrees, {} across",
             short(camera.d),
             short(camera.view_height),
-            short(camera.fov_deg)
+            short(camera.fov_deg),
+            short(camera.hfov_deg)
         )?;
         let far = camera.far.map_or("endless".to_owned(), short);
         writeln!(f, "  depth   from {} to {far}", short(camera.near))?;
@@ -306,8 +314,13 @@ pub fn summary(shape: &Shape) -> String {
             short(radius)
         ),
         Shape::Triangle(triangle) => {
-            let [left, right, apex] = vertices(&triangle).map(short_vector);
-            format!("base {left} to {right}, apex {apex}, {}", triangle.color)
+            let [a, b, c] = vertices(&triangle).map(short_vector);
+            match triangle.outline {
+                Outline::Centered(_) => {
+                    format!("base {a} to {b}, apex {c}, {}", triangle.color)
+                }
+                Outline::Vertices(_) => format!("vertices {a}, {b}, {c}, {}", triangle.color),
+            }
         }
         Shape::Box(Cuboid { min, max, color }) => {
             let (min, max) = (short_vector(min), short_vector(max));

@@ -59,6 +59,24 @@ pub fn nearest<'c>(
     best.map(|(_, candidate)| candidate)
 }
 
+/// The words that a name is made of: `near_clip` and `nearClip` are near and clip.
+pub fn words(name: &str) -> Vec<&str> {
+    let mut words = Vec::new();
+    for part in name.split('_') {
+        let mut start = 0;
+        let capitals = part
+            .char_indices()
+            .filter(|(_, letter)| letter.is_ascii_uppercase());
+        for (at, _) in capitals.skip_while(|(at, _)| *at == 0) {
+            words.push(part.get(start..at).unwrap_or_default());
+            start = at;
+        }
+        words.push(part.get(start..).unwrap_or_default());
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
 /// How many letters must be put in, taken out or changed, or neighbours swapped (the optimal string alignment distance;
 /// Damerau, A technique for computer detection and correction of spelling errors, 1964).
 fn distance(from: &[char], to: &[char]) -> usize {

@@ -42,6 +42,9 @@ pub enum Command {
     /// Report the problems of scenes
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Write the smallest scene that shows something
+    #[command(after_help = NEW_EXAMPLES)]
+    New(NewArgs),
     /// Render a scene whenever its file is saved
     #[cfg(feature = "preview")]
     #[command(after_help = WATCH_EXAMPLES)]
@@ -58,7 +61,7 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
-    /// Explain a kind of mistake: a wrong scene, the right one, and why
+    /// Explain a kind of mistake, or a word of the language
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainArgs),
     /// Lay out scene files in the one canonical way
@@ -110,11 +113,15 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
   pinhole check *.scn --format json              one line for each problem
+  pinhole check figure.scn --fix                 and correct what can be corrected
+
+--fix applies the first fix of each error that has one, again until nothing changes, says what it did, and reports what is \
+left. A file is written whole or not at all; with -, the text goes to standard output.
 
 JSON, an object a line: file, severity, code, message, help, labels [{offset, length, line, column, end_line, \
 end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
 is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
-was. A label or an edit within a --set argument has a file of its own.";
+was. A label or an edit within a --set argument has a file of its own. Of a file with more than 1000 problems the last line says how many more there are.";
 
 #[cfg(feature = "preview")]
 const WATCH_EXAMPLES: &str = "\
@@ -125,6 +132,11 @@ Examples:
 
 While the text has mistakes, they are reported, and the last picture stays. A picture that is not done when \
 the text changes again is given up. Ctrl-C ends it, with status 130.";
+
+const NEW_EXAMPLES: &str = "\
+Examples:
+  pinhole new figure.scn                         a ball on a floor; a file that is there already is left as it is
+  pinhole new figure.scn && pinhole watch figure.scn --show";
 
 const INSPECT_EXAMPLES: &str = "\
 Examples:
@@ -177,6 +189,8 @@ Examples:
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
   pinhole explain bare_angle
+  pinhole explain camera                         a block, a field, a method, a function
+  pinhole explain language                       the whole reference
   pinhole explain                                all codes, by subject
   pinhole explain up_parallel | less             as Markdown";
 
@@ -242,10 +256,20 @@ pub struct CheckArgs {
     /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
+    /// Apply the first fix of each error that has one
+    #[arg(long)]
+    pub fix: bool,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `new`.
+#[derive(Debug, clap::Args)]
+pub struct NewArgs {
+    /// The file, which must not be there yet, or `-` for standard output
+    pub file: PathBuf,
 }
 
 /// Arguments of `watch`.
@@ -378,8 +402,10 @@ pub struct DiffArgs {
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub struct ExplainArgs {
-    /// The code that stands in the brackets of a report, with `pinhole::` or without [default: list them all]
-    pub code: Option<String>,
+    /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of the language, or `language`
+    /// [default: list all codes]
+    #[arg(value_name = "WORD")]
+    pub word: Option<String>,
 }
 
 /// For whom the answer is.

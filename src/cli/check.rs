@@ -1,43 +1,129 @@
-//! `check`: the problems of scenes, and nothing else.
+//! `check`: the problems of scenes, and with `--fix` the way out of those that have one.
 
-use pinhole::{diagnostic, scene};
+use std::{fs, path::Path};
+
+use pinhole::{
+    diagnostic::{self, Diagnostic},
+    film,
+    scene::{self, Reading},
+    source::Source,
+};
 
 use super::{
     Status, Trouble,
     args::{CheckArgs, Format},
-    input::{Input, check_standard},
+    input::{Input, check_standard, is_standard, shown},
+    interrupt::Interrupt,
     output,
 };
 
+/// The diagnostics of a file that a program is told.
+const MOST: usize = 1000;
+
 /// Reports the problems of each scene in turn. The status is the gravest one.
-pub fn run(args: &CheckArgs) -> Result<Status, Trouble> {
+pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
+    let is_json = args.format.format == Format::Json;
+    if args.fix && is_json && args.scenes.iter().any(|path| is_standard(path)) {
+        let hint = "the text of `-` goes to standard output itself";
+        return Err(Trouble(format!(
+            "--fix and --format json do not go together here: {hint}"
+        )));
+    }
     let mut status = Status::Done;
     for path in &args.scenes {
-        let found = match Input::read(path, &args.overrides) {
-            Ok(input) => report(&input, args.format.format)?,
-            Err(trouble) => {
-                output::error(&trouble);
-                Status::Trouble
-            }
-        };
+        let found = one(path, args, interrupt).unwrap_or_else(|trouble| {
+            output::error(&trouble);
+            Status::Trouble
+        });
         status = status.max(found);
+        if interrupt.pressed() {
+            return Ok(Status::Interrupted);
+        }
     }
     Ok(status)
 }
 
+fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    // What is written into a pipe comes back to nobody.
+    let is_pipe = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    if args.fix && is_pipe && !is_standard(path) {
+        return Err(Trouble(format!(
+            "{} is not a file, and cannot be fixed",
+            shown(path)
+        )));
+    }
+    let mut input = Input::read(path, &args.overrides)?;
+    if args.fix {
+        fix(path, &mut input, interrupt)?;
+    }
+    report(&input, args.format.format)
+}
+
+/// Fixes the errors of a file, and says what was done.
+fn fix(path: &Path, input: &mut Input, interrupt: &Interrupt) -> Result<(), Trouble> {
+    if input.is_picture {
+        let hint = "--fix takes the scene's text";
+        return Err(Trouble(format!("{} is a picture; {hint}", shown(path))));
+    }
+    let fixed = scene::fix_all(&input.sources);
+    if is_standard(path) {
+        output::to_programs(fixed.text.as_bytes())?;
+    } else if fixed.text != input.sources.file.text() {
+        film::write_whole(path, interrupt.watch(), |file| {
+            file.write_all(fixed.text.as_bytes())
+        })
+        .map_err(|error| Trouble(format!("cannot write {}: {error}", shown(path))))?;
+    }
+    let name = input.sources.file.name().to_owned();
+    for done in &fixed.done {
+        let (line, column) = (done.place.line, done.place.column);
+        output::to_people(&format!("{name}:{line}:{column}: {}\n", done.title));
+    }
+    if !fixed.done.is_empty() {
+        input.sources.file = Source::from_text(name, fixed.text);
+    }
+    Ok(())
+}
+
 fn report(input: &Input, format: Format) -> Result<Status, Trouble> {
     let reading = match format {
-        Format::Human => input.scene(),
-        Format::Json => {
-            let reading = scene::read(&input.sources);
-            let lines = diagnostic::json_lines(&reading.diagnostics, &input.sources);
-            output::to_programs(lines.as_bytes())?;
+        Format::Human => {
+            let reading = input.scene();
+            if reading.diagnostics.is_empty() && output::is_watched() {
+                output::to_people(&format!("{}: ok\n", input.sources.file.name()));
+            }
             reading
+        }
+        Format::Json => {
+            let Reading { scene, diagnostics } = scene::read(&input.sources);
+            let diagnostics = the_first(diagnostics);
+            let lines = diagnostic::json_lines(&diagnostics, &input.sources);
+            output::to_programs(lines.as_bytes())?;
+            Reading { scene, diagnostics }
         }
     };
     Ok(match reading.scene {
         Some(_) => Status::Done,
         None => Status::SceneErrors,
     })
+}
+
+/// The first of many diagnostics, and one that says how many more there are.
+fn the_first(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let rest = diagnostics.split_off(diagnostics.len().min(MOST));
+    if let Some(first) = rest.first() {
+        let gravest = rest.iter().find(|diagnostic| diagnostic.is_error());
+        let mut last = gravest.unwrap_or(first).clone();
+        last.code = "pinhole::more".to_owned();
+        last.message = format!(
+            "there are {} more problems, which are not listed",
+            rest.len()
+        );
+        last.help = Some("solve the first ones, and check again".to_owned());
+        last.labels = first.labels.iter().take(1).cloned().collect();
+        last.fixes = Vec::new();
+        diagnostics.push(last);
+    }
+    diagnostics
 }

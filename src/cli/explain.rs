@@ -1,13 +1,14 @@
-//! `explain`: the page of a diagnostic code, or the list of all.
+//! `explain`: the page of a diagnostic code or of a word of the language, the reference, or the list of all codes.
 //!
 //! The answer is what was asked for, and is to be piped into a pager: so it goes to standard output, as the manual does, as Markdown
 //! unless a terminal shows it.
 
-use std::fmt::Write;
+use std::{borrow::Cow, fmt::Write};
 
 use pinhole::{
     diagnostic::Style,
-    explain::{self, GROUPS, Page},
+    explain::{self, GROUPS},
+    scene::describe,
     suggest,
 };
 
@@ -19,15 +20,16 @@ const WIDEST: usize = 90;
 /// Prints the page, or the list.
 pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     let style = output::page_style();
-    let text = match (&args.code, style) {
-        (None, None) => list(Headings::Plain),
-        (None, Some(style)) => list(Headings::of(style)),
-        (Some(code), Some(style)) => drawn(
-            page(code)?,
-            style.width.clamp(20, WIDEST),
-            Headings::of(style),
-        ),
-        (Some(code), None) => page(code)?.text.to_owned(),
+    let headings = style.map_or(Headings::Plain, Headings::of);
+    let text = match &args.word {
+        None => list(headings),
+        Some(word) => {
+            let page = page(word)?;
+            match style {
+                Some(style) => drawn(&page, style.width.clamp(20, WIDEST), headings),
+                None => page.into_owned(),
+            }
+        }
     };
     output::to_programs(text.as_bytes())?;
     Ok(Status::Done)
@@ -57,18 +59,28 @@ impl Headings {
     }
 }
 
-fn page(code: &str) -> Result<&'static Page, Trouble> {
-    if code.trim().is_empty() {
+/// The page of a code or a word.
+fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
+    let trimmed = word.trim();
+    if trimmed.is_empty() {
         let hint = "`pinhole explain` lists all codes";
         return Err(Trouble(format!("the code is empty: {hint}")));
     }
-    explain::page(code).ok_or_else(|| {
-        let codes = explain::pages().map(|page| page.code);
-        Trouble(match suggest::nearest(explain::short(code), codes) {
-            Some(near) => format!("there is no code `{code}`: did you mean `{near}`?"),
-            None => format!("there is no code `{code}`: `pinhole explain` lists them all"),
-        })
-    })
+    if trimmed == "language" {
+        return Ok(explain::LANGUAGE.into());
+    }
+    if let Some(page) = explain::page(trimmed) {
+        return Ok(page.text.into());
+    }
+    if let Some(page) = describe::word(trimmed) {
+        return Ok(page.into());
+    }
+    let codes = explain::pages().map(|page| page.code);
+    let near = suggest::nearest(explain::short(trimmed), codes.chain(describe::words()));
+    Err(Trouble(match near {
+        Some(near) => format!("there is no code `{word}`: did you mean `{near}`?"),
+        None => format!("there is no code `{word}`: `pinhole explain` lists them all"),
+    }))
 }
 
 /// All codes with their titles, by subject.
@@ -89,16 +101,18 @@ fn list(headings: Headings) -> String {
 }
 
 /// A page for a terminal: scenes indented, and lines that fit.
-fn drawn(page: &Page, width: usize, headings: Headings) -> String {
+fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
     // The empty line after the last one ends its paragraph.
-    for line in page.text.lines().chain([""]) {
+    for line in page.lines().chain([""]) {
         if line.starts_with("```") {
             is_scene = !is_scene;
         } else if is_scene {
             let _ = writeln!(text, "    {line}");
+        } else if line.starts_with('|') {
+            let _ = writeln!(text, "{line}");
         } else if let Some(words) = line.trim_start_matches('#').strip_prefix(' ') {
             let _ = writeln!(text, "{}", headings.heading(words));
         } else if line.is_empty() {
@@ -106,6 +120,10 @@ fn drawn(page: &Page, width: usize, headings: Headings) -> String {
             paragraph.clear();
             text.push('\n');
         } else {
+            if line.starts_with("- ") {
+                push_wrapped(&mut text, &paragraph, width);
+                paragraph.clear();
+            }
             paragraph.push_str(line);
             paragraph.push(' ');
         }
@@ -146,7 +164,7 @@ mod tests {
     fn a_terminal_shows_lines_that_fit() {
         for page in explain::pages() {
             for width in [20, 40, WIDEST] {
-                let text = drawn(page, width, Headings::Plain);
+                let text = drawn(page.text, width, Headings::Plain);
                 for line in text.lines().filter(|line| !line.starts_with("    ")) {
                     let fits = line.chars().count() <= width || line == page.title();
                     assert!(fits || !line.contains(' '), "{}: {line}", page.code);
@@ -160,11 +178,8 @@ mod tests {
 
     #[test]
     fn scenes_are_indented_and_headings_bold() {
-        let page = Page {
-            code: "test",
-            text: "# A title\n\nSome words\nand more.\n\n## Wrong\n\n```scn\nsphere {\n  radus 1\n}\n```\n",
-        };
-        let text = drawn(&page, 12, Headings::Bold);
+        let page = "# A title\n\nSome words\nand more.\n\n## Wrong\n\n```scn\nsphere {\n  radus 1\n}\n```\n";
+        let text = drawn(page, 12, Headings::Bold);
         let expected = "\x1b[1mA title\x1b[0m\n\nSome words\nand more.\n\n\x1b[1mWrong\x1b[0m\n\n    sphere {\n      radus 1\n    }\n";
         assert_eq!(text, expected);
     }

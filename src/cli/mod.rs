@@ -14,6 +14,7 @@ mod interrupt;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod manual;
+mod new;
 mod output;
 mod picture;
 mod probe;
@@ -53,7 +54,8 @@ pub fn run() -> ExitCode {
     }
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
-        Command::Check(args) => check::run(&args),
+        Command::Check(args) => check::run(&args, &interrupt),
+        Command::New(args) => new::run(&args),
         #[cfg(feature = "preview")]
         Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),

@@ -5,13 +5,12 @@
 
 use super::{
     Analysis, hover,
-    signature::{bare, label},
     words::{Expected, Role, Situation},
 };
 use crate::{
     color::Color,
     scene::{
-        Value, css, example_beside, example_call,
+        Value, css, describe, example_beside, example_call,
         schema::{self, Field, Function, Kind, Preset, Type},
     },
     source::Span,
@@ -108,7 +107,7 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
             label: row.name.to_owned(),
             kind: CompletionKind::Block,
             detail: row.help.to_owned(),
-            help: hover::about_block(row),
+            help: describe::about_block(row),
             insert: match goes_on {
                 true => vec![text(row.name)],
                 false => block_with_fields(row),
@@ -122,7 +121,7 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         label: "let".to_owned(),
         kind: CompletionKind::Keyword,
         detail: "gives a value a name".to_owned(),
-        help: hover::ABOUT_LET.to_owned(),
+        help: describe::ABOUT_LET.to_owned(),
         insert: vec![text("let "), hole("name"), text(" = "), hole("1")],
         replaces: situation.word,
         rank: 2,
@@ -193,8 +192,7 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     };
     let is_open = |field: &&Field| {
         let given = &situation.given;
-        let is_excluded = |given: &&str| field.excludes.contains(given);
-        !given.contains(&field.name) && !given.iter().any(is_excluded)
+        !given.contains(&field.name) && !row.excludes(field.name).any(|name| given.contains(&name))
     };
     let value_follows = situation.next.is_some_and(|next| {
         let starts_value = matches!(
@@ -219,11 +217,11 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
             label: field.name.to_owned(),
             kind: CompletionKind::Field,
             detail: match field.preset {
-                Preset::Value(literal) => format!("{}, {literal} by default", bare(field.takes)),
-                Preset::Required => format!("{}, required", bare(field.takes)),
-                Preset::Alternative | Preset::Nothing => bare(field.takes).to_owned(),
+                Preset::Value(literal) => format!("{}, {literal} by default", field.takes.word()),
+                Preset::Required => format!("{}, required", field.takes.word()),
+                Preset::Alternative | Preset::Nothing => field.takes.word().to_owned(),
             },
-            help: hover::about_field(row, field),
+            help: describe::about_field(row, field),
             insert,
             replaces: situation.word,
             rank: match field.preset {
@@ -284,7 +282,7 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
         kind: CompletionKind::Value,
         detail: match field.preset {
             Preset::Value(literal) if example == literal.to_string() => "the default".to_owned(),
-            _ => bare(field.takes).to_owned(),
+            _ => field.takes.word().to_owned(),
         },
         insert: value_to_type_over(&example),
         label: example,
@@ -351,8 +349,8 @@ fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
     let functions = functions.map(|function| Completion {
         label: function.name.to_owned(),
         kind: CompletionKind::Function,
-        detail: label(function).0,
-        help: hover::about_function(function),
+        detail: describe::signature(function).0,
+        help: describe::about_function(function),
         insert: match is_called {
             true => vec![text(function.name)],
             false => call_to_type_over(function),

@@ -91,7 +91,7 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
                 Value::Angle(Angle::from_degrees(camera.fov_deg))
             ))
         }
-        ("camera", "fov") => {
+        ("camera", "fov" | "hfov") => {
             let (camera, _) = inspect::inspect_camera(&parts.camera?, &image);
             Some(format!("d {}", short(camera.d)))
         }
@@ -115,10 +115,13 @@ fn counts(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool
     let Some(kind) = block.kind else {
         return false;
     };
-    let known = schema::block(kind.text).and_then(|row| row.field(field.name.text));
+    let row = schema::block(kind.text);
     let is_against = |other: &&Field<'_>| {
         let name = other.name.text;
-        let is_excluded = known.is_some_and(|known| known.excludes.contains(&name));
+        let is_excluded = row.is_some_and(|row| {
+            row.excludes(field.name.text)
+                .any(|excluded| excluded == name)
+        });
         other.span != field.span && (name == field.name.text || is_excluded)
     };
     let mut blocks = analysis.blocks();

@@ -3,7 +3,6 @@
 use super::{
     Analysis,
     analysis::Path,
-    signature::{bare, label},
     words::{Role, Token},
 };
 use crate::{
@@ -13,10 +12,10 @@ use crate::{
     numbers::{short, short_vector},
     scene::{
         Value, css,
-        schema::{self, Block, Field, Function, Kind, Preset, Type},
+        describe::{ABOUT_LET, about_block, about_field, about_function},
+        schema::{self, Block, Kind},
     },
     source::Span,
-    suggest,
     syntax::{
         shorten,
         tree::{self, Definition, ValueKind},
@@ -96,75 +95,6 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
         }
         _ => value(analysis, &path, token),
     }
-}
-
-/// What `let` does.
-pub(super) const ABOUT_LET: &str =
-    "`let NAME = VALUE` gives a value a name, for what stands further down.";
-
-/// A kind of block, and its fields.
-pub(super) fn about_block(row: &Block) -> String {
-    let mut text = format!("`{}`: {}\n", row.name, row.help);
-    for field in row.fields {
-        text += &format!(
-            "\n- `{}` {}: {}",
-            field.name,
-            kind_and_preset(field),
-            field.help
-        );
-    }
-    text
-}
-
-/// A field: what it is, what it takes, what it is if not given, and what it must be.
-pub(super) fn about_field(row: &Block, field: &Field) -> String {
-    let mut text = format!(
-        "`{}` of {}: {}\n\n{}",
-        field.name,
-        row.noun,
-        field.help,
-        kind_and_preset(field)
-    );
-    if !field.must.is_empty() {
-        let must: Vec<String> = field.must.iter().map(ToString::to_string).collect();
-        text += &format!(
-            "; must be {}",
-            suggest::list(must.iter().map(String::as_str))
-        );
-    }
-    if !field.excludes.is_empty() {
-        let others: Vec<String> = field
-            .excludes
-            .iter()
-            .map(|name| format!("`{name}`"))
-            .collect();
-        let others = suggest::choice(others.iter().map(String::as_str));
-        text += &format!("; not together with {others}");
-    }
-    for rule in row.rules_of(field.name) {
-        text += &format!("; {rule}");
-    }
-    if field.takes == Type::Method {
-        text.push('\n');
-        for (method, help) in schema::METHODS {
-            text += &format!("\n- `{}`: {help}", method.name());
-        }
-    }
-    text
-}
-
-fn kind_and_preset(field: &Field) -> String {
-    let kind = bare(field.takes);
-    match field.preset {
-        Preset::Value(literal) => format!("({kind}, `{literal}` by default)"),
-        Preset::Required => format!("({kind}, required)"),
-        Preset::Alternative | Preset::Nothing => format!("({kind})"),
-    }
-}
-
-/// A function: how it is called, and what it is.
-pub(super) fn about_function(function: &Function) -> String {
-    format!("`{}`: {}", label(function).0, function.help)
 }
 
 /// A colour in all its spellings.

@@ -2,7 +2,7 @@
 
 use super::Analysis;
 use crate::{
-    scene::schema::{self, Function, Type},
+    scene::{describe, schema},
     source::Span,
 };
 use std::ops::Range;
@@ -26,7 +26,7 @@ pub struct Signature {
 pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
     let (span, commas) = analysis.call(at)?;
     let function = schema::function(analysis.slice(span))?;
-    let (label, parameters) = label(function);
+    let (label, parameters) = describe::signature(function);
     let last = parameters.len().saturating_sub(1);
     Some(Signature {
         label,
@@ -38,34 +38,4 @@ pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
         parameters,
         span,
     })
-}
-
-/// How a function is called, and where its parameters stand in that.
-pub(super) fn label(function: &Function) -> (String, Vec<Range<usize>>) {
-    let mut label = format!("{}(", function.name);
-    let mut parameters = Vec::new();
-    for (index, takes) in function.takes.iter().enumerate() {
-        if index > 0 {
-            label.push_str(", ");
-        }
-        let start = label.len();
-        // The name of an argument stands for it, or its type.
-        let name = function.parameters.get(index);
-        label.push_str(name.copied().unwrap_or_else(|| bare(*takes)));
-        parameters.push(start..label.len());
-    }
-    if function.more {
-        label.push_str(", ");
-        let start = label.len();
-        label.push('…');
-        parameters.push(start..label.len());
-    }
-    label.push_str(&format!(") → {}", bare(function.gives)));
-    (label, parameters)
-}
-
-/// A type without its article.
-pub(super) fn bare(kind: Type) -> &'static str {
-    let noun = kind.noun();
-    noun.split_once(' ').map_or(noun, |(_, bare)| bare)
 }

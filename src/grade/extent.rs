@@ -8,7 +8,7 @@ use super::level::axes;
 use crate::{
     area::Area,
     numbers::short,
-    scene::{Scene, Shape},
+    scene::{Outline, Scene, Shape},
     tracer::vertices,
 };
 
@@ -168,7 +168,7 @@ pub fn ball(shape: &Shape) -> Option<(DVec3, f64)> {
     match shape {
         Shape::Sphere(sphere) => Some((sphere.center, sphere.radius)),
         Shape::Triangle(triangle) => {
-            let middle = triangle.centroid;
+            let middle = triangle.outline.centroid();
             let far = |vertex: DVec3| (vertex - middle).length();
             let radius = vertices(triangle).map(far).into_iter().fold(0.0, f64::max);
             Some((middle, radius))
@@ -189,11 +189,14 @@ fn are_similar(shape: &Shape, other: &Shape) -> bool {
     };
     match (shape, other) {
         (Shape::Sphere(_), Shape::Sphere(_)) => true,
-        (Shape::Triangle(one), Shape::Triangle(other)) => {
-            is_enlarged(one.sides, other.sides)
-                && one.normal == other.normal
-                && one.spin == other.spin
-        }
+        (Shape::Triangle(one), Shape::Triangle(other)) => match (one.outline, other.outline) {
+            (Outline::Centered(one), Outline::Centered(other)) => {
+                is_enlarged(one.sides, other.sides)
+                    && one.normal == other.normal
+                    && one.spin == other.spin
+            }
+            _ => false,
+        },
         (Shape::Box(one), Shape::Box(other)) => {
             is_enlarged(one.max - one.min, other.max - other.min)
         }

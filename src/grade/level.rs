@@ -377,7 +377,9 @@ fn resized(scene: &Scene, [width, height]: [u32; 2], factor: u32) -> Scene {
 pub fn distance(scene: &Scene) -> f64 {
     match scene.camera.lens {
         Lens::Distance(d) => d,
-        Lens::Fov(_) => Basis::new(&scene.camera, &scene.image).d.to_finite(),
+        Lens::Fov(_) | Lens::HorizontalFov(_) => {
+            Basis::new(&scene.camera, &scene.image).d.to_finite()
+        }
     }
 }
 

@@ -70,7 +70,7 @@ pub fn picture(scene: &Scene, order: Order, control: &Control) -> Result<Film, R
             let squared_distance = |object: &Object| {
                 let middle = match object.shape {
                     Shape::Sphere(sphere) => sphere.center,
-                    Shape::Triangle(triangle) => triangle.centroid,
+                    Shape::Triangle(triangle) => triangle.outline.centroid(),
                     Shape::Box(cuboid) => cuboid.min.midpoint(cuboid.max),
                     Shape::Checkerboard(_) => return f64::INFINITY,
                 };

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 use glam::DVec3;
 
-use super::two_sum;
+use super::{Double, two_product, two_sum};
 
 /// The plane through a point across a normal, which has any length but 0.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,31 @@ pub struct Plane {
 }
 
 impl Plane {
+    /// The plane through three points, if its normal can be had in `f64` without rounding, as it can of points that people write.
+    pub fn through([a, b, c]: [DVec3; 3]) -> Option<Self> {
+        // Of other numbers products might lose what is below the least f64.
+        let is_tame = |x: f64| x == 0.0 || (1e-120..=1e120).contains(&x.abs());
+        let mut numbers = [a, b, c].into_iter().flat_map(|point| point.to_array());
+        if !numbers.all(is_tame) {
+            return None;
+        }
+        let is_exact = |number: Double| (number.lo == 0.0).then_some(number.hi);
+        let difference = |x: f64, y: f64| is_exact(two_sum(x, -y));
+        let along = |to: DVec3| {
+            let [x, y, z] = [0, 1, 2].map(|axis| difference(to[axis], a[axis]));
+            Some([x?, y?, z?])
+        };
+        let (one, other) = (along(b)?, along(c)?);
+        let part = |i: usize, j: usize| {
+            let product = |i: usize, j: usize| is_exact(two_product(one[i], other[j]));
+            difference(product(i, j)?, product(j, i)?)
+        };
+        Some(Self {
+            normal: DVec3::new(part(1, 2)?, part(2, 0)?, part(0, 1)?),
+            point: a,
+        })
+    }
+
     /// Whether it is the same plane as another: their normals are parallel, and the points' difference lies across these.
     pub fn equals(&self, other: &Self) -> bool {
         cross_is_zero(self.normal, DVec3::ZERO, other.normal)
@@ -36,6 +61,14 @@ pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     let [ux, uy, uz] = &up;
     let [ax, ay, az] = &along;
     uy * az == uz * ay && uz * ax == ux * az && ux * ay == uy * ax
+}
+
+/// Whether three points lie on one line.
+pub fn are_on_one_line(points: [DVec3; 3]) -> bool {
+    let [a, b, c] = points.map(|point| point.to_array().map(whole));
+    let along = |to: &[IBig; 3]| [0, 1, 2].map(|axis| &to[axis] - &a[axis]);
+    let ([ax, ay, az], [bx, by, bz]) = (along(&b), along(&c));
+    &ay * &bz == &az * &by && &az * &bx == &ax * &bz && &ax * &by == &ay * &bx
 }
 
 /// The sign of the exact dot product of `up` with `to − from`.

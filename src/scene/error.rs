@@ -32,8 +32,8 @@ pub enum Problem {
         help: String,
         #[label("not a field of {noun}")]
         span: Span,
-        /// The name that was probably meant.
-        near: Option<String>,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
     },
 
     #[error("`{name}` has no value")]
@@ -78,7 +78,7 @@ pub enum Problem {
     ConflictingFields {
         later: String,
         earlier: String,
-        why: String,
+        why: &'static str,
         #[label("this says it again, in another way")]
         second: Span,
         #[label("this says it already")]
@@ -110,6 +110,8 @@ pub enum Problem {
     MissingCamera {
         #[label("no `camera` in this text")]
         span: Span,
+        /// Whether there is nothing else either.
+        is_empty: bool,
     },
 
     #[error("the scene has no objects")]
@@ -414,6 +416,16 @@ pub enum Problem {
         instead: Vec<String>,
     },
 
+    #[error("the parts of a colour go from 0 to 255, and none of these is more than 1")]
+    #[diagnostic(code(pinhole::unit_color), severity(Warning), help("{help}"))]
+    UnitColor {
+        help: String,
+        #[label("almost black")]
+        span: Span,
+        /// What can stand in its place.
+        instead: Vec<String>,
+    },
+
     #[error("{message}")]
     #[diagnostic(code(pinhole::out_of_range), help("{help}"))]
     OutOfRange {
@@ -456,9 +468,22 @@ pub enum Problem {
         fixes: Vec<Fix>,
     },
 
-    #[error("the camera looks straight along its up vector")]
+    #[error("{message}")]
+    #[diagnostic(code(pinhole::nothing_seen), severity(Warning), help("{help}"))]
+    NothingSeen {
+        message: &'static str,
+        help: String,
+        #[label("{label}")]
+        span: Span,
+        label: &'static str,
+        /// What can be done about it.
+        fixes: Vec<Fix>,
+    },
+
+    #[error("{message}")]
     #[diagnostic(code(pinhole::up_parallel), severity(Warning), help("{help}"))]
     UpParallel {
+        message: &'static str,
         help: String,
         #[label("{label}")]
         span: Span,
@@ -477,6 +502,21 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
+    },
+
+    #[error("{message}")]
+    #[diagnostic(
+        code(pinhole::on_one_line),
+        help("move one of them, so that the three points are the corners of a triangle")
+    )]
+    OnOneLine {
+        message: String,
+        #[label("the third vertex")]
+        span: Span,
+        #[label("the second")]
+        second: Span,
+        #[label("the first")]
+        first: Span,
     },
 
     #[error("the box has no extent along {axis}")]
@@ -608,6 +648,7 @@ impl Problem {
         matches!(
             self,
             Self::UnknownName { .. }
+                | Self::UnknownColor { .. }
                 | Self::UnknownFunction { .. }
                 | Self::UsedBeforeDefinition { .. }
         )

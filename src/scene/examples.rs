@@ -24,6 +24,7 @@ pub fn example_beside(field: &Field, given: &dyn Fn(&str) -> Option<Value>) -> S
             _ => None,
         },
         "eye" | "lookat" | "direction" | "up" => looking(field, &example, &vector),
+        "v0" | "v1" | "v2" => vertex(field.name, &vector),
         _ => None,
     };
     fitting.unwrap_or(example)
@@ -75,6 +76,29 @@ fn looking(field: &Field, example: &str, given: &dyn Fn(&str) -> Option<DVec3>) 
     let mut texts = vec![example.to_owned()];
     texts.extend(others.map(numbers::short_vector));
     texts.into_iter().find(fits)
+}
+
+/// A vertex of a triangle beside those that are given, away from them along an axis of its own.
+fn vertex(name: &str, given: &dyn Fn(&str) -> Option<DVec3>) -> Option<String> {
+    let others = ["v0", "v1", "v2"]
+        .into_iter()
+        .filter(|other| *other != name);
+    let others: Vec<DVec3> = others.filter_map(given).collect();
+    let from = *others.first()?;
+    let axes = match name {
+        "v0" => [DVec3::Z, DVec3::X, DVec3::Y],
+        "v1" => [DVec3::X, DVec3::Y, DVec3::Z],
+        _ => [DVec3::Y, DVec3::Z, DVec3::X],
+    };
+    let fits = |text: &String| match (parsed(text), others.as_slice()) {
+        (Some(new), &[one, other]) => !predicates::are_on_one_line([one, other, new]),
+        (Some(new), _) => new != from,
+        (None, _) => false,
+    };
+    let mut texts = axes
+        .map(|axis| numbers::short_vector(from + axis))
+        .into_iter();
+    texts.find(fits)
 }
 
 /// A vector of three numbers, as examples are written.

@@ -23,7 +23,6 @@ impl Fixable for Problem {
                 [Edit::new(*arguments, " * ")],
             )],
             Self::UnknownKind { span, near, .. }
-            | Self::UnknownField { span, near, .. }
             | Self::UnknownFunction { span, near, .. }
             | Self::UnknownMethod { span, near, .. }
             | Self::NoSuchTarget { span, near, .. } => everywhere(*span, &[], near.as_deref()),
@@ -33,10 +32,12 @@ impl Fixable for Problem {
             | Self::UnknownColor {
                 span, more, near, ..
             } => everywhere(*span, more, near.as_deref()),
-            Self::MissingField { fixes, .. }
+            Self::UnknownField { fixes, .. }
+            | Self::MissingField { fixes, .. }
             | Self::ConflictingFields { fixes, .. }
             | Self::ViewUndefined { fixes, .. }
             | Self::UpParallel { fixes, .. }
+            | Self::NothingSeen { fixes, .. }
             | Self::EmptyDepth { fixes, .. }
             | Self::EmptyBox { fixes, .. }
             | Self::NotFinite { fixes, .. }
@@ -48,6 +49,7 @@ impl Fixable for Problem {
             | Self::PartCount { span, instead, .. }
             | Self::ArgumentCount { span, instead, .. }
             | Self::ColorRange { span, instead, .. }
+            | Self::UnitColor { span, instead, .. }
             | Self::OutOfRange {
                 whole: span,
                 instead,
@@ -91,6 +93,12 @@ impl Fixable for Problem {
                 *span,
                 sources,
             )],
+            Self::MissingCamera { is_empty: true, .. } => {
+                let end = sources.file.text().len();
+                let scene = at_end(super::SMALLEST, sources);
+                let title = "write the smallest scene";
+                vec![Fix::new(title, [Edit::insert(SourceId::File, end, scene)])]
+            }
             Self::MissingCamera { .. } => add("camera", &["eye", "lookat"], sources),
             Self::NoObjects { .. } => add("sphere", &["center"], sources),
             Self::FunctionWithoutArguments { example, span, .. } => {
@@ -108,6 +116,7 @@ impl Fixable for Problem {
             | Self::PartType { .. }
             | Self::NumberTooLarge { .. }
             | Self::NotATriangle { .. }
+            | Self::OnOneLine { .. }
             | Self::BoxTooLarge { .. }
             | Self::TooManySamples { .. }
             | Self::SetWithoutEquals { .. }
@@ -146,17 +155,26 @@ fn add(block: &str, fields: &[&str], sources: &Sources) -> Vec<Fix> {
     let fields: Vec<String> = rows
         .map(|field| format!("{} {}", field.name, field.example()))
         .collect();
+    let added = at_end(&format!("{block} {{ {} }}\n", fields.join("  ")), sources);
+    vec![Fix::new(
+        format!("add {}", row.noun),
+        [Edit::insert(
+            SourceId::File,
+            sources.file.text().len(),
+            added,
+        )],
+    )]
+}
+
+/// Lines to add at the end of the file.
+fn at_end(lines: &str, sources: &Sources) -> String {
     let text = sources.file.text();
     let line_end = sources.file.line_end();
     let apart = match text.ends_with('\n') || text.len() == sources.file.bom_len() {
         true => "",
         false => line_end,
     };
-    let added = format!("{apart}{block} {{ {} }}{line_end}", fields.join("  "));
-    vec![Fix::new(
-        format!("add {}", row.noun),
-        [Edit::insert(SourceId::File, text.len(), added)],
-    )]
+    format!("{apart}{}", lines.replace('\n', line_end))
 }
 
 /// The place behind a field's name, with a `=` or `:` that stands there.

@@ -15,19 +15,23 @@
 )]
 
 pub mod css;
+pub mod describe;
 mod error;
 mod eval;
 mod examples;
+mod fix_all;
 mod fixes;
 mod lower;
 mod overrides;
 pub mod schema;
 mod survey;
+mod unseen;
 mod untangle;
 mod value;
 
 pub use eval::{example_call, predefined};
 pub use examples::example_beside;
+pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{read, read_in_parts, read_unless, survey};
 pub use survey::{Parts, Survey};
 pub use value::Value;
@@ -35,6 +39,13 @@ pub use value::Value;
 use glam::DVec3;
 
 use crate::{color::Color, diagnostic::Diagnostic, math::Angle, source::Span};
+
+/// The smallest scene that shows something: a sphere on a floor.
+pub const SMALLEST: &str = "\
+camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+sphere { center (0, 1, 0) }
+checkerboard {}
+";
 
 /// What reading a scene yields.
 #[derive(Clone, Debug)]
@@ -112,13 +123,15 @@ pub fn level_direction(up: DVec3) -> DVec3 {
     }
 }
 
-/// How much a camera sees, in either of the language's two ways.
+/// How much a camera sees, in one of the language's three ways. Angles lie between 0 and 180 degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
     /// The distance from the eye to the view plane, > 0.
     Distance(f64),
-    /// The angle that the window's height takes up, between 0 and 180 degrees.
+    /// The angle that the window's height takes up.
     Fov(Angle),
+    /// The angle that the window's width takes up.
+    HorizontalFov(Angle),
 }
 
 /// Where samples lie, how many, and the seed of the random ones.
@@ -232,9 +245,27 @@ pub struct Sphere {
     pub color: Color,
 }
 
-/// A triangle by centroid and normal.
+/// A triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
+    /// Where its vertices are.
+    pub outline: Outline,
+    /// Its colour.
+    pub color: Color,
+}
+
+/// The vertices of a triangle, in either of the language's two ways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outline {
+    /// The vertices themselves, which do not lie on one line.
+    Vertices([DVec3; 3]),
+    /// By centroid, normal and sides.
+    Centered(CenteredTriangle),
+}
+
+/// A triangle by centroid and normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CenteredTriangle {
     /// The mean of its vertices.
     pub centroid: DVec3,
     /// Its normal, not zero, of any length.
@@ -243,8 +274,17 @@ pub struct Triangle {
     pub sides: DVec3,
     /// Its turn in its own plane, counter-clockwise seen from the tip of the normal.
     pub spin: Angle,
-    /// Its colour.
-    pub color: Color,
+}
+
+impl Outline {
+    /// The mean of its vertices, rounded.
+    pub fn centroid(&self) -> DVec3 {
+        match self {
+            // Divided first, so that no sum is too large.
+            Self::Vertices(vertices) => vertices.iter().map(|vertex| *vertex / 3.0).sum(),
+            Self::Centered(centered) => centered.centroid,
+        }
+    }
 }
 
 /// A closed, axis-aligned box.

@@ -4,7 +4,7 @@
 //! span, so that a formatter can put the text together again from the tree and the comments. What could not be understood
 //! is `Bad`, and a problem was reported for it.
 
-use crate::source::Span;
+use crate::{math::Angle, source::Span};
 
 /// A whole file, or a single value of a `--set` argument.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -235,6 +235,24 @@ pub enum Unit {
     Radians,
 }
 
+impl Unit {
+    /// How it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Degrees => "deg",
+            Self::Radians => "rad",
+        }
+    }
+
+    /// The angle of so many.
+    pub fn of(self, number: f64) -> Angle {
+        match self {
+            Self::Degrees => Angle::from_degrees(number),
+            Self::Radians => Angle::from_radians(number),
+        }
+    }
+}
+
 /// What stands between two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
@@ -249,6 +267,11 @@ pub enum Operator {
 }
 
 impl Operator {
+    /// Whether it is `*` or `/`, which come before `+` and `-`.
+    pub fn is_of_product(self) -> bool {
+        matches!(self, Self::Multiply | Self::Divide)
+    }
+
     /// How it is written.
     pub fn sign(self) -> char {
         match self {

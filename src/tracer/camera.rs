@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use crate::{
     area::Area,
     math::{Ball, Ball3, Big, Exact, Real, UP},
-    scene::{self, Image, Lens, Scene, Shape, View},
+    scene::{self, Image, Lens, Outline, Scene, Shape, View},
 };
 
 /// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only at the end.
@@ -110,6 +110,13 @@ impl Basis {
             }
             Lens::Fov(angle) => {
                 let slope = Big::from_f64(2.0).times(&Big::tan_half(angle));
+                (view_height.over(&slope), slope)
+            }
+            Lens::HorizontalFov(angle) => {
+                let across = Big::from_f64(2.0).times(&Big::tan_half(angle));
+                let [width, height] =
+                    [image.width, image.height].map(|pixels| Big::from_f64(f64::from(pixels)));
+                let slope = across.times(&height).over(&width);
                 (view_height.over(&slope), slope)
             }
         };
@@ -291,9 +298,16 @@ fn exponent_of_lengths(scene: &Scene) -> i32 {
             Shape::Sphere(scene::Sphere { center, radius, .. }) => {
                 (center - eye).abs().max_element().max(radius)
             }
-            Shape::Triangle(scene::Triangle {
-                centroid, sides, ..
-            }) => (centroid - eye).abs().max(sides).max_element(),
+            Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
+                Outline::Vertices(vertices) => {
+                    let sizes = vertices.map(|vertex| (vertex - eye).abs().max_element());
+                    sizes.into_iter().fold(0.0, f64::max)
+                }
+                Outline::Centered(triangle) => (triangle.centroid - eye)
+                    .abs()
+                    .max(triangle.sides)
+                    .max_element(),
+            },
             Shape::Box(scene::Cuboid { min, max, .. }) => {
                 (min - eye).abs().max((max - eye).abs()).max_element()
             }

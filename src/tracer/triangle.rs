@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross, sin_cos},
-    scene,
+    scene::{self, CenteredTriangle, Outline},
 };
 
 /// A triangle prepared for one picture.
@@ -48,6 +48,39 @@ impl<T: Real> Triangle<T> {
         camera: &Camera<T>,
         shape: &scene::Triangle,
     ) -> Option<(Self, Vertices<T>)> {
+        match &shape.outline {
+            Outline::Vertices(vertices) => Self::by_vertices(camera, vertices),
+            Outline::Centered(triangle) => Self::by_centroid(camera, triangle),
+        }
+    }
+
+    /// Two triangles that share an edge have the same two points for it, so that of every ray they know exactly the same.
+    fn by_vertices(camera: &Camera<T>, vertices: &[DVec3; 3]) -> Option<(Self, Vertices<T>)> {
+        let (normal, height, side) = plane_through(camera, vertices);
+        if side.is_eq() {
+            return None;
+        }
+        let from_eye = vertices.map(|vertex| camera.relative(vertex));
+        let exponents = from_eye.each_ref().map(|v| exponent_of(array::from_ref(v)));
+        let exponent = -exponents.into_iter().fold(i32::MIN, i32::max);
+        let points = from_eye.map(|v| camera.turned(&v.map(|x| x.scaled(exponent))));
+        // a × b = a × (b − a). The edges' forms matter by their signs alone, so each may have a scale of its own.
+        let edge = |a: usize, b: usize| {
+            let along: Ball3<T> =
+                array::from_fn(|i| Ball::difference(vertices[b][i], vertices[a][i]));
+            let own = -exponent_of(array::from_ref(&along));
+            let along = camera.turned(&along.map(|x| x.scaled(own)));
+            let n = cross(&points[a], &along);
+            Form::new(camera, &facing(n, side))
+        };
+        let triangle = Self {
+            edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
+            plane: inverse_depth(camera, &normal, &height),
+        };
+        Some((triangle, Vertices { points, exponent }))
+    }
+
+    fn by_centroid(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<(Self, Vertices<T>)> {
         let from_eye = camera.relative(shape.centroid);
         let (normal, height, side) = plane(camera, shape);
         if side.is_eq() {
@@ -73,9 +106,7 @@ impl<T: Real> Triangle<T> {
         let edge = |a: usize, b: usize| {
             let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
             let n = sum(&cross(&center, &along), &cross(&offsets[a], &offsets[b]));
-            // Seen from behind the triangle's turn is the other way round.
-            let n = if side.is_lt() { n.map(|x| -x) } else { n };
-            Form::new(camera, &n)
+            Form::new(camera, &facing(n, side))
         };
         let triangle = Self {
             edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
@@ -149,8 +180,17 @@ fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
     sizes.fold(T::Radius::ZERO, Radius::max).exponent()
 }
 
-/// The vertices of a triangle in the world: left base end, right base end, apex; each coordinate rounded once.
+/// An edge's form for a triangle of which the eye sees this side: seen from behind, its turn is the other way round.
+fn facing<T: Real>(n: Ball3<T>, side: Ordering) -> Ball3<T> {
+    if side.is_lt() { n.map(|x| -x) } else { n }
+}
+
+/// The vertices of a triangle in the world: as they are written, or left base end, right base end, apex, each coordinate rounded once.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
+    let shape = match &shape.outline {
+        Outline::Vertices(vertices) => return *vertices,
+        Outline::Centered(triangle) => triangle,
+    };
     let centroid = shape.centroid.to_array().map(Ball::<Big>::exact);
     offsets::<Big>(shape)
         .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
@@ -161,7 +201,7 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
 ///
 /// Here n is divided by its greatest component, and each number is a rounding of the true one: so triangles in one plane, with
 /// normals of whatever lengths, get the same n and h, and planes along the axes those of a box's faces.
-fn plane<T: Real>(camera: &Camera<T>, shape: &scene::Triangle) -> (Ball3<T>, Ball<T>, Ordering) {
+fn plane<T: Real>(camera: &Camera<T>, shape: &CenteredTriangle) -> (Ball3<T>, Ball<T>, Ordering) {
     let normal = shape.normal.to_array();
     let greatest = shape.normal.abs().max_element();
     let pivot = normal.into_iter().find(|x| x.abs() == greatest);
@@ -177,11 +217,40 @@ fn plane<T: Real>(camera: &Camera<T>, shape: &scene::Triangle) -> (Ball3<T>, Bal
     (n, Ball::from_big(&height), h.sign())
 }
 
+/// The same of the plane through three points, whose normal is (b − a) × (c − a).
+fn plane_through<T: Real>(
+    camera: &Camera<T>,
+    vertices: &[DVec3; 3],
+) -> (Ball3<T>, Ball<T>, Ordering) {
+    let [a, b, c] = vertices;
+    let along = |to: &DVec3| -> [Exact; 3] { array::from_fn(|i| Exact::difference(to[i], a[i])) };
+    let (one, other) = (along(b), along(c));
+    let normal: [Exact; 3] = array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        &(&one[j] * &other[k]) - &(&one[k] * &other[j])
+    });
+    let terms: [Exact; 3] =
+        array::from_fn(|i| &Exact::difference(a[i], camera.eye[i]) * &normal[i]);
+    let h = &(&terms[0] + &terms[1]) + &terms[2];
+    let parts = normal.each_ref().map(Exact::to_big);
+    let greater = |a: Big, b: &Big| {
+        if b.magnitude() > a.magnitude() {
+            b.clone()
+        } else {
+            a
+        }
+    };
+    let pivot = parts.iter().fold(Big::from_f64(0.0), greater);
+    let n = parts.map(|x| Ball::from_big(&x.over(&pivot)));
+    let height = h.to_big().over(&pivot).scaled(camera.exponent);
+    (n, Ball::from_big(&height), h.sign())
+}
+
 /// The vertices as seen from the centroid, in the world's axes: left base end, right base end, apex.
 ///
 /// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² + c²)/(2c) and y = 2A/c, the
 /// area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
-fn offsets<T: Real>(shape: &scene::Triangle) -> [Ball3<T>; 3] {
+fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     let exponent = libm::frexp(shape.sides.max_element()).1;
     let [a, b, c] = shape
         .sides

@@ -12,7 +12,7 @@ use pinhole::{
     film::{Encoder, Film},
     render::{Control, render, render_bytes},
     sampling::Sampling,
-    scene::{Count, Lens, Method, Sampler, Scene, Shape, View},
+    scene::{Count, Lens, Method, Outline, Sampler, Scene, Shape, View},
     tracer::{Part, Quartering, Room, World},
 };
 
@@ -214,7 +214,9 @@ fn very_many_in_one_plane() {
     // Once more each, with other normals: what comes first in the file is seen.
     shapes.extend_from_within(..4000);
     for shape in &mut shapes[4001..] {
-        if let Shape::Triangle(triangle) = shape {
+        if let Shape::Triangle(triangle) = shape
+            && let Outline::Centered(triangle) = &mut triangle.outline
+        {
             triangle.normal *= 3.0;
         }
     }
@@ -322,7 +324,9 @@ fn objects_as_small_as_pixels() {
         let mut all = scenes.next().unwrap();
         all.objects.extend(scenes.flat_map(|scene| scene.objects));
         for object in &mut all.objects {
-            if let Shape::Triangle(triangle) = &mut object.shape {
+            if let Shape::Triangle(triangle) = &mut object.shape
+                && let Outline::Centered(triangle) = &mut triangle.outline
+            {
                 triangle.sides *= 0.05;
             }
         }

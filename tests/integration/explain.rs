@@ -204,6 +204,10 @@ fn a_mistyped_code_gets_the_nearest_one() {
             "there is no code `bear_angle`: did you mean `bare_angle`?",
         ),
         (
+            "cammera",
+            "there is no code `cammera`: did you mean `camera`?",
+        ),
+        (
             "pinhole::E0308",
             "there is no code `pinhole::E0308`: `pinhole explain` lists them all",
         ),
@@ -224,4 +228,41 @@ fn the_right_scenes_are_in_the_canonical_layout() {
         let formatted = pinhole::format::format(&source).expect("it has no mistake");
         assert_eq!(source.text(), formatted, "{}", page.code);
     }
+}
+
+fn text_of(word: &str) -> String {
+    let output = explained(&[word]);
+    assert_eq!(output.status.code(), Some(0), "{word}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn words_of_the_language_are_explained() {
+    use pinhole::scene::schema;
+    for row in schema::BLOCKS {
+        let page = text_of(row.name);
+        assert!(page.contains(row.help), "{page}");
+        for field in row.fields {
+            assert!(page.contains(&format!("- `{}` (", field.name)), "{page}");
+        }
+    }
+    let roll = text_of("roll");
+    assert_eq!(
+        roll,
+        "# roll\n\n`roll` of a camera: the turn about the view direction; positive dips the right side\n\n\
+         (angle, `0deg` by default)\n\n```scn\nroll 30deg\n```\n"
+    );
+    assert!(text_of("v0").contains("not together with `centroid`, `normal`, `sides` or `spin`"));
+    assert!(text_of("sobol").contains("`sobol`, a method of the sampler: Sobol' points"));
+    assert!(text_of("atan2").contains("`atan2(y, x) → angle`"));
+    // A field of a box and a function; a function and a colour.
+    let min = text_of("min");
+    assert!(min.contains("`min` of a box") && min.contains("`min(number, number, …) → number`"));
+    assert!(
+        text_of("tan").contains("the tangent of an angle") && text_of("tan").contains("#d2b48c")
+    );
+    assert_eq!(
+        text_of("language"),
+        include_str!("../../grammar/language.md")
+    );
 }

@@ -9,12 +9,12 @@ use pinhole::{
     area::Area,
     color::Color,
     film::Film,
-    math::Angle,
+    math::{Angle, predicates},
     render::{Control, Exact, render, render_exact},
     sampling::Sampling,
     scene::{
-        Camera, Checkerboard, Count, Cuboid, Lens, Method, Sampler, Scene, Shape, Sphere, Triangle,
-        View,
+        Camera, CenteredTriangle, Checkerboard, Count, Cuboid, Lens, Method, Outline, Sampler,
+        Scene, Shape, Sphere, Triangle, View,
     },
     tracer::World,
 };
@@ -78,12 +78,22 @@ fn any_shape() -> impl Strategy<Value = Shape> {
             let max = min + DVec3::from(size);
             Shape::Box(Cuboid { min, max, color })
         }),
+        [vector(), vector(), vector()]
+            .prop_filter("not on one line", |points| !predicates::are_on_one_line(
+                *points
+            ))
+            .prop_map(move |vertices| Shape::Triangle(Triangle {
+                outline: Outline::Vertices(vertices),
+                color
+            })),
         (vector(), direction(), length(), -180..180).prop_map(
             move |(centroid, normal, size, spin)| Shape::Triangle(Triangle {
-                centroid,
-                normal,
-                sides: dvec3(1.0, 0.75, 0.5) * size,
-                spin: Angle::from_degrees(f64::from(spin)),
+                outline: Outline::Centered(CenteredTriangle {
+                    centroid,
+                    normal,
+                    sides: dvec3(1.0, 0.75, 0.5) * size,
+                    spin: Angle::from_degrees(f64::from(spin)),
+                }),
                 color
             })
         ),
@@ -136,9 +146,15 @@ impl Stage {
                 ..shape
             }),
             Shape::Triangle(shape) => Shape::Triangle(Triangle {
-                centroid: place(shape.centroid),
-                normal: direction(shape.normal),
-                sides: shape.sides * scale,
+                outline: match shape.outline {
+                    Outline::Centered(shape) => Outline::Centered(CenteredTriangle {
+                        centroid: place(shape.centroid),
+                        normal: direction(shape.normal),
+                        sides: shape.sides * scale,
+                        ..shape
+                    }),
+                    Outline::Vertices(vertices) => Outline::Vertices(vertices.map(&place)),
+                },
                 ..shape
             }),
             Shape::Box(shape) => {
@@ -312,7 +328,9 @@ proptest! {
         let mut after = stage.mapped(mirror, mirror, 1.0);
         after.camera.roll = -after.camera.roll;
         for shape in &mut after.shapes {
-            if let Shape::Triangle(triangle) = shape {
+            if let Shape::Triangle(triangle) = shape
+                && let Outline::Centered(triangle) = &mut triangle.outline
+            {
                 std::mem::swap(&mut triangle.sides.x, &mut triangle.sides.y);
                 triangle.spin = -triangle.spin;
             }
@@ -354,13 +372,13 @@ proptest! {
                     max: dvec3(size, center.y.abs(), center.x + radius),
                     color: Color::BLACK,
                 }),
-                Shape::Triangle(Triangle {
+                Shape::Triangle(Triangle { outline: Outline::Centered(CenteredTriangle {
                     centroid: dvec3(0.0, center.z, center.x + 1.0),
                     normal: dvec3(0.0, down, 1.0),
                     sides: dvec3(2.0, 2.0, 1.0),
                     spin: Angle::default(),
-                    color: Color::BLACK,
-                }),
+}), color: Color::BLACK,
+}),
             ],
         };
         let mut scene = stage.scene(Method::Regular, false);
@@ -380,6 +398,7 @@ proptest! {
 fn turn_vertical(stage: &mut Stage, degrees: f64) {
     for shape in &mut stage.shapes {
         if let Shape::Triangle(triangle) = shape
+            && let Outline::Centered(triangle) = &mut triangle.outline
             && triangle.normal.x == 0.0
             && triangle.normal.z == 0.0
         {

@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 fn scene(color: &str) -> String {
     format!(
         "image {{ width 8  height 6  background {color} }}\ncamera {{ eye (0, 2, 8)  lookat (0, 1, 0) }}\n\
-         sphere {{ center (0, 1, 100) }}\n"
+         sphere {{ center (0, 1, -1000)  radius 0.001 }}\n"
     )
 }
 

@@ -17,7 +17,7 @@ pub use self::{
 use super::{Case, Idea, Make};
 use crate::{
     math::Angle,
-    scene::{Cuboid, Scene, Shape, Triangle},
+    scene::{CenteredTriangle, Cuboid, Outline, Scene, Shape, Triangle},
     tracer::vertices,
 };
 
@@ -144,8 +144,17 @@ fn wrong_shapes(shape: &Shape) -> Vec<Wrong> {
             }
             wrong.extend(resized(cuboid));
         }
-        Shape::Triangle(triangle) => {
-            let [left, right, apex] = vertices(&triangle);
+        Shape::Triangle(Triangle {
+            outline: Outline::Vertices(_),
+            ..
+        }) => {}
+        Shape::Triangle(
+            whole @ Triangle {
+                outline: Outline::Centered(triangle),
+                ..
+            },
+        ) => {
+            let [left, right, apex] = vertices(&whole);
             let help = "the centroid is the mean of the three vertices: a third of the height above the base";
             let middle = (left + right) / 2.0;
             let message =
@@ -156,10 +165,14 @@ fn wrong_shapes(shape: &Shape) -> Vec<Wrong> {
             ] {
                 wrong.push(("object_place", message, help, moved(shape, by, 1.0)));
             }
-            let mut changed = |message, help, change: &dyn Fn(&mut Triangle)| {
+            let mut changed = |message, help, change: &dyn Fn(&mut CenteredTriangle)| {
                 let mut other = triangle;
                 change(&mut other);
-                wrong.push(("object_orientation", message, help, Shape::Triangle(other)));
+                let other = Shape::Triangle(Triangle {
+                    outline: Outline::Centered(other),
+                    ..whole
+                });
+                wrong.push(("object_orientation", message, help, other));
             };
             let apex = "the apex is on the side of top = n × right, right = (Y × n)/|Y × n|";
             changed("has its apex at the bottom", apex, &|other| {
@@ -287,10 +300,16 @@ pub fn moved(shape: &Shape, by: DVec3, factor: f64) -> Shape {
             sphere.center += by;
             sphere.radius *= factor;
         }
-        Shape::Triangle(triangle) => {
-            triangle.centroid += by;
-            triangle.sides *= factor;
-        }
+        Shape::Triangle(triangle) => match &mut triangle.outline {
+            Outline::Centered(triangle) => {
+                triangle.centroid += by;
+                triangle.sides *= factor;
+            }
+            Outline::Vertices(vertices) => {
+                let middle = Outline::Vertices(*vertices).centroid();
+                *vertices = vertices.map(|vertex| middle + by + (vertex - middle) * factor);
+            }
+        },
         Shape::Box(cuboid) => {
             let (middle, half) = (
                 (cuboid.min + cuboid.max) / 2.0,

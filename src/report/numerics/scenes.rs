@@ -6,8 +6,8 @@ use crate::{
     color::Color,
     math::Angle,
     scene::{
-        Camera, Checkerboard, Count, Cuboid, Image, Lens, Method, Object, Sampler, Scene, Shape,
-        Sphere, Triangle, View,
+        Camera, CenteredTriangle, Checkerboard, Count, Cuboid, Image, Lens, Method, Object,
+        Outline, Sampler, Scene, Shape, Sphere, Triangle, View,
     },
     source::{SourceId, Span},
 };
@@ -63,10 +63,12 @@ pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
 /// A triangle, spun by so many degrees.
 pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     Shape::Triangle(Triangle {
-        centroid,
-        normal,
-        sides,
-        spin: Angle::from_degrees(spin),
+        outline: Outline::Centered(CenteredTriangle {
+            centroid,
+            normal,
+            sides,
+            spin: Angle::from_degrees(spin),
+        }),
         color: Color::BLACK,
     })
 }

@@ -6,7 +6,9 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{Camera, Checkerboard, Cuboid, Lens, Scene, Shape, Sphere, Triangle, View};
+use crate::scene::{
+    Camera, CenteredTriangle, Checkerboard, Cuboid, Lens, Outline, Scene, Shape, Sphere, View,
+};
 
 /// A scene, ready to be asked what is seen.
 #[derive(Clone, Debug)]
@@ -46,9 +48,16 @@ impl Textbook {
         let d = match camera.lens {
             Lens::Distance(d) => d,
             Lens::Fov(angle) => camera.view_height / (2.0 * libm::tan(radians(angle) / 2.0)),
+            Lens::HorizontalFov(angle) => {
+                let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
+                camera.view_height * (width / height) / (2.0 * libm::tan(radians(angle) / 2.0))
+            }
         };
         let corners = |shape: &Shape| match shape {
-            Shape::Triangle(triangle) => vertices(triangle),
+            Shape::Triangle(triangle) => match &triangle.outline {
+                Outline::Vertices(vertices) => *vertices,
+                Outline::Centered(triangle) => vertices(triangle),
+            },
             _ => [DVec3::ZERO; 3],
         };
         let prepared = scene.objects.iter().map(|o| (o.shape, corners(&o.shape)));
@@ -193,7 +202,7 @@ fn triangle([a, b, c]: &[DVec3; 3], eye: DVec3, d: DVec3) -> Option<f64> {
 }
 
 /// Left base end, right base end, apex: the law of cosines, and a turn about the centroid.
-fn vertices(triangle: &Triangle) -> [DVec3; 3] {
+fn vertices(triangle: &CenteredTriangle) -> [DVec3; 3] {
     let n = triangle.normal.normalize();
     let reference = if n.x == 0.0 && n.z == 0.0 {
         DVec3::NEG_Z

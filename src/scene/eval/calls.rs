@@ -55,10 +55,13 @@ impl<'s> Evaluator<'_, 's> {
             return None;
         }
         let result = value::call(row.name, &known)?;
-        if let Value::Color(color) = result
-            && !self.in_range(color, arguments)
-        {
-            return None;
+        if let Value::Color(color) = result {
+            if !self.in_range(color, arguments) {
+                return None;
+            }
+            if has_unit_parts(color) {
+                self.unit_parts(function.span.to(*parentheses), color, arguments);
+            }
         }
         self.finite_call(row, arguments, function.span, &known, result)
     }
@@ -205,14 +208,17 @@ impl<'s> Evaluator<'_, 's> {
         let label = self.described(argument, found.kind());
         let written = self.quoted(argument.span);
         if takes == Type::Angle && found.kind() == Type::Number {
-            let [degrees, radians] = self.with_units(argument);
+            let [first, second] = self.units(argument);
             self.problems.push(Problem::BareAngle {
                 what: format!("the argument of `{}`", row.name),
                 written,
-                help: format!("write `{0}({degrees})` (or `{0}({radians})`)", row.name),
+                help: format!(
+                    "write `{0}({1})` (or `{0}({2})`)",
+                    row.name, first.shown, second.shown
+                ),
                 span: argument.span,
                 label,
-                instead: self.as_angle(argument).to_vec(),
+                instead: vec![first.text, second.text],
             });
             return;
         }
@@ -254,6 +260,25 @@ impl<'s> Evaluator<'_, 's> {
             });
         }
         fits
+    }
+
+    /// Warns of a colour whose parts seem to go from 0 to 1.
+    fn unit_parts(&mut self, span: Span, color: Color, arguments: &[Element<'s>]) {
+        let parts = color.srgb.into_iter().zip(arguments);
+        let parts = parts.map(|(channel, argument)| match &argument.value.kind {
+            ValueKind::Number(_) => in_bytes(channel),
+            ValueKind::Chain { .. } => {
+                format!("255 * ({})", self.sources.text(argument.value.span))
+            }
+            _ => format!("255 * {}", self.sources.text(argument.value.span)),
+        });
+        let parts: Vec<String> = parts.collect();
+        let instead = format!("rgb({})", parts.join(", "));
+        self.problems.push(Problem::UnitColor {
+            help: format!("write `{}`, if 1 is to be full light", shorten(&instead)),
+            span,
+            instead: is_whole(&instead).then_some(instead).into_iter().collect(),
+        });
     }
 
     fn finite_call(
@@ -324,6 +349,16 @@ impl<'s> Evaluator<'_, 's> {
         });
         None
     }
+}
+
+/// Whether the parts of a colour seem to go from 0 to 1: all are at most 1, and one is a fraction.
+fn has_unit_parts(color: Color) -> bool {
+    color.srgb.iter().all(|part| *part <= 1.0) && color.srgb.iter().any(|part| part.fract() != 0.0)
+}
+
+/// The part from 0 to 255 that stands for one from 0 to 1.
+pub fn in_bytes(part: f64) -> String {
+    (part * 255.0).round().to_string()
 }
 
 /// Whether a text that was made for a message can be written as it is.

@@ -91,6 +91,34 @@ impl<'s> Evaluator<'_, 's> {
         });
     }
 
+    /// The vector of four numbers, if one of the commas stands for a decimal point: the only one without a blank behind it.
+    fn with_decimal_comma(&self, elements: &[Element<'s>]) -> Option<String> {
+        let text = |element: &Element<'s>| self.sources.text(element.value.span);
+        let is_tight = |pair: &[Element<'s>]| match pair {
+            [one, other] => one.value.span.end + 1 == other.value.span.start,
+            _ => false,
+        };
+        let mut tight = elements
+            .windows(2)
+            .enumerate()
+            .filter(|(_, pair)| is_tight(pair));
+        let (Some((at, _)), None) = (tight.next(), tight.next()) else {
+            return None;
+        };
+        let mut parts: Vec<String> = elements
+            .iter()
+            .map(|element| text(element).to_owned())
+            .collect();
+        let fraction = parts.remove(at + 1);
+        let whole = parts.get_mut(at)?;
+        let is_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        if !is_digits(whole.trim_start_matches('-')) || !is_digits(&fraction) {
+            return None;
+        }
+        *whole += &format!(".{fraction}");
+        Some(format!("({})", parts.join(", ")))
+    }
+
     fn tuple_size(&mut self, elements: &[Element<'s>], span: Span, pair: bool) {
         let parts = |count: usize| match count {
             0 => "none".to_owned(),
@@ -106,8 +134,13 @@ impl<'s> Evaluator<'_, 's> {
             .map(|element| shorten(self.sources.text(element.value.span)))
             .collect();
         let wanted = if pair { 2 } else { 3 };
+        let joined = match texts.len() {
+            4 if !pair => self.with_decimal_comma(elements),
+            _ => None,
+        };
         let instead = match (texts.get(..wanted), texts.as_slice()) {
             _ if !texts.iter().all(|text| is_whole(text)) => Vec::new(),
+            _ if joined.is_some() => joined.iter().cloned().collect(),
             (Some(kept), _) => vec![format!("({})", kept.join(", "))],
             (None, []) if pair => vec!["(gray, white)".to_owned()],
             (None, []) => vec!["(0, 1, 0)".to_owned()],
@@ -131,7 +164,10 @@ impl<'s> Evaluator<'_, 's> {
         let help = match texts.as_slice() {
             [] => "write three numbers, such as `(0, 1, 0)`".to_owned(),
             [x, y] => format!("write a third number, such as `({x}, {y}, 1)`"),
-            [x, y, z, ..] => format!("write `({x}, {y}, {z})`"),
+            [x, y, z, ..] => match &joined {
+                Some(vector) => format!("write `{vector}`: a decimal point is a point"),
+                None => format!("write `({x}, {y}, {z})`"),
+            },
             [x] => format!("write `({x}, {x}, {x})`"),
         };
         self.problems.push(Problem::PartCount {

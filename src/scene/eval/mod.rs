@@ -10,19 +10,29 @@ mod lists;
 mod names;
 mod operators;
 
-pub use calls::example as example_call;
+pub use calls::{example as example_call, in_bytes};
 pub use names::{Names, predefined};
 
 use super::{error::Problem, schema::Type, value::Value};
 use crate::{
     color::Color,
-    math::Angle,
     source::{Sources, Span},
     syntax::{
         shorten,
         tree::{self, Unit, ValueKind},
     },
 };
+
+/// A number's spelling as an angle.
+#[derive(Clone, Debug)]
+pub struct WithUnit {
+    /// The unit.
+    pub unit: Unit,
+    /// For a message.
+    pub shown: String,
+    /// For an edit, which keeps all that is written.
+    pub text: String,
+}
 
 /// Evaluates values, and collects what is wrong with them.
 #[derive(Debug)]
@@ -42,10 +52,7 @@ impl<'s> Evaluator<'_, 's> {
             ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),
             ValueKind::Angle { number, unit } => {
                 let number = self.number(number, value.span)?;
-                Some(Value::Angle(match unit {
-                    Unit::Degrees => Angle::from_degrees(number),
-                    Unit::Radians => Angle::from_radians(number),
-                }))
+                Some(Value::Angle(unit.of(number)))
             }
             ValueKind::ColorCode(written) => color_code(written).map(Value::Color),
             ValueKind::Name(name) => self.name(name, value.span, wanted),
@@ -79,25 +86,33 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// A number's spelling as an angle, in degrees and in radians, for a message.
-    pub fn with_units(&self, value: &tree::Value<'s>) -> [String; 2] {
-        self.units_behind(value, &shorten(self.sources.text(value.span)))
-    }
-
-    /// The same for an edit, which keeps all that is written.
-    pub fn as_angle(&self, value: &tree::Value<'s>) -> [String; 2] {
-        self.units_behind(value, self.sources.text(value.span))
-    }
-
-    fn units_behind(&self, value: &tree::Value<'s>, written: &str) -> [String; 2] {
+    /// A number's spelling as an angle, in both units: what holds `pi` is more likely in radians, anything else in degrees.
+    pub fn units(&self, value: &tree::Value<'s>) -> [WithUnit; 2] {
+        let text = self.sources.text(value.span);
         let literal = match &value.kind {
             ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
             kind => matches!(kind, ValueKind::Number(_)),
         };
-        ["deg", "rad"].map(|unit| match (literal, &value.kind) {
-            (true, _) => format!("{written}{unit}"),
-            (false, ValueKind::Chain { .. }) => format!("({written}) * 1{unit}"),
-            (false, _) => format!("{written} * 1{unit}"),
+        let is_sum = match &value.kind {
+            ValueKind::Chain { rest, .. } => rest.iter().any(|step| !step.operator.is_of_product()),
+            _ => false,
+        };
+        let mut units = [Unit::Degrees, Unit::Radians];
+        let letter = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        if text.split(letter).any(|word| word == "pi") {
+            units.reverse();
+        }
+        units.map(|unit| {
+            let behind = |text: &str| match (literal, is_sum) {
+                (true, _) => format!("{text}{}", unit.name()),
+                (false, true) => format!("({text}) * 1{}", unit.name()),
+                (false, false) => format!("{text} * 1{}", unit.name()),
+            };
+            WithUnit {
+                unit,
+                shown: behind(&shorten(text)),
+                text: behind(text),
+            }
         })
     }
 

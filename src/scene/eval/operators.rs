@@ -148,8 +148,11 @@ impl<'s> Evaluator<'_, 's> {
                 format!("divide by a number, such as `length({b})`")
             }
             (Angle, Number) if sum => {
-                let [degrees, radians] = self.with_units(&step.operand);
-                format!("give it a unit: `{a} {sign} {degrees}` (or `{radians}`)")
+                let [first, second] = self.units(&step.operand);
+                format!(
+                    "give it a unit: `{a} {sign} {}` (or `{}`)",
+                    first.shown, second.shown
+                )
             }
             (Number, Angle) if sum => {
                 format!("give {a} a unit: `{a}deg {sign} {b}` (or `{a}rad`)")
@@ -177,8 +180,10 @@ impl<'s> Evaluator<'_, 's> {
         let right_span = step.operand.span;
         let (a, b) = (self.sources.text(left_span), self.sources.text(right_span));
         let with_units = |number: &tree::Value<'s>| {
-            let units = self.as_angle(number);
-            units.map(|angle| Fix::write(number.span, angle)).to_vec()
+            let units = self.units(number);
+            units
+                .map(|unit| Fix::write(number.span, unit.text))
+                .to_vec()
         };
         let three = |span, text: &str| Fix::write(span, format!("({text}, {text}, {text})"));
         // The factor takes what stands right before the sign: of several summands the last one.

@@ -1,6 +1,7 @@
 //! Blocks → scene: what each part is, once all fields have their values, and the conditions between several fields.
 
 use glam::DVec3;
+use miette::{Diagnostic as _, Severity};
 
 use super::{
     Block, Given, Lowering,
@@ -9,20 +10,24 @@ use super::{
 };
 use crate::{
     color::Color,
-    diagnostic::{Edit, Fix},
+    diagnostic::{Diagnostic, Edit, Fix},
     math::{Angle, predicates},
     numbers,
     scene::{
-        self, Camera, Count, Image, Lens, Method, Object, Sampler, Shape, View, css,
+        self, Camera, CenteredTriangle, Count, Image, Lens, Method, Object, Outline, Sampler,
+        Shape, View, css,
         error::Problem,
         level_direction,
         schema::{self, Kind, Literal, Preset},
         survey::Parts,
+        unseen::{self, LEAST_SINE, Unseen, why_unseen},
         value::Value,
     },
     source::{SourceId, Span},
     suggest,
 };
+
+const VERTICES: [&str; 3] = ["v0", "v1", "v2"];
 
 impl<'s> Lowering<'s> {
     /// The parts of the scene; what failed is missing.
@@ -43,7 +48,10 @@ impl<'s> Lowering<'s> {
             Some(block) => self.camera(block),
             None => {
                 if !unknown("camera") {
-                    self.problems.push(Problem::MissingCamera { span: start });
+                    self.problems.push(Problem::MissingCamera {
+                        span: start,
+                        is_empty: !self.has_items,
+                    });
                 }
                 None
             }
@@ -58,12 +66,102 @@ impl<'s> Lowering<'s> {
         if !self.has_objects && self.bad.is_empty() && !self.cut {
             self.problems.push(Problem::NoObjects { span: start });
         }
+        if let (Some(image), Some(camera)) = (&image, &camera)
+            && let Some(block) = one(Kind::Camera)
+            && !self.has_errors()
+            && !objects.is_empty()
+        {
+            self.unseen(block, camera, image, &objects);
+        }
         Parts {
             image,
             camera,
             sampler,
             objects,
         }
+    }
+
+    fn has_errors(&self) -> bool {
+        let is_error = |problem: &Problem| problem.severity() != Some(Severity::Warning);
+        self.problems.iter().any(is_error)
+            || !self.slips.is_empty()
+            || self.found.iter().any(Diagnostic::is_error)
+            || !self.sources.file.invalid_utf8().is_empty()
+    }
+
+    /// Warns where the camera sees nothing of the scene.
+    fn unseen(&mut self, block: &Block<'s>, camera: &Camera, image: &Image, objects: &[Object]) {
+        let Some(why) = why_unseen(camera, image, objects) else {
+            return;
+        };
+        let span = |name| block.given(name).map(|given| given.span);
+        let view = span("lookat")
+            .or(span("direction"))
+            .unwrap_or(block.keyword);
+        let cut = |names: &[&str]| {
+            let given: Vec<Given> = names.iter().filter_map(|name| block.given(name)).collect();
+            let fix = Fix::remove_whole(
+                format!("leave {} out", quoted(names)),
+                given.iter().map(|given| given.field()),
+                self.sources,
+            );
+            (given.first().map_or(view, |given| given.span), fix)
+        };
+        let (message, label, help, (span, fix)) = match why {
+            Unseen::Behind | Unseen::Outside => {
+                let middle = objects
+                    .iter()
+                    .find_map(|object| unseen::middle(&object.shape));
+                let towards = middle.and_then(|middle| towards(camera, middle));
+                let fix = towards.as_ref().map(|towards| Fix::write(view, towards));
+                let help = match (camera.view, &towards) {
+                    (View::Lookat(_), Some(point)) => {
+                        format!("look at an object, such as `lookat {point}`")
+                    }
+                    (View::Direction(_), Some(way)) => {
+                        format!("look at an object, such as by `direction {way}`")
+                    }
+                    (_, None) => "turn the camera, or move it".to_owned(),
+                };
+                let (message, label) = match why {
+                    Unseen::Behind => ("everything is behind the camera", "away from everything"),
+                    _ => ("the camera sees nothing of the scene", "past everything"),
+                };
+                (message, label, help, (view, fix))
+            }
+            Unseen::Near | Unseen::Far | Unseen::NearAndFar => {
+                let (message, label, names): (_, _, &[&str]) = match why {
+                    Unseen::Near => (
+                        "everything is nearer than `near`",
+                        "beyond everything",
+                        &["near"],
+                    ),
+                    Unseen::Far => (
+                        "everything is farther than `far`",
+                        "before everything",
+                        &["far"],
+                    ),
+                    _ => (
+                        "nothing of the scene is between `near` and `far`",
+                        "beyond all that is not too far",
+                        &["near", "far"],
+                    ),
+                };
+                let (span, fix) = cut(names);
+                let help = format!(
+                    "depths count along the view direction: change {0}, or leave {0} out",
+                    quoted(names)
+                );
+                (message, label, help, (span, Some(fix)))
+            }
+        };
+        self.problems.push(Problem::NothingSeen {
+            message,
+            help,
+            span,
+            label,
+            fixes: fix.into_iter().collect(),
+        });
     }
 
     /// Builds an object at once.
@@ -77,59 +175,64 @@ impl<'s> Lowering<'s> {
         if block.unfinished {
             return;
         }
-        let has = |name: &str| block.given(name).is_some() || block.meant.contains(&name);
-        let mut missing: Vec<String> = Vec::new();
-        let mut needed: Vec<&'static str> = Vec::new();
+        let has = |name: &&str| block.given(name).is_some() || block.meant.contains(name);
+        let rows = block.row.fields.iter();
+        let required = rows.filter(|row| row.preset == Preset::Required && !has(&row.name));
+        let mut needed: Vec<&'static str> = required.map(|row| row.name).collect();
+        let mut missing: Vec<String> = needed.iter().map(|name| format!("`{name}`")).collect();
+        // The other ways to give what is missing.
+        let mut others: Vec<Vec<&'static str>> = Vec::new();
         let mut half = None;
-        for row in block.row.fields {
-            if row.preset == Preset::Required && !has(row.name) {
-                missing.push(format!("`{}`", row.name));
-                needed.push(row.name);
-            }
-        }
-        // The other ways to give what is missing, each with the last of what is needed in its place.
-        let mut others: &[&[&'static str]] = &[];
-        if block.row.kind == Kind::Camera && !has("lookat") && !has("direction") {
-            missing.push("`lookat` or `direction`".to_owned());
-            needed.push("lookat");
-            others = &[&["direction"]];
-        }
-        if block.row.kind == Kind::Box && !has("center") {
-            match (has("min"), has("max")) {
-                (true, true) => {}
-                (false, false) => {
-                    missing.push("`center`, or `min` and `max`".to_owned());
-                    needed.push("center");
-                    others = match has("size") {
-                        true => &[],
-                        false => &[&["min", "max"]],
-                    };
+        for choice in block.row.choices {
+            let needs = |way: &&[&'static str]| -> Vec<&'static str> {
+                let alternative = |name: &&str| {
+                    let row = block.row.field(name);
+                    row.is_some_and(|row| row.preset == Preset::Alternative) && !has(name)
+                };
+                way.iter()
+                    .copied()
+                    .filter(|name| alternative(name))
+                    .collect()
+            };
+            let taken: Vec<_> = choice
+                .ways
+                .iter()
+                .filter(|way| way.iter().any(has))
+                .collect();
+            match taken.as_slice() {
+                // Without any, one is needed unless the defaults of one are enough.
+                [] => {
+                    let ways: Vec<_> = choice.ways.iter().map(needs).collect();
+                    if ways.iter().any(Vec::is_empty) {
+                        continue;
+                    }
+                    missing.push(either(&ways));
+                    let mut ways = ways.into_iter();
+                    let kept = needed.clone();
+                    needed.extend(ways.next().unwrap_or_default());
+                    others = ways.map(|way| [kept.clone(), way].concat()).collect();
                 }
-                (true, false) => {
-                    missing.push("`max` beside its `min`".to_owned());
-                    needed.push("max");
-                    half = block.given("min").map(|given| given.name);
+                [way] => {
+                    let names = needs(way);
+                    let given = way.iter().find_map(|name| block.given(name));
+                    if let ([_, ..], Some(given)) = (names.as_slice(), given) {
+                        half = Some(given.name);
+                        let beside = self.sources.text(given.name);
+                        missing.push(format!("{} beside its `{beside}`", quoted(&names)));
+                    } else {
+                        missing.extend(names.iter().map(|name| format!("`{name}`")));
+                    }
+                    needed.extend(names);
                 }
-                (false, true) => {
-                    missing.push("`min` beside its `max`".to_owned());
-                    needed.push("min");
-                    half = block.given("max").map(|given| given.name);
-                }
+                // They exclude each other, which is reported.
+                _ => {}
             }
         }
         if missing.is_empty() {
             return;
         }
         let all = suggest::list(missing.iter().map(String::as_str));
-        let kept = needed.len().saturating_sub(1);
-        let other = |other: &&[&'static str]| {
-            let kept = needed.iter().take(kept);
-            kept.chain(other.iter()).copied().collect()
-        };
-        let ways: Vec<Vec<&str>> = [needed.clone()]
-            .into_iter()
-            .chain(others.iter().map(other))
-            .collect();
+        let ways: Vec<Vec<&str>> = [needed.clone()].into_iter().chain(others).collect();
         let fixes = ways.iter().filter_map(|names| {
             let title = format!("add {}", quoted(names));
             self.add_fields(block, title, &examples(block, names))
@@ -141,7 +244,7 @@ impl<'s> Lowering<'s> {
             fixes,
             span: block.keyword,
             label: match missing.len() {
-                1 => "it is not given".to_owned(),
+                1 if needed.len() == 1 => "it is not given".to_owned(),
                 _ => "they are not given".to_owned(),
             },
             half,
@@ -243,9 +346,12 @@ impl<'s> Lowering<'s> {
         {
             self.empty_depth(block, near, far, given);
         }
-        let lens = match block.given("fov") {
-            Some(_) => fields.angle("fov").map(Lens::Fov),
-            None => fields.number("d").map(Lens::Distance),
+        let lens = if block.given("fov").is_some() {
+            fields.angle("fov").map(Lens::Fov)
+        } else if block.given("hfov").is_some() {
+            fields.angle("hfov").map(Lens::HorizontalFov)
+        } else {
+            fields.number("d").map(Lens::Distance)
         };
         Some(Camera {
             eye: eye?,
@@ -271,11 +377,11 @@ impl<'s> Lowering<'s> {
         seen: Given,
     ) {
         let Some(up) = up else { return };
-        let (from, to) = match view {
-            View::Lookat(point) => (eye, point),
-            View::Direction(direction) => (DVec3::ZERO, direction),
-        };
-        if !predicates::cross_is_zero(up, from, to) {
+        let (from, to) = view.ends(eye);
+        let is_parallel = predicates::cross_is_zero(up, from, to);
+        let sine = up.normalize().cross((to - from).normalize()).length();
+        // What is not a number is not less.
+        if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
         // Against up, the top of the picture is the part of the level direction across up; along up, the opposite.
@@ -290,6 +396,9 @@ impl<'s> Lowering<'s> {
         let suggested = axis_vector(top).unwrap_or(vector);
         let given = block.given("up");
         let looks = match view {
+            _ if !is_parallel => {
+                "less than a millionth of a radian off the view direction".to_owned()
+            }
             View::Lookat(_) if given.is_some() => "parallel to the view direction".to_owned(),
             View::Lookat(_) => format!(
                 "straight along up, which is {} if not given",
@@ -310,10 +419,19 @@ impl<'s> Lowering<'s> {
             ),
         };
         self.problems.push(Problem::UpParallel {
+            message: match is_parallel {
+                true => "the camera looks straight along its up vector",
+                false => "the camera looks all but straight along its up vector",
+            },
             fixes: up.into_iter().collect(),
-            help: format!(
-                "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
-            ),
+            help: match is_parallel {
+                true => format!(
+                    "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
+                ),
+                false => format!(
+                    "which way is up hangs on the last digits of these numbers; give another `up`, such as `up {suggested}`"
+                ),
+            },
             span: given.map_or(seen.span, |given| given.span),
             label: looks,
         });
@@ -377,6 +495,45 @@ impl<'s> Lowering<'s> {
     }
 
     fn triangle(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Shape> {
+        let is_given = |name: &&str| block.given(name).is_some();
+        let outline = match VERTICES.iter().any(is_given) {
+            true => self.vertices(block, fields)?,
+            false => self.centered(block, fields)?,
+        };
+        Some(Shape::Triangle(scene::Triangle {
+            outline,
+            color: fields.color("color")?,
+        }))
+    }
+
+    fn vertices(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Outline> {
+        let [a, b, c] = VERTICES.map(|name| fields.vector(name));
+        let vertices = [a?, b?, c?];
+        if !predicates::are_on_one_line(vertices) {
+            return Some(Outline::Vertices(vertices));
+        }
+        let [a, b, c] = vertices;
+        let equal = [
+            ("v1", "v0", a == b),
+            ("v2", "v0", a == c),
+            ("v2", "v1", b == c),
+        ];
+        let equal = equal.into_iter().find(|(.., are_equal)| *are_equal);
+        let [first, second, third] =
+            VERTICES.map(|name| block.given(name).map_or(block.keyword, |given| given.span));
+        self.problems.push(Problem::OnOneLine {
+            message: match equal {
+                Some((one, other, _)) => format!("`{one}` and `{other}` are the same point"),
+                None => "the vertices lie on one line, and form no triangle".to_owned(),
+            },
+            span: third,
+            second,
+            first,
+        });
+        None
+    }
+
+    fn centered(&mut self, block: &Block<'s>, fields: &Fields<'_, 's>) -> Option<Outline> {
         let sides = fields.vector("sides")?;
         if !predicates::forms_triangle(sides.to_array()) {
             let [a, b, c] = sides.to_array();
@@ -407,12 +564,11 @@ impl<'s> Lowering<'s> {
             });
             return None;
         }
-        Some(Shape::Triangle(scene::Triangle {
+        Some(Outline::Centered(CenteredTriangle {
             centroid: fields.vector("centroid")?,
             normal: fields.vector("normal")?,
             sides,
             spin: fields.angle("spin")?,
-            color: fields.color("color")?,
         }))
     }
 
@@ -443,20 +599,34 @@ impl<'s> Lowering<'s> {
         }
         if let Some(&(axis, low, high)) = axes.iter().find(|(_, low, high)| low >= high) {
             let (low, high) = (numbers::beside(low, &[high]), numbers::beside(high, &[low]));
-            self.problems.push(match corners {
-                Some(_) => Problem::EmptyBox {
-                    axis,
-                    help: format!("make `max` greater than `min` on every axis; along {axis} they are {high} and {low}"),
-                    span: span("max"),
-                    label: format!("{high} along {axis}"),
-                    other: Some(span("min")),
-                    other_label: format!("{low} along {axis}"),
-                    fixes: match axes.iter().all(|(_, low, high)| low > high) {
-                        true => vec![self.swapped(span("min"), span("max"))],
-                        false => Vec::new(),
-                    },
-                },
-                None => Problem::EmptyBox {
+            let given = (block.given("min"), block.given("max"));
+            self.problems.push(match given {
+                (Some(low_given), Some(high_given)) => {
+                    let is_greater = axes.map(|(_, low, high)| low > high);
+                    let (one, other) = (min.min(max), min.max(max));
+                    let can_be_swapped = axes.iter().all(|(_, low, high)| low != high)
+                        && (low_given.parts.and(high_given.parts).is_some() || is_greater == [true; 3]);
+                    Problem::EmptyBox {
+                        axis,
+                        help: match can_be_swapped {
+                            true => format!(
+                                "write the corners in order: `min {}  max {}`",
+                                numbers::short_vector(one),
+                                numbers::short_vector(other)
+                            ),
+                            false => format!("make `max` greater than `min` on every axis; along {axis} they are {high} and {low}"),
+                        },
+                        span: high_given.span,
+                        label: format!("{high} along {axis}"),
+                        other: Some(low_given.span),
+                        other_label: format!("{low} along {axis}"),
+                        fixes: match can_be_swapped {
+                            true => vec![self.in_order([low_given, high_given], is_greater)],
+                            false => Vec::new(),
+                        },
+                    }
+                }
+                _ => Problem::EmptyBox {
                     axis,
                     help: "make it larger: so far from the origin, a number has no digits left for its size".to_owned(),
                     span: block.given("size").map_or(span("center"), |g| g.span),
@@ -474,6 +644,16 @@ impl<'s> Lowering<'s> {
             color: color?,
         }))
     }
+}
+
+/// The ways to give what is missing: `center`, or `min` and `max`.
+fn either(ways: &[Vec<&str>]) -> String {
+    let separator = match ways.iter().all(|way| way.len() == 1) {
+        true => " or ",
+        false => ", or ",
+    };
+    let ways: Vec<String> = ways.iter().map(|way| quoted(way)).collect();
+    ways.join(separator)
 }
 
 /// The values of a block's fields, defaults included. None where a value is missing or failed.
@@ -552,6 +732,16 @@ fn preset(literal: Literal) -> Option<Value> {
         }
         Literal::Method(name) => Value::Method(schema::method(name)?),
     })
+}
+
+/// What to write for the camera to look at a point, if it can.
+fn towards(camera: &Camera, middle: DVec3) -> Option<String> {
+    let (from, to) = match camera.view {
+        View::Lookat(_) => (camera.eye, middle),
+        View::Direction(_) => (DVec3::ZERO, middle - camera.eye),
+    };
+    let is_one = to.is_finite() && !predicates::cross_is_zero(camera.up, from, to);
+    is_one.then(|| numbers::short_vector(to))
 }
 
 /// Where the camera looks, as a direction in the place of the point.

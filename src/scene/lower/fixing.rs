@@ -1,11 +1,11 @@
 //! Edits of whole fields, for problems of a block.
 
-use super::{Block, Lowering};
+use super::{Block, Given, Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
     scene::{
         example_beside,
-        schema::{Field, Preset},
+        schema::{Choice, Field, Preset},
     },
     source::{SourceId, Span},
     suggest,
@@ -47,38 +47,46 @@ impl Lowering<'_> {
         Some(Fix::new(title, [Edit::new(span, added)]))
     }
 
-    /// Writes each of two corners in the place of the other.
-    pub(super) fn swapped(&self, min: Span, max: Span) -> Fix {
-        let edits = [(min, max), (max, min)];
-        Fix::new(
-            "swap `min` and `max`",
-            edits.map(|(place, other)| Edit::new(place, self.sources.text(other))),
-        )
+    /// Puts two corners in order: where `min` is greater than `max` on some axes, and nowhere equal, each number takes the other's place.
+    pub(super) fn in_order(&self, [min, max]: [Given; 2], is_greater: [bool; 3]) -> Fix {
+        let swapped: Vec<[Span; 2]> = match (min.parts, max.parts) {
+            (Some(low), Some(high)) => {
+                let parts = low.into_iter().zip(high).zip(is_greater);
+                let swapped = parts.filter(|(_, is_greater)| *is_greater);
+                swapped.map(|((low, high), _)| [low, high]).collect()
+            }
+            _ => vec![[min.span, max.span]],
+        };
+        let edits = swapped.into_iter().flat_map(|[one, other]| {
+            [(one, other), (other, one)].map(|(to, from)| Edit::new(to, self.sources.text(from)))
+        });
+        Fix::new("put the corners in order", edits)
     }
 
-    /// Of two fields that exclude each other, keeps either one: what it excludes is removed. What it needs beside itself takes
-    /// the place of that.
-    pub(super) fn one_of(&self, block: &Block<'_>, [earlier, later]: [&Field; 2]) -> Vec<Fix> {
-        let ways = [earlier, later].into_iter().map(|kept| {
+    /// Of two fields that exclude each other, keeps either one with what belongs to it: the fields of the other ways are removed. What
+    /// it needs beside itself takes the place of these.
+    pub(super) fn one_of(
+        &self,
+        block: &Block<'_>,
+        choice: &Choice,
+        [earlier, later]: [&Field; 2],
+    ) -> Vec<Fix> {
+        let ways = [earlier, later].into_iter().map(|field| {
             let given = |name: &&str| block.given(name).is_some();
-            let removed: Vec<&str> = kept.excludes.iter().copied().filter(given).collect();
-            // A box by its centre needs that, and one by its corners both.
-            let alike = |field: &&Field| field.excludes == kept.excludes;
-            let needed = block.row.fields.iter().filter(alike);
-            let needed = needed.filter(|field| field.preset == Preset::Alternative);
-            let missing: Vec<&str> = needed
-                .map(|field| field.name)
-                .filter(|name| !given(name))
-                .collect();
+            let (kept, removed): (Vec<&[&str]>, Vec<&[&str]>) = choice
+                .ways
+                .iter()
+                .partition(|way| way.contains(&field.name));
+            let (kept, removed) = (kept.concat(), removed.concat());
+            let removed: Vec<&str> = removed.into_iter().filter(given).collect();
+            let needed = |name: &&str| {
+                let row = block.row.field(name);
+                row.is_some_and(|row| row.preset == Preset::Alternative) && !given(name)
+            };
+            let missing: Vec<&str> = kept.iter().copied().filter(needed).collect();
+            let kept: Vec<&str> = kept.into_iter().filter(given).collect();
             let spans = removed.iter().filter_map(|name| block.given(name));
             let spans = self.joined(spans.map(|given| given.field()).collect());
-            let alike = block
-                .row
-                .fields
-                .iter()
-                .filter(alike)
-                .map(|field| field.name);
-            let kept: Vec<&str> = alike.filter(|name| given(name)).collect();
             let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
             match missing.is_empty() {
                 true => Fix::remove_whole(title, spans, self.sources),

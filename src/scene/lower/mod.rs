@@ -11,6 +11,7 @@ mod fixing;
 mod overriding;
 mod reading;
 mod typing;
+mod unknown;
 mod words;
 
 pub use reading::{read, read_in_parts, read_unless, survey};
@@ -20,20 +21,20 @@ use std::{
     sync::atomic::AtomicBool,
 };
 
-use self::words::{mentions, missing_value, unknown_field};
+use self::words::{mentions, missing_value};
 use super::{
     Object,
     error::Problem,
     eval::{Names, predefined},
     overrides::Override,
-    schema::{self, Kind, Type},
+    schema,
     untangle::untangle,
     value::Value,
 };
 use crate::{
     cancel,
     diagnostic::Diagnostic,
-    source::{SourceId, Sources, Span},
+    source::{Sources, Span},
     suggest,
     syntax::{
         self,
@@ -59,6 +60,8 @@ struct Lowering<'s> {
     first_blocks: HashMap<&'s str, usize>,
     /// The objects that are built.
     objects: Vec<Object>,
+    /// Whether there is anything in the file but comments.
+    has_items: bool,
     /// Whether there is an object, built or not.
     has_objects: bool,
     /// The names whose definitions give no value, since the language has these names already.
@@ -100,6 +103,8 @@ struct Given {
     span: Span,
     /// None if it failed.
     value: Option<Value>,
+    /// The parts, if it is written as a vector.
+    parts: Option<[Span; 3]>,
 }
 
 impl<'s> Lowering<'s> {
@@ -120,6 +125,7 @@ impl<'s> Lowering<'s> {
             blocks: Vec::new(),
             first_blocks: HashMap::new(),
             objects: Vec::new(),
+            has_items: false,
             has_objects: false,
             denied: Vec::new(),
             first_names: HashMap::new(),
@@ -138,6 +144,7 @@ impl<'s> Lowering<'s> {
             if !self.is_wanted() {
                 return;
             }
+            self.has_items = true;
             match item {
                 Item::Definition(definition) => self.definition(definition),
                 Item::Block(block) => self.block(block),
@@ -253,16 +260,20 @@ impl<'s> Lowering<'s> {
             lowered.meant.extend(mentioned);
         }
         let replaced = self.replaced_fields(&lowered);
-        for field in untangle(
+        let fields = untangle(
             &block.fields,
             row,
             &self.names,
             self.sources,
             &mut self.slips,
-        )
-        .iter()
-        {
+        );
+        let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
+        for field in fields.iter().filter(is_known) {
             self.field(field, &mut lowered, &replaced);
+        }
+        // What else there is tells what they can have meant.
+        for field in fields.iter().filter(|field| !is_known(field)) {
+            self.unknown_field(field, &mut lowered);
         }
         self.conflicts(&lowered, &replaced);
         if row.is_object {
@@ -307,7 +318,6 @@ impl<'s> Lowering<'s> {
         let index = block.row.fields.iter().position(|row| row.name == written);
         let row = index.and_then(|index| block.row.fields.get(index));
         let (Some(index), Some(row)) = (index, row) else {
-            self.unknown_field(field, block);
             return;
         };
         if matches!(field.value.kind, ValueKind::Missing) {
@@ -317,11 +327,7 @@ impl<'s> Lowering<'s> {
             return;
         }
         let value = self.typed(row, &field.value);
-        let given = Given {
-            name: field.name.span,
-            span: field.value.span,
-            value,
-        };
+        let given = Given::new(field.name.span, &field.value, value);
         match block.given.get_mut(index) {
             Some(Some(first)) => self.problems.push(Problem::DuplicateField {
                 name: row.name.to_owned(),
@@ -334,50 +340,32 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
-        self.evaluate_loosely(&field.value);
-        if field.value.span.source == SourceId::File {
-            self.unknown.push(field.value.span);
-        }
-        let near = block.row.nearest_field(field.name.text);
-        let joined = block.row.joined_field(field.name.text);
-        block.meant.extend(near.or(joined));
-        self.problems
-            .push(unknown_field(block.row, &field.name, &field.value));
-    }
-
     /// Two fields that exclude each other: the later one is labelled first.
     fn conflicts(&mut self, block: &Block<'s>, replaced: &[&str]) {
-        let mut reported = Vec::new();
-        for (row, given) in block.row.fields.iter().zip(&block.given) {
-            let Some(given) = given else { continue };
-            for (other, other_given) in block.row.fields.iter().zip(&block.given) {
-                let excluded = row.excludes.contains(&other.name);
-                let Some(earlier) = other_given.filter(|o| o.name.start < given.name.start) else {
-                    continue;
-                };
-                // One report for a box with center, size, min and max.
-                if !excluded || replaced.contains(&row.name) || !reported.is_empty() {
-                    continue;
-                }
-                reported.push(row.name);
-                let why = match block.row.kind {
-                    Kind::Camera if row.takes == Type::Vector => {
-                        "either a point or a direction says where the camera looks"
-                    }
-                    Kind::Camera => "either the distance or the angle says how much it sees",
-                    Kind::Sampler => "either one says how many samples there are",
-                    _ => "a box is given by center and size, or by min and max",
-                };
-                self.problems.push(Problem::ConflictingFields {
-                    later: row.name.to_owned(),
-                    earlier: other.name.to_owned(),
-                    why: why.to_owned(),
-                    second: given.name,
-                    first: earlier.name,
-                    fixes: self.one_of(block, [other, row]),
-                });
-            }
+        // One report for each choice: for a box with center, size, min and max.
+        for choice in block.row.choices {
+            let fields = choice.ways.iter().flat_map(|way| way.iter().copied());
+            let given =
+                fields.filter_map(|name| Some((block.row.field(name)?, block.given(name)?)));
+            let mut given: Vec<_> = given.collect();
+            given.sort_by_key(|(_, given)| given.name.start);
+            let [(first, earlier), ..] = given[..] else {
+                continue;
+            };
+            let excluded: Vec<&str> = block.row.excludes(first.name).collect();
+            let later = given.iter().find(|(row, _)| excluded.contains(&row.name));
+            let Some(&(second, later)) = later.filter(|(row, _)| !replaced.contains(&row.name))
+            else {
+                continue;
+            };
+            self.problems.push(Problem::ConflictingFields {
+                later: second.name.to_owned(),
+                earlier: first.name.to_owned(),
+                why: choice.why,
+                second: later.name,
+                first: earlier.name,
+                fixes: self.one_of(block, choice, [first, second]),
+            });
         }
     }
 
@@ -405,6 +393,22 @@ impl<'s> Lowering<'s> {
 }
 
 impl Given {
+    fn new(name: Span, tree: &tree::Value<'_>, value: Option<Value>) -> Self {
+        let parts = match &tree.kind {
+            ValueKind::Tuple(elements) => match elements.as_slice() {
+                [x, y, z] => Some([x.value.span, y.value.span, z.value.span]),
+                _ => None,
+            },
+            _ => None,
+        };
+        Self {
+            name,
+            span: tree.span,
+            value,
+            parts,
+        }
+    }
+
     /// Name and value; of an argument's, that is the value alone.
     fn field(self) -> Span {
         match self.name.source == self.span.source {

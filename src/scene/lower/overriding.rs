@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Block, Given, Lowering, words::unknown_field};
+use super::{Block, Given, Lowering};
 use crate::{
     scene::{
         overrides::{self, Override},
@@ -23,10 +23,9 @@ impl<'s> Lowering<'s> {
         for set in std::mem::take(&mut self.overrides).into_iter().rev() {
             let block = set.block.map(|block| block.text);
             let row = block.and_then(|block| schema::block(block).or(rows.get(block).copied()));
-            let row = row.and_then(|row| row.field(set.name.text));
             let excluded = row.is_some_and(|row| {
-                let mut others = row.excludes.iter();
-                others.any(|other| later.contains(&(block, *other)))
+                let mut others = row.excludes(set.name.text);
+                others.any(|other| later.contains(&(block, other)))
             });
             if later.insert((block, set.name.text)) && !excluded {
                 kept.push(set);
@@ -51,7 +50,7 @@ impl<'s> Lowering<'s> {
         for row in block.row.fields {
             if self.targets.contains_key(&(target, row.name)) {
                 replaced.push(row.name);
-                replaced.extend(row.excludes);
+                replaced.extend(block.row.excludes(row.name));
             }
         }
         replaced
@@ -104,16 +103,15 @@ impl<'s> Lowering<'s> {
                 .iter()
                 .position(|field| field.name == set.name.text);
             let Some((at, field)) = at.and_then(|at| Some((at, row.fields.get(at)?))) else {
-                self.problems
-                    .push(unknown_field(row, &set.name, &set.value));
+                let blocks = std::mem::take(&mut self.blocks);
+                if let Some(block) = index.and_then(|index| blocks.get(index)) {
+                    self.unknown_target(block, &set.name, &set.value);
+                }
+                self.blocks = blocks;
                 continue;
             };
             let value = self.typed(field, &set.value);
-            let given = Given {
-                name: set.name.span,
-                span: set.value.span,
-                value,
-            };
+            let given = Given::new(set.name.span, &set.value, value);
             let block = index.and_then(|index| self.blocks.get_mut(index));
             if let Some(slot) = block.and_then(|block| block.given.get_mut(at)) {
                 *slot = Some(given);

@@ -1,16 +1,13 @@
 //! The value of a field: of the type that the field takes, and within its range.
 
-use glam::DVec3;
-
 use super::{
     Lowering,
-    words::{of_right_type, range_words, shown, type_help},
+    words::{list_for, of_right_type, range_words, shown, type_help},
 };
 use crate::{
-    math::{Angle, compare_half_turns},
     scene::{
         error::Problem,
-        eval::Evaluator,
+        eval::{Evaluator, WithUnit},
         schema::{self, Condition, Field, Type},
         value::Value,
     },
@@ -28,13 +25,19 @@ impl<'s> Lowering<'s> {
         let before = self.problems.len();
         let value = match row.takes {
             Type::Method => return self.method(row, tree),
-            takes => self.evaluate(tree, Some(takes))?,
+            takes => match self.evaluate(tree, Some(takes)) {
+                Some(value) => value,
+                None => {
+                    self.parts_of_list(row, tree);
+                    return None;
+                }
+            },
         };
         if value.kind() != row.takes {
             self.wrong_type(row, tree, value);
             return None;
         }
-        let broken = row.must.iter().find(|condition| !holds(**condition, value));
+        let broken = row.must.iter().find(|condition| !condition.holds(value));
         if let Some(&condition) = broken {
             let rounded_to_zero = matches!(
                 (&tree.kind, self.problems.last()),
@@ -61,6 +64,54 @@ impl<'s> Lowering<'s> {
         Some(value)
     }
 
+    /// A list of numbers that is no vector: says what the field takes in place of it.
+    fn parts_of_list(&mut self, row: &'static Field, tree: &tree::Value<'s>) {
+        let (Some(Problem::PartCount { span, .. }), ValueKind::Tuple(elements)) =
+            (self.problems.last(), &tree.kind)
+        else {
+            return;
+        };
+        if *span != tree.span || row.takes == Type::Colors {
+            return;
+        }
+        let texts = elements
+            .iter()
+            .map(|element| self.sources.text(element.value.span));
+        let texts: Vec<&str> = texts.collect();
+        let (help, instead) = list_for(row, &texts);
+        match (row.takes, self.problems.last_mut()) {
+            (
+                Type::Vector,
+                Some(Problem::PartCount {
+                    help: said,
+                    instead: offered,
+                    ..
+                }),
+            ) => {
+                if let Some(help) = help {
+                    *said = help;
+                }
+                *offered = instead.unwrap_or_else(|| std::mem::take(offered));
+            }
+            _ => {
+                self.problems.pop();
+                let problem = Problem::WrongType {
+                    name: row.name.to_owned(),
+                    takes: row.takes.noun(),
+                    written: self.evaluator().quoted(tree.span),
+                    found: "a list of numbers".to_owned(),
+                    help: help.unwrap_or_else(|| {
+                        format!("write {}, such as `{}`", row.takes.noun(), row.example())
+                    }),
+                    span: tree.span,
+                    label: "a list of numbers".to_owned(),
+                    instead: instead.unwrap_or_default(),
+                };
+                self.problems.push(problem);
+            }
+        }
+    }
+
     fn method(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
         let list = suggest::list(schema::method_names());
         let ValueKind::Name(written) = tree.kind else {
@@ -83,7 +134,7 @@ impl<'s> Lowering<'s> {
         if let Some(method) = schema::method(written) {
             return Some(Value::Method(method));
         }
-        let near = suggest::nearest(written, schema::method_names());
+        let near = schema::nearest_method(written);
         let help = match near {
             Some(near) => format!("did you mean `{near}`? The methods are {list}."),
             None => format!("the methods are {list}"),
@@ -104,27 +155,21 @@ impl<'s> Lowering<'s> {
         let whole = evaluator.sources.text(tree.span);
         let text = shorten(whole);
         let problem = if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
-            let [degrees, radians] = evaluator.with_units(tree);
+            let units = evaluator.units(tree);
             // A unit that cannot be meant is not offered: `fov 45rad` would be the next mistake.
-            let angles = [Angle::from_degrees(number), Angle::from_radians(number)];
-            let fits = angles.map(|angle| {
-                let mut must = row.must.iter();
-                must.all(|condition| holds(*condition, Value::Angle(angle)))
-            });
-            let instead = evaluator.as_angle(tree).into_iter().zip(fits);
+            let fits = |unit: &&WithUnit| row.allows(Value::Angle(unit.unit.of(number)));
+            let fitting: Vec<&WithUnit> = units.iter().filter(fits).collect();
+            let [first, second] = &units;
             Problem::BareAngle {
                 what: format!("`{}`", row.name),
                 written,
-                help: match fits {
-                    [true, false] => format!("write `{degrees}`"),
-                    [false, true] => format!("write `{radians}`"),
-                    _ => format!("write `{degrees}` (or `{radians}`)"),
+                help: match fitting.as_slice() {
+                    [only] => format!("write `{}`", only.shown),
+                    _ => format!("write `{}` (or `{}`)", first.shown, second.shown),
                 },
                 span: tree.span,
                 label,
-                instead: instead
-                    .filter_map(|(text, fits)| fits.then_some(text))
-                    .collect(),
+                instead: fitting.iter().map(|unit| unit.text.clone()).collect(),
             }
         } else {
             Problem::WrongType {
@@ -132,10 +177,10 @@ impl<'s> Lowering<'s> {
                 takes: row.takes.noun(),
                 written,
                 found: value.kind().noun().to_owned(),
-                help: type_help(row, tree, value.kind(), &text),
+                help: type_help(row, tree, value, &text),
                 span: tree.span,
                 label,
-                instead: of_right_type(row, tree, value.kind(), whole),
+                instead: of_right_type(row, tree, value, whole),
             }
         };
         self.problems.push(problem);
@@ -176,18 +221,6 @@ impl<'s> Lowering<'s> {
         self.evaluator().value(value, wanted)
     }
 
-    /// Looks for mistakes in the value of something unknown.
-    pub(super) fn evaluate_loosely(&mut self, value: &tree::Value<'s>) {
-        if !matches!(value.kind, ValueKind::Name(_)) {
-            let before = self.problems.len();
-            self.evaluate(value, None);
-            // What type was meant is not known; only a name is wrong in any.
-            let found = self.problems.split_off(before);
-            self.problems
-                .extend(found.into_iter().filter(Problem::is_of_name));
-        }
-    }
-
     fn evaluator(&mut self) -> Evaluator<'_, 's> {
         Evaluator {
             sources: self.sources,
@@ -206,22 +239,4 @@ fn part_not_above_zero(condition: Condition, tree: &tree::Value<'_>, value: Valu
     };
     let mut parts = parts.iter().zip(v.to_array());
     parts.find_map(|(part, x)| (x <= 0.0).then_some(part.value.span))
-}
-
-/// Whether a value keeps a condition; one of another type has no say in it.
-fn holds(condition: Condition, value: Value) -> bool {
-    let two_to = |power: u32| (1_u64 << power) as f64;
-    match (condition, value) {
-        (Condition::Whole, Value::Number(x)) => x.fract() == 0.0,
-        (Condition::MoreThan(bound), Value::Number(x)) => x > bound,
-        (Condition::AtLeast(bound), Value::Number(x)) => x >= bound,
-        (Condition::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
-        (Condition::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
-        (Condition::LessThanHalfTurn, Value::Angle(angle)) => {
-            compare_half_turns(angle, 0.0).is_gt() && compare_half_turns(angle, 1.0).is_lt()
-        }
-        (Condition::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
-        (Condition::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
-        _ => true,
-    }
 }

@@ -7,10 +7,10 @@ use crate::{
     numbers,
     scene::{
         error::Problem,
-        schema::{self, Condition, Field, Type},
+        eval::in_bytes,
+        schema::{Condition, Field, Preset, Type},
         value::Value,
     },
-    suggest,
     syntax::tree::{self, Name, ValueKind},
 };
 
@@ -31,41 +31,6 @@ pub fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
         span: name.span,
         example: row.map(Field::example),
     }
-}
-
-/// A field that the block does not have.
-pub fn unknown_field(
-    row: &'static schema::Block,
-    name: &Name<'_>,
-    value: &tree::Value<'_>,
-) -> Problem {
-    let mut fields: Vec<&str> = row.field_names().collect();
-    let noun = capital(row.noun);
-    let all = suggest::list(fields.drain(..));
-    // A field and its value that were written as one word.
-    let apart = row.joined_field(name.text).map(|joined| {
-        let rest = name.text.get(joined.len()..).unwrap_or_default();
-        format!("{joined} {rest}")
-    });
-    let near = row.nearest_field(name.text).map(str::to_owned);
-    let help = match near.as_ref().or(apart.as_ref()) {
-        Some(meant) => format!("did you mean `{meant}`? {noun} takes {all}."),
-        None => format!("{} takes {all}", row.noun),
-    };
-    let has_value = !value.span.range().is_empty();
-    Problem::UnknownField {
-        noun: row.noun,
-        written: name.text.to_owned(),
-        help,
-        span: name.span,
-        near: near.or(apart.filter(|_| !has_value)),
-    }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_ascii_uppercase());
-    first.into_iter().chain(letters).collect()
 }
 
 /// The label and the help for a condition that does not hold, and what can stand in the value's place.
@@ -142,9 +107,9 @@ fn at_most(bound: u64) -> (&'static str, String, Vec<String>) {
 }
 
 /// What can stand in place of a value of the wrong type.
-pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -> Vec<String> {
+pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, value: Value, text: &str) -> Vec<String> {
     let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
-    match (row.takes, found, &tree.kind) {
+    match (row.takes, value.kind(), &tree.kind) {
         (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => vec![(*number).to_owned()],
         (Type::Number, Type::Angle, _) => vec![in_degrees(tree, text)],
         (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
@@ -153,7 +118,10 @@ pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, found: Type, text: &st
         (Type::Vector, Type::Number, _) if literal && matches!(row.name, "size" | "sides") => {
             vec![format!("({text}, {text}, {text})")]
         }
-        (Type::Color, Type::Vector, _) if literal => vec![format!("rgb{text}")],
+        (Type::Color, Type::Vector, _) => match value {
+            Value::Vector(parts) => rgb(parts, tree, text).into_iter().collect(),
+            _ => Vec::new(),
+        },
         (Type::Colors, Type::Color, _) => {
             let other = if text == "white" { "gray" } else { "white" };
             vec![format!("({text}, {other})")]
@@ -162,10 +130,54 @@ pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, found: Type, text: &st
     }
 }
 
+/// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to 255.
+pub fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<String> {
+    let ValueKind::Tuple(elements) = &tree.kind else {
+        return None;
+    };
+    let is_literal =
+        |element: &tree::Element<'_>| matches!(element.value.kind, ValueKind::Number(_));
+    let is_unit = parts.cmple(DVec3::ONE).all();
+    if parts.min_element() < 0.0 || parts.max_element() > 255.0 {
+        return None;
+    }
+    match is_unit {
+        true if elements.iter().all(is_literal) => {
+            let [r, g, b] = parts.to_array().map(in_bytes);
+            Some(format!("rgb({r}, {g}, {b})"))
+        }
+        true => None,
+        false => Some(format!("rgb{text}")),
+    }
+}
+
+/// What to write in place of a list of numbers that is no vector: words, if there are better ones than of vectors in general, and
+/// what can stand in its place, if something else can.
+pub fn list_for(row: &Field, texts: &[&str]) -> (Option<String>, Option<Vec<String>>) {
+    let write = |text: String| (Some(format!("write `{text}`")), Some(vec![text]));
+    match (row.takes, texts) {
+        // Any two sides and the longer of them once more form a triangle.
+        (Type::Vector, [a, b]) if row.name == "sides" => {
+            match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(x), Ok(y)) => write(format!("({a}, {b}, {})", if x < y { b } else { a })),
+                _ => (None, Some(Vec::new())),
+            }
+        }
+        // A third number could be on the wrong side of the other corner, or make a vertex of another one.
+        (Type::Vector, [_, _]) if row.preset == Preset::Alternative => (None, Some(Vec::new())),
+        (Type::Vector, _) => (None, None),
+        (Type::Number, [first, rest @ ..]) if rest.iter().all(|text| text == first) => {
+            write((*first).to_owned())
+        }
+        (Type::Color, [r, g, b, _]) => write(format!("rgb({r}, {g}, {b})")),
+        _ => (None, Some(Vec::new())),
+    }
+}
+
 /// What to write in place of a value of the wrong type.
-pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -> String {
+pub fn type_help(row: &Field, tree: &tree::Value<'_>, value: Value, text: &str) -> String {
     let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
-    match (row.takes, found, &tree.kind) {
+    match (row.takes, value.kind(), &tree.kind) {
         (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => {
             format!("write `{number}`, without a unit")
         }
@@ -185,8 +197,9 @@ pub fn type_help(row: &Field, tree: &tree::Value<'_>, found: Type, text: &str) -
                 row.example()
             )
         }
-        (Type::Color, Type::Vector, _) if literal => {
-            format!("write `rgb{text}` if these are red, green and blue from 0 to 255")
+        (Type::Color, Type::Vector, _) if of_right_type(row, tree, value, text).len() == 1 => {
+            let color = of_right_type(row, tree, value, text).concat();
+            format!("write `{color}` if these are red, green and blue")
         }
         (Type::Color, Type::Colors, ValueKind::Tuple(parts)) if parts.len() == 2 => {
             "write one colour; only a checkerboard has two".to_owned()

@@ -1,6 +1,6 @@
 //! The table of blocks and their fields.
 
-use super::{Block, Condition, Field, Kind, Literal, Preset, Type};
+use super::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread, Type};
 
 /// A field without conditions or alternatives; rows start from it.
 const FIELD: Field = Field {
@@ -8,9 +8,9 @@ const FIELD: Field = Field {
     takes: Type::Number,
     preset: Preset::Required,
     must: &[],
-    excludes: &[],
     help: "",
     also_tried: &[],
+    doubled: &[],
     example: "",
 };
 
@@ -52,7 +52,12 @@ pub const BLOCKS: &[Block] = &[
                 ..FIELD
             },
         ],
+        choices: &[],
         together: &[],
+        spreads: &[Spread {
+            words: &["resolution", "size", "dimensions"],
+            fields: &["width", "height"],
+        }],
         also_tried: &["picture", "window", "film", "output"],
     },
     Block {
@@ -66,7 +71,16 @@ pub const BLOCKS: &[Block] = &[
                 name: "eye",
                 takes: Type::Vector,
                 help: "the point that all rays pass through",
-                also_tried: &["position", "pos", "from", "center", "centre", "origin"],
+                also_tried: &[
+                    "position",
+                    "pos",
+                    "from",
+                    "center",
+                    "centre",
+                    "origin",
+                    "location",
+                    "look_from",
+                ],
                 example: "(0, 2, 8)",
                 ..FIELD
             },
@@ -74,7 +88,6 @@ pub const BLOCKS: &[Block] = &[
                 name: "lookat",
                 takes: Type::Vector,
                 preset: Preset::Alternative,
-                excludes: &["direction"],
                 help: "the point that it looks at",
                 also_tried: &["look_at", "target", "at", "to"],
                 ..FIELD
@@ -84,10 +97,10 @@ pub const BLOCKS: &[Block] = &[
                 takes: Type::Vector,
                 preset: Preset::Alternative,
                 must: &[Condition::NotZero],
-                excludes: &["lookat"],
                 help: "the direction that it looks in, of any length",
                 also_tried: &["dir", "forward"],
                 example: "(0, 0, -1)",
+                ..FIELD
             },
             Field {
                 name: "up",
@@ -109,7 +122,6 @@ pub const BLOCKS: &[Block] = &[
                 name: "d",
                 preset: number(2.0),
                 must: &[Condition::MoreThan(0.0)],
-                excludes: &["fov"],
                 help: "the distance from the eye to the view plane",
                 also_tried: &["distance", "focal_length"],
                 ..FIELD
@@ -127,9 +139,19 @@ pub const BLOCKS: &[Block] = &[
                 takes: Type::Angle,
                 preset: Preset::Nothing,
                 must: &[Condition::LessThanHalfTurn],
-                excludes: &["d"],
                 help: "the angle that the window's height takes up, instead of d",
-                also_tried: &["field_of_view", "angle", "vfov"],
+                also_tried: &["field_of_view", "vfov", "yfov"],
+                example: "40deg",
+                ..FIELD
+            },
+            Field {
+                name: "hfov",
+                takes: Type::Angle,
+                preset: Preset::Nothing,
+                must: &[Condition::LessThanHalfTurn],
+                help: "the angle that the window's width takes up, instead of d or fov",
+                also_tried: &["angle", "xfov", "horizontal_fov"],
+                example: "60deg",
                 ..FIELD
             },
             Field {
@@ -146,7 +168,18 @@ pub const BLOCKS: &[Block] = &[
                 ..FIELD
             },
         ],
+        choices: &[
+            Choice {
+                ways: &[&["lookat"], &["direction"]],
+                why: "either a point or a direction says where the camera looks",
+            },
+            Choice {
+                ways: &[&["d"], &["fov"], &["hfov"]],
+                why: "one of d, fov and hfov says how much the camera sees",
+            },
+        ],
         together: &["lookat ≠ eye", "near < far"],
+        spreads: &[],
         also_tried: &["cam", "view", "viewer", "eye"],
     },
     Block {
@@ -168,7 +201,6 @@ pub const BLOCKS: &[Block] = &[
                 name: "per_pixel",
                 preset: number(16.0),
                 must: &[Condition::Whole, Condition::AtLeast(1.0)],
-                excludes: &["total"],
                 help: "the samples in each pixel",
                 also_tried: &["samples", "spp", "count", "n"],
                 ..FIELD
@@ -181,7 +213,6 @@ pub const BLOCKS: &[Block] = &[
                     Condition::AtLeast(1.0),
                     Condition::AtMostTwoTo(53),
                 ],
-                excludes: &["per_pixel"],
                 help: "the samples in the whole picture, instead of per_pixel",
                 example: "1_000_000",
                 ..FIELD
@@ -198,6 +229,11 @@ pub const BLOCKS: &[Block] = &[
                 ..FIELD
             },
         ],
+        choices: &[Choice {
+            ways: &[&["per_pixel"], &["total"]],
+            why: "either one says how many samples there are",
+        }],
+        spreads: &[],
         together: &["per_pixel times the number of pixels is at most 2^53"],
         also_tried: &["sampling", "samples", "antialiasing"],
     },
@@ -221,11 +257,14 @@ pub const BLOCKS: &[Block] = &[
                 must: &[Condition::MoreThan(0.0)],
                 help: "its radius",
                 also_tried: &["r", "size"],
+                doubled: &["diameter"],
                 ..FIELD
             },
             color("olive"),
         ],
+        choices: &[],
         together: &[],
+        spreads: &[],
         also_tried: &["ball", "circle", "globe"],
     },
     Block {
@@ -233,18 +272,22 @@ pub const BLOCKS: &[Block] = &[
         name: "triangle",
         noun: "a triangle",
         is_object: true,
-        help: "a triangle by its centroid, its normal and the lengths of its sides",
+        help: "a triangle, by centroid, normal and the lengths of its sides or by its vertices",
         fields: &[
             Field {
                 name: "centroid",
                 takes: Type::Vector,
+                preset: Preset::Alternative,
                 help: "the mean of its vertices",
-                also_tried: &["position", "pos", "at", "middle"],
+                also_tried: &[
+                    "center", "centre", "position", "pos", "at", "middle", "location",
+                ],
                 ..FIELD
             },
             Field {
                 name: "normal",
                 takes: Type::Vector,
+                preset: Preset::Alternative,
                 must: &[Condition::NotZero],
                 help: "what its plane is perpendicular to, of any length",
                 also_tried: &["direction", "facing"],
@@ -268,9 +311,26 @@ pub const BLOCKS: &[Block] = &[
                 also_tried: &["roll", "rotation", "turn"],
                 ..FIELD
             },
+            vertex("v0", "(-1, 0, 0)", &["a", "p0", "vertex0"]),
+            vertex("v1", "(1, 0, 0)", &["b", "p1", "vertex1"]),
+            vertex("v2", "(0, 1, 0)", &["c", "p2", "vertex2"]),
             color("teal"),
         ],
-        together: &["the sides form a triangle: each is shorter than the two others together"],
+        choices: &[Choice {
+            ways: &[
+                &["centroid", "normal", "sides", "spin"],
+                &["v0", "v1", "v2"],
+            ],
+            why: "a triangle is given by centroid, normal and sides, or by v0, v1 and v2",
+        }],
+        spreads: &[Spread {
+            words: &["vertices", "points", "corners", "vertex"],
+            fields: &["v0", "v1", "v2"],
+        }],
+        together: &[
+            "the sides form a triangle: each is shorter than the two others together",
+            "v0, v1 and v2 do not lie on one line",
+        ],
         also_tried: &["tri", "sail", "polygon"],
     },
     Block {
@@ -284,7 +344,6 @@ pub const BLOCKS: &[Block] = &[
                 name: "center",
                 takes: Type::Vector,
                 preset: Preset::Alternative,
-                excludes: &["min", "max"],
                 help: "its centre",
                 also_tried: POSITION,
                 ..FIELD
@@ -294,7 +353,6 @@ pub const BLOCKS: &[Block] = &[
                 takes: Type::Vector,
                 preset: Preset::Value(Literal::Vector([0.5, 1.5, 2.0])),
                 must: &[Condition::EachMoreThanZero],
-                excludes: &["min", "max"],
                 help: "its extents along x, y and z",
                 also_tried: &["sides", "dimensions", "extent"],
                 ..FIELD
@@ -303,7 +361,6 @@ pub const BLOCKS: &[Block] = &[
                 name: "min",
                 takes: Type::Vector,
                 preset: Preset::Alternative,
-                excludes: &["center", "size"],
                 help: "its corner of least coordinates, together with max",
                 example: "(-1, 0, -1)",
                 ..FIELD
@@ -312,13 +369,17 @@ pub const BLOCKS: &[Block] = &[
                 name: "max",
                 takes: Type::Vector,
                 preset: Preset::Alternative,
-                excludes: &["center", "size"],
                 help: "its corner of greatest coordinates, together with min",
                 example: "(1, 1, 1)",
                 ..FIELD
             },
             color("orange"),
         ],
+        choices: &[Choice {
+            ways: &[&["center", "size"], &["min", "max"]],
+            why: "a box is given by center and size, or by min and max",
+        }],
+        spreads: &[],
         together: &["min < max on every axis"],
         also_tried: &["cube", "cuboid", "block", "crate", "brick"],
     },
@@ -353,7 +414,9 @@ pub const BLOCKS: &[Block] = &[
                 ..FIELD
             },
         ],
+        choices: &[],
         together: &[],
+        spreads: &[],
         also_tried: &["plane", "floor", "ground", "checker", "chessboard", "board"],
     },
 ];
@@ -364,7 +427,23 @@ const PIXELS: &[Condition] = &[
     Condition::AtMostTwoTo(20),
 ];
 
-const POSITION: &[&str] = &["position", "pos", "at", "centroid", "middle"];
+const POSITION: &[&str] = &["position", "pos", "at", "centroid", "middle", "location"];
+
+const fn vertex(
+    name: &'static str,
+    example: &'static str,
+    also_tried: &'static [&'static str],
+) -> Field {
+    Field {
+        name,
+        takes: Type::Vector,
+        preset: Preset::Alternative,
+        help: "one of its vertices, together with the two others",
+        also_tried,
+        example,
+        ..FIELD
+    }
+}
 
 const fn color(preset: &'static str) -> Field {
     Field {

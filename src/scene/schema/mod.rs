@@ -9,9 +9,15 @@ mod blocks;
 mod words;
 
 pub use blocks::BLOCKS;
-pub use words::{CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names};
+pub use words::{
+    CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names, nearest_method,
+};
 
 use std::fmt;
+
+use super::value::Value;
+use crate::{math::compare_half_turns, suggest};
+use glam::DVec3;
 
 /// A kind of block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -47,10 +53,32 @@ pub struct Block {
     pub help: &'static str,
     /// Its fields.
     pub fields: &'static [Field],
+    /// What it says in one of several ways.
+    pub choices: &'static [Choice],
     /// Conditions between fields, each by its name.
     pub together: &'static [&'static str],
+    /// Other words that people try for several of its fields.
+    pub spreads: &'static [Spread],
     /// Other words that people try for it.
     pub also_tried: &'static [&'static str],
+}
+
+/// Ways to say the same thing, of which a block takes one.
+#[derive(Debug)]
+pub struct Choice {
+    /// Each way, with the fields that belong to it. A way that is taken needs those of them that are [alternatives](Preset::Alternative).
+    pub ways: &'static [&'static [&'static str]],
+    /// Why it is one of them.
+    pub why: &'static str,
+}
+
+/// A word that people try for several fields at once, with a list of their values.
+#[derive(Debug)]
+pub struct Spread {
+    /// The words.
+    pub words: &'static [&'static str],
+    /// The fields.
+    pub fields: &'static [&'static str],
 }
 
 /// What there is to know about a field.
@@ -64,12 +92,12 @@ pub struct Field {
     pub preset: Preset,
     /// What its value must be.
     pub must: &'static [Condition],
-    /// The fields that it excludes.
-    pub excludes: &'static [&'static str],
     /// What it is, in a line.
     pub help: &'static str,
     /// Other words that people try for it.
     pub also_tried: &'static [&'static str],
+    /// Words that people try for twice its value.
+    pub doubled: &'static [&'static str],
     /// A value that it can have, if neither its default nor any of its type will do.
     pub example: &'static str,
 }
@@ -120,6 +148,12 @@ impl Type {
         }
     }
 
+    /// The type without an article.
+    pub fn word(self) -> &'static str {
+        let noun = self.noun();
+        noun.split_once(' ').map_or(noun, |(_, word)| word)
+    }
+
     /// Two of the type.
     pub fn two(self) -> &'static str {
         match self {
@@ -138,7 +172,7 @@ impl Type {
 pub enum Preset {
     /// It must be given.
     Required,
-    /// It, or one of those that it excludes, must be given.
+    /// It must be given where its way of a [`Choice`] is taken.
     Alternative,
     /// Nothing.
     Nothing,
@@ -197,6 +231,26 @@ pub enum Condition {
     EachMoreThanZero,
 }
 
+impl Condition {
+    /// Whether a value keeps it; one of another type has no say in it.
+    pub fn holds(&self, value: Value) -> bool {
+        let two_to = |power: u32| (1_u64 << power) as f64;
+        match (*self, value) {
+            (Self::Whole, Value::Number(x)) => x.fract() == 0.0,
+            (Self::MoreThan(bound), Value::Number(x)) => x > bound,
+            (Self::AtLeast(bound), Value::Number(x)) => x >= bound,
+            (Self::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
+            (Self::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
+            (Self::LessThanHalfTurn, Value::Angle(angle)) => {
+                compare_half_turns(angle, 0.0).is_gt() && compare_half_turns(angle, 1.0).is_lt()
+            }
+            (Self::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
+            (Self::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
+            _ => true,
+        }
+    }
+}
+
 /// What the value must be, in words.
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -229,6 +283,20 @@ impl Block {
         self.fields.iter().map(|field| field.name)
     }
 
+    /// The fields that a field excludes: those of the other ways to say the same.
+    pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        let choices = self.choices.iter().map(|choice| choice.ways);
+        let holds = |way: &&&[&str]| way.contains(&field);
+        let choice = choices
+            .into_iter()
+            .find(|ways| ways.iter().any(|way| holds(&way)));
+        let others = choice
+            .into_iter()
+            .flatten()
+            .filter(move |way| !way.contains(&field));
+        others.flat_map(|way| way.iter().copied())
+    }
+
     /// The conditions that hold between a field and others, or something else: those that name it.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let rules = self.together.iter().copied();
@@ -244,7 +312,7 @@ impl Block {
         for field in self.fields {
             let is_excluded = least
                 .iter()
-                .any(|other| other.excludes.contains(&field.name));
+                .any(|other| self.excludes(other.name).any(|name| name == field.name));
             let is_needed = matches!(field.preset, Preset::Required | Preset::Alternative);
             if is_needed && !is_excluded {
                 least.push(field);
@@ -253,19 +321,47 @@ impl Block {
         least
     }
 
-    /// The field that was probably meant, if any is near.
-    pub fn nearest_field(&self, written: &str) -> Option<&'static str> {
-        let tried = |field: &&Field| also(written, field.also_tried);
-        let tried = self.fields.iter().find(tried).map(|field| field.name);
-        tried.or_else(|| crate::suggest::nearest(written, self.field_names()))
+    /// The field that is written like this but for capitals and `_`, or that people try this word for.
+    pub fn field_tried(&self, written: &str) -> Option<&'static Field> {
+        let mut fields = self.fields.iter();
+        let same = fields.find(|field| is_among(written, &[field.name]));
+        same.or_else(|| {
+            self.fields
+                .iter()
+                .find(|field| is_among(written, field.also_tried))
+        })
     }
 
-    /// The field whose name another word was joined to: `centerball` is the center and `ball`.
-    pub fn joined_field(&self, written: &str) -> Option<&'static str> {
-        let joined = |name: &&str| name.len() > 2 && written.starts_with(*name);
-        self.field_names()
-            .filter(joined)
-            .max_by_key(|name| name.len())
+    /// The field that was probably meant, if any is near: by its letters, or by a word within what was written, as in `near_clip` and
+    /// `eyepoint`.
+    pub fn nearest_field(&self, written: &str) -> Option<&'static Field> {
+        if let Some(name) = suggest::nearest(written, self.field_names()) {
+            return self.field(name);
+        }
+        let words = suggest::words(written);
+        let named = |word: &&str| {
+            self.fields
+                .iter()
+                .find(|field| field.name.eq_ignore_ascii_case(word))
+        };
+        if let Some(field) = words.iter().find_map(named) {
+            return Some(field);
+        }
+        let tried = words.iter().rev().find_map(|word| self.field_tried(word));
+        tried.or_else(|| {
+            let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);
+            self.fields
+                .iter()
+                .filter(starts)
+                .max_by_key(|field| field.name.len())
+        })
+    }
+}
+
+impl Field {
+    /// Whether a value keeps its conditions; one of another type has no say in it.
+    pub fn allows(&self, value: Value) -> bool {
+        self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
@@ -276,10 +372,18 @@ pub fn block_names() -> impl Iterator<Item = &'static str> {
 
 /// The block that was probably meant, if any is near.
 pub fn nearest_block(written: &str) -> Option<&'static Block> {
-    let tried = BLOCKS.iter().find(|block| also(written, block.also_tried));
-    tried.or_else(|| crate::suggest::nearest(written, block_names()).and_then(block))
+    let tried = BLOCKS
+        .iter()
+        .find(|block| is_among(written, block.also_tried));
+    tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
 }
 
-fn also(written: &str, tried: &[&str]) -> bool {
-    tried.iter().any(|name| name.eq_ignore_ascii_case(written))
+/// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
+pub fn is_among(written: &str, words: &[&str]) -> bool {
+    let letters = |word: &'_ str| -> String {
+        let letters = word.chars().filter(|letter| *letter != '_');
+        letters.map(|letter| letter.to_ascii_lowercase()).collect()
+    };
+    let written = letters(written);
+    words.iter().any(|word| letters(word) == written)
 }

@@ -1,7 +1,7 @@
 //! The tables of predefined words: methods, functions and constants.
 
-use super::Type;
-use crate::scene::Method;
+use super::{Type, is_among};
+use crate::{scene::Method, suggest};
 
 /// Every sampling technique, with a line of help.
 pub const METHODS: &[(Method, &str)] = &[
@@ -27,6 +27,29 @@ pub const METHODS: &[(Method, &str)] = &[
 pub fn method(name: &str) -> Option<Method> {
     let mut methods = METHODS.iter().map(|&(method, _)| method);
     methods.find(|method| method.name() == name)
+}
+
+/// Other words that people try for methods.
+const ALSO_TRIED: &[(Method, &[&str])] = &[
+    (Method::Regular, &["grid", "uniform_grid", "centered"]),
+    (
+        Method::Random,
+        &["monte_carlo", "independent", "white_noise"],
+    ),
+    (Method::Jittered, &["stratified"]),
+    (Method::NRooks, &["latin_hypercube", "lhs", "rooks"]),
+    (Method::MultiJittered, &["cmj", "correlated_multi_jittered"]),
+    (Method::Sobol, &["owen", "low_discrepancy"]),
+    (Method::Exact, &["analytic", "analytical"]),
+];
+
+/// The method that was probably meant, if any is near.
+pub fn nearest_method(written: &str) -> Option<&'static str> {
+    let tried = ALSO_TRIED
+        .iter()
+        .find(|(_, words)| is_among(written, words));
+    let tried = tried.map(|(method, _)| method.name());
+    tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
 /// The names of the methods.

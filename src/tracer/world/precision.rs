@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::precise_cache::{Held, Kept};
 use crate::{
     math::{Ball, Big, Double, Real, predicates::Plane},
-    scene::{self, Scene, Shape},
+    scene::{self, Outline, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
         crossing::SurfacePart,
@@ -100,11 +100,12 @@ impl Numbers {
         };
         Some(match **shape {
             Shape::Sphere(_) => return None,
-            Shape::Triangle(scene::Triangle {
-                normal, centroid, ..
-            }) => Plane {
-                normal,
-                point: centroid,
+            Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
+                Outline::Vertices(vertices) => return Plane::through(vertices),
+                Outline::Centered(triangle) => Plane {
+                    normal: triangle.normal,
+                    point: triangle.centroid,
+                },
             },
             Shape::Box(scene::Cuboid { min, max, .. }) => Plane {
                 normal: DVec3::AXES[usize::from(index / 2)],

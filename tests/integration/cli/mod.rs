@@ -181,6 +181,94 @@ fn check_reports_to_people_or_to_programs() {
 }
 
 #[test]
+fn check_fixes_what_it_can_and_says_so() {
+    let folder = folder();
+    let path = folder.path().join("bad.scn");
+    let wrong = "camera { eye (0, 1, 8)  look_at (0, 1, 0)  roll 10 }\nspere { centr (0, 1, 0)  radus 2  colour oliv }\n";
+    let right = "camera { eye (0, 1, 8)  lookat (0, 1, 0)  roll 10deg }\nsphere { center (0, 1, 0)  radius 2  color olive }\n";
+    fs::write(&path, wrong).unwrap();
+    let output = pinhole(&folder, &["check", "--fix", "bad.scn"]);
+    assert_eq!((status(&output), output.stdout.as_slice()), (0, &b""[..]));
+    assert_eq!(fs::read_to_string(&path).unwrap(), right);
+    let said = errors(&output);
+    assert!(said.contains("bad.scn:1:25: write `lookat`\n"), "{said}");
+    assert_eq!(said.lines().count(), 7, "{said}");
+    // From standard input to standard output, changed or not.
+    for text in [wrong, right] {
+        let output = pinhole_reading(&folder, text.as_bytes(), &["check", "--fix", "-"]);
+        assert_eq!(status(&output), 0);
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), right);
+    }
+    // What has no fix stays, and is reported; what is no scene's text is refused.
+    fs::write(
+        &path,
+        "camera { eye (0, 1, 8)  look_at (0, 1, 0) }\nsphere { center (0, 1, 0)  shininess 3 }\n",
+    )
+    .unwrap();
+    let output = pinhole(&folder, &["check", "--fix", "bad.scn", "--format", "json"]);
+    assert_eq!(status(&output), 1);
+    assert!(errors(&output).ends_with("write `lookat`\n"));
+    let left = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(left.lines().count(), 1, "{left}");
+    assert!(fs::read_to_string(&path).unwrap().contains("lookat"));
+    done(&folder, &["render", "a.scn"]);
+    fails(&folder, &["check", "--fix", "a.png"], 2);
+    fs::write(&path, b"// \xff\nsphere { centr (0, 1, 0) }\n").unwrap();
+    fails(&folder, &["check", "--fix", "bad.scn"], 1);
+    assert_eq!(
+        fs::read(&path).unwrap(),
+        b"// \xff\nsphere { centr (0, 1, 0) }\n"
+    );
+}
+
+#[test]
+fn a_program_is_told_of_a_thousand_problems_and_how_many_more_there_are() {
+    let folder = folder();
+    let many = format!(
+        "{SCENE}{}",
+        "sphere { center (0, 1, 0) radus 1 }\n".repeat(1234)
+    );
+    let output = pinhole_reading(
+        &folder,
+        many.as_bytes(),
+        &["check", "-", "--format", "json"],
+    );
+    assert_eq!(status(&output), 1);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<Value> = text
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(lines.len(), 1001);
+    assert_eq!(lines[1000]["code"], "pinhole::more");
+    assert_eq!(lines[1000]["severity"], "error");
+    assert_eq!(lines[1000]["labels"][0]["line"], 1008);
+    let message = lines[1000]["message"].as_str().unwrap();
+    assert!(
+        message.starts_with("there are 234 more problems"),
+        "{message}"
+    );
+}
+
+#[test]
+fn new_writes_a_scene_and_no_file_twice() {
+    let folder = folder();
+    assert_eq!(done(&folder, &["new", "new.scn"]), b"");
+    assert_eq!(done(&folder, &["check", "new.scn"]), b"");
+    let scene = fs::read_to_string(folder.path().join("new.scn")).unwrap();
+    assert_eq!(scene, pinhole::scene::SMALLEST);
+    assert_eq!(done(&folder, &["fmt", "--check", "new.scn"]), b"");
+    let errors = fails(&folder, &["new", "a.scn"], 2);
+    assert!(errors.contains("a.scn"), "{errors}");
+    assert_eq!(
+        fs::read_to_string(folder.path().join("a.scn")).unwrap(),
+        SCENE
+    );
+    fails(&folder, &["new", "no/folder.scn"], 2);
+    assert_eq!(done(&folder, &["new", "-"]), scene.as_bytes());
+}
+
+#[test]
 fn a_label_in_an_override_names_it_as_the_command_line_does() {
     let folder = folder();
     done(&folder, &["render", "a.scn", "-o", "b.png", "--set", "h=2"]);
@@ -306,6 +394,8 @@ fn help_has_examples_and_the_manual_all_commands() {
     for command in [
         "render",
         "check",
+        "new",
+        "explain",
         "inspect",
         "probe",
         "diff",

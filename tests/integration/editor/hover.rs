@@ -32,7 +32,7 @@ fn fields_say_what_the_table_says() {
     );
     assert_eq!(
         markdown("camera { fo$0v 40deg }"),
-        "`fov` of a camera: the angle that the window's height takes up, instead of d\n\n(angle); must be more than 0 and less than 180deg; not together with `d`"
+        "`fov` of a camera: the angle that the window's height takes up, instead of d\n\n(angle); must be more than 0 and less than 180deg; not together with `d` or `hfov`"
     );
     for (text, rule) in [
         ("camera { fa$0r 5 }", "near < far"),

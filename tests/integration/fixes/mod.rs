@@ -2,6 +2,7 @@
 //! new error.
 
 mod fields;
+mod meaning;
 mod names;
 mod removal;
 mod syntax;

@@ -143,7 +143,7 @@ fn a_corner_lies_on_the_right_side_of_the_other() {
     offers(
         &format!("{camera}box {{ min (1, 2, 3)  max (-1, 0, -1) }}"),
         &[(
-            "swap `min` and `max`",
+            "put the corners in order",
             &format!("{camera}box {{ min (-1, 0, -1)  max (1, 2, 3) }}"),
         )],
     );

@@ -85,14 +85,30 @@ fn up_along_the_view_is_a_warning_exactly_where_it_is() {
         ["up_parallel"]
     );
     assert_eq!(
-        camera("eye (0.1, 8, 0.3) lookat (0.10000000000000002, -0.7, 0.3)"),
+        camera("eye (0.1, 8, 0.3) lookat (0.10001, -0.7, 0.3)"),
         [""; 0]
     );
     assert_eq!(
-        camera("eye (0, 8, 0) direction (1, 2, 3) up (-2, -4, -6)"),
+        camera("eye (0, 8, 0) direction (1, -20, 1) up (-2, 40, -2)"),
         ["up_parallel"]
     );
-    assert_eq!(camera("eye (0, 0, 0) lookat (1e-300, 1e300, 0)"), [""; 0]);
+    let message = |fields: &str| {
+        let text = format!("camera {{ {fields} }} sphere {{ center (0, 0, 0) }}");
+        let found = scene::read(&sources(&text)).diagnostics;
+        found[0].message.clone()
+    };
+    for (x, parallel) in [
+        ("0.1", "straight along"),
+        ("0.10000000000000002", "all but straight along"),
+        ("0.100001", "all but straight along"),
+    ] {
+        let said = message(&format!("eye (0.1, 8, 0.3) lookat ({x}, -0.7, 0.3)"));
+        assert_eq!(said, format!("the camera looks {parallel} its up vector"));
+    }
+    assert_eq!(
+        camera("eye (0, 0, 0) lookat (1e-300, 1e300, 0)"),
+        ["up_parallel"]
+    );
     let help = |fields: &str| {
         let text = format!("camera {{ {fields} }} sphere {{ center (0, 0, 0) }}");
         let found = scene::read(&sources(&text)).diagnostics;

@@ -4,6 +4,7 @@ mod conditions;
 mod consequences;
 mod reference;
 mod reports;
+mod seen;
 mod text;
 mod values;
 

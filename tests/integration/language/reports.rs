@@ -107,7 +107,9 @@ fn digits_that_decide_are_shown() {
 #[test]
 fn ways_out_are_true() {
     let camera = |fields: &str| {
-        format!("camera {{ eye (0, 2, 8) {fields} }} sphere S {{ center (0, 0, 0) }}")
+        format!(
+            "camera {{ eye (0, 2, 8) {fields} }} sphere S {{ center (0, 0, 0) }} sphere {{ center (9, 11, 17) }}"
+        )
     };
     for (text, help) in [
         (

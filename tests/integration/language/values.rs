@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pinhole::{
     color::Color,
-    scene::{Checkerboard, Count, Cuboid, Lens, Method, Shape, Sphere, Triangle},
+    scene::{Checkerboard, Count, Cuboid, Lens, Method, Outline, Shape, Sphere, Triangle},
 };
 
 use super::{CAMERA, codes, color, number, read};
@@ -53,10 +53,15 @@ fn defaults() {
             color: orange
         })
     );
-    let Shape::Triangle(Triangle { sides, normal, .. }) = triangle.shape else {
+    let Shape::Triangle(Triangle {
+        outline: Outline::Centered(triangle),
+        ..
+    }) = triangle.shape
+    else {
         panic!("{triangle:?}");
     };
-    assert_eq!((sides, normal), (DVec3::new(2.0, 2.0, 1.0), DVec3::Z * 3.0));
+    let is = (triangle.sides, triangle.normal);
+    assert_eq!(is, (DVec3::new(2.0, 2.0, 1.0), DVec3::Z * 3.0));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The tracer against the oracle, above all within the last bits of every boundary.
 
+mod mesh;
 pub mod planes;
 mod sizes;
 
@@ -15,7 +16,7 @@ use pinhole::{
         scenes::{self, SIZE},
     },
     sampling::Sampling,
-    scene::{Checkerboard, Lens, Scene, Shape, Triangle, View},
+    scene::{CenteredTriangle, Checkerboard, Lens, Outline, Scene, Shape, Triangle, View},
     tracer::World,
 };
 
@@ -162,10 +163,12 @@ fn random_objects_agree_with_the_oracle() {
             let corner = random.vector(2.0);
             shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
             shapes.push(Shape::Triangle(Triangle {
-                centroid: random.vector(2.0),
-                normal: random.vector(1.0),
-                sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
-                spin: Angle::from_degrees(random.within(0.0, 360.0)),
+                outline: Outline::Centered(CenteredTriangle {
+                    centroid: random.vector(2.0),
+                    normal: random.vector(1.0),
+                    sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
+                    spin: Angle::from_degrees(random.within(0.0, 360.0)),
+                }),
                 color: Color::BLACK,
             }));
             shapes.push(cuboid(

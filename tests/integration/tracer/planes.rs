@@ -86,10 +86,12 @@ pub fn scene_full_of_ties(random: &mut Random) -> Scene {
             normal
         };
         shapes.push(Shape::Triangle(Triangle {
-            centroid: random.point(3),
-            normal,
-            sides: dvec3(5.0, 5.0, 6.0),
-            spin: Angle::from_degrees(random.half(4) * 90.0),
+            outline: Outline::Centered(CenteredTriangle {
+                centroid: random.point(3),
+                normal,
+                sides: dvec3(5.0, 5.0, 6.0),
+                spin: Angle::from_degrees(random.half(4) * 90.0),
+            }),
             color: Color::BLACK,
         }));
     }
@@ -180,10 +182,12 @@ fn rays_in_the_planes_of_faces_agree_with_the_oracle() {
 fn triangles_in_one_plane_are_one_surface_whatever_their_normals_lengths() {
     let shape = |normal: DVec3, spin: f64| {
         Shape::Triangle(Triangle {
-            centroid: DVec3::ZERO,
-            normal,
-            sides: DVec3::splat(6.0),
-            spin: Angle::from_degrees(spin),
+            outline: Outline::Centered(CenteredTriangle {
+                centroid: DVec3::ZERO,
+                normal,
+                sides: DVec3::splat(6.0),
+                spin: Angle::from_degrees(spin),
+            }),
             color: Color::BLACK,
         })
     };

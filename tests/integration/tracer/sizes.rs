@@ -45,10 +45,12 @@ fn extreme_lenses_and_sizes_agree_with_the_oracle() {
             sphere(DVec3::ZERO, 0.7 * size),
             cuboid(DVec3::splat(0.1 * size), DVec3::splat(0.6 * size)),
             Shape::Triangle(Triangle {
-                centroid: dvec3(0.1, 0.4, 0.9) * size,
-                normal: dvec3(0.2, 0.3, 1.0) * size,
-                sides: dvec3(2.0, 2.0, 1.0) * size,
-                spin: Angle::default(),
+                outline: Outline::Centered(CenteredTriangle {
+                    centroid: dvec3(0.1, 0.4, 0.9) * size,
+                    normal: dvec3(0.2, 0.3, 1.0) * size,
+                    sides: dvec3(2.0, 2.0, 1.0) * size,
+                    spin: Angle::default(),
+                }),
                 color: Color::BLACK,
             }),
             Shape::Checkerboard(Checkerboard {
@@ -130,10 +132,12 @@ fn needles_and_tiny_triangles_agree_with_the_oracle() {
         let mut camera = camera(dvec3(0.3, 0.2, 3.0), DVec3::ZERO);
         camera.lens = Lens::Distance(2.0 / (scale * needle));
         let shape = Shape::Triangle(Triangle {
-            centroid: DVec3::ZERO,
-            normal: dvec3(1.0, 0.4, 2.0),
-            sides: dvec3(1.0, 1.0, needle) * scale,
-            spin: Angle::from_degrees(20.0),
+            outline: Outline::Centered(CenteredTriangle {
+                centroid: DVec3::ZERO,
+                normal: dvec3(1.0, 0.4, 2.0),
+                sides: dvec3(1.0, 1.0, needle) * scale,
+                spin: Angle::from_degrees(20.0),
+            }),
             color: Color::BLACK,
         });
         assert!(agrees(&scene(camera, &[shape]), 20) > 10);

@@ -8,7 +8,7 @@ use crate::{
     math::Angle,
     numbers::{found, found_near, found_vector, short, short_vector},
     render::RenderError,
-    scene::{Shape, Triangle},
+    scene::{CenteredTriangle, Outline, Shape, Triangle},
 };
 
 /// Components of a normal that are within this share of its length of what they should be are right, and one that is not is the one that is
@@ -24,7 +24,10 @@ impl Sought<'_> {
     ) -> Result<Option<Found>, RenderError> {
         let lengths = |shape: &Shape| match shape {
             Shape::Box(cuboid) => Some(cuboid.max - cuboid.min),
-            Shape::Triangle(triangle) => Some(triangle.sides),
+            Shape::Triangle(triangle) => match triangle.outline {
+                Outline::Centered(triangle) => Some(triangle.sides),
+                Outline::Vertices(_) => None,
+            },
             Shape::Sphere(_) | Shape::Checkerboard(_) => None,
         };
         let Some(should) = lengths(&self.shape) else {
@@ -39,13 +42,18 @@ impl Sought<'_> {
                     cuboid.min[side] -= more;
                     cuboid.max[side] += more;
                 }
-                Shape::Triangle(triangle) => triangle.sides[side] *= factor,
+                Shape::Triangle(triangle) => {
+                    if let Outline::Centered(triangle) = &mut triangle.outline {
+                        triangle.sides[side] *= factor;
+                    }
+                }
                 Shape::Sphere(_) | Shape::Checkerboard(_) => {}
             }
-            let longest = lengths(&shape).map_or(0.0, DVec3::max_element);
             // Sides of a triangle have to meet.
-            let is_one = match shape {
-                Shape::Triangle(triangle) => 2.0 * longest < triangle.sides.element_sum(),
+            let is_one = match (shape, lengths(&shape)) {
+                (Shape::Triangle(_), Some(sides)) => {
+                    2.0 * sides.max_element() < sides.element_sum()
+                }
                 _ => factor.is_finite() && factor > 0.0,
             };
             is_one.then_some(shape)
@@ -85,10 +93,10 @@ impl Sought<'_> {
 
     /// With another spin, if it is a triangle.
     pub(super) fn spun(&self) -> Result<Option<Found>, RenderError> {
-        let Shape::Triangle(triangle) = self.shape else {
+        let Some(triangle) = self.centered() else {
             return Ok(None);
         };
-        let spun = |p: &[f64]| Triangle {
+        let spun = |p: &[f64]| CenteredTriangle {
             spin: triangle.spin + Angle::from_degrees(p[0]),
             ..triangle
         };
@@ -114,7 +122,7 @@ impl Sought<'_> {
 
     /// With another normal, if it is a triangle.
     pub(super) fn facing(&self) -> Result<Option<Found>, RenderError> {
-        let Shape::Triangle(triangle) = self.shape else {
+        let Some(triangle) = self.centered() else {
             return Ok(None);
         };
         let length = triangle.normal.length();
@@ -128,7 +136,7 @@ impl Sought<'_> {
             tilted * (length / tilted.length())
         };
         let make = |p: &[f64]| {
-            self.with_triangle(Triangle {
+            self.with_triangle(CenteredTriangle {
                 normal: tilted(p),
                 ..triangle
             })
@@ -151,9 +159,23 @@ impl Sought<'_> {
         self.width() / self.radius
     }
 
-    fn with_triangle(&self, other: Triangle) -> Option<Make> {
+    fn centered(&self) -> Option<CenteredTriangle> {
+        match self.shape {
+            Shape::Triangle(Triangle {
+                outline: Outline::Centered(triangle),
+                ..
+            }) => Some(triangle),
+            _ => None,
+        }
+    }
+
+    fn with_triangle(&self, other: CenteredTriangle) -> Option<Make> {
+        let Shape::Triangle(mut triangle) = self.shape else {
+            return None;
+        };
+        triangle.outline = Outline::Centered(other);
         let is_one = other.normal.is_finite() && other.spin.degrees.is_finite();
-        is_one.then(|| with_shape(&self.case.full.scene, self.index, Shape::Triangle(other)))
+        is_one.then(|| with_shape(&self.case.full.scene, self.index, Shape::Triangle(triangle)))
     }
 }
 

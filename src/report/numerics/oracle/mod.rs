@@ -13,7 +13,7 @@ use glam::DVec2;
 
 pub use self::number::{N, V, length};
 use self::number::{Number, abs, axpy, cross, dot, scale, size, sub, unit};
-use crate::scene::{Lens, Scene, Shape, View};
+use crate::scene::{Lens, Outline, Scene, Shape, View};
 
 /// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
 pub const ALL_SIZES: usize = 1400;
@@ -90,6 +90,12 @@ impl Oracle {
             Lens::Fov(angle) => {
                 let (s, c) = number.sin_cos(angle * 0.5);
                 n(camera.view_height) * c / (n(2.0) * s)
+            }
+            Lens::HorizontalFov(angle) => {
+                let (s, c) = number.sin_cos(angle * 0.5);
+                let [width, height] =
+                    [scene.image.width, scene.image.height].map(|pixels| n(f64::from(pixels)));
+                n(camera.view_height) * width * c / (n(2.0) * height * s)
             }
         };
         let surface = |shape: &Shape| Surface::new(number, shape, &eye);
@@ -306,9 +312,19 @@ impl Surface {
                 Self::Sphere { f, square, c }
             }
             Shape::Triangle(triangle) => {
-                let vertices = number.vertices(triangle);
-                let normal = number.vector(triangle.normal);
-                let from_eye = sub(&number.vector(triangle.centroid), eye);
+                let (vertices, normal, point) = match &triangle.outline {
+                    Outline::Centered(triangle) => (
+                        number.vertices(triangle),
+                        number.vector(triangle.normal),
+                        number.vector(triangle.centroid),
+                    ),
+                    Outline::Vertices(vertices) => {
+                        let [a, b, c] = vertices.map(|vertex| number.vector(vertex));
+                        let normal = cross(&sub(&b, &a), &sub(&c, &a));
+                        ([a.clone(), b, c], normal, a)
+                    }
+                };
+                let from_eye = sub(&point, eye);
                 let height = dot(&normal, &from_eye);
                 let height = match number.sign(&height, &(size(&normal) * size(&from_eye))) {
                     Ordering::Equal => N::ZERO,

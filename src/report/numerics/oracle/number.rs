@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use dashu_float::{FBig, round::mode::HalfEven};
 use glam::DVec3;
 
-use crate::{math::Angle, scene::Triangle};
+use crate::{math::Angle, scene::CenteredTriangle};
 
 /// A binary floating-point number of the oracle's precision.
 pub type N = FBig<HalfEven, 2>;
@@ -53,8 +53,8 @@ impl Number {
     }
 
     /// A triangle's vertices: left base end, right base end, apex.
-    pub fn vertices(self, triangle: &Triangle) -> [V; 3] {
-        let Triangle {
+    pub fn vertices(self, triangle: &CenteredTriangle) -> [V; 3] {
+        let CenteredTriangle {
             centroid, normal, ..
         } = *triangle;
         let n = |x| self.exact(x);

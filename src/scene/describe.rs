@@ -1,0 +1,176 @@
+//! The language's words in Markdown, as its own table has them: for hovers, completion and `explain`.
+
+use std::{fmt::Write, ops::Range};
+
+use super::{
+    css, example_call,
+    schema::{self, Block, Field, Function, Preset, Type},
+};
+use crate::suggest;
+
+/// What `let` does.
+pub const ABOUT_LET: &str =
+    "`let NAME = VALUE` gives a value a name, for what stands further down.";
+
+/// A word of the language, with all that it means and an example of each: a kind of block, a field, a method, a function, a
+/// constant, a colour.
+pub fn word(word: &str) -> Option<String> {
+    let mut parts = Vec::new();
+    let example = |text: &str| format!("\n\n```scn\n{text}\n```");
+    if word == "let" {
+        parts.push(ABOUT_LET.to_owned() + &example("let middle = (0, 1, 0)"));
+    }
+    if let Some(row) = schema::block(word) {
+        let fields = row.least_fields();
+        let fields: Vec<String> = fields.iter().map(|field| written(field)).collect();
+        let block = match fields.is_empty() {
+            true => format!("{} {{}}", row.name),
+            false => format!("{} {{ {} }}", row.name, fields.join("  ")),
+        };
+        parts.push(block_page(row) + &example(&block));
+    }
+    for row in schema::BLOCKS {
+        if let Some(field) = row.field(word) {
+            parts.push(about_field(row, field) + &example(&written(field)));
+        }
+    }
+    for (method, help) in schema::METHODS {
+        if method.name() == word {
+            let sampler = format!("sampler {{ method {word} }}");
+            parts.push(format!(
+                "`{word}`, a method of the sampler: {help}{}",
+                example(&sampler)
+            ));
+        }
+    }
+    if let Some(function) = schema::function(word) {
+        let call = format!("let value = {}", example_call(function));
+        parts.push(about_function(function) + &example(&call));
+    }
+    for (name, help) in schema::CONSTANTS {
+        if *name == word {
+            parts.push(format!("`{name}`: {help}"));
+        }
+    }
+    if let Some(color) = css::color(word) {
+        parts.push(format!("`{word}`: the colour `{color}`"));
+    }
+    let text = format!("# {word}\n\n{}\n", parts.join("\n\n"));
+    (!parts.is_empty()).then_some(text)
+}
+
+/// Every word that [`word`] knows, but for the colours.
+pub fn words() -> impl Iterator<Item = &'static str> {
+    let fields = schema::BLOCKS.iter().flat_map(Block::field_names);
+    let functions = schema::FUNCTIONS.iter().map(|function| function.name);
+    let constants = schema::CONSTANTS.iter().map(|(name, _)| *name);
+    let blocks = ["let"].into_iter().chain(schema::block_names());
+    blocks
+        .chain(fields)
+        .chain(schema::method_names())
+        .chain(functions)
+        .chain(constants)
+}
+
+fn written(field: &Field) -> String {
+    format!("{} {}", field.name, field.example())
+}
+
+fn block_page(row: &Block) -> String {
+    let mut text = about_block(row);
+    for choice in row.choices {
+        let _ = write!(
+            text,
+            "\n\nOf several ways to say the same, a block takes one: {}.",
+            choice.why
+        );
+    }
+    text
+}
+
+/// A kind of block, and its fields.
+pub fn about_block(row: &Block) -> String {
+    let mut text = format!("`{}`: {}\n", row.name, row.help);
+    for field in row.fields {
+        let _ = write!(
+            text,
+            "\n- `{}` {}: {}",
+            field.name,
+            kind_and_preset(field),
+            field.help
+        );
+    }
+    text
+}
+
+/// A field: what it is, what it takes, what it is if not given, and what it must be.
+pub fn about_field(row: &Block, field: &Field) -> String {
+    let mut text = format!(
+        "`{}` of {}: {}\n\n{}",
+        field.name,
+        row.noun,
+        field.help,
+        kind_and_preset(field)
+    );
+    if !field.must.is_empty() {
+        let must: Vec<String> = field.must.iter().map(ToString::to_string).collect();
+        let must = suggest::list(must.iter().map(String::as_str));
+        let _ = write!(text, "; must be {must}");
+    }
+    let others: Vec<String> = row
+        .excludes(field.name)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    if !others.is_empty() {
+        let others = suggest::choice(others.iter().map(String::as_str));
+        let _ = write!(text, "; not together with {others}");
+    }
+    for rule in row.rules_of(field.name) {
+        let _ = write!(text, "; {rule}");
+    }
+    if field.takes == Type::Method {
+        text.push('\n');
+        for (method, help) in schema::METHODS {
+            let _ = write!(text, "\n- `{}`: {help}", method.name());
+        }
+    }
+    text
+}
+
+fn kind_and_preset(field: &Field) -> String {
+    let kind = field.takes.word();
+    match field.preset {
+        Preset::Value(literal) => format!("({kind}, `{literal}` by default)"),
+        Preset::Required => format!("({kind}, required)"),
+        Preset::Alternative | Preset::Nothing => format!("({kind})"),
+    }
+}
+
+/// A function: how it is called, and what it is.
+pub fn about_function(function: &Function) -> String {
+    format!("`{}`: {}", signature(function).0, function.help)
+}
+
+/// How a function is called, and where in that its parameters stand, in bytes.
+pub fn signature(function: &Function) -> (String, Vec<Range<usize>>) {
+    let mut label = format!("{}(", function.name);
+    let mut parameters = Vec::new();
+    for (index, takes) in function.takes.iter().enumerate() {
+        if index > 0 {
+            label.push_str(", ");
+        }
+        let start = label.len();
+        // The name of an argument stands for it, or its type.
+        let name = function.parameters.get(index);
+        label.push_str(name.copied().unwrap_or_else(|| takes.word()));
+        parameters.push(start..label.len());
+    }
+    if function.more {
+        label.push_str(", ");
+        let start = label.len();
+        label.push('…');
+        parameters.push(start..label.len());
+    }
+    let _ = write!(label, ") → {}", function.gives.word());
+    (label, parameters)
+}
