@@ -195,7 +195,7 @@ fn window(camera: &Camera, image: &Image, forward: DVec3) -> Option<[DVec3; 2]> 
     };
     let right = right.normalize();
     let top = right.cross(forward);
-    let (sin, cos) = trig::sin_cos(camera.roll);
+    let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
     let aspect = f64::from(image.width) / f64::from(image.height);
     let half = match camera.lens {
         Lens::Distance(d) => camera.view_height / d / 2.0,
