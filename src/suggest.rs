@@ -4,6 +4,8 @@
 
 use std::cell::Cell;
 
+use strsim::osa_distance;
+
 /// How many names may still be compared: a text with as many mistakes as names would take the time of all pairs.
 #[derive(Debug)]
 pub struct Budget(Cell<usize>);
@@ -31,28 +33,21 @@ pub fn nearest<'c>(
 ) -> Option<&'c str> {
     // A name that nobody would mistype so: comparing it would only take long.
     const LONGEST: usize = 64;
-    let letters: Vec<char> = written.chars().take(LONGEST + 1).collect();
-    if letters.is_empty() || letters.len() > LONGEST {
+    let length = written.chars().take(LONGEST + 1).count();
+    if length == 0 || length > LONGEST {
         return None;
     }
-    let letters: Vec<char> = letters.iter().map(char::to_ascii_lowercase).collect();
+    let written = written.to_ascii_lowercase();
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
-        let length = candidate.chars().count();
-        let allowed = (letters.len().max(length) / 3).max(1);
+        let other = candidate.chars().count();
         // Half of a name of two letters is no longer the same name.
-        let allowed = allowed.min(letters.len().min(length) / 2);
-        let allowed = best.map_or(allowed, |(least, _)| allowed.min(least.saturating_sub(1)));
-        let best_already = best.is_some_and(|(least, _)| least == 0);
-        if best_already || letters.len().abs_diff(length) > allowed {
+        let allowed = (length.max(other) / 3).max(1).min(length.min(other) / 2);
+        if length.abs_diff(other) > allowed || best.is_some_and(|(least, _)| least == 0) {
             continue;
         }
-        let other: Vec<char> = candidate
-            .chars()
-            .map(|letter| letter.to_ascii_lowercase())
-            .collect();
-        let slips = distance(&letters, &other);
-        if slips <= allowed {
+        let slips = osa_distance(&written, &candidate.to_ascii_lowercase());
+        if slips <= allowed && best.is_none_or(|(least, _)| slips < least) {
             best = Some((slips, candidate));
         }
     }
@@ -75,35 +70,6 @@ pub fn words(name: &str) -> Vec<&str> {
     }
     words.retain(|word| !word.is_empty());
     words
-}
-
-/// How many letters must be put in, taken out or changed, or neighbours swapped (the optimal string alignment distance;
-/// Damerau, A technique for computer detection and correction of spelling errors, 1964).
-fn distance(from: &[char], to: &[char]) -> usize {
-    let mut above: Vec<usize> = Vec::new();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    let mut previous = None;
-    for &a in from {
-        let two_above = std::mem::replace(&mut above, std::mem::take(&mut row));
-        let first = above.first().map_or(0, |d| d + 1);
-        row.push(first);
-        let mut left = first;
-        let mut before = None;
-        for (column, &b) in to.iter().enumerate() {
-            let diagonal = above.get(column).copied().unwrap_or(usize::MAX);
-            let up = above.get(column + 1).copied().unwrap_or(usize::MAX);
-            let mut least = (left + 1).min(up + 1).min(diagonal + usize::from(a != b));
-            if before == Some(a) && previous == Some(b) && column > 0 {
-                let swap = two_above.get(column - 1).copied().unwrap_or(usize::MAX - 1);
-                least = least.min(swap + 1);
-            }
-            row.push(least);
-            left = least;
-            before = Some(b);
-        }
-        previous = Some(a);
-    }
-    row.last().copied().unwrap_or(0)
 }
 
 /// Names in a sentence: `a`, `a and b`, `a, b and c`.
@@ -130,19 +96,6 @@ fn join<'n>(names: impl IntoIterator<Item = &'n str>, word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distances() {
-        let of = |a: &str, b: &str| {
-            let letters = |s: &str| s.chars().collect::<Vec<_>>();
-            distance(&letters(a), &letters(b))
-        };
-        assert_eq!(of("", "abc"), 3);
-        assert_eq!(of("radus", "radius"), 1);
-        assert_eq!(of("cneter", "center"), 1);
-        assert_eq!(of("kitten", "sitting"), 3);
-        assert_eq!(of("centre", "center"), 1);
-    }
 
     #[test]
     fn near_names_only() {

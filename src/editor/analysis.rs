@@ -3,7 +3,7 @@
 use super::words::{self, Situation, Token};
 use crate::{
     diagnostic::Diagnostic,
-    scene::{self, Survey, Value, schema},
+    scene::{self, SemanticModel, Value, schema},
     source::{Source, SourceId, Sources, Span},
     syntax::tree::{self, Block, Definition, Field, Item},
 };
@@ -13,7 +13,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// What is known of it.
-    pub survey: Survey<'s>,
+    pub survey: SemanticModel<'s>,
     /// The words and signs, by their places.
     pub tokens: Vec<Token>,
 }
@@ -34,7 +34,7 @@ pub(super) struct Path<'a, 's> {
 impl<'s> Analysis<'s> {
     /// Reads a text.
     pub fn new(sources: &'s Sources) -> Self {
-        let survey = scene::survey(sources);
+        let survey = scene::analyze(sources);
         Self {
             tokens: words::tokens(&survey),
             survey,

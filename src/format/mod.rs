@@ -62,7 +62,7 @@ fn is_whole(tree: &Tree<'_>) -> bool {
 /// is mistake enough, is told here, where that field is none.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
-    let survey = scene::survey(&sources);
+    let survey = scene::analyze(&sources);
     let found = survey.diagnostics.iter();
     let of_syntax = found.filter(|diagnostic| diagnostic.is_of_syntax);
     let mut mistakes: Vec<_> = of_syntax.cloned().collect();

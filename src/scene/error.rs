@@ -1,10 +1,15 @@
 //! What can be wrong with what a scene means.
 
+use std::ops::{Deref, DerefMut};
+
 use miette::Diagnostic;
 use thiserror::Error;
 
 use super::schema::Type;
-use crate::{diagnostic::Fix, source::Span};
+use crate::{
+    diagnostic::{self, Edit, Fix},
+    source::{Sources, Span},
+};
 
 /// A problem of meaning. The first label is the place to jump to.
 #[allow(
@@ -20,8 +25,6 @@ pub enum Problem {
         help: String,
         #[label("not a kind of block")]
         span: Span,
-        /// The name that was probably meant.
-        near: Option<String>,
     },
 
     #[error("{noun} has no field `{written}`")]
@@ -32,8 +35,6 @@ pub enum Problem {
         help: String,
         #[label("not a field of {noun}")]
         span: Span,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("`{name}` has no value")]
@@ -43,8 +44,6 @@ pub enum Problem {
         help: String,
         #[label("a value should follow this")]
         span: Span,
-        /// A value that it can have.
-        example: Option<String>,
     },
 
     #[error("{message}")]
@@ -57,8 +56,6 @@ pub enum Problem {
         label: String,
         #[label("not enough by itself")]
         half: Option<Span>,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("`{name}` is given twice")]
@@ -69,8 +66,6 @@ pub enum Problem {
         second: Span,
         #[label("first here")]
         first: Span,
-        /// Both, with their values.
-        fields: [Span; 2],
     },
 
     #[error("`{later}` and `{earlier}` exclude each other")]
@@ -83,8 +78,6 @@ pub enum Problem {
         second: Span,
         #[label("this says it already")]
         first: Span,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("there are two `{name}` blocks")]
@@ -98,8 +91,6 @@ pub enum Problem {
         second: Span,
         #[label("first here")]
         first: Span,
-        /// Both, as a whole.
-        blocks: [Span; 2],
     },
 
     #[error("the scene has no camera")]
@@ -110,8 +101,6 @@ pub enum Problem {
     MissingCamera {
         #[label("no `camera` in this text")]
         span: Span,
-        /// Whether there is nothing else either.
-        is_empty: bool,
     },
 
     #[error("the scene has no objects")]
@@ -172,8 +161,6 @@ pub enum Problem {
         second: Span,
         #[label("first here")]
         first: Span,
-        /// The second one, as a whole.
-        definition: Span,
     },
 
     #[error("`{name}` is {what} already")]
@@ -188,8 +175,6 @@ pub enum Problem {
         span: Span,
         /// What it was to stand for, if that is known.
         found: Option<Type>,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("there is nothing named `{name}`")]
@@ -201,8 +186,6 @@ pub enum Problem {
         span: Span,
         #[label(collection, "and here")]
         more: Vec<Span>,
-        /// The name that was probably meant.
-        near: Option<String>,
     },
 
     #[error("there is no colour named `{name}`")]
@@ -214,8 +197,6 @@ pub enum Problem {
         span: Span,
         #[label(collection, "and here")]
         more: Vec<Span>,
-        /// The name that was probably meant.
-        near: Option<String>,
     },
 
     #[error("`{name}` is used before it is defined")]
@@ -230,8 +211,6 @@ pub enum Problem {
         definition: Span,
         #[label(collection, "and used here")]
         more: Vec<Span>,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("there is no function `{name}`")]
@@ -242,10 +221,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// The name that was probably meant.
-        near: Option<String>,
-        /// Where an operator can stand before the parenthesis, if that was meant.
-        arguments: Option<Span>,
     },
 
     #[error("`{name}` is a function, and stands here without its arguments")]
@@ -267,8 +242,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("`{name}` takes {takes}, and {written} is {found}")]
@@ -293,8 +266,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("`{name}` is {takes}, and {written} is {found}")]
@@ -308,8 +279,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("there is no method `{written}`")]
@@ -319,8 +288,6 @@ pub enum Problem {
         help: String,
         #[label("not a method")]
         span: Span,
-        /// The name that was probably meant.
-        near: Option<String>,
     },
 
     #[error("{whole}, and this has {count}")]
@@ -332,8 +299,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("the parts of {whole} are {parts}, and {written} is {found}")]
@@ -347,8 +312,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What of the text decides that it is wrong.
-        found_in: Span,
     },
 
     #[error("{message}")]
@@ -364,8 +327,6 @@ pub enum Problem {
         #[label("{right_label}")]
         right: Span,
         right_label: String,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("{message}")]
@@ -376,8 +337,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("the number {written} is too large")]
@@ -412,8 +371,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: &'static str,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("the parts of a colour go from 0 to 255, and none of these is more than 1")]
@@ -422,8 +379,6 @@ pub enum Problem {
         help: String,
         #[label("almost black")]
         span: Span,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("{message}")]
@@ -434,10 +389,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// The whole value.
-        whole: Span,
-        /// What can stand in its place.
-        instead: Vec<String>,
     },
 
     #[error("`far` must be more than `near`")]
@@ -450,8 +401,6 @@ pub enum Problem {
         #[label("{near_label}")]
         near: Option<Span>,
         near_label: String,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("the camera stands on the point that it looks at")]
@@ -464,8 +413,6 @@ pub enum Problem {
         lookat: Span,
         #[label("the eye")]
         eye: Span,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("{message}")]
@@ -476,8 +423,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: &'static str,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("{message}")]
@@ -488,8 +433,6 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("sides of {a}, {b} and {c} do not form a triangle")]
@@ -530,8 +473,6 @@ pub enum Problem {
         #[label("{other_label}")]
         other: Option<Span>,
         other_label: String,
-        /// What can be done about it.
-        fixes: Vec<Fix>,
     },
 
     #[error("the box reaches beyond the largest number")]
@@ -606,40 +547,86 @@ pub enum Problem {
         #[label("{label}")]
         span: Span,
         label: &'static str,
-        /// The name that was probably meant.
-        near: Option<String>,
     },
 }
 
-impl Problem {
+/// A problem with what can be done about it, the likeliest first.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The problem.
+    pub problem: Problem,
+    /// The ways out that are edits. None of them needs another one.
+    pub fixes: Vec<Fix>,
+}
+
+impl From<Problem> for Found {
+    fn from(problem: Problem) -> Self {
+        problem.with([])
+    }
+}
+
+impl Found {
+    /// For the list that all stages add to.
+    pub fn diagnostic(&self, sources: &Sources) -> diagnostic::Diagnostic {
+        diagnostic::Diagnostic {
+            fixes: self.fixes.clone(),
+            // Only reading the scene tells what a field without a value is called.
+            is_of_syntax: matches!(self.problem, Problem::MissingValue { .. }),
+            ..diagnostic::Diagnostic::from_problem(&self.problem, sources)
+        }
+    }
+
     /// Adds another place where the same name is used.
     pub fn and_here(&mut self, span: Span) {
         // More places than these would hide the first.
         const MOST: usize = 20;
-        let (Self::UnknownName { more, .. }
-        | Self::UnknownColor { more, .. }
-        | Self::UsedBeforeDefinition { more, .. }) = self
+        let (Problem::UnknownName { more, .. }
+        | Problem::UnknownColor { more, .. }
+        | Problem::UsedBeforeDefinition { more, .. }) = &mut self.problem
         else {
             return;
         };
         if more.len() < MOST {
             more.push(span);
+            for fix in &mut self.fixes {
+                let text = fix.edits.first().map(|edit| edit.text.clone());
+                fix.edits.extend(text.map(|text| Edit::new(span, text)));
+                fix.edits.sort_by_key(|edit| edit.span);
+            }
         }
     }
+}
 
-    /// The value that it is about, if another value there could be right.
-    pub fn place_of_value(&self) -> Option<Span> {
-        match self {
-            Self::FunctionWithoutArguments { span, .. }
-            | Self::ArgumentType { span, .. }
-            | Self::BareAngle { span, .. }
-            | Self::WrongType { span, .. }
-            | Self::PartType { found_in: span, .. }
-            | Self::OutOfRange { whole: span, .. } => Some(*span),
-            Self::OperandTypes { left, right, .. } => {
-                Some(left.map_or(*right, |left| left.to(*right)))
-            }
-            _ => None,
+/// All that was found.
+#[derive(Clone, Debug, Default)]
+pub struct Problems(Vec<Found>);
+
+impl Problems {
+    /// Adds a problem, with fixes or without.
+    pub fn push(&mut self, found: impl Into<Found>) {
+        self.0.push(found.into());
+    }
+}
+
+impl Deref for Problems {
+    type Target = Vec<Found>;
+    fn deref(&self) -> &Vec<Found> {
+        &self.0
+    }
+}
+
+impl DerefMut for Problems {
+    fn deref_mut(&mut self) -> &mut Vec<Found> {
+        &mut self.0
+    }
+}
+
+impl Problem {
+    /// The problem with what can be done about it.
+    pub fn with(self, fixes: impl IntoIterator<Item = Fix>) -> Found {
+        Found {
+            problem: self,
+            fixes: fixes.into_iter().collect(),
         }
     }
 

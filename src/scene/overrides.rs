@@ -3,7 +3,10 @@
 //! In: the arguments as they were typed. Out: what each names, and the tree of its value. Whether there is such a target,
 //! and what the value is there, is for lowering to find out.
 
-use super::{error::Problem, schema};
+use super::{
+    error::{Found, Problem},
+    fix, schema,
+};
 use crate::{
     diagnostic::Diagnostic,
     source::{SourceId, Sources, Span},
@@ -32,7 +35,7 @@ pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<
     let mut overrides: Vec<Override<'s>> = Vec::new();
     for (id, source) in sources.sets() {
         match one(source.text(), id) {
-            Err(problem) => diagnostics.push(Diagnostic::fixable(problem.as_ref(), sources)),
+            Err(problem) => diagnostics.push(Found::from(*problem).diagnostic(sources)),
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
                 let read = problems.iter().map(|p| Diagnostic::fixable(p, sources));
@@ -97,7 +100,7 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
 }
 
 /// What is wrong with a target whose block is neither in the file nor one that can be added.
-pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Problem {
+pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Found {
     let listed = |names: &[&str]| match names.len() {
         0 => "The scene's objects have no names.".to_owned(),
         1..=8 => format!("The scene has {}.", suggest::list(names.iter().copied())),
@@ -128,12 +131,12 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Pro
         help,
         span: block.span,
         label: "no object, and not image, camera or sampler",
-        near: near.filter(|_| kind.is_none()).map(str::to_owned),
     }
+    .with(fix::written(block.span, near.filter(|_| kind.is_none())))
 }
 
 /// What is wrong with a target that is no `let` of the file, but may be a block.
-pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budget) -> Problem {
+pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budget) -> Found {
     let fields = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = fields
         .filter(|block| block.field(name.text).is_some())
@@ -162,6 +165,6 @@ pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budg
         help,
         span: name.span,
         label: "no `let` of this name",
-        near: meant.filter(|_| !is_block),
     }
+    .with(fix::written(name.span, meant.filter(|_| !is_block)))
 }

@@ -15,7 +15,7 @@ use std::collections::HashSet;
 use self::{reader::Reader, scan::scan, settled::settle};
 use crate::{
     scene::{
-        Survey,
+        SemanticModel,
         schema::{self, Type},
     },
     source::{SourceId, Span},
@@ -110,7 +110,7 @@ pub struct Situation {
 }
 
 /// The tokens of a text.
-pub fn tokens(survey: &Survey<'_>) -> Vec<Token> {
+pub fn tokens(survey: &SemanticModel<'_>) -> Vec<Token> {
     let mut tokens = read(survey.sources().file.text(), &survey.parsed.comments);
     settle(&mut tokens, survey);
     tokens

@@ -7,13 +7,13 @@
 
 use super::{Role, Token};
 use crate::{
-    scene::{Survey, css, predefined, schema},
+    scene::{SemanticModel, css, predefined, schema},
     source::Span,
     syntax::tree::{Block, Item, Value, ValueKind},
 };
 
 /// Gives the words the roles that they have in the tree.
-pub fn settle(tokens: &mut [Token], survey: &Survey<'_>) {
+pub fn settle(tokens: &mut [Token], survey: &SemanticModel<'_>) {
     let mut known = Known {
         survey,
         tokens,
@@ -35,7 +35,7 @@ pub fn settle(tokens: &mut [Token], survey: &Survey<'_>) {
 }
 
 struct Known<'a, 's> {
-    survey: &'a Survey<'s>,
+    survey: &'a SemanticModel<'s>,
     tokens: &'a mut [Token],
     /// Whether the value is a sampling method.
     is_method: bool,

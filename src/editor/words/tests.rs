@@ -150,7 +150,7 @@ proptest! {
     #[test]
     fn the_reader_and_the_tree_agree((text, _) in scenes()) {
         let sources = sources(&text);
-        let survey = scene::survey(&sources);
+        let survey = scene::analyze(&sources);
         prop_assume!(survey.parts.clone().into_scene().is_some() && survey.parsed.problems.is_empty());
         prop_assert_eq!(shown(&text, &read(&text, &survey.parsed.comments)), shown(&text, &tokens(&survey)), "{}", text);
     }

@@ -8,6 +8,7 @@ use crate::{
     scene::{
         css,
         error::Problem,
+        fix,
         schema::{self, Function, Type},
         value::{self, Value},
     },
@@ -94,17 +95,25 @@ impl<'s> Evaluator<'_, 's> {
                 "not a function".to_owned(),
             ),
         };
-        self.problems.push(Problem::UnknownFunction {
-            name: function.text.to_owned(),
-            help,
-            span: function.span,
-            label,
-            near: near.filter(|_| !is_value).map(str::to_owned),
-            arguments: match arguments.len() {
-                1 | 3 if is_let => self.before_parenthesis(function.span),
-                _ => None,
-            },
-        });
+        let place = match arguments.len() {
+            1 | 3 if is_let => self.before_parenthesis(function.span),
+            _ => None,
+        };
+        self.problems.push(
+            Problem::UnknownFunction {
+                name: function.text.to_owned(),
+                help,
+                span: function.span,
+                label,
+            }
+            .with(match place {
+                Some(place) => Some(Fix::new(
+                    format!("write `{} * (…)`", function.text),
+                    [Edit::new(place, " * ")],
+                )),
+                None => fix::written(function.span, near.filter(|_| !is_value)),
+            }),
+        );
     }
 
     /// What stands between a name and the `(` behind it, if that is nothing but white space.
@@ -134,26 +143,24 @@ impl<'s> Evaluator<'_, 's> {
             count => format!("there are {count}"),
         };
         let written = self.argument_example(row, arguments);
-        self.problems.push(Problem::ArgumentCount {
-            name: row.name.to_owned(),
-            takes,
-            are,
-            // What is written is not to be lost.
-            instead: match is_whole(&written)
-                && (found == 0
-                    || written != example(row)
-                    || self.filled_up(row, arguments).is_some())
-            {
-                true => vec![written.clone()],
-                false => Vec::new(),
-            },
-            example: written,
-            span,
-            label: match found {
-                0 => "no value".to_owned(),
-                count => values(count),
-            },
-        });
+        // What is written is not to be lost.
+        let keeps_all =
+            found == 0 || written != example(row) || self.filled_up(row, arguments).is_some();
+        let instead = (is_whole(&written) && keeps_all).then(|| written.clone());
+        self.problems.push(
+            Problem::ArgumentCount {
+                name: row.name.to_owned(),
+                takes,
+                are,
+                example: written,
+                span,
+                label: match found {
+                    0 => "no value".to_owned(),
+                    count => values(count),
+                },
+            }
+            .with(fix::written(span, instead)),
+        );
     }
 
     /// The call with as many of its values as it takes; what a vector is made of stands in parentheses of its own, and what
@@ -209,17 +216,19 @@ impl<'s> Evaluator<'_, 's> {
         let written = self.quoted(argument.span);
         if takes == Type::Angle && found.kind() == Type::Number {
             let [first, second] = self.units(argument);
-            self.problems.push(Problem::BareAngle {
-                what: format!("the argument of `{}`", row.name),
-                written,
-                help: format!(
-                    "write `{0}({1})` (or `{0}({2})`)",
-                    row.name, first.shown, second.shown
-                ),
-                span: argument.span,
-                label,
-                instead: vec![first.text, second.text],
-            });
+            self.problems.push(
+                Problem::BareAngle {
+                    what: format!("the argument of `{}`", row.name),
+                    written,
+                    help: format!(
+                        "write `{0}({1})` (or `{0}({2})`)",
+                        row.name, first.shown, second.shown
+                    ),
+                    span: argument.span,
+                    label,
+                }
+                .with(fix::instead(argument.span, [first.text, second.text])),
+            );
             return;
         }
         self.problems.push(Problem::ArgumentType {
@@ -250,14 +259,16 @@ impl<'s> Evaluator<'_, 's> {
                 true => ("255", "too much"),
                 false => ("0", "too little"),
             };
-            self.problems.push(Problem::ColorRange {
-                channel: name,
-                found: numbers::beside(channel, &[0.0, 255.0]),
-                help: format!("write `{bound}`, or a number that lies between"),
-                span: argument.value.span,
-                label,
-                instead: vec![bound.to_owned()],
-            });
+            self.problems.push(
+                Problem::ColorRange {
+                    channel: name,
+                    found: numbers::beside(channel, &[0.0, 255.0]),
+                    help: format!("write `{bound}`, or a number that lies between"),
+                    span: argument.value.span,
+                    label,
+                }
+                .with(fix::instead(argument.value.span, [bound])),
+            );
         }
         fits
     }
@@ -274,11 +285,13 @@ impl<'s> Evaluator<'_, 's> {
         });
         let parts: Vec<String> = parts.collect();
         let instead = format!("rgb({})", parts.join(", "));
-        self.problems.push(Problem::UnitColor {
-            help: format!("write `{}`, if 1 is to be full light", shorten(&instead)),
-            span,
-            instead: is_whole(&instead).then_some(instead).into_iter().collect(),
-        });
+        self.problems.push(
+            Problem::UnitColor {
+                help: format!("write `{}`, if 1 is to be full light", shorten(&instead)),
+                span,
+            }
+            .with(fix::instead(span, is_whole(&instead).then_some(instead))),
+        );
     }
 
     fn finite_call(
@@ -340,13 +353,15 @@ impl<'s> Evaluator<'_, 's> {
                 ],
             )
         });
-        self.problems.push(Problem::NotFinite {
-            message,
-            help,
-            span,
-            label,
-            fixes: fix.into_iter().collect(),
-        });
+        self.problems.push(
+            Problem::NotFinite {
+                message,
+                help,
+                span,
+                label,
+            }
+            .with(fix),
+        );
         None
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Evaluator, calls::is_whole};
 use crate::{
-    scene::{error::Problem, schema::Type, value::Value},
+    scene::{error::Problem, fix, schema::Type, value::Value},
     source::Span,
     syntax::{shorten, tree::Element},
 };
@@ -42,7 +42,7 @@ impl<'s> Evaluator<'_, 's> {
             2 => colors || wanted == Some(Type::Colors),
             _ => wanted == Some(Type::Colors),
         };
-        self.wrong_part(elements, &values, span, pair);
+        self.wrong_part(elements, &values, pair);
         let fits = elements.len() == if pair { 2 } else { 3 };
         if !fits && values.iter().all(Option::is_some) {
             let kinds = if pair { Type::Color } else { Type::Number };
@@ -54,13 +54,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Reports the first part of a vector that is no number, or of a pair that is no colour.
-    fn wrong_part(
-        &mut self,
-        elements: &[Element<'s>],
-        values: &[Option<Value>],
-        all: Span,
-        pair: bool,
-    ) {
+    fn wrong_part(&mut self, elements: &[Element<'s>], values: &[Option<Value>], pair: bool) {
         let (whole, parts, takes) = match pair {
             true => ("a pair of colours", "colours", Type::Color),
             false => ("a vector", "numbers", Type::Number),
@@ -86,8 +80,6 @@ impl<'s> Evaluator<'_, 's> {
             help: help.to_owned(),
             span: element.value.span,
             label,
-            // Any part that is a colour makes it a pair of colours.
-            found_in: if pair { all } else { element.value.span },
         });
     }
 
@@ -148,17 +140,19 @@ impl<'s> Evaluator<'_, 's> {
             (None, _) => Vec::new(),
         };
         if pair {
-            self.problems.push(Problem::PartCount {
-                whole: "a pair of colours has two parts",
-                count: parts(elements.len()),
-                help: match texts.as_slice() {
-                    [first, second, ..] => format!("write `({first}, {second})`"),
-                    _ => "write two colours, such as `(gray, white)`".to_owned(),
-                },
-                span,
-                label: format!("{} colours", parts(elements.len())),
-                instead,
-            });
+            self.problems.push(
+                Problem::PartCount {
+                    whole: "a pair of colours has two parts",
+                    count: parts(elements.len()),
+                    help: match texts.as_slice() {
+                        [first, second, ..] => format!("write `({first}, {second})`"),
+                        _ => "write two colours, such as `(gray, white)`".to_owned(),
+                    },
+                    span,
+                    label: format!("{} colours", parts(elements.len())),
+                }
+                .with(fix::instead(span, instead)),
+            );
             return;
         }
         let help = match texts.as_slice() {
@@ -170,16 +164,18 @@ impl<'s> Evaluator<'_, 's> {
             },
             [x] => format!("write `({x}, {x}, {x})`"),
         };
-        self.problems.push(Problem::PartCount {
-            whole: "a vector has three parts",
-            count: parts(elements.len()),
-            help,
-            span,
-            label: match elements.len() {
-                0 => "nothing".to_owned(),
-                count => format!("{} numbers", parts(count)),
-            },
-            instead,
-        });
+        self.problems.push(
+            Problem::PartCount {
+                whole: "a vector has three parts",
+                count: parts(elements.len()),
+                help,
+                span,
+                label: match elements.len() {
+                    0 => "nothing".to_owned(),
+                    count => format!("{} numbers", parts(count)),
+                },
+            }
+            .with(fix::instead(span, instead)),
+        );
     }
 }

@@ -13,9 +13,14 @@ mod operators;
 pub use calls::{example as example_call, in_bytes};
 pub use names::{Names, predefined};
 
-use super::{error::Problem, schema::Type, value::Value};
+use super::{
+    error::{Problem, Problems},
+    schema::Type,
+    value::Value,
+};
 use crate::{
     color::Color,
+    diagnostic::Fix,
     source::{Sources, Span},
     syntax::{
         shorten,
@@ -42,7 +47,7 @@ pub struct Evaluator<'a, 's> {
     /// The names that can be used.
     pub names: &'a Names<'s>,
     /// What is wrong.
-    pub problems: &'a mut Vec<Problem>,
+    pub problems: &'a mut Problems,
 }
 
 impl<'s> Evaluator<'_, 's> {
@@ -81,7 +86,7 @@ impl<'s> Evaluator<'_, 's> {
         if number == 0.0 && mantissa.contains(|digit| matches!(digit, '1'..='9')) {
             let written = shorten(written);
             self.problems
-                .push(Problem::NumberUnderflow { written, span });
+                .push(Problem::NumberUnderflow { written, span }.with([Fix::write(span, "0")]));
         }
         Some(number)
     }

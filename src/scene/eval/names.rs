@@ -7,10 +7,12 @@ use std::{
 
 use super::{Evaluator, calls::example};
 use crate::{
+    diagnostic::Fix,
     math::Angle,
     scene::{
         css,
-        error::Problem,
+        error::{Found, Problem},
+        fix,
         schema::{self, Type},
         value::Value,
     },
@@ -214,11 +216,14 @@ impl<'s> Evaluator<'_, 's> {
             _ => {}
         }
         if let Some(function) = schema::function(name) {
-            self.problems.push(Problem::FunctionWithoutArguments {
-                name: name.to_owned(),
-                example: example(function),
-                span,
-            });
+            self.problems.push(
+                Problem::FunctionWithoutArguments {
+                    name: name.to_owned(),
+                    example: example(function),
+                    span,
+                }
+                .with([Fix::write(span, example(function))]),
+            );
             return None;
         }
         let mut reported = self.names.reported.borrow_mut();
@@ -238,7 +243,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    fn used_before(&self, name: &str, span: Span, definition: Span) -> Problem {
+    fn used_before(&self, name: &str, span: Span, definition: Span) -> Found {
         let own = span.source == SourceId::File
             && self.sources.file.line(span.start) == self.sources.file.line(definition.start)
             && definition.start < span.start;
@@ -260,11 +265,11 @@ impl<'s> Evaluator<'_, 's> {
             span,
             definition,
             more: Vec::new(),
-            fixes: Vec::new(),
         }
+        .into()
     }
 
-    fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Problem {
+    fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Found {
         let colors = matches!(wanted, Some(Type::Color | Type::Colors));
         let lets = self.names.to_compare();
         let near = lets.and_then(|lets| nearest(name, lets, wanted));
@@ -279,8 +284,8 @@ impl<'s> Evaluator<'_, 's> {
                 help,
                 span,
                 more: Vec::new(),
-                near: near.map(str::to_owned),
-            };
+            }
+            .with(fix::written(span, near));
         }
         let is_object = self.names.is_object(&name);
         let help = match near {
@@ -296,8 +301,8 @@ impl<'s> Evaluator<'_, 's> {
             help,
             span,
             more: Vec::new(),
-            near: near.filter(|_| !is_object).map(str::to_owned),
         }
+        .with(fix::written(span, near.filter(|_| !is_object)))
     }
 
     /// What a value is, and where its name was defined if it is one.

@@ -22,16 +22,19 @@ impl<'s> Evaluator<'_, 's> {
         let negative = value::negate(value);
         if negative.is_none() {
             let right_label = self.described(operand, value.kind());
-            self.problems.push(Problem::OperandTypes {
-                message: format!("{} has no negative", value.kind().noun()),
-                help: "take the `-` away; only numbers, angles and vectors have a sign".to_owned(),
-                operator: sign,
-                left: None,
-                left_label: String::new(),
-                right: operand.span,
-                right_label,
-                fixes: vec![Fix::remove("take the `-` away", sign, self.sources)],
-            });
+            self.problems.push(
+                Problem::OperandTypes {
+                    message: format!("{} has no negative", value.kind().noun()),
+                    help: "take the `-` away; only numbers, angles and vectors have a sign"
+                        .to_owned(),
+                    operator: sign,
+                    left: None,
+                    left_label: String::new(),
+                    right: operand.span,
+                    right_label,
+                }
+                .with([Fix::remove("take the `-` away", sign, self.sources)]),
+            );
         }
         negative
     }
@@ -75,16 +78,23 @@ impl<'s> Evaluator<'_, 's> {
             };
             let right_label = self.described(&step.operand, right.kind());
             let help = self.operand_help(step, (left, left_span), right);
-            self.problems.push(Problem::OperandTypes {
-                message: cannot(step.operator, left.kind(), right.kind()),
-                help,
-                operator: step.sign,
-                left: Some(left_span),
-                left_label,
-                right: step.operand.span,
-                right_label,
-                fixes: self.operand_fixes(step, (left, left_span, left_tree), right, wanted),
-            });
+            self.problems.push(
+                Problem::OperandTypes {
+                    message: cannot(step.operator, left.kind(), right.kind()),
+                    help,
+                    operator: step.sign,
+                    left: Some(left_span),
+                    left_label,
+                    right: step.operand.span,
+                    right_label,
+                }
+                .with(self.operand_fixes(
+                    step,
+                    (left, left_span, left_tree),
+                    right,
+                    wanted,
+                )),
+            );
             return None;
         };
         if result.is_finite() {
@@ -110,7 +120,6 @@ impl<'s> Evaluator<'_, 's> {
                 },
                 span: step.sign,
                 label: "the right side is 0".to_owned(),
-                fixes: Vec::new(),
             }
         } else {
             Problem::NotFinite {
@@ -118,7 +127,6 @@ impl<'s> Evaluator<'_, 's> {
                 help: "numbers go up to 1.7976931348623157e308".to_owned(),
                 span: step.sign,
                 label: "too large from here on".to_owned(),
-                fixes: Vec::new(),
             }
         };
         self.problems.push(problem);

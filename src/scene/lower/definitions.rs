@@ -3,8 +3,6 @@
 //! In: the problems that were found and the tree of the whole file. A problem is written where a name is met; what could be
 //! done about it depends on what stands elsewhere, so it is added when all is read.
 
-use std::collections::HashMap;
-
 use super::Lowering;
 use crate::{
     diagnostic::{Edit, Fix, with_comments},
@@ -16,7 +14,7 @@ use crate::{
     source::{SourceId, Span},
     syntax::{
         Parsed,
-        tree::{Definition, Item, Value, ValueKind},
+        tree::{Item, Value, ValueKind},
     },
 };
 
@@ -24,32 +22,19 @@ impl<'s> Lowering<'s> {
     /// Says of the problems with definitions what can be done about them.
     pub(super) fn fix_definitions(&mut self, parsed: &Parsed<'s>) {
         let mut problems = std::mem::take(&mut self.problems);
-        let is_predefined = |problem: &Problem| matches!(problem, Problem::PredefinedName { .. });
-        let uses = match problems.iter().any(is_predefined) {
-            true => uses_of_predefined(&parsed.tree.items),
-            false => HashMap::new(),
-        };
-        for problem in &mut problems {
-            match problem {
+        for found in problems.iter_mut() {
+            found.fixes.extend(match &found.problem {
                 Problem::UsedBeforeDefinition {
                     name,
                     span,
                     definition,
-                    fixes,
                     ..
-                } => fixes.extend(self.moved(name, *span, *definition, parsed)),
+                } => self.moved(name, *span, *definition, parsed),
                 Problem::PredefinedName {
-                    name,
-                    span,
-                    found,
-                    fixes,
-                    ..
-                } => {
-                    let uses = uses.get(name.as_str());
-                    fixes.extend(uses.and_then(|uses| self.renamed(name, *span, *found, uses)));
-                }
-                _ => {}
-            }
+                    name, span, found, ..
+                } => self.renamed(name, *span, *found, &parsed.tree.items),
+                _ => None,
+            });
         }
         self.problems = problems;
     }
@@ -106,8 +91,14 @@ impl<'s> Lowering<'s> {
         ))
     }
 
-    /// Gives a definition, and what uses it, the name that the help suggests.
-    fn renamed(&self, name: &str, span: Span, found: Option<Type>, uses: &Uses) -> Option<Fix> {
+    /// Gives a definition, and what uses it below, the name that the help suggests. Where a colour is wanted, a colour's name means that.
+    fn renamed(
+        &self,
+        name: &str,
+        span: Span,
+        found: Option<Type>,
+        items: &[Item<'s>],
+    ) -> Option<Fix> {
         let new = format!("my_{name}");
         // What is typed on the command line is not renamed with the file.
         let is_set = self.targets.contains_key(&(None, name))
@@ -115,7 +106,7 @@ impl<'s> Lowering<'s> {
                 .overrides
                 .iter()
                 .any(|set| holds_name(&set.value, name));
-        if uses.definitions != 1 || self.names.knows(&new) || is_set {
+        if self.names.knows(&new) || is_set {
             return None;
         }
         let kind = match predefined(name)? {
@@ -125,95 +116,51 @@ impl<'s> Lowering<'s> {
             _ => None,
         };
         let mut places = vec![span];
-        places.extend(&uses.others);
-        if kind.is_none() || kind == found {
-            // As a value a function's name means nothing; and what is of one type can stand for each other.
-            places.extend(&uses.of_colors);
-            places.extend(&uses.unclear);
-        } else {
-            // Where a colour is wanted, the colour is meant; elsewhere the definition. Which number is meant does not show.
-            let is_clear = kind == Some(Type::Color) && found.is_some() && uses.unclear.is_empty();
-            if !is_clear && !uses.is_empty() {
-                return None;
+        let mut is_clear = true;
+        for item in items.iter().filter(|item| item.span().start > span.start) {
+            match item {
+                Item::Definition(definition) => {
+                    is_clear &= definition.name.is_none_or(|other| other.text != name);
+                    let value = &definition.value;
+                    let is_all = matches!(value.kind, ValueKind::Name(_));
+                    // What a name by itself means does not show where both could be meant, nor which of two numbers.
+                    is_clear &= !holds_name(value, name)
+                        || kind == found
+                        || kind.is_none()
+                        || (kind == Some(Type::Color) && !is_all && found.is_some());
+                    push_uses(value, name, &mut places);
+                }
+                Item::Block(block) => {
+                    let row = block.kind.and_then(|kind| schema::block(kind.text));
+                    for field in &block.fields {
+                        let takes = row
+                            .and_then(|row| row.field(field.name.text))
+                            .map(|row| row.takes);
+                        let is_color = matches!(takes, Some(Type::Color | Type::Colors));
+                        let is_other = is_color && kind == Some(Type::Color) && kind != found;
+                        is_clear &= kind.is_none()
+                            || kind == found
+                            || (kind == Some(Type::Color) && found.is_some())
+                            || !holds_name(&field.value, name);
+                        if takes != Some(Type::Method) && !is_other {
+                            push_uses(&field.value, name, &mut places);
+                        }
+                    }
+                }
+                Item::Bad(_) => {}
             }
         }
         let edits = places.into_iter().map(|place| Edit::new(place, &new));
-        Some(Fix::new(format!("call it `{new}`"), edits))
+        is_clear.then(|| Fix::new(format!("call it `{new}`"), edits))
     }
 }
 
-/// Where a name is used that the language has already, below its definition.
-#[derive(Debug, Default)]
-struct Uses {
-    /// How many definitions there are.
-    definitions: usize,
-    /// Where a colour is wanted.
-    of_colors: Vec<Span>,
-    /// Where it is all of another definition.
-    unclear: Vec<Span>,
-    others: Vec<Span>,
-}
-
-impl Uses {
-    fn is_empty(&self) -> bool {
-        self.of_colors.is_empty() && self.unclear.is_empty() && self.others.is_empty()
-    }
-}
-
-fn uses_of_predefined<'s>(items: &[Item<'s>]) -> HashMap<&'s str, Uses> {
-    let mut found: HashMap<&'s str, Uses> = HashMap::new();
-    for item in items {
-        match item {
-            Item::Definition(Definition { name, value, .. }) => {
-                let is_part = !is_color_or_pair(value);
-                for_each_name(value, &mut |used, span| {
-                    let uses = found.get_mut(used);
-                    uses.into_iter().for_each(|uses| match is_part {
-                        true => uses.others.push(span),
-                        false => uses.unclear.push(span),
-                    });
-                });
-                let name = name.filter(|name| predefined(name.text).is_some());
-                if let Some(name) = name {
-                    found.entry(name.text).or_default().definitions += 1;
-                }
-            }
-            Item::Block(block) => {
-                let row = block.kind.and_then(|kind| schema::block(kind.text));
-                for field in &block.fields {
-                    let takes = row
-                        .and_then(|row| row.field(field.name.text))
-                        .map(|row| row.takes);
-                    let wants_color = matches!(takes, Some(Type::Color | Type::Colors));
-                    let is_color = wants_color && is_color_or_pair(&field.value);
-                    if takes == Some(Type::Method) {
-                        continue;
-                    }
-                    for_each_name(&field.value, &mut |used, span| {
-                        let uses = found.get_mut(used);
-                        uses.into_iter().for_each(|uses| match is_color {
-                            true => uses.of_colors.push(span),
-                            false => uses.others.push(span),
-                        });
-                    });
-                }
-            }
-            Item::Bad(_) => {}
+fn push_uses(value: &Value<'_>, name: &str, places: &mut Vec<Span>) {
+    for_each_name(value, &mut |used, span| {
+        if used == name {
+            places.push(span);
         }
-    }
-    found
-}
-
-/// Whether a value is a name, or several in parentheses.
-fn is_color_or_pair(value: &Value<'_>) -> bool {
-    match &value.kind {
-        ValueKind::Name(_) => true,
-        ValueKind::Parentheses(inner) => is_color_or_pair(inner),
-        ValueKind::Tuple(parts) => {
-            parts.len() == 2 && parts.iter().any(|part| is_color_or_pair(&part.value))
-        }
-        _ => false,
-    }
+    });
 }
 
 fn is_unfinished(value: &Value<'_>) -> bool {
@@ -227,7 +174,7 @@ fn holds_name(value: &Value<'_>, name: &str) -> bool {
 }
 
 /// Calls a function with every name that stands for a value, in order.
-pub(super) fn for_each_name<'s>(value: &Value<'s>, call: &mut impl FnMut(&'s str, Span)) {
+fn for_each_name<'s>(value: &Value<'s>, call: &mut impl FnMut(&'s str, Span)) {
     match &value.kind {
         ValueKind::Name(name) => call(name, value.span),
         ValueKind::Call(made) => {

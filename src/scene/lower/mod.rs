@@ -5,27 +5,33 @@
 //! all names; then each block is built. A problem of one field never hides one of another.
 
 mod build;
-mod consequences;
+mod camera;
+mod cuboid;
 mod definitions;
+mod fields;
 mod fixing;
+mod missing;
 mod overriding;
 mod reading;
+mod sampler;
+mod triangle;
 mod typing;
 mod unknown;
 mod words;
 
-pub use reading::{read, read_in_parts, read_unless, survey};
+pub use reading::{analyze, read, read_in_parts, read_unless};
 
 use std::{
     collections::{HashMap, hash_map::Entry},
     sync::atomic::AtomicBool,
 };
 
-use self::words::{mentions, missing_value};
+use self::words::mentions;
 use super::{
     Object,
-    error::Problem,
+    error::{Problem, Problems},
     eval::{Names, predefined},
+    fix,
     overrides::Override,
     schema,
     untangle::untangle,
@@ -33,7 +39,7 @@ use super::{
 };
 use crate::{
     cancel,
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Edit, Fix},
     source::{Sources, Span},
     suggest,
     syntax::{
@@ -64,15 +70,13 @@ struct Lowering<'s> {
     has_items: bool,
     /// Whether there is an object, built or not.
     has_objects: bool,
-    /// The names whose definitions give no value, since the language has these names already.
-    denied: Vec<Name<'s>>,
     /// Where each object's name stands first.
     first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be understood.
     bad: Vec<&'s str>,
     /// What is wrong with the syntax.
     found: Vec<Diagnostic>,
-    problems: Vec<Problem>,
+    problems: Problems,
     /// Problems of syntax that show only when the names are known.
     slips: Vec<syntax::Problem>,
     /// The values of unknown fields, in the order of the text.
@@ -127,11 +131,10 @@ impl<'s> Lowering<'s> {
             objects: Vec::new(),
             has_items: false,
             has_objects: false,
-            denied: Vec::new(),
             first_names: HashMap::new(),
             bad: Vec::new(),
             found: Vec::new(),
-            problems: Vec::new(),
+            problems: Problems::default(),
             slips: Vec::new(),
             unknown: Vec::new(),
             in_begun_blocks: false,
@@ -175,31 +178,36 @@ impl<'s> Lowering<'s> {
         };
         // A name without its `let` was reported.
         let reported = definition.keyword.range().is_empty();
-        if predefined(name.text).is_some() {
-            self.denied.push(name);
-        }
-        if reported && (predefined(name.text).is_some() || self.names.place(name.text).is_some()) {
-            return;
-        }
         if let Some(what) = predefined(name.text) {
-            // Its other uses tell whether it can be renamed.
-            self.names.ask_for_all();
-            self.problems.push(Problem::PredefinedName {
-                name: name.text.to_owned(),
-                what,
-                span: name.span,
-                found: value.map(|value| value.kind()),
-                fixes: Vec::new(),
-            });
+            if !reported {
+                // Its other uses tell whether it can be renamed.
+                self.names.ask_for_all();
+                self.problems.push(Problem::PredefinedName {
+                    name: name.text.to_owned(),
+                    what,
+                    span: name.span,
+                    found: value.map(|value| value.kind()),
+                });
+            }
+            // What uses it below is silent: what it means there, nobody can tell.
+            self.names.define(name, None, None);
+        } else if reported && self.names.place(name.text).is_some() {
+            // It stays what it is.
         } else if definition.is_part_of_name() {
             self.names.guess(name);
         } else if let Some(first) = self.names.place_of_whole(name.text) {
-            self.problems.push(Problem::DuplicateLet {
-                name: name.text.to_owned(),
-                second: name.span,
-                first,
-                definition: definition.span,
-            });
+            self.problems.push(
+                Problem::DuplicateLet {
+                    name: name.text.to_owned(),
+                    second: name.span,
+                    first,
+                }
+                .with([Fix::remove_whole(
+                    format!("remove this `let {}`", name.text),
+                    [definition.span],
+                    self.sources,
+                )]),
+            );
         } else {
             self.names.define(name, value, set.map(|set| set.id));
         }
@@ -219,12 +227,15 @@ impl<'s> Lowering<'s> {
             && !row.is_object
             && block.bad.is_empty()
         {
-            self.problems.push(Problem::UnexpectedName {
-                noun: row.noun,
-                kind: row.name,
-                name: name.text.to_owned(),
-                span: name.span,
-            });
+            self.problems.push(
+                Problem::UnexpectedName {
+                    noun: row.noun,
+                    kind: row.name,
+                    name: name.text.to_owned(),
+                    span: name.span,
+                }
+                .with([self.without_name(&name)]),
+            );
         }
         let earlier = match row.is_object {
             true => None,
@@ -233,12 +244,19 @@ impl<'s> Lowering<'s> {
         let earlier = earlier.and_then(|&index| self.blocks.get(index));
         let duplicate = earlier.is_some();
         if let Some(earlier) = earlier {
-            self.problems.push(Problem::DuplicateBlock {
-                name: row.name,
-                second: block.keyword(),
-                first: earlier.keyword,
-                blocks: [earlier.span, block.span],
-            });
+            self.problems.push(
+                Problem::DuplicateBlock {
+                    name: row.name,
+                    second: block.keyword(),
+                    first: earlier.keyword,
+                }
+                .with(fix::one_of_two(
+                    row.name,
+                    " block",
+                    [earlier.span, block.span],
+                    self.sources,
+                )),
+            );
         }
         let mut lowered = Block {
             row,
@@ -304,12 +322,14 @@ impl<'s> Lowering<'s> {
             Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
             None => format!("the kinds are {kinds}"),
         };
-        self.problems.push(Problem::UnknownKind {
-            written: kind.text.to_owned(),
-            help,
-            span: kind.span,
-            near: near.map(|near| near.name.to_owned()),
-        });
+        self.problems.push(
+            Problem::UnknownKind {
+                written: kind.text.to_owned(),
+                help,
+                span: kind.span,
+            }
+            .with(fix::written(kind.span, near.map(|near| near.name))),
+        );
         near
     }
 
@@ -321,7 +341,7 @@ impl<'s> Lowering<'s> {
             return;
         };
         if matches!(field.value.kind, ValueKind::Missing) {
-            self.problems.push(missing_value(&field.name, Some(row)));
+            self.missing_value(&field.name, row);
         }
         if replaced.contains(&row.name) {
             return;
@@ -329,12 +349,19 @@ impl<'s> Lowering<'s> {
         let value = self.typed(row, &field.value);
         let given = Given::new(field.name.span, &field.value, value);
         match block.given.get_mut(index) {
-            Some(Some(first)) => self.problems.push(Problem::DuplicateField {
-                name: row.name.to_owned(),
-                second: field.name.span,
-                first: first.name,
-                fields: [first.field(), given.field()],
-            }),
+            Some(Some(first)) => self.problems.push(
+                Problem::DuplicateField {
+                    name: row.name.to_owned(),
+                    second: field.name.span,
+                    first: first.name,
+                }
+                .with(fix::one_of_two(
+                    row.name,
+                    "",
+                    [first.field(), given.field()],
+                    self.sources,
+                )),
+            ),
             Some(free) => *free = Some(given),
             None => {}
         }
@@ -358,33 +385,64 @@ impl<'s> Lowering<'s> {
             else {
                 continue;
             };
-            self.problems.push(Problem::ConflictingFields {
-                later: second.name.to_owned(),
-                earlier: first.name.to_owned(),
-                why: choice.why,
-                second: later.name,
-                first: earlier.name,
-                fixes: self.one_of(block, choice, [first, second]),
-            });
+            self.problems.push(
+                Problem::ConflictingFields {
+                    later: second.name.to_owned(),
+                    earlier: first.name.to_owned(),
+                    why: choice.why,
+                    second: later.name,
+                    first: earlier.name,
+                }
+                .with(self.one_of(block, choice, [first, second])),
+            );
         }
+    }
+
+    /// A field without a value.
+    fn missing_value(&mut self, name: &Name<'s>, row: &schema::Field) {
+        let example = row.example();
+        let edit = Edit::new(fix::behind(name.span, self.sources), format!(" {example}"));
+        let fix = Fix::new(format!("write `{} {example}`", name.text), [edit]);
+        let problem = Problem::MissingValue {
+            name: name.text.to_owned(),
+            help: format!(
+                "write {} after it, such as `{} {example}`",
+                row.takes.noun(),
+                row.name
+            ),
+            span: name.span,
+        };
+        self.problems.push(problem.with([fix]));
+    }
+
+    /// Takes the name of a block away.
+    fn without_name(&self, name: &Name<'s>) -> Fix {
+        let title = format!("take the name `{}` away", name.text);
+        Fix::remove(title, name.span, self.sources)
     }
 
     fn name_of_object(&mut self, block: &Block<'s>) {
         let Some(name) = block.name else { return };
         let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
         if reserved {
-            self.problems.push(Problem::ReservedName {
-                name: name.text.to_owned(),
-                span: name.span,
-            });
+            self.problems.push(
+                Problem::ReservedName {
+                    name: name.text.to_owned(),
+                    span: name.span,
+                }
+                .with([self.without_name(&name)]),
+            );
             return;
         }
         match self.first_names.entry(name.text) {
-            Entry::Occupied(first) => self.problems.push(Problem::DuplicateName {
-                name: name.text.to_owned(),
-                second: name.span,
-                first: *first.get(),
-            }),
+            Entry::Occupied(first) => self.problems.push(
+                Problem::DuplicateName {
+                    name: name.text.to_owned(),
+                    second: name.span,
+                    first: *first.get(),
+                }
+                .with([self.without_name(&name)]),
+            ),
             Entry::Vacant(free) => {
                 free.insert(name.span);
             }

@@ -144,8 +144,7 @@ impl<'s> Lowering<'s> {
                     let name = &set.name;
                     let is_block = self.first_blocks.contains_key(name.text)
                         || schema::block(name.text).is_some();
-                    let denied = || self.denied.iter().any(|denied| denied.text == name.text);
-                    let found = self.names.knows(name.text) || denied();
+                    let found = self.names.knows(name.text);
                     (!found).then(|| overrides::no_such_let(name, &lets, is_block, budget))
                 }
             };

@@ -8,9 +8,9 @@ use crate::{
     diagnostic::{self, Diagnostic, Fix, Fixable},
     scene::{
         Reading,
-        eval::{Names, predefined},
+        eval::Names,
         overrides::{self, Override},
-        survey::{Parts, Survey},
+        semantic_model::{Parts, SemanticModel},
     },
     source::{Source, SourceId, Sources, Span},
     syntax::{
@@ -70,14 +70,14 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
 }
 
 /// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
-pub fn survey(sources: &Sources) -> Survey<'_> {
+pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     let mut diagnostics = Vec::new();
     let overrides = overrides::read(sources, &mut diagnostics);
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let lowering = whole(sources, &parsed, overrides, diagnostics, &cancel::NEVER);
     let (parts, mut diagnostics, names) = lowering.finish();
     prove_fixes(sources, &mut diagnostics);
-    Survey {
+    SemanticModel {
         sources,
         parsed,
         diagnostics,
@@ -166,7 +166,6 @@ fn whole<'s>(
     lowering.items(&tree.items);
     lowering.override_blocks();
     lowering.fix_definitions(parsed);
-    lowering.leave_out_consequences(&tree.items);
     lowering
 }
 
@@ -187,7 +186,8 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        diagnostics.extend(self.diagnostics(&self.problems));
+        let found = self.problems.iter().take_while(|_| self.is_wanted());
+        diagnostics.extend(found.map(|found| found.diagnostic(self.sources)));
         diagnostics.extend(self.diagnostics(&self.slips));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
@@ -216,7 +216,7 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
 /// The names that a file defines, those that it may define.
 fn definitions<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = Name<'s>> + 't {
     tree.items.iter().filter_map(|item| match item {
-        Item::Definition(definition) => definition.name.filter(|n| predefined(n.text).is_none()),
+        Item::Definition(definition) => definition.name,
         Item::Block(_) | Item::Bad(_) => None,
     })
 }

@@ -6,8 +6,9 @@ use super::{
 };
 use crate::{
     scene::{
-        error::Problem,
+        error::{Found, Problem},
         eval::{Evaluator, WithUnit},
+        fix,
         schema::{self, Condition, Field, Type},
         value::Value,
     },
@@ -41,7 +42,13 @@ impl<'s> Lowering<'s> {
         if let Some(&condition) = broken {
             let rounded_to_zero = matches!(
                 (&tree.kind, self.problems.last()),
-                (ValueKind::Number(_), Some(Problem::NumberUnderflow { .. }))
+                (
+                    ValueKind::Number(_),
+                    Some(Found {
+                        problem: Problem::NumberUnderflow { .. },
+                        ..
+                    })
+                )
             ) && self.problems.len() > before;
             if rounded_to_zero {
                 self.problems.truncate(before);
@@ -66,8 +73,9 @@ impl<'s> Lowering<'s> {
 
     /// A list of numbers that is no vector: says what the field takes in place of it.
     fn parts_of_list(&mut self, row: &'static Field, tree: &tree::Value<'s>) {
+        let last = self.problems.last().map(|found| &found.problem);
         let (Some(Problem::PartCount { span, .. }), ValueKind::Tuple(elements)) =
-            (self.problems.last(), &tree.kind)
+            (last, &tree.kind)
         else {
             return;
         };
@@ -82,16 +90,17 @@ impl<'s> Lowering<'s> {
         match (row.takes, self.problems.last_mut()) {
             (
                 Type::Vector,
-                Some(Problem::PartCount {
-                    help: said,
-                    instead: offered,
-                    ..
+                Some(Found {
+                    problem: Problem::PartCount { help: said, .. },
+                    fixes,
                 }),
             ) => {
                 if let Some(help) = help {
                     *said = help;
                 }
-                *offered = instead.unwrap_or_else(|| std::mem::take(offered));
+                if let Some(instead) = instead {
+                    *fixes = fix::instead(tree.span, instead);
+                }
             }
             _ => {
                 self.problems.pop();
@@ -105,8 +114,8 @@ impl<'s> Lowering<'s> {
                     }),
                     span: tree.span,
                     label: "a list of numbers".to_owned(),
-                    instead: instead.unwrap_or_default(),
-                };
+                }
+                .with(fix::instead(tree.span, instead.unwrap_or_default()));
                 self.problems.push(problem);
             }
         }
@@ -125,7 +134,6 @@ impl<'s> Lowering<'s> {
                     help: format!("the methods are {list}"),
                     span: tree.span,
                     label: found.noun().to_owned(),
-                    instead: Vec::new(),
                 };
                 self.problems.push(problem);
             }
@@ -139,12 +147,14 @@ impl<'s> Lowering<'s> {
             Some(near) => format!("did you mean `{near}`? The methods are {list}."),
             None => format!("the methods are {list}"),
         };
-        self.problems.push(Problem::UnknownMethod {
-            written: written.to_owned(),
-            help,
-            span: tree.span,
-            near: near.map(str::to_owned),
-        });
+        self.problems.push(
+            Problem::UnknownMethod {
+                written: written.to_owned(),
+                help,
+                span: tree.span,
+            }
+            .with(fix::written(tree.span, near)),
+        );
         None
     }
 
@@ -169,8 +179,11 @@ impl<'s> Lowering<'s> {
                 },
                 span: tree.span,
                 label,
-                instead: fitting.iter().map(|unit| unit.text.clone()).collect(),
             }
+            .with(fix::instead(
+                tree.span,
+                fitting.iter().map(|unit| unit.text.clone()),
+            ))
         } else {
             Problem::WrongType {
                 name: row.name.to_owned(),
@@ -180,8 +193,11 @@ impl<'s> Lowering<'s> {
                 help: type_help(row, tree, value, &text),
                 span: tree.span,
                 label,
-                instead: of_right_type(row, tree, value, whole),
             }
+            .with(fix::instead(
+                tree.span,
+                of_right_type(row, tree, value, whole),
+            ))
         };
         self.problems.push(problem);
     }
@@ -203,14 +219,15 @@ impl<'s> Lowering<'s> {
             Some(part) => (part, "not above 0"),
             None => (tree.span, label),
         };
-        self.problems.push(Problem::OutOfRange {
-            message,
-            help,
-            span,
-            label: label.to_owned(),
-            whole: tree.span,
-            instead,
-        });
+        self.problems.push(
+            Problem::OutOfRange {
+                message,
+                help,
+                span,
+                label: label.to_owned(),
+            }
+            .with(fix::instead(tree.span, instead)),
+        );
     }
 
     pub(super) fn evaluate(

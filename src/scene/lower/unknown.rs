@@ -9,7 +9,7 @@ use crate::{
     math::Angle,
     scene::{
         css,
-        error::Problem,
+        error::{Found, Problem},
         example_beside,
         schema::{self, Field, Spread, Type},
         value::Value,
@@ -79,7 +79,7 @@ impl<'s> Lowering<'s> {
         name: &Name<'s>,
         value: &tree::Value<'s>,
         meant: Option<Meant<'s>>,
-    ) -> Problem {
+    ) -> Found {
         let mut noun = block.row.noun.to_owned();
         if let Some(first) = noun.get_mut(..1) {
             first.make_ascii_uppercase();
@@ -177,8 +177,8 @@ impl<'s> Lowering<'s> {
                 None => format!("{} takes {all}", block.row.noun),
             },
             span: name.span,
-            fixes: fix.into_iter().collect(),
         }
+        .with(fix)
     }
 
     fn meant(
@@ -261,7 +261,7 @@ impl<'s> Lowering<'s> {
         let found = self.evaluate(value, wanted);
         let mut problems = self.problems.split_off(before);
         let count = problems.len();
-        problems.retain(Problem::is_of_name);
+        problems.retain(|found| found.problem.is_of_name());
         let is_reported = found.is_none() && problems.len() == count;
         self.problems.extend(problems);
         Outcome {

@@ -6,32 +6,12 @@ use crate::{
     math::Angle,
     numbers,
     scene::{
-        error::Problem,
         eval::in_bytes,
         schema::{Condition, Field, Preset, Type},
         value::Value,
     },
-    syntax::tree::{self, Name, ValueKind},
+    syntax::tree::{self, ValueKind},
 };
-
-/// A field without a value.
-pub fn missing_value(name: &Name<'_>, row: Option<&Field>) -> Problem {
-    let help = match row {
-        Some(row) => format!(
-            "write {} after it, such as `{} {}`",
-            row.takes.noun(),
-            row.name,
-            row.example()
-        ),
-        None => "write a value after it".to_owned(),
-    };
-    Problem::MissingValue {
-        name: name.text.to_owned(),
-        help,
-        span: name.span,
-        example: row.map(Field::example),
-    }
-}
 
 /// The label and the help for a condition that does not hold, and what can stand in the value's place.
 pub fn range_words(

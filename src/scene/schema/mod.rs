@@ -3,13 +3,13 @@
 //! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought among them, and the
 //! language's reference is tested against them.
 //!
-//! Here is what a row says; the rows stand in `blocks` and `words`.
+//! Here is what a row says; the rows stand in `blocks` and `builtins`.
 
 mod blocks;
-mod words;
+mod builtins;
 
 pub use blocks::BLOCKS;
-pub use words::{
+pub use builtins::{
     CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names, nearest_method,
 };
 

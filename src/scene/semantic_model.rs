@@ -4,6 +4,7 @@
 
 use super::{
     Camera, Image, Object, Sampler, Scene, Value,
+    error::Problems,
     eval::{Evaluator, Names, predefined},
     schema::Type,
 };
@@ -43,7 +44,7 @@ impl Parts {
 
 /// A text with everything that is known of it.
 #[derive(Debug)]
-pub struct Survey<'s> {
+pub struct SemanticModel<'s> {
     pub(super) sources: &'s Sources,
     /// The tree and the comments.
     pub parsed: Parsed<'s>,
@@ -54,7 +55,7 @@ pub struct Survey<'s> {
     pub(super) names: Names<'s>,
 }
 
-impl<'s> Survey<'s> {
+impl<'s> SemanticModel<'s> {
     /// The texts.
     pub fn sources(&self) -> &'s Sources {
         self.sources
@@ -93,7 +94,7 @@ impl<'s> Survey<'s> {
         if !self.is_defined(value) {
             return None;
         }
-        let mut problems = Vec::new();
+        let mut problems = Problems::default();
         let mut evaluator = Evaluator {
             sources: self.sources,
             names: &self.names,
