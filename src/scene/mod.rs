@@ -23,7 +23,6 @@ mod lower;
 mod overrides;
 pub mod schema;
 mod survey;
-mod untangle;
 mod value;
 
 pub use eval::{example_call, predefined};

@@ -27,7 +27,6 @@ use super::{
     eval::{Names, predefined},
     overrides::Override,
     schema::{self, Kind, Type},
-    untangle::untangle,
     value::Value,
 };
 use crate::{
@@ -35,10 +34,7 @@ use crate::{
     diagnostic::Diagnostic,
     source::{SourceId, Sources, Span},
     suggest,
-    syntax::{
-        self,
-        tree::{self, Definition, Item, Name, ValueKind},
-    },
+    syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
 struct Lowering<'s> {
@@ -70,8 +66,6 @@ struct Lowering<'s> {
     /// What is wrong with the syntax.
     found: Vec<Diagnostic>,
     problems: Vec<Problem>,
-    /// Problems of syntax that show only when the names are known.
-    slips: Vec<syntax::Problem>,
     /// The values of unknown fields, in the order of the text.
     unknown: Vec<Span>,
     /// Whether the last block was only begun.
@@ -126,7 +120,6 @@ impl<'s> Lowering<'s> {
             bad: Vec::new(),
             found: Vec::new(),
             problems: Vec::new(),
-            slips: Vec::new(),
             unknown: Vec::new(),
             in_begun_blocks: false,
         }
@@ -253,15 +246,7 @@ impl<'s> Lowering<'s> {
             lowered.meant.extend(mentioned);
         }
         let replaced = self.replaced_fields(&lowered);
-        for field in untangle(
-            &block.fields,
-            row,
-            &self.names,
-            self.sources,
-            &mut self.slips,
-        )
-        .iter()
-        {
+        for field in &block.fields {
             self.field(field, &mut lowered, &replaced);
         }
         self.conflicts(&lowered, &replaced);
