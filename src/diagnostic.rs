@@ -60,8 +60,6 @@ pub struct Diagnostic {
     pub is_needless: bool,
     /// Whether the text cannot be taken apart, whatever its names mean.
     pub is_of_syntax: bool,
-    /// Whether it is still to be shown that its fixes help.
-    pub(crate) is_fix_doubtful: bool,
 }
 
 /// A place with a few words.
@@ -96,7 +94,6 @@ impl Diagnostic {
             fixes: Vec::new(),
             is_needless: false,
             is_of_syntax: false,
-            is_fix_doubtful: false,
         }
     }
 
@@ -106,7 +103,6 @@ impl Diagnostic {
             fixes: problem.fixes(sources),
             is_needless: problem.is_needless(),
             is_of_syntax: problem.is_of_syntax(),
-            is_fix_doubtful: problem.is_fix_doubtful(),
             ..Self::from_problem(problem, sources)
         }
     }

@@ -69,7 +69,7 @@ macro_rules! pages {
 pub const GROUPS: &[Group] = &[
     Group {
         name: "The text",
-        pages: pages! { invalid_utf8 odd_space comment_sign unclosed_comment quoted unexpected },
+        pages: pages! { foreign_file not_in_language invalid_utf8 odd_space comment_sign unclosed_comment nested_comment quoted unexpected },
     },
     Group {
         name: "Definitions",
@@ -88,8 +88,8 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "Fields",
         pages: pages! {
-            unknown_field missing_field duplicate_field conflicting_fields needless_equals needless_separator wrong_type
-            out_of_range
+            unknown_field missing_field missing_field_name missing_space duplicate_field conflicting_fields needless_equals
+            needless_separator wrong_type out_of_range
         },
     },
     Group {
@@ -111,7 +111,8 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "Calculations",
         pages: pages! {
-            missing_operator missing_operand unknown_operator operand_types unknown_function function_without_arguments
+            missing_operator missing_operand unknown_operator operand_types unknown_function foreign_function
+            function_without_arguments
             argument_count argument_type not_finite too_deep
         },
     },

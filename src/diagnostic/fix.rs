@@ -12,11 +12,6 @@ pub trait Fixable: miette::Diagnostic {
         false
     }
 
-    /// Whether its fixes may not help, so that they are offered only where reading what they lead to shows that they do.
-    fn is_fix_doubtful(&self) -> bool {
-        false
-    }
-
     /// Whether the text cannot be taken apart, whatever its names mean.
     fn is_of_syntax(&self) -> bool;
 }

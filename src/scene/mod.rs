@@ -26,7 +26,6 @@ mod overrides;
 pub mod schema;
 mod semantic_model;
 mod unseen;
-mod untangle;
 mod value;
 
 pub use eval::{example_call, predefined};

@@ -3,7 +3,7 @@
 use miette::Diagnostic;
 use thiserror::Error;
 
-use super::comments::NESTING_LIMIT;
+use super::{NESTING_LIMIT, fix::Way};
 use crate::source::Span;
 
 /// A problem of syntax. The first label is the place to jump to.
@@ -25,6 +25,19 @@ pub enum Problem {
     #[diagnostic(code(pinhole::invalid_utf8), help("save the file as UTF-8"))]
     Utf16 {
         #[label("the byte order mark of UTF-16")]
+        span: Span,
+    },
+
+    #[error("this looks like {what}, not like a scene of Pinhole")]
+    #[diagnostic(
+        code(pinhole::foreign_file),
+        help(
+            "the smallest scene is `camera {{ eye (0, 2, 8)  lookat (0, 1, 0) }}` and `sphere {{ center (0, 1, 0) }}`"
+        )
+    )]
+    ForeignFile {
+        what: &'static str,
+        #[label("no scene starts like this")]
         span: Span,
     },
 
@@ -62,6 +75,16 @@ pub enum Problem {
         span: Span,
     },
 
+    #[error("comments do not nest: the first `*/` ends this one")]
+    #[diagnostic(code(pinhole::nested_comment), help("{way}"))]
+    NestedComment {
+        #[label("this opens no other comment")]
+        span: Span,
+        #[label("so this closes none")]
+        close: Span,
+        way: Way,
+    },
+
     #[error("a comment begins with `//`, not with `{sign}`{}", and_below(places.len() - 1))]
     #[diagnostic(code(pinhole::comment_sign), help("write `{right}`"))]
     ForeignComment {
@@ -72,6 +95,15 @@ pub enum Problem {
         span: Span,
         /// This sign, and those in the lines below that hold nothing else.
         places: Vec<Span>,
+    },
+
+    #[error("the language has no {what}")]
+    #[diagnostic(code(pinhole::not_in_language), help("{help}"))]
+    NotInLanguage {
+        what: &'static str,
+        help: &'static str,
+        #[label("not a part of the language")]
+        span: Span,
     },
 
     #[error("this value nests more than {NESTING_LIMIT} levels deep")]
@@ -97,21 +129,20 @@ pub enum Problem {
     },
 
     #[error("a parenthesis is never closed")]
-    #[diagnostic(code(pinhole::unclosed_parenthesis), help("write `)` where it ends"))]
+    #[diagnostic(code(pinhole::unclosed_parenthesis), help("{way}"))]
     UnclosedParenthesis {
         #[label("opened here")]
         span: Span,
+        way: Way,
     },
 
     #[error("this `{sign}` closes nothing")]
-    #[diagnostic(code(pinhole::stray_closing), help("{help}"))]
+    #[diagnostic(code(pinhole::stray_closing), help("{way}"))]
     StrayClosing {
         sign: String,
         #[label("nothing is open here")]
         span: Span,
-        /// It, and others of its kind right behind it.
-        all: Span,
-        help: String,
+        way: Way,
     },
 
     #[error("`let {name}` has no value")]
@@ -133,6 +164,16 @@ pub enum Problem {
         span: Span,
     },
 
+    #[error("a number is missing between these commas")]
+    #[diagnostic(
+        code(pinhole::missing_value),
+        help("write a number here, such as `(1, 0, 3)`")
+    )]
+    MissingPart {
+        #[label("a number should stand before this")]
+        span: Span,
+    },
+
     #[error("this `--set` gives no value")]
     #[diagnostic(code(pinhole::missing_value), help("write a value after the `=`"))]
     SetWithoutValue {
@@ -141,46 +182,41 @@ pub enum Problem {
     },
 
     #[error("nothing stands {side} this `{operator}`")]
-    #[diagnostic(
-        code(pinhole::missing_operand),
-        help("write a value {side} it, or take the `{operator}` away")
-    )]
+    #[diagnostic(code(pinhole::missing_operand), help("{way}"))]
     MissingOperand {
         operator: String,
         side: &'static str,
         #[label("a value is missing {side} this")]
         span: Span,
+        way: Way,
     },
 
-    #[error("a field takes its value without `{sign}`")]
-    #[diagnostic(code(pinhole::needless_equals), help("write `{name} {value}`"))]
+    #[error("a field takes its value without `{sign}`{}", times(way.places() - 1))]
+    #[diagnostic(code(pinhole::needless_equals), help("{way}"))]
     NeedlessEquals {
         sign: String,
-        name: String,
-        value: String,
         #[label("not needed")]
         span: Span,
+        way: Way,
     },
 
-    #[error("no `{sign}` stands between {between}")]
-    #[diagnostic(
-        code(pinhole::needless_separator),
-        help("take it away; white space separates {between}")
-    )]
+    #[error("no `{sign}` stands between {between}{}", times(way.places() - 1))]
+    #[diagnostic(code(pinhole::needless_separator), help("{way}"))]
     NeedlessSeparator {
         sign: String,
         between: &'static str,
         #[label("not needed")]
         span: Span,
+        way: Way,
     },
 
     #[error("`let {name}` lacks its `=`")]
-    #[diagnostic(code(pinhole::missing_equals), help("write `let {name} = {value}`"))]
+    #[diagnostic(code(pinhole::missing_equals), help("{way}"))]
     MissingEquals {
         name: String,
-        value: String,
         #[label("`=` should stand here")]
         span: Span,
+        way: Way,
     },
 
     #[error("a `let` lacks its name")]
@@ -206,28 +242,36 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("{} is missing between `{left}` and `{right}`", meant.missing())]
-    #[diagnostic(code(pinhole::missing_operator), help("{help}"))]
+    #[error("{what} is missing between `{left}` and `{right}`")]
+    #[diagnostic(code(pinhole::missing_operator), help("{way}"))]
     MissingOperator {
+        what: &'static str,
         left: String,
         right: String,
-        help: String,
-        #[label("{}", meant.question())]
+        #[label("{label}")]
         span: Span,
-        /// What may be meant.
-        meant: Meant,
+        label: &'static str,
+        way: Way,
     },
 
     #[error("a comma is missing between `{left}` and `{right}`")]
-    #[diagnostic(code(pinhole::missing_comma), help("write `{whole}`"))]
+    #[diagnostic(code(pinhole::missing_comma), help("{way}"))]
     MissingComma {
         left: String,
         right: String,
-        whole: String,
         #[label("a comma should stand before this")]
         span: Span,
-        /// Where commas should stand.
-        places: Vec<Span>,
+        way: Way,
+    },
+
+    #[error("a space is missing between `{left}` and `{right}`")]
+    #[diagnostic(code(pinhole::missing_space), help("{way}"))]
+    MissingSpace {
+        left: String,
+        right: String,
+        #[label("a field and its value")]
+        span: Span,
+        way: Way,
     },
 
     #[error("this comma is one too many")]
@@ -239,90 +283,96 @@ pub enum Problem {
         #[label("{place}")]
         span: Span,
         place: &'static str,
+        way: Way,
     },
 
-    #[error("a decimal point is written `.`, not `,`")]
-    #[diagnostic(code(pinhole::decimal_comma), help("write `{number}`"))]
+    #[error("{message}")]
+    #[diagnostic(code(pinhole::decimal_comma), help("{way}"))]
     DecimalComma {
-        number: String,
+        message: &'static str,
         #[label("a comma separates the parts of a vector")]
         span: Span,
+        way: Way,
     },
 
     #[error("values that belong together stand in parentheses")]
-    #[diagnostic(code(pinhole::missing_parentheses), help("write `({values})`"))]
+    #[diagnostic(code(pinhole::missing_parentheses), help("{way}"))]
     MissingParentheses {
-        values: String,
         #[label("these belong together")]
         span: Span,
-        /// How they are written together.
-        together: String,
+        way: Way,
     },
 
-    #[error("a vector stands in round parentheses")]
-    #[diagnostic(code(pinhole::brackets), help("write `({inner})`"))]
+    #[error("{what} stands in round parentheses")]
+    #[diagnostic(code(pinhole::brackets), help("{way}"))]
     Brackets {
-        inner: String,
+        what: &'static str,
         #[label("not in these")]
         span: Span,
+        way: Way,
     },
 
     #[error("there is no operator `{sign}`")]
-    #[diagnostic(code(pinhole::unknown_operator), help("{help}"))]
+    #[diagnostic(code(pinhole::unknown_operator), help("{way}"))]
     UnknownOperator {
         sign: String,
-        help: String,
         #[label("not one of `+`, `-`, `*` and `/`")]
         span: Span,
-        /// What can be written instead, and where.
-        instead: Option<(Span, String)>,
+        way: Way,
     },
 
     #[error("no `+` stands before a value")]
-    #[diagnostic(code(pinhole::plus_sign), help("write `{value}`"))]
+    #[diagnostic(code(pinhole::plus_sign), help("{way}"))]
     PlusSign {
-        value: String,
         #[label("not needed")]
         span: Span,
+        way: Way,
     },
 
     #[error("{what} is written without quotation marks")]
-    #[diagnostic(code(pinhole::quoted), help("write `{inner}`"))]
+    #[diagnostic(code(pinhole::quoted), help("{way}"))]
     Quoted {
         what: &'static str,
-        inner: String,
         #[label("without the quotation marks")]
         span: Span,
+        way: Way,
     },
 
     #[error("`{written}` is no number")]
-    #[diagnostic(code(pinhole::bad_number), help("{help}"))]
+    #[diagnostic(code(pinhole::bad_number), help("{way}"))]
     BadNumber {
         written: String,
-        help: String,
         #[label("{label}")]
         span: Span,
         label: String,
-        /// What was meant, as a whole and what of it stands in this place.
-        instead: Option<[String; 2]>,
+        way: Way,
     },
 
     #[error("a unit stands right behind its number")]
-    #[diagnostic(code(pinhole::spaced_unit), help("write `{joined}`"))]
+    #[diagnostic(code(pinhole::spaced_unit), help("{way}"))]
     SpacedUnit {
-        joined: String,
         #[label("no space between the two")]
         span: Span,
+        way: Way,
     },
 
     #[error("`{written}` is no colour")]
-    #[diagnostic(code(pinhole::bad_color_code), help("{help}"))]
+    #[diagnostic(code(pinhole::bad_color_code), help("{way}"))]
     BadColorCode {
         written: String,
-        help: String,
         #[label("{label}")]
         span: Span,
         label: String,
+        way: Way,
+    },
+
+    #[error("`{written}` is a function of another language")]
+    #[diagnostic(code(pinhole::foreign_function), help("{way}"))]
+    ForeignFunction {
+        written: String,
+        #[label("not a function of this language")]
+        span: Span,
+        way: Way,
     },
 
     #[error("a `let` stands within a block")]
@@ -336,16 +386,13 @@ pub enum Problem {
         block: Span,
     },
 
-    #[error("{block} lacks its `{{`")]
-    #[diagnostic(
-        code(pinhole::unopened_block),
-        help("write `{head} {{` before its fields")
-    )]
+    #[error("the block `{head}` lacks its braces")]
+    #[diagnostic(code(pinhole::unopened_block), help("{way}"))]
     UnopenedBlock {
-        block: String,
         head: String,
-        #[label("`{{` should follow here")]
+        #[label("the block's fields stand between `{{` and `}}`")]
         span: Span,
+        way: Way,
     },
 
     #[error("a block lacks its kind")]
@@ -359,34 +406,39 @@ pub enum Problem {
     },
 
     #[error("only a kind and a name stand before a `{{`")]
-    #[diagnostic(code(pinhole::bad_head), help("{help}"))]
+    #[diagnostic(code(pinhole::bad_head), help("{way}"))]
     BadHead {
-        help: String,
         #[label("this does not belong here")]
         span: Span,
-        /// What can stand before the `{`, and in place of what.
-        instead: Option<(Span, String)>,
+        way: Way,
     },
 
-    #[error("braces within a block")]
+    #[error("{what}")]
     #[diagnostic(
         code(pinhole::nested_braces),
         help("a block holds fields only; write each block by itself")
     )]
     NestedBraces {
-        #[label("no `{{` here")]
+        what: String,
+        #[label("not in a block, or around one")]
         span: Span,
     },
 
+    #[error("a value stands here without the name of its field")]
+    #[diagnostic(code(pinhole::missing_field_name), help("{way}"))]
+    MissingFieldName {
+        #[label("which field is this for?")]
+        span: Span,
+        way: Way,
+    },
+
     #[error("a value is given to `{name}` without `let`")]
-    #[diagnostic(code(pinhole::missing_let), help("write `let {name} = {value}`"))]
+    #[diagnostic(code(pinhole::missing_let), help("{way}"))]
     MissingLet {
         name: String,
-        value: String,
-        /// Where the name stands.
-        place: Span,
         #[label("`let {name}` should stand here")]
         span: Span,
+        way: Way,
     },
 
     #[error("`{name}` stands outside of every block")]
@@ -402,43 +454,15 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("`{written}` cannot be understood here")]
+    #[error("expected {expected}, found `{written}`")]
     #[diagnostic(code(pinhole::unexpected), help("{help}"))]
     Unexpected {
+        expected: &'static str,
         written: String,
-        help: String,
+        help: &'static str,
         #[label("not here")]
         span: Span,
     },
-}
-
-/// What may be meant by two values with nothing between.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meant {
-    /// Their product.
-    Product,
-    /// The call of a function.
-    Call,
-    /// The value of another field.
-    Field,
-    /// Nothing that can be told: two vectors have no product.
-    Unclear,
-}
-
-impl Meant {
-    fn missing(self) -> &'static str {
-        match self {
-            Self::Product | Self::Call | Self::Unclear => "an operator",
-            Self::Field => "a field's name",
-        }
-    }
-
-    fn question(self) -> &'static str {
-        match self {
-            Self::Product | Self::Call | Self::Unclear => "what is to be done with this?",
-            Self::Field => "which field is this for?",
-        }
-    }
 }
 
 fn times(more: usize) -> String {

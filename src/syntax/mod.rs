@@ -1,8 +1,8 @@
 //! Text → tree.
 //!
-//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: what cannot be understood
-//! becomes a problem and a `Bad` node, and the rest of the text is read as if nothing had been there. What the names mean is
-//! not known here.
+//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest reads the items that are
+//! right (`grammar`, `parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
+//! of each slip and nodes of what can be understood. What the names mean is not known here, but for telling slips apart.
 
 #![cfg_attr(
     not(test),
@@ -15,22 +15,26 @@
     )
 )]
 
-mod comments;
 mod error;
-mod fixes;
-mod foreign;
+mod fix;
 mod grammar;
-mod junk;
+mod messages;
 mod parser;
+mod recovery;
+mod scan;
+pub mod tokens;
 pub mod tree;
+mod words;
 
-pub use comments::NESTING_LIMIT;
 pub use error::Problem;
-pub use junk::{is_unit, missing_field, missing_operator, shorten};
+pub use messages::shorten;
 pub use parser::{parse, parse_in_parts, parse_unless, parse_value};
 pub use tree::Tree;
 
 use crate::source::Span;
+
+/// Parentheses, signs and calls nest at most this deep.
+pub const NESTING_LIMIT: usize = 256;
 
 /// What parsing yields.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,6 +45,6 @@ pub struct Parsed<'s> {
     pub comments: Vec<Span>,
     /// What is wrong with the text.
     pub problems: Vec<Problem>,
-    /// Where an unclosed comment took the rest of the text: what is missing after it is not the author's mistake.
+    /// Where a mistake took the rest of the text: what is missing after it is not missed.
     pub cut: Option<usize>,
 }

@@ -78,7 +78,6 @@ impl<'s> Lowering<'s> {
     fn has_errors(&self) -> bool {
         let is_error = |found: &Found| found.problem.severity() != Some(Severity::Warning);
         self.problems.iter().any(is_error)
-            || !self.slips.is_empty()
             || self.found.iter().any(Diagnostic::is_error)
             || !self.sources.file.invalid_utf8().is_empty()
     }

@@ -34,7 +34,6 @@ use super::{
     fix,
     overrides::Override,
     schema,
-    untangle::untangle,
     value::Value,
 };
 use crate::{
@@ -42,10 +41,7 @@ use crate::{
     diagnostic::{Diagnostic, Edit, Fix},
     source::{Sources, Span},
     suggest,
-    syntax::{
-        self,
-        tree::{self, Definition, Item, Name, ValueKind},
-    },
+    syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
 struct Lowering<'s> {
@@ -77,8 +73,6 @@ struct Lowering<'s> {
     /// What is wrong with the syntax.
     found: Vec<Diagnostic>,
     problems: Problems,
-    /// Problems of syntax that show only when the names are known.
-    slips: Vec<syntax::Problem>,
     /// The values of unknown fields, in the order of the text.
     unknown: Vec<Span>,
     /// Whether the last block was only begun.
@@ -135,7 +129,6 @@ impl<'s> Lowering<'s> {
             bad: Vec::new(),
             found: Vec::new(),
             problems: Problems::default(),
-            slips: Vec::new(),
             unknown: Vec::new(),
             in_begun_blocks: false,
         }
@@ -278,19 +271,12 @@ impl<'s> Lowering<'s> {
             lowered.meant.extend(mentioned);
         }
         let replaced = self.replaced_fields(&lowered);
-        let fields = untangle(
-            &block.fields,
-            row,
-            &self.names,
-            self.sources,
-            &mut self.slips,
-        );
         let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
-        for field in fields.iter().filter(is_known) {
+        for field in block.fields.iter().filter(is_known) {
             self.field(field, &mut lowered, &replaced);
         }
         // What else there is tells what they can have meant.
-        for field in fields.iter().filter(|field| !is_known(field)) {
+        for field in block.fields.iter().filter(|field| !is_known(field)) {
             self.unknown_field(field, &mut lowered);
         }
         self.conflicts(&lowered, &replaced);

@@ -1,18 +1,18 @@
 //! From the text to the tree, and on to the scene: in parts side by side where all is well, and as a whole.
 
-use std::{collections::HashMap, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 use super::Lowering;
 use crate::{
     cancel::{self, Cancelled},
-    diagnostic::{self, Diagnostic, Fix, Fixable},
+    diagnostic::{self, Diagnostic, Fixable},
     scene::{
         Reading,
         eval::Names,
         overrides::{self, Override},
         semantic_model::{Parts, SemanticModel},
     },
-    source::{Source, SourceId, Sources, Span},
+    source::{SourceId, Sources, Span},
     syntax::{
         self,
         tree::{Item, Name},
@@ -64,9 +64,7 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
         }
     }
     let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
-    let mut reading = whole(sources, &parsed, overrides, diagnostics, cancel).reading();
-    prove_fixes(sources, &mut reading.diagnostics);
-    reading
+    whole(sources, &parsed, overrides, diagnostics, cancel).reading()
 }
 
 /// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
@@ -75,8 +73,7 @@ pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     let overrides = overrides::read(sources, &mut diagnostics);
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let lowering = whole(sources, &parsed, overrides, diagnostics, &cancel::NEVER);
-    let (parts, mut diagnostics, names) = lowering.finish();
-    prove_fixes(sources, &mut diagnostics);
+    let (parts, diagnostics, names) = lowering.finish();
     SemanticModel {
         sources,
         parsed,
@@ -84,68 +81,6 @@ pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
         parts,
         names,
     }
-}
-
-/// Leaves of the fixes that may not help those that do: what they make of the text is read.
-fn prove_fixes(sources: &Sources, diagnostics: &mut [Diagnostic]) {
-    /// That takes time, which is not to be seen while the text is typed.
-    const MOST: usize = 8;
-    const LONGEST: usize = 1 << 16;
-    let doubtful = |diagnostic: &Diagnostic| diagnostic.is_fix_doubtful;
-    if !diagnostics.iter().any(doubtful) {
-        return;
-    }
-    let before = counted(diagnostics);
-    let is_short = sources.file.text().len() <= LONGEST;
-    let mut proved = 0;
-    for diagnostic in diagnostics.iter_mut().filter(|d| doubtful(d)) {
-        proved += 1;
-        let is_looked_at = is_short && proved <= MOST;
-        let said = said(diagnostic);
-        diagnostic.fixes.retain(|fix| {
-            is_looked_at && {
-                let after = counted(&diagnostics_with(sources, fix));
-                // An unclosed comment may have taken the camera: that there is none was only hidden.
-                let is_hidden = |said: &Said| said.0 == "pinhole::missing_camera";
-                let is_new = |(said, count): (&Said, &usize)| {
-                    !is_hidden(said) && before.get(said) < Some(count)
-                };
-                after.get(&said) < before.get(&said) && !after.iter().any(is_new)
-            }
-        });
-    }
-}
-
-type Said = (String, String);
-
-fn said(diagnostic: &Diagnostic) -> Said {
-    (diagnostic.code.clone(), diagnostic.message.clone())
-}
-
-/// How often each thing is said.
-fn counted(diagnostics: &[Diagnostic]) -> HashMap<Said, usize> {
-    let mut counted = HashMap::new();
-    for error in diagnostics
-        .iter()
-        .filter(|diagnostic| diagnostic.is_error())
-    {
-        *counted.entry(said(error)).or_default() += 1;
-    }
-    counted
-}
-
-/// What is wrong with the texts that a fix leads to.
-fn diagnostics_with(sources: &Sources, fix: &Fix) -> Vec<Diagnostic> {
-    let file = diagnostic::apply(fix, SourceId::File, sources.file.text());
-    let file = Source::from_text(sources.file.name(), file);
-    let sets = sources.sets();
-    let sets = sets.map(|(id, set)| diagnostic::apply(fix, id, set.text()));
-    let sources = Sources::new(file).with_sets(sets);
-    let mut found = Vec::new();
-    let overrides = overrides::read(&sources, &mut found);
-    let parsed = syntax::parse(&sources.file, SourceId::File);
-    let lowering = whole(&sources, &parsed, overrides, found, &cancel::NEVER);
-    lowering.finish().1
 }
 
 /// Makes sense of the tree of a whole file; `diagnostics` are those of the overrides' syntax.
@@ -188,7 +123,6 @@ impl<'s> Lowering<'s> {
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let found = self.problems.iter().take_while(|_| self.is_wanted());
         diagnostics.extend(found.map(|found| found.diagnostic(self.sources)));
-        diagnostics.extend(self.diagnostics(&self.slips));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)

@@ -102,6 +102,8 @@ fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
 
 fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, SemanticKind>) {
     match &value.kind {
+        // Two words that are one name, written wrongly.
+        ValueKind::Name(name) if name.contains(['-', ' ']) => {}
         ValueKind::Name(name) => {
             let kind = match scene::predefined(name) {
                 _ if is_method => SemanticKind::EnumMember,

@@ -25,10 +25,6 @@ fn an_unclosed_comment_ends_in_its_line() {
                 line,
                 "checkerboard {} // a \r\nsphere { center (0, 1, 0) }\r\n",
             ),
-            (
-                "close it at the end",
-                "checkerboard {} /* a \r\nsphere { center (0, 1, 0) } */\r\n",
-            ),
         ],
     );
     // The block was opened before it, and closed in it.
@@ -41,10 +37,6 @@ fn an_unclosed_comment_ends_in_its_line() {
     fixes(
         "checkerboard {} /* a\r\nb\r\nc\r\n",
         &[(end, "checkerboard {} /* a\r\nb\r\nc */\r\n")],
-    );
-    fixes(
-        "checkerboard {} /* a\nsphere { radus 2 }\n",
-        &[(end, "checkerboard {} /* a\nsphere { radus 2 } */\n")],
     );
 }
 
@@ -88,11 +80,6 @@ fn what_is_left_open_is_closed() {
             "let h = 2 let b = 3 * h",
         ),
         (
-            "sphere (0, 1, 0) { center (0, 1, 0) }",
-            "write `sphere {`",
-            "sphere { center (0, 1, 0) }",
-        ),
-        (
             "sphere Round ( center (0, 1, 0) )",
             "write `sphere Round {`",
             "sphere Round { center (0, 1, 0) }",
@@ -118,31 +105,30 @@ fn what_is_left_open_is_closed() {
 
 #[test]
 fn vectors_side_by_side_are_two_fields() {
-    let said = |text: &str| {
+    let said = |code: &str, text: &str| {
         let found = diagnostics(&sources(&of_scene(text), &[]));
-        let found = found
-            .into_iter()
-            .find(|d| d.code == "pinhole::missing_operator");
+        let found = found.into_iter().find(|d| d.code == code);
         let found = found.unwrap();
         assert!(found.fixes.is_empty());
         found.help.unwrap()
     };
+    let field = "pinhole::missing_field_name";
     let name = "write the name of the field that `(0, 6, 0)` is for before it";
     assert_eq!(
-        said("sphere { center (0, 6, 1)  (0, 6, 0)  radius 2 }"),
+        said(field, "sphere { center (0, 6, 1)  (0, 6, 0)  radius 2 }"),
         name
     );
     assert_eq!(
-        said("sphere { center (0, 6, 1)  color #f00  (0, 6, 0) }"),
+        said(field, "sphere { center (0, 6, 1)  color #f00  (0, 6, 0) }"),
         name
     );
     assert_eq!(
-        said("sphere { center (0, 6, 1)  red  radius 2 }"),
+        said(field, "sphere { center (0, 6, 1)  red  radius 2 }"),
         "write the name of the field that `red` is for before it"
     );
     assert_eq!(
-        said("let a = (0, 6, 1)  (0, 6, 0)"),
-        "write `+` or `-` between them, or take one of them away"
+        said("pinhole::missing_operator", "let a = (0, 6, 1)  (0, 6, 0)"),
+        "write an operator between them, or take one of them away"
     );
 }
 
@@ -152,8 +138,8 @@ fn what_a_help_says_is_done() {
     for (text, title, fixed) in [
         (
             "sphere Big Ball { center (0, 1, 0) }",
-            "write `sphere Big {`",
-            "sphere Big { center (0, 1, 0) }",
+            "write `sphere Big_Ball {`",
+            "sphere Big_Ball { center (0, 1, 0) }",
         ),
         (
             "sphere my-ball { center (0, 1, 0) }",

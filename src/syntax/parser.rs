@@ -1,0 +1,595 @@
+//! The parser: from a text to the tree.
+//!
+//! In: a source. Out: its tree, comments and problems. pest reads every item that is right, a few kilobytes at a time, and
+//! the functions here make nodes of its pairs; they carry the names of the grammar's rules. Where pest stops, or where
+//! words show that something else was meant (a field that its block does not know), `recovery` reads that one item.
+//!
+//! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a right text can be taken
+//! apart. Spans are taken
+//! from tokens: pest's own span of a rule may end after the white space behind it.
+
+use std::{
+    collections::BTreeMap,
+    ops::Range,
+    sync::{
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+        mpsc,
+    },
+    thread,
+};
+
+use pest::{
+    Parser as _,
+    iterators::{Pair, Pairs},
+};
+
+use super::{
+    Parsed, Problem,
+    grammar::{Grammar, PRECEDENCE, Rule},
+    recovery::Recovery,
+    scan::Scan,
+    tokens::{Lexer, TokenKind},
+    tree::{
+        Block, Call, Definition, Element, Field, Item, Name, Operator, Step, Tree, Unit, Value,
+        ValueKind,
+    },
+    words::Words,
+};
+use crate::{
+    cancel,
+    source::{Source, SourceId, Span},
+    threads,
+};
+
+/// The stack that pest gets: it takes some ten kilobytes for each level of nesting without optimization.
+const STACK: usize = 64 << 20;
+
+/// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its pairs of a whole file would take much memory.
+const CHUNK: usize = 4096;
+
+/// Parses a file.
+pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
+    parse_unless(source, id, &cancel::NEVER)
+}
+
+/// The same, or, cancelled, as much of the file as was read until then.
+pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
+    with_stack(|| {
+        let text = source.text();
+        let scan = Scan::of(text, source.bom_len(), cancel);
+        let words = Words::new(text);
+        let mut recovery = Recovery::new(text, id, &words);
+        let mut right = Right::new(text, id, &words);
+        let mut at = source.bom_len();
+        let mut ends = scan.ends.as_slice();
+        let mut deep = scan.deep.as_slice();
+        while at < text.len() && !cancel::is_set(cancel) {
+            let far = ends.partition_point(|&end| end < at + CHUNK);
+            let mut end = ends.get(far).copied().unwrap_or(text.len());
+            deep = deep
+                .get(deep.partition_point(|&place| place < at)..)
+                .unwrap_or_default();
+            end = deep.first().map_or(end, |&place| place.min(end));
+            ends = ends
+                .get(ends.partition_point(|&end| end <= at)..)
+                .unwrap_or_default();
+            let (next, is_right) = right.items(at..end, &mut recovery);
+            if !is_right {
+                at = next;
+                continue;
+            }
+            let next_token = Lexer::past_comments(text, next);
+            if next_token.start >= end && deep.first() != Some(&end) {
+                at = next_token.start;
+                continue;
+            }
+            if next_token.kind == TokenKind::End {
+                break;
+            }
+            // What cannot start an item goes on with the definition before it.
+            let start = match recovery.items.last() {
+                Some(Item::Definition(last))
+                    if last.span.start >= recovery.read_to
+                        && goes_on(text, last.span.end, next_token.start) =>
+                {
+                    let start = last.span.start;
+                    recovery.items.pop();
+                    start
+                }
+                _ => next_token.start,
+            };
+            at = recovery.item(start);
+        }
+        recovery.finish(scan)
+    })
+}
+
+/// Whether what stands at an offset may belong to a definition that ends before it.
+fn goes_on(text: &str, end: usize, at: usize) -> bool {
+    let line = text.get(end..at).unwrap_or_default();
+    let rest = text.get(at..).unwrap_or_default();
+    !line.contains('\n') || rest.starts_with(['+', '-', '*', '/', '^', ')'])
+}
+
+/// Parses the part of a text from an offset on as one value: a `--set` argument's.
+pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Problem>) {
+    with_stack(|| {
+        let text = source.text();
+        let scan = Scan::of(text, start, &cancel::NEVER);
+        let words = Words::new("");
+        let mut recovery = Recovery::new(text, id, &words);
+        let value = recovery.whole_value(start);
+        (value, recovery.finish(scan).problems)
+    })
+}
+
+/// Parses a file in parts of at least so many bytes, side by side, and hands over the items of each in their order, so that
+/// there is never a tree of the whole. Answers whether all went well; otherwise the file has mistakes, is short, `each`
+/// wanted no more, or it was cancelled, and what was handed over does not count.
+pub fn parse_in_parts<'s>(
+    source: &'s Source,
+    id: SourceId,
+    bytes: usize,
+    cancel: &AtomicBool,
+    mut each: impl FnMut(Vec<Item<'s>>) -> bool,
+) -> bool {
+    /// What is done with the parts is done by one thread: more than these would wait for it.
+    const MOST_THREADS: usize = 8;
+    let text = source.text();
+    if text.len() / 2 < bytes {
+        return false;
+    }
+    let scan = Scan::of(text, source.bom_len(), cancel);
+    if !scan.is_plain() {
+        return false;
+    }
+    let parts = parts(source, bytes, &scan);
+    let threads = threads::available().min(parts.len()).min(MOST_THREADS);
+    let next = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
+    let words = Words::new(text);
+    let work = |found: mpsc::SyncSender<_>| {
+        while !stopped.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(part) = parts.get(index) else { break };
+            let items = part_of(text, id, part, &words, cancel);
+            if found.send((index, items)).is_err() {
+                break;
+            }
+        }
+    };
+    thread::scope(|scope| {
+        let (found, results) = mpsc::sync_channel(threads);
+        for _ in 0..threads {
+            let found = found.clone();
+            let builder = thread::Builder::new().stack_size(STACK);
+            // Without any thread there are no results.
+            let _ = builder.spawn_scoped(scope, || work(found));
+        }
+        drop(found);
+        let mut early = BTreeMap::new();
+        let mut done = 0;
+        for (index, items) in results {
+            let Some(items) = items else { break };
+            early.insert(index, items);
+            while let Some(items) = early.remove(&done) {
+                if cancel::is_set(cancel) || !each(items) {
+                    stopped.store(true, Ordering::Relaxed);
+                    return false;
+                }
+                done += 1;
+            }
+        }
+        stopped.store(true, Ordering::Relaxed);
+        done == parts.len()
+    })
+}
+
+/// The parts of a text, each with the ends of its chunks.
+fn parts(source: &Source, bytes: usize, scan: &Scan) -> Vec<Vec<usize>> {
+    let mut parts = Vec::new();
+    let (mut start, mut from) = (source.bom_len(), source.bom_len());
+    let mut ends = vec![from];
+    for &to in &scan.ends {
+        let is_part = to - start >= bytes;
+        if is_part || to - from >= CHUNK {
+            ends.push(to);
+            from = to;
+        }
+        if is_part {
+            parts.push(std::mem::replace(&mut ends, vec![to]));
+            start = to;
+        }
+    }
+    ends.push(source.text().len());
+    parts.push(ends);
+    parts
+}
+
+/// The items of a part, if all of it is right.
+fn part_of<'s>(
+    text: &'s str,
+    id: SourceId,
+    ends: &[usize],
+    words: &Words<'s>,
+    cancel: &AtomicBool,
+) -> Option<Vec<Item<'s>>> {
+    let mut recovery = Recovery::new(text, id, words);
+    let mut right = Right::new(text, id, words);
+    for chunk in ends.windows(2) {
+        let &[start, end] = chunk else { return None };
+        if cancel::is_set(cancel) {
+            return None;
+        }
+        let (next, is_right) = right.items(start..end, &mut recovery);
+        if !is_right || Lexer::past_comments(text, next).start < end {
+            return None;
+        }
+    }
+    recovery.problems.is_empty().then_some(recovery.items)
+}
+
+/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
+fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
+    thread::scope(|scope| {
+        let builder = thread::Builder::new().stack_size(STACK);
+        match builder
+            .spawn_scoped(scope, &work)
+            .map(|handle| handle.join())
+        {
+            Ok(Ok(result)) => result,
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            // No thread to be had: the caller's stack holds the limit in an optimized build.
+            Err(_) => work(),
+        }
+    })
+}
+
+/// Makes nodes of what pest read.
+struct Right<'w, 's> {
+    text: &'s str,
+    id: SourceId,
+    words: &'w Words<'s>,
+    /// Where the slice that pest reads starts: its offsets count from there.
+    base: usize,
+    /// Whether something in the item may have been meant otherwise.
+    doubtful: bool,
+}
+
+impl<'w, 's> Right<'w, 's> {
+    fn new(text: &'s str, id: SourceId, words: &'w Words<'s>) -> Self {
+        Self {
+            text,
+            id,
+            words,
+            base: 0,
+            doubtful: false,
+        }
+    }
+
+    /// Reads items as far as they are right. Answers where they end, and whether that is where pest stopped.
+    fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
+        self.base = range.start;
+        let slice = self.text.get(range.clone()).unwrap_or_default();
+        let mut end = range.start;
+        for pair in Grammar::parse(Rule::items, slice).into_iter().flatten() {
+            self.doubtful = false;
+            let start = self.base + pair.as_span().start();
+            let item = match pair.as_rule() {
+                Rule::definition => Item::Definition(self.definition(pair)),
+                Rule::block => Item::Block(self.block(pair)),
+                _ => continue,
+            };
+            let kind_of_next_line = match (&item, recovery.items.last()) {
+                (Item::Block(block), Some(Item::Definition(before))) => {
+                    self.is_rest_of_value(block, before) && before.span.start >= recovery.read_to
+                }
+                _ => false,
+            };
+            end = item.span().end;
+            if kind_of_next_line {
+                let start = recovery.items.pop().map_or(start, |item| item.span().start);
+                return (recovery.item(start), false);
+            }
+            if self.doubtful || self.has_dashes(item.span()) {
+                let before = recovery.mark();
+                let read_to = recovery.item(start);
+                if recovery.is_better(&before) {
+                    if read_to != end {
+                        return (read_to, false);
+                    }
+                    continue;
+                }
+                recovery.go_back(before);
+            }
+            recovery.items.push(item);
+        }
+        (end, true)
+    }
+
+    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
+    fn is_rest_of_value(&self, block: &Block<'_>, before: &Definition<'_>) -> bool {
+        let (Some(kind), Some(name)) = (block.kind, block.name) else {
+            return false;
+        };
+        let breaks = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
+        !self.words.is_kind(kind.text)
+            && self.words.is_kind(name.text)
+            && !breaks(before.span.end, kind.span.start)
+            && breaks(kind.span.end, name.span.start)
+    }
+
+    /// Two minuses may be a comment of another language.
+    fn has_dashes(&self, span: Span) -> bool {
+        let text = self.text.get(span.range()).unwrap_or_default();
+        text.len() < CHUNK && text.contains("--")
+    }
+
+    fn definition(&mut self, pair: Pair<'_, Rule>) -> Definition<'s> {
+        let start = self.span(&pair).start;
+        let keyword = Span::new(self.id, start, start + "let".len());
+        let mut definition = Definition {
+            keyword,
+            name: None,
+            equals: None,
+            value: bad(keyword),
+            span: keyword,
+        };
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::name => definition.name = Some(self.name(&part)),
+                Rule::equals => definition.equals = Some(self.span(&part)),
+                Rule::value => definition.value = self.value(part),
+                _ => {}
+            }
+        }
+        definition.span = keyword.to(definition.value.span);
+        definition
+    }
+
+    fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
+        let mut block = Block::empty(self.span(&pair));
+        let parts = pair.into_inner();
+        // All parts but the kind and the two braces, as a rule.
+        block.fields.reserve_exact(parts.len().saturating_sub(3));
+        for part in parts {
+            match part.as_rule() {
+                Rule::name if block.kind.is_none() => block.kind = Some(self.name(&part)),
+                Rule::name => block.name = Some(self.name(&part)),
+                Rule::open => block.open = Some(self.span(&part)),
+                Rule::close => block.close = Some(self.span(&part)),
+                Rule::field => {
+                    let field = self.field(part);
+                    block.fields.push(field);
+                }
+                _ => {}
+            }
+        }
+        if let Some(close) = block.close {
+            block.span = block.span.to(close);
+        }
+        let kind = block.kind.map_or("", |kind| kind.text);
+        let words = self.words;
+        self.doubtful |= block
+            .fields
+            .iter()
+            .any(|field| words.is_doubtful(kind, field));
+        block
+    }
+
+    fn field(&mut self, pair: Pair<'_, Rule>) -> Field<'s> {
+        let whole = self.span(&pair);
+        let (mut name, mut value) = (
+            Name {
+                text: "",
+                span: whole,
+            },
+            bad(whole),
+        );
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::name => name = self.name(&part),
+                _ => value = self.value(part),
+            }
+        }
+        Field {
+            name,
+            span: name.span.to(value.span),
+            value,
+        }
+    }
+
+    fn value(&mut self, pair: Pair<'_, Rule>) -> Value<'s> {
+        let parts = pair.into_inner();
+        if parts.len() == 1 {
+            return self.operands(parts);
+        }
+        // Both make nodes of pairs, one at a time.
+        let this = std::cell::RefCell::new(self);
+        PRECEDENCE
+            .map_primary(|pair| this.borrow_mut().operand(pair))
+            .map_prefix(|sign, operand| negation(this.borrow().span(&sign), operand))
+            .map_infix(|left, sign, right| {
+                let span = this.borrow().span(&sign);
+                let operator = match sign.as_str() {
+                    "+" => Operator::Add,
+                    "-" => Operator::Subtract,
+                    "*" => Operator::Multiply,
+                    _ => Operator::Divide,
+                };
+                chain(left, operator, span, right)
+            })
+            .parse(parts)
+    }
+
+    fn operands(&mut self, mut parts: Pairs<'_, Rule>) -> Value<'s> {
+        match parts.next() {
+            Some(pair) => self.operand(pair),
+            None => bad(Span::new(self.id, self.base, self.base)),
+        }
+    }
+
+    fn operand(&mut self, pair: Pair<'_, Rule>) -> Value<'s> {
+        let span = self.span(&pair);
+        let kind = match pair.as_rule() {
+            Rule::number => number(self.written(span)),
+            Rule::reference => return self.reference(pair),
+            Rule::color => ValueKind::ColorCode(self.written(span)),
+            _ => {
+                let elements = self.elements(pair);
+                match <[Element<'s>; 1]>::try_from(elements) {
+                    Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
+                    Err(elements) => ValueKind::Tuple(elements),
+                }
+            }
+        };
+        Value { kind, span }
+    }
+
+    fn reference(&mut self, pair: Pair<'_, Rule>) -> Value<'s> {
+        let mut parts = pair.into_inner();
+        let function = match parts.next() {
+            Some(name) => self.name(&name),
+            None => return bad(Span::new(self.id, self.base, self.base)),
+        };
+        let Some(arguments) = parts.next() else {
+            return Value {
+                kind: ValueKind::Name(function.text),
+                span: function.span,
+            };
+        };
+        self.doubtful |= self.words.is_foreign_function(function.text);
+        let parentheses = self.span(&arguments);
+        let arguments = self.elements(arguments);
+        Value {
+            kind: ValueKind::Call(Box::new(Call {
+                function,
+                arguments,
+                parentheses,
+            })),
+            span: function.span.to(parentheses),
+        }
+    }
+
+    fn elements(&mut self, pair: Pair<'_, Rule>) -> Vec<Element<'s>> {
+        let parts = pair.into_inner();
+        // A comma between two values.
+        let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
+        for part in parts {
+            match part.as_rule() {
+                Rule::comma => {
+                    let comma = self.span(&part);
+                    if let Some(last) = elements.last_mut() {
+                        last.comma = Some(comma);
+                    }
+                }
+                _ => elements.push(Element {
+                    value: self.value(part),
+                    comma: None,
+                }),
+            }
+        }
+        elements
+    }
+
+    fn name(&self, pair: &Pair<'_, Rule>) -> Name<'s> {
+        let span = self.span(pair);
+        Name {
+            text: self.written(span),
+            span,
+        }
+    }
+
+    fn span(&self, pair: &Pair<'_, Rule>) -> Span {
+        let span = pair.as_span();
+        Span::new(self.id, self.base + span.start(), self.base + span.end())
+    }
+
+    fn written(&self, span: Span) -> &'s str {
+        self.text.get(span.range()).unwrap_or_default()
+    }
+}
+
+/// A number that is right, with its unit if it has one.
+pub(super) fn number(written: &str) -> ValueKind<'_> {
+    let units = [("deg", Unit::Degrees), ("rad", Unit::Radians)];
+    let angle = units.into_iter().find_map(|(word, unit)| {
+        let number = written.strip_suffix(word)?;
+        Some(ValueKind::Angle { number, unit })
+    });
+    angle.unwrap_or(ValueKind::Number(written))
+}
+
+/// `-VALUE`
+pub(super) fn negation(sign: Span, operand: Value<'_>) -> Value<'_> {
+    Value {
+        span: sign.to(operand.span),
+        kind: ValueKind::Negation {
+            sign,
+            operand: Box::new(operand),
+        },
+    }
+}
+
+/// `VALUE OPERATOR VALUE`; operators of one precedence make one chain.
+pub(super) fn chain<'s>(
+    left: Value<'s>,
+    operator: Operator,
+    sign: Span,
+    operand: Value<'s>,
+) -> Value<'s> {
+    let is_sum = |operator| matches!(operator, Operator::Add | Operator::Subtract);
+    let span = left.span.to(operand.span);
+    let step = Step {
+        operator,
+        sign,
+        operand,
+    };
+    let kind = match left.kind {
+        ValueKind::Chain { first, mut rest }
+            if rest
+                .last()
+                .is_some_and(|last| is_sum(last.operator) == is_sum(operator)) =>
+        {
+            rest.push(step);
+            ValueKind::Chain { first, rest }
+        }
+        kind => ValueKind::Chain {
+            first: Box::new(Value {
+                kind,
+                span: left.span,
+            }),
+            rest: vec![step],
+        },
+    };
+    Value { kind, span }
+}
+
+pub(super) fn bad<'s>(span: Span) -> Value<'s> {
+    Value {
+        kind: ValueKind::Bad,
+        span,
+    }
+}
+
+impl<'s> Recovery<'_, 's> {
+    fn finish(self, scan: Scan) -> Parsed<'s> {
+        let Recovery {
+            items,
+            problems,
+            comments,
+            id,
+            text,
+            cut,
+            ..
+        } = self;
+        let mut parsed = Parsed {
+            tree: Tree { items },
+            comments,
+            problems,
+            cut,
+        };
+        scan.report(text, id, &mut parsed);
+        parsed
+    }
+}

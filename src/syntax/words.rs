@@ -1,0 +1,130 @@
+//! The words by which recovery tells what was meant.
+//!
+//! The grammar takes any name for a field, a kind or a value. What a text says that does not follow it can only be told by
+//! which of them are known: in `radius color olive` a value is missing. This is the one file of the stage that looks them
+//! up, in the schema and among the names that the text defines.
+
+use std::{collections::HashSet, sync::OnceLock};
+
+use super::{
+    tokens::{Lexer, TokenKind},
+    tree::{Field, ValueKind},
+};
+use crate::scene::{
+    predefined,
+    schema::{self, Condition, Type},
+};
+
+/// Functions of other languages that stand for a vector or a colour.
+const FOREIGN_FUNCTIONS: &[&str] = &[
+    "vec", "vec3", "Vec3", "vector", "Vector", "vector3", "Vector3", "point", "Point", "point3",
+    "Point3", "Point3D", "Vector3D", "rgba", "color", "Color",
+];
+
+/// The words of the language and of a text.
+#[derive(Debug)]
+pub struct Words<'s> {
+    text: &'s str,
+    /// The names behind every `let`, once somebody asks.
+    lets: OnceLock<HashSet<&'s str>>,
+}
+
+impl<'s> Words<'s> {
+    /// Those of a text.
+    pub fn new(text: &'s str) -> Self {
+        Self {
+            text,
+            lets: OnceLock::new(),
+        }
+    }
+
+    /// Whether a block can start with a word.
+    pub fn is_kind(&self, word: &str) -> bool {
+        schema::block(word).is_some()
+    }
+
+    /// What a field of a block takes; a mistyped kind is the nearest one.
+    pub fn takes(&self, kind: &str, field: &str) -> Option<Type> {
+        let row = schema::block(kind).or_else(|| schema::nearest_block(kind))?;
+        row.field(field).map(|field| field.takes)
+    }
+
+    /// Whether a field takes a whole number.
+    pub fn is_whole(&self, kind: &str, field: &str) -> bool {
+        let row = schema::block(kind).and_then(|row| row.field(field));
+        row.is_some_and(|row| row.must.contains(&Condition::Whole))
+    }
+
+    /// The names of a block's fields; of the nearest block, if it is mistyped.
+    pub fn fields(&self, kind: &str) -> impl Iterator<Item = &'static str> + use<> {
+        let row = schema::block(kind).or_else(|| schema::nearest_block(kind));
+        row.into_iter().flat_map(|row| row.field_names())
+    }
+
+    /// Whether a name is defined somewhere in the text.
+    pub fn is_let(&self, name: &str) -> bool {
+        let lets = self.lets.get_or_init(|| {
+            let mut lets = HashSet::new();
+            let mut lexer = Lexer::new(self.text, 0);
+            let mut is_behind = false;
+            loop {
+                let token = lexer.token();
+                let word = self.text.get(token.start..token.end).unwrap_or_default();
+                match token.kind {
+                    TokenKind::End => return lets,
+                    TokenKind::Name if is_behind => is_behind = !lets.insert(word) && word == "let",
+                    TokenKind::Name => is_behind = word == "let",
+                    TokenKind::Comment => {}
+                    _ => is_behind = false,
+                }
+            }
+        });
+        lets.contains(name)
+    }
+
+    /// Whether a name stands for a value: one that is defined, a colour, a unit, pi or a function.
+    pub fn is_value(&self, name: &str) -> bool {
+        predefined(name).is_some() || self.is_let(name)
+    }
+
+    /// Whether a name is that of a colour.
+    pub fn is_color(&self, name: &str) -> bool {
+        predefined(name) == Some("a colour")
+    }
+
+    /// Whether a name is that of a function.
+    pub fn is_function(&self, name: &str) -> bool {
+        predefined(name) == Some("a function")
+    }
+
+    /// Whether a name can be multiplied: pi, or one that is defined.
+    pub fn is_factor(&self, name: &str) -> bool {
+        matches!(predefined(name), Some("a number" | "a unit")) || self.is_let(name)
+    }
+
+    /// Whether a function of another language stands for a vector or a colour.
+    pub fn is_foreign_function(&self, name: &str) -> bool {
+        FOREIGN_FUNCTIONS.contains(&name) && !self.is_let(name)
+    }
+
+    /// Whether a field that follows the grammar may have been meant otherwise: its block does not know it, its value is the
+    /// name of a field, or it takes a word and has something else.
+    pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
+        let Some(row) = schema::block(kind) else {
+            return self.takes(kind, field.name.text).is_none();
+        };
+        let Some(takes) = row.field(field.name.text).map(|field| field.takes) else {
+            return true;
+        };
+        match &field.value.kind {
+            ValueKind::Name(name) => {
+                takes != Type::Method && row.field(name).is_some() && !self.is_value(name)
+            }
+            ValueKind::Call(call) => {
+                row.field(call.function.text).is_some() && !self.is_value(call.function.text)
+            }
+            ValueKind::Tuple(parts) => parts.len() > 3 && takes == Type::Vector,
+            _ => takes == Type::Method,
+        }
+    }
+}
