@@ -54,6 +54,16 @@ pub fn nearest<'c>(
     best.map(|(_, candidate)| candidate)
 }
 
+/// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
+pub fn is_among(written: &str, words: &[&str]) -> bool {
+    let letters = |word: &'_ str| -> String {
+        let letters = word.chars().filter(|letter| *letter != '_');
+        letters.map(|letter| letter.to_ascii_lowercase()).collect()
+    };
+    let written = letters(written);
+    words.iter().any(|word| letters(word) == written)
+}
+
 /// The words that a name is made of: `near_clip` and `nearClip` are near and clip.
 pub fn words(name: &str) -> Vec<&str> {
     let mut words = Vec::new();

@@ -7,13 +7,62 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::{Method, schema::Type};
+use super::Method;
 use crate::{
     color::Color,
     math::{Angle, trig},
     numbers,
     syntax::tree::Operator,
 };
+
+/// What a value can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Type {
+    /// A number.
+    Number,
+    /// A number with a unit.
+    Angle,
+    /// Three numbers.
+    Vector,
+    /// An sRGB colour.
+    Color,
+    /// Two colours.
+    Colors,
+    /// The name of a sampling technique.
+    Method,
+}
+
+impl Type {
+    /// The type with its article.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Angle => "an angle",
+            Self::Vector => "a vector",
+            Self::Color => "a colour",
+            Self::Colors => "a pair of colours",
+            Self::Method => "a method",
+        }
+    }
+
+    /// The type without an article.
+    pub fn word(self) -> &'static str {
+        let noun = self.noun();
+        noun.split_once(' ').map_or(noun, |(_, word)| word)
+    }
+
+    /// Two of the type.
+    pub fn two(self) -> &'static str {
+        match self {
+            Self::Number => "two numbers",
+            Self::Angle => "two angles",
+            Self::Vector => "two vectors",
+            Self::Color => "two colours",
+            Self::Colors => "two pairs of colours",
+            Self::Method => "two methods",
+        }
+    }
+}
 
 /// A value of the language.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@
 
 mod calls;
 mod lists;
+mod lookup;
 mod names;
 mod operators;
 

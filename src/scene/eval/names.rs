@@ -1,31 +1,22 @@
-//! The names that are defined at some place, and those that are not.
+//! The names that are defined at some place.
 
 use std::{
     cell::{Cell, RefCell},
     collections::{HashMap, HashSet, hash_map::Entry},
 };
 
-use super::{Evaluator, calls::example};
 use crate::{
-    diagnostic::Fix,
-    math::Angle,
-    scene::{
-        css,
-        error::{Found, Problem},
-        fix,
-        schema::{self, Type},
-        value::Value,
-    },
+    scene::{css, schema, value::Value},
     source::{SourceId, Span},
-    suggest::{self, Budget},
-    syntax::tree::{self, Name, ValueKind},
+    suggest::Budget,
+    syntax::tree::Name,
 };
 
 /// The names that are defined at some place.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
     /// The `let`s so far.
-    defined: HashMap<&'s str, Defined>,
+    pub(super) defined: HashMap<&'s str, Defined>,
     /// The same names, in order.
     order: Vec<&'s str>,
     /// The names of the whole file; none while it is still being read.
@@ -35,7 +26,7 @@ pub struct Names<'s> {
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
-    reported: RefCell<HashMap<&'s str, usize>>,
+    pub(super) reported: RefCell<HashMap<&'s str, usize>>,
 }
 
 /// The names that stand in a file, wherever.
@@ -48,13 +39,13 @@ struct Whole<'s> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Defined {
+pub(super) struct Defined {
     /// None if it failed.
-    value: Option<Value>,
+    pub value: Option<Value>,
     /// The name in the definition.
-    place: Span,
+    pub place: Span,
     /// The argument that set it, if one did.
-    set: Option<SourceId>,
+    pub set: Option<SourceId>,
     /// Whether it is only a part of something that cannot be a name.
     is_part: bool,
 }
@@ -144,12 +135,12 @@ impl<'s> Names<'s> {
     }
 
     /// The first `let` of the file that defines it.
-    fn definition(&self, name: &str) -> Option<Span> {
+    pub(super) fn definition(&self, name: &str) -> Option<Span> {
         self.whole()?.definitions.get(name).copied()
     }
 
     /// Whether it is the name of an object.
-    fn is_object(&self, name: &str) -> bool {
+    pub(super) fn is_object(&self, name: &str) -> bool {
         self.whole()
             .is_some_and(|whole| whole.objects.contains(name))
     }
@@ -160,7 +151,7 @@ impl<'s> Names<'s> {
     }
 
     /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
-    fn to_compare(&self) -> Option<&[&'s str]> {
+    pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
@@ -194,148 +185,4 @@ pub fn predefined(name: &str) -> Option<&'static str> {
             _ => None,
         }
     }
-}
-
-impl<'s> Evaluator<'_, 's> {
-    pub(super) fn name(
-        &mut self,
-        name: &'s str,
-        span: Span,
-        wanted: Option<Type>,
-    ) -> Option<Value> {
-        if let Some(defined) = self.names.defined.get(name) {
-            return defined.value;
-        }
-        if let Some(color) = css::color(name) {
-            return Some(Value::Color(color));
-        }
-        match name {
-            "pi" => return Some(Value::Number(std::f64::consts::PI)),
-            "deg" => return Some(Value::Angle(Angle::from_degrees(1.0))),
-            "rad" => return Some(Value::Angle(Angle::from_radians(1.0))),
-            _ => {}
-        }
-        if let Some(function) = schema::function(name) {
-            self.problems.push(
-                Problem::FunctionWithoutArguments {
-                    name: name.to_owned(),
-                    example: example(function),
-                    span,
-                }
-                .with([Fix::write(span, example(function))]),
-            );
-            return None;
-        }
-        let mut reported = self.names.reported.borrow_mut();
-        if let Some(&index) = reported.get(name) {
-            if let Some(problem) = self.problems.get_mut(index) {
-                problem.and_here(span);
-            }
-            return None;
-        }
-        reported.insert(name, self.problems.len());
-        drop(reported);
-        let problem = match self.names.definition(name) {
-            Some(definition) => self.used_before(name, span, definition),
-            None => self.unknown_name(name, span, wanted),
-        };
-        self.problems.push(problem);
-        None
-    }
-
-    fn used_before(&self, name: &str, span: Span, definition: Span) -> Found {
-        let own = span.source == SourceId::File
-            && self.sources.file.line(span.start) == self.sources.file.line(definition.start)
-            && definition.start < span.start;
-        let help = match span.source {
-            SourceId::Set(_) => format!("move `let {name}` before what is set"),
-            SourceId::File if own => {
-                "a `let` cannot use itself: write a value, or the name of an earlier `let`"
-                    .to_owned()
-            }
-            SourceId::File => {
-                let line = self.sources.file.line(span.start);
-                format!("move `let {name}` up, before line {line}")
-            }
-        };
-        Problem::UsedBeforeDefinition {
-            name: name.to_owned(),
-            help,
-            line: self.sources.get(definition.source).line(definition.start),
-            span,
-            definition,
-            more: Vec::new(),
-        }
-        .into()
-    }
-
-    fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Found {
-        let colors = matches!(wanted, Some(Type::Color | Type::Colors));
-        let lets = self.names.to_compare();
-        let near = lets.and_then(|lets| nearest(name, lets, wanted));
-        let name = name.to_owned();
-        if colors {
-            let help = match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
-            };
-            return Problem::UnknownColor {
-                name,
-                help,
-                span,
-                more: Vec::new(),
-            }
-            .with(fix::written(span, near));
-        }
-        let is_object = self.names.is_object(&name);
-        let help = match near {
-            _ if is_object => {
-                "an object is no value: define its place with `let`, and use that in both"
-                    .to_owned()
-            }
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("define it before it is used: `let {name} = …`"),
-        };
-        Problem::UnknownName {
-            name,
-            help,
-            span,
-            more: Vec::new(),
-        }
-        .with(fix::written(span, near.filter(|_| !is_object)))
-    }
-
-    /// What a value is, and where its name was defined if it is one.
-    pub fn described(&self, value: &tree::Value<'s>, kind: Type) -> String {
-        let noun = kind.noun();
-        let ValueKind::Name(name) = value.kind else {
-            return noun.to_owned();
-        };
-        match self.names.defined.get(name) {
-            Some(Defined { set: Some(set), .. }) => {
-                format!("{noun} (from {})", self.sources.get(*set).name())
-            }
-            Some(defined) => {
-                let line = self.sources.file.line(defined.place.start);
-                format!("{noun} (defined in line {line})")
-            }
-            None => noun.to_owned(),
-        }
-    }
-}
-
-/// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
-fn nearest<'n>(name: &str, lets: &[&'n str], wanted: Option<Type>) -> Option<&'n str> {
-    let lets = lets.iter().copied();
-    let colors = css::names().map(|name| name as &str);
-    if matches!(wanted, Some(Type::Color | Type::Colors)) {
-        return suggest::nearest(name, lets.chain(colors));
-    }
-    let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
-    let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-    let near = suggest::nearest(name, lets.chain(constants).chain(functions));
-    near.or_else(|| match wanted {
-        None => suggest::nearest(name, colors),
-        Some(_) => None,
-    })
 }

@@ -77,7 +77,7 @@ impl<'s> Evaluator<'_, 's> {
                 None => left.kind().noun().to_owned(),
             };
             let right_label = self.described(&step.operand, right.kind());
-            let help = self.operand_help(step, (left, left_span), right);
+            let (help, fixes) = self.ways(step, (left, left_span, left_tree), right, wanted);
             self.problems.push(
                 Problem::OperandTypes {
                     message: cannot(step.operator, left.kind(), right.kind()),
@@ -88,12 +88,7 @@ impl<'s> Evaluator<'_, 's> {
                     right: step.operand.span,
                     right_label,
                 }
-                .with(self.operand_fixes(
-                    step,
-                    (left, left_span, left_tree),
-                    right,
-                    wanted,
-                )),
+                .with(fixes),
             );
             return None;
         };
@@ -133,118 +128,125 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    fn operand_help(&self, step: &Step<'s>, left: (Value, Span), right: Value) -> String {
-        use Type::{Angle, Color, Colors, Number, Vector};
-        let text = |span| shorten(self.sources.text(span));
-        let (a, b) = (text(left.1), text(step.operand.span));
-        let sign = step.operator.sign();
-        let sum = matches!(step.operator, Operator::Add | Operator::Subtract);
-        match (left.0.kind(), right.kind()) {
-            (Color | Colors, _) | (_, Color | Colors) => {
-                "colours are not computed with; `rgb(r, g, b)` takes computed numbers".to_owned()
-            }
-            (Vector, Number) if sum => format!(
-                "add a vector, such as `{a} {sign} ({b}, {b}, {b})`, or scale it: `{a} * {b}`"
-            ),
-            (Number, Vector) if sum => format!(
-                "write a vector, such as `({a}, {a}, {a}) {sign} {b}`, or scale it: `{a} * {b}`"
-            ),
-            (Vector, Vector) if step.operator == Operator::Multiply => {
-                format!("write `dot({a}, {b})` for a number, or `cross({a}, {b})` for a vector")
-            }
-            (_, Vector) if step.operator == Operator::Divide => {
-                format!("divide by a number, such as `length({b})`")
-            }
-            (Angle, Number) if sum => {
-                let [first, second] = self.units(&step.operand);
-                format!(
-                    "give it a unit: `{a} {sign} {}` (or `{}`)",
-                    first.shown, second.shown
-                )
-            }
-            (Number, Angle) if sum => {
-                format!("give {a} a unit: `{a}deg {sign} {b}` (or `{a}rad`)")
-            }
-            (Angle, Angle) => {
-                format!("an angle divided by `1deg` is a number: `{a} * ({b} / 1deg)`")
-            }
-            (Number, Angle) => {
-                format!("an angle divided by `1deg` is a number: `{a} / ({b} / 1deg)`")
-            }
-            _ => "only numbers, angles and vectors of one kind go together".to_owned(),
-        }
-    }
-
-    /// What the help says, as edits: those that give what is wanted.
-    fn operand_fixes(
+    /// What to do about operands that do not go together: in words, and as edits of those that give what is wanted.
+    fn ways(
         &self,
         step: &Step<'s>,
         (left, left_span, left_tree): (Value, Span, Option<&tree::Value<'s>>),
         right: Value,
         wanted: Option<Type>,
-    ) -> Vec<Fix> {
-        use Type::{Angle, Number, Vector};
-        let sum = matches!(step.operator, Operator::Add | Operator::Subtract);
-        let right_span = step.operand.span;
-        let (a, b) = (self.sources.text(left_span), self.sources.text(right_span));
-        let with_units = |number: &tree::Value<'s>| {
+    ) -> (String, Vec<Fix>) {
+        use Type::{Angle, Color, Colors, Number, Vector};
+        let (left_text, right_text) = (
+            self.sources.text(left_span),
+            self.sources.text(step.operand.span),
+        );
+        let (a, b) = (shorten(left_text), shorten(right_text));
+        let (operator, sign) = (step.operator, step.operator.sign());
+        let is_sum = matches!(operator, Operator::Add | Operator::Subtract);
+        let units = |number: &tree::Value<'s>| {
             let units = self.units(number);
             units
                 .map(|unit| Fix::write(number.span, unit.text))
                 .to_vec()
         };
-        let three = |span, text: &str| Fix::write(span, format!("({text}, {text}, {text})"));
         // The factor takes what stands right before the sign: of several summands the last one.
         let scaled = left_tree.map(|_| {
-            let title = format!("scale it: `{} * {}`", shorten(a), shorten(b));
+            let title = format!("scale it: `{a} * {b}`");
             Fix::new(title, [Edit::new(step.sign, "*")])
         });
-        let as_number = || Fix::write(right_span, format!("({b} / 1deg)"));
+        let vector = |span, text: &str| Fix::write(span, format!("({text}, {text}, {text})"));
+        let on_right = |text: String| vec![Fix::write(step.operand.span, text)];
+        let as_number = || on_right(format!("({right_text} / 1deg)"));
         let is_zero =
             value::operate(Operator::Divide, right, right).is_none_or(|one| !one.is_finite());
-        let (gives, fixes) = match (left.kind(), right.kind(), step.operator) {
-            (Angle, Number, _) if sum => (Angle, with_units(&step.operand)),
-            (Number, Angle, _) if sum => (Angle, left_tree.map(with_units).unwrap_or_default()),
-            (Vector, Number, _) if sum => {
-                let fixes = [Some(three(right_span, b)), scaled];
-                (Vector, fixes.into_iter().flatten().collect())
+        let (help, gives, fixes) = match (left.kind(), right.kind(), operator) {
+            (Color | Colors, _, _) | (_, Color | Colors, _) => {
+                let help = "colours are not computed with; `rgb(r, g, b)` takes computed numbers";
+                return (help.to_owned(), Vec::new());
             }
-            (Number, Vector, _) if sum => {
-                let fixes = [Some(three(left_span, a)), scaled];
-                (Vector, fixes.into_iter().flatten().collect())
-            }
+            (Vector, Number, _) if is_sum => (
+                format!(
+                    "add a vector, such as `{a} {sign} ({b}, {b}, {b})`, or scale it: `{a} * {b}`"
+                ),
+                Vector,
+                [vector(step.operand.span, right_text)]
+                    .into_iter()
+                    .chain(scaled)
+                    .collect(),
+            ),
+            (Number, Vector, _) if is_sum => (
+                format!(
+                    "write a vector, such as `({a}, {a}, {a}) {sign} {b}`, or scale it: `{a} * {b}`"
+                ),
+                Vector,
+                [vector(left_span, left_text)]
+                    .into_iter()
+                    .chain(scaled)
+                    .collect(),
+            ),
             (Vector, Vector, Operator::Multiply) => {
-                let ways = [("dot", Number), ("cross", Vector)].into_iter();
-                let ways = ways.filter(|(_, gives)| wanted.is_none_or(|wanted| wanted == *gives));
-                let whole = left_span.to(right_span);
+                let whole = left_span.to(step.operand.span);
                 // A comment between the two is not to be lost.
-                let between = Span::new(whole.source, left_span.end, right_span.start);
-                let ways = ways.filter(|_| self.sources.text(between).trim() == "*");
-                let fixes = ways.map(|(name, _)| Fix::write(whole, format!("{name}({a}, {b})")));
-                (wanted.unwrap_or(Vector), fixes.collect())
+                let between = Span::new(whole.source, left_span.end, step.operand.span.start);
+                let is_bare = self.sources.text(between).trim() == "*";
+                let ways = [("dot", Number), ("cross", Vector)].into_iter();
+                let ways = ways
+                    .filter(|(_, gives)| is_bare && wanted.is_none_or(|wanted| wanted == *gives));
+                let fixes = ways.map(|(name, _)| {
+                    Fix::write(whole, format!("{name}({left_text}, {right_text})"))
+                });
+                (
+                    format!(
+                        "write `dot({a}, {b})` for a number, or `cross({a}, {b})` for a vector"
+                    ),
+                    wanted.unwrap_or(Vector),
+                    fixes.collect(),
+                )
             }
-            (given @ (Number | Angle | Vector), Vector, Operator::Divide)
-                if !is_zero_vector(right) =>
-            {
-                (given, vec![Fix::write(right_span, format!("length({b})"))])
+            (given, Vector, Operator::Divide) => {
+                let is_zero = right == Value::Vector(glam::DVec3::ZERO);
+                let length = on_right(format!("length({right_text})"));
+                (
+                    format!("divide by a number, such as `length({b})`"),
+                    given,
+                    if is_zero { Vec::new() } else { length },
+                )
             }
-            (Angle, Angle, Operator::Multiply) => (Angle, vec![as_number()]),
-            (Number, Angle, Operator::Divide) if !is_zero => (Number, vec![as_number()]),
-            _ => return Vec::new(),
+            (Angle, Number, _) if is_sum => {
+                let [first, second] = self.units(&step.operand).map(|unit| unit.shown);
+                (
+                    format!("give it a unit: `{a} {sign} {first}` (or `{second}`)"),
+                    Angle,
+                    units(&step.operand),
+                )
+            }
+            (Number, Angle, _) if is_sum => (
+                format!("give {a} a unit: `{a}deg {sign} {b}` (or `{a}rad`)"),
+                Angle,
+                left_tree.map(units).unwrap_or_default(),
+            ),
+            (Angle, Angle, _) => (
+                format!("an angle divided by `1deg` is a number: `{a} * ({b} / 1deg)`"),
+                Angle,
+                as_number(),
+            ),
+            (Number, Angle, _) => (
+                format!("an angle divided by `1deg` is a number: `{a} / ({b} / 1deg)`"),
+                Number,
+                if is_zero { Vec::new() } else { as_number() },
+            ),
+            _ => {
+                let help = "only numbers, angles and vectors of one kind go together";
+                return (help.to_owned(), Vec::new());
+            }
         };
         let is_written_once = |text: &str| !text.contains(['\n', '\r']) && !text.contains("//");
-        match wanted.is_none_or(|wanted| wanted == gives)
-            && is_written_once(a)
-            && is_written_once(b)
-        {
-            true => fixes,
-            false => Vec::new(),
-        }
+        let fits = wanted.is_none_or(|wanted| wanted == gives)
+            && is_written_once(left_text)
+            && is_written_once(right_text);
+        (help, if fits { fixes } else { Vec::new() })
     }
-}
-
-fn is_zero_vector(value: Value) -> bool {
-    matches!(value, Value::Vector(v) if v == glam::DVec3::ZERO)
 }
 
 fn cannot(operator: Operator, left: Type, right: Type) -> String {

@@ -4,9 +4,8 @@ use glam::DVec3;
 
 use super::{
     Block, Given, Lowering,
+    field_fixes::{examples, quoted},
     fields::Fields,
-    fixing::{examples, quoted},
-    words::{axis_name, axis_vector},
 };
 use crate::{
     diagnostic::{Edit, Fix},
@@ -287,4 +286,31 @@ fn direction_for(block: &Block<'_>, lookat: Span) -> Vec<Fix> {
     fields
         .map(|field| Fix::new(title, [Edit::new(lookat, field)]))
         .collect()
+}
+
+/// A vector along an axis, such as `−z`.
+fn axis_name(v: DVec3) -> Option<String> {
+    let (axis, part) = axis(v)?;
+    let sign = if part < 0.0 { '−' } else { '+' };
+    Some(format!("{sign}{axis}"))
+}
+
+/// The unit vector along an axis as it is written.
+fn axis_vector(v: DVec3) -> Option<String> {
+    let (axis, part) = axis(v)?;
+    let one = if part < 0.0 { "-1" } else { "1" };
+    Some(match axis {
+        'x' => format!("({one}, 0, 0)"),
+        'y' => format!("(0, {one}, 0)"),
+        _ => format!("(0, 0, {one})"),
+    })
+}
+
+fn axis(v: DVec3) -> Option<(char, f64)> {
+    match v.to_array() {
+        [x, 0.0, 0.0] if x != 0.0 => Some(('x', x)),
+        [0.0, y, 0.0] if y != 0.0 => Some(('y', y)),
+        [0.0, 0.0, z] if z != 0.0 => Some(('z', z)),
+        _ => None,
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Block, Lowering,
-    fixing::{examples, quoted},
+    field_fixes::{examples, quoted},
 };
 use crate::{
     scene::{error::Problem, schema::Preset},

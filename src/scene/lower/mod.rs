@@ -7,9 +7,9 @@
 mod build;
 mod camera;
 mod cuboid;
-mod definitions;
+mod definition_fixes;
+mod field_fixes;
 mod fields;
-mod fixing;
 mod missing;
 mod overriding;
 mod reading;

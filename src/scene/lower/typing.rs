@@ -2,7 +2,7 @@
 
 use super::{
     Lowering,
-    words::{list_for, of_right_type, range_words, shown, type_help},
+    words::{list_for, range_words, right_type, shown},
 };
 use crate::{
     scene::{
@@ -163,7 +163,6 @@ impl<'s> Lowering<'s> {
         let label = evaluator.described(tree, value.kind());
         let written = evaluator.quoted(tree.span);
         let whole = evaluator.sources.text(tree.span);
-        let text = shorten(whole);
         let problem = if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
             let units = evaluator.units(tree);
             // A unit that cannot be meant is not offered: `fov 45rad` would be the next mistake.
@@ -185,19 +184,17 @@ impl<'s> Lowering<'s> {
                 fitting.iter().map(|unit| unit.text.clone()),
             ))
         } else {
+            let (help, instead) = right_type(row, tree, value, whole);
             Problem::WrongType {
                 name: row.name.to_owned(),
                 takes: row.takes.noun(),
                 written,
                 found: value.kind().noun().to_owned(),
-                help: type_help(row, tree, value, &text),
+                help,
                 span: tree.span,
                 label,
             }
-            .with(fix::instead(
-                tree.span,
-                of_right_type(row, tree, value, whole),
-            ))
+            .with(fix::instead(tree.span, instead))
         };
         self.problems.push(problem);
     }

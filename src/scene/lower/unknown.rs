@@ -3,7 +3,7 @@
 //! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
 //! or can be made to be.
 
-use super::{Block, Lowering, fixing::quoted, words::rgb};
+use super::{Block, Lowering, field_fixes::quoted, words::rgb};
 use crate::{
     diagnostic::Fix,
     math::Angle,
@@ -194,14 +194,14 @@ impl<'s> Lowering<'s> {
         if let Some(field) = row
             .fields
             .iter()
-            .find(|field| schema::is_among(written, field.doubled))
+            .find(|field| suggest::is_among(written, field.doubled))
         {
             return Some(Meant::Half(field));
         }
         if let Some(spread) = row
             .spreads
             .iter()
-            .find(|spread| schema::is_among(written, spread.words))
+            .find(|spread| suggest::is_among(written, spread.words))
         {
             return Some(Meant::Spread(spread));
         }

@@ -10,7 +10,10 @@ use crate::{
         schema::{Condition, Field, Preset, Type},
         value::Value,
     },
-    syntax::tree::{self, ValueKind},
+    syntax::{
+        shorten,
+        tree::{self, ValueKind},
+    },
 };
 
 /// The label and the help for a condition that does not hold, and what can stand in the value's place.
@@ -86,27 +89,66 @@ fn at_most(bound: u64) -> (&'static str, String, Vec<String>) {
     )
 }
 
-/// What can stand in place of a value of the wrong type.
-pub fn of_right_type(row: &Field, tree: &tree::Value<'_>, value: Value, text: &str) -> Vec<String> {
+/// What to write in place of a value of the wrong type: in words, and as it can stand there if that is known.
+pub fn right_type(
+    row: &Field,
+    tree: &tree::Value<'_>,
+    value: Value,
+    text: &str,
+) -> (String, Vec<String>) {
     let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
-    match (row.takes, value.kind(), &tree.kind) {
-        (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => vec![(*number).to_owned()],
-        (Type::Number, Type::Angle, _) => vec![in_degrees(tree, text)],
-        (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
-            vec![format!("length({text})")]
+    let write = |words: &str, make: &dyn Fn(&str) -> String| {
+        (
+            format!("{words} `{}`", make(&shorten(text))),
+            vec![make(text)],
+        )
+    };
+    let say = |words: String| (words, Vec::new());
+    match (row.takes, value, &tree.kind) {
+        (Type::Number, Value::Angle(_), ValueKind::Angle { number, .. }) => {
+            write("without a unit, write", &|_| (*number).to_owned())
         }
-        (Type::Vector, Type::Number, _) if literal && matches!(row.name, "size" | "sides") => {
-            vec![format!("({text}, {text}, {text})")]
+        (Type::Number, Value::Angle(_), kind) => write(
+            "an angle divided by `1deg` is a number:",
+            &|text| match kind {
+                ValueKind::Chain { .. } => format!("({text}) / 1deg"),
+                _ => format!("{text} / 1deg"),
+            },
+        ),
+        (Type::Number, Value::Vector(_), kind) if !matches!(kind, ValueKind::Tuple(_)) => write(
+            "write a number, such as the length of the vector:",
+            &|text| format!("length({text})"),
+        ),
+        (Type::Vector, Value::Number(_), _) if literal && matches!(row.name, "size" | "sides") => {
+            write("write three numbers, such as", &|text| {
+                format!("({text}, {text}, {text})")
+            })
         }
-        (Type::Color, Type::Vector, _) => match value {
-            Value::Vector(parts) => rgb(parts, tree, text).into_iter().collect(),
-            _ => Vec::new(),
-        },
-        (Type::Colors, Type::Color, _) => {
+        (Type::Vector, Value::Number(_), _) => say(format!(
+            "write three numbers in parentheses, such as `{}`",
+            row.example()
+        )),
+        (Type::Color, Value::Vector(parts), _) if rgb(parts, tree, text).is_some() => {
+            write("of red, green and blue, write", &|text| {
+                rgb(parts, tree, text).unwrap_or_default()
+            })
+        }
+        (Type::Color, Value::Colors(_), ValueKind::Tuple(_)) => {
+            say("write one colour; only a checkerboard has two".to_owned())
+        }
+        (Type::Color, ..) => say(format!(
+            "write a colour, such as `{}`, `#808000` or `rgb(128, 128, 0)`",
+            row.example()
+        )),
+        (Type::Colors, Value::Color(_), _) => {
             let other = if text == "white" { "gray" } else { "white" };
-            vec![format!("({text}, {other})")]
+            write("write two colours:", &|text| format!("({text}, {other})"))
         }
-        _ => Vec::new(),
+        _ => say(format!(
+            "write {}, such as `{}`",
+            row.takes.noun(),
+            row.example()
+        )),
     }
 }
 
@@ -154,59 +196,6 @@ pub fn list_for(row: &Field, texts: &[&str]) -> (Option<String>, Option<Vec<Stri
     }
 }
 
-/// What to write in place of a value of the wrong type.
-pub fn type_help(row: &Field, tree: &tree::Value<'_>, value: Value, text: &str) -> String {
-    let literal = matches!(&tree.kind, ValueKind::Number(_) | ValueKind::Tuple(_));
-    match (row.takes, value.kind(), &tree.kind) {
-        (Type::Number, Type::Angle, ValueKind::Angle { number, .. }) => {
-            format!("write `{number}`, without a unit")
-        }
-        (Type::Number, Type::Angle, _) => {
-            let number = in_degrees(tree, text);
-            format!("an angle divided by `1deg` is a number: `{number}`")
-        }
-        (Type::Number, Type::Vector, kind) if !matches!(kind, ValueKind::Tuple(_)) => {
-            format!("write a number, such as the length of the vector: `length({text})`")
-        }
-        (Type::Vector, Type::Number, _) if literal && matches!(row.name, "size" | "sides") => {
-            format!("write three numbers, such as `({text}, {text}, {text})`")
-        }
-        (Type::Vector, Type::Number, _) => {
-            format!(
-                "write three numbers in parentheses, such as `{}`",
-                row.example()
-            )
-        }
-        (Type::Color, Type::Vector, _) if of_right_type(row, tree, value, text).len() == 1 => {
-            let color = of_right_type(row, tree, value, text).concat();
-            format!("write `{color}` if these are red, green and blue")
-        }
-        (Type::Color, Type::Colors, ValueKind::Tuple(parts)) if parts.len() == 2 => {
-            "write one colour; only a checkerboard has two".to_owned()
-        }
-        (Type::Color, ..) => format!(
-            "write a colour, such as `{}`, `#808000` or `rgb(128, 128, 0)`",
-            row.example()
-        ),
-        (Type::Colors, Type::Color, _) => {
-            let other = match text {
-                "white" => "gray",
-                _ => "white",
-            };
-            format!("write two colours: `({text}, {other})`")
-        }
-        _ => format!("write {}, such as `{}`", row.takes.noun(), row.example()),
-    }
-}
-
-/// The number of degrees of an angle.
-fn in_degrees(tree: &tree::Value<'_>, text: &str) -> String {
-    match tree.kind {
-        ValueKind::Chain { .. } => format!("({text}) / 1deg"),
-        _ => format!("{text} / 1deg"),
-    }
-}
-
 /// A computed value that does not keep a condition.
 pub fn shown(value: Value, condition: Condition) -> String {
     let two_to = |power: u32| (1_u64 << power) as f64;
@@ -232,33 +221,6 @@ pub fn shown(value: Value, condition: Condition) -> String {
         Value::Color(color) => color.to_string(),
         Value::Colors([first, second]) => format!("({first}, {second})"),
         Value::Method(method) => method.name().to_owned(),
-    }
-}
-
-/// A vector along an axis, such as `−z`.
-pub fn axis_name(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let sign = if part < 0.0 { '−' } else { '+' };
-    Some(format!("{sign}{axis}"))
-}
-
-/// The unit vector along an axis as it is written.
-pub fn axis_vector(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let one = if part < 0.0 { "-1" } else { "1" };
-    Some(match axis {
-        'x' => format!("({one}, 0, 0)"),
-        'y' => format!("(0, {one}, 0)"),
-        _ => format!("(0, 0, {one})"),
-    })
-}
-
-fn axis(v: DVec3) -> Option<(char, f64)> {
-    match v.to_array() {
-        [x, 0.0, 0.0] if x != 0.0 => Some(('x', x)),
-        [0.0, y, 0.0] if y != 0.0 => Some(('y', y)),
-        [0.0, 0.0, z] if z != 0.0 => Some(('z', z)),
-        _ => None,
     }
 }
 

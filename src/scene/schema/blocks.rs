@@ -1,6 +1,7 @@
 //! The table of blocks and their fields.
 
-use super::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread, Type};
+use super::rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread};
+use crate::scene::value::Type;
 
 /// A field without conditions or alternatives; rows start from it.
 const FIELD: Field = Field {

@@ -1,7 +1,9 @@
 //! The tables of predefined words: methods, functions and constants.
 
-use super::{Type, is_among};
-use crate::{scene::Method, suggest};
+use crate::{
+    scene::{Method, value::Type},
+    suggest::{self, is_among},
+};
 
 /// Every sampling technique, with a line of help.
 pub const METHODS: &[(Method, &str)] = &[

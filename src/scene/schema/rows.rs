@@ -1,0 +1,303 @@
+//! What a row of the language's table says: of a kind of block, and of a field.
+
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::{
+    math::compare_half_turns,
+    scene::value::{Type, Value},
+    suggest::{self, is_among},
+};
+
+/// A kind of block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// The picture.
+    Image,
+    /// The camera.
+    Camera,
+    /// The samples.
+    Sampler,
+    /// A sphere.
+    Sphere,
+    /// A triangle.
+    Triangle,
+    /// A box.
+    Box,
+    /// The checkerboard.
+    Checkerboard,
+}
+
+/// What there is to know about a kind of block.
+#[derive(Debug)]
+pub struct Block {
+    /// Its kind.
+    pub kind: Kind,
+    /// The word that it starts with.
+    pub name: &'static str,
+    /// The word with its article, for messages.
+    pub noun: &'static str,
+    /// Whether it is an object: it may have a name, and there may be many.
+    pub is_object: bool,
+    /// What it is, in a line.
+    pub help: &'static str,
+    /// Its fields.
+    pub fields: &'static [Field],
+    /// What it says in one of several ways.
+    pub choices: &'static [Choice],
+    /// Conditions between fields, each by its name.
+    pub together: &'static [&'static str],
+    /// Other words that people try for several of its fields.
+    pub spreads: &'static [Spread],
+    /// Other words that people try for it.
+    pub also_tried: &'static [&'static str],
+}
+
+/// Ways to say the same thing, of which a block takes one.
+#[derive(Debug)]
+pub struct Choice {
+    /// Each way, with the fields that belong to it. A way that is taken needs those of them that are [alternatives](Preset::Alternative).
+    pub ways: &'static [&'static [&'static str]],
+    /// Why it is one of them.
+    pub why: &'static str,
+}
+
+/// A word that people try for several fields at once, with a list of their values.
+#[derive(Debug)]
+pub struct Spread {
+    /// The words.
+    pub words: &'static [&'static str],
+    /// The fields.
+    pub fields: &'static [&'static str],
+}
+
+/// What there is to know about a field.
+#[derive(Debug)]
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// What it takes.
+    pub takes: Type,
+    /// What it is when it is not given.
+    pub preset: Preset,
+    /// What its value must be.
+    pub must: &'static [Condition],
+    /// What it is, in a line.
+    pub help: &'static str,
+    /// Other words that people try for it.
+    pub also_tried: &'static [&'static str],
+    /// Words that people try for twice its value.
+    pub doubled: &'static [&'static str],
+    /// A value that it can have, if neither its default nor any of its type will do.
+    pub example: &'static str,
+}
+
+impl Field {
+    /// A value that it can have: for messages, and to type over.
+    pub fn example(&self) -> String {
+        match (self.preset, self.takes) {
+            _ if !self.example.is_empty() => self.example.to_owned(),
+            (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
+            (_, Type::Number) => "100".to_owned(),
+            (_, Type::Angle) => "30deg".to_owned(),
+            (_, Type::Vector) => "(0, 1, 0)".to_owned(),
+            (_, Type::Color) => "olive".to_owned(),
+            (_, Type::Colors) => "(gray, white)".to_owned(),
+            (_, Type::Method) => "jittered".to_owned(),
+        }
+    }
+}
+
+/// What a field is when it is not given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preset {
+    /// It must be given.
+    Required,
+    /// It must be given where its way of a [`Choice`] is taken.
+    Alternative,
+    /// Nothing.
+    Nothing,
+    /// This.
+    Value(Literal),
+}
+
+/// A value as the table writes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Literal {
+    /// A number.
+    Number(f64),
+    /// An angle in degrees.
+    Degrees(f64),
+    /// A vector.
+    Vector([f64; 3]),
+    /// A colour's name.
+    Color(&'static str),
+    /// Two colours' names.
+    Colors([&'static str; 2]),
+    /// A method's name.
+    Method(&'static str),
+}
+
+/// As it is written in a scene.
+impl fmt::Display for Literal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Degrees(degrees) => write!(f, "{degrees}deg"),
+            Self::Vector([x, y, z]) => write!(f, "({x}, {y}, {z})"),
+            Self::Color(name) | Self::Method(name) => f.write_str(name),
+            Self::Colors([first, second]) => write!(f, "({first}, {second})"),
+        }
+    }
+}
+
+/// What a field's value must be, beyond its type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// A number without a fraction.
+    Whole,
+    /// A number above this one.
+    MoreThan(f64),
+    /// A number not below this one.
+    AtLeast(f64),
+    /// A number not above 2 to this power.
+    AtMostTwoTo(u32),
+    /// A number below 2 to this power.
+    LessThanTwoTo(u32),
+    /// An angle between 0 and 180 degrees, both excluded.
+    LessThanHalfTurn,
+    /// A vector other than zero.
+    NotZero,
+    /// A vector whose three parts are above 0.
+    EachMoreThanZero,
+}
+
+impl Condition {
+    /// Whether a value keeps it; one of another type has no say in it.
+    pub fn holds(&self, value: Value) -> bool {
+        let two_to = |power: u32| (1_u64 << power) as f64;
+        match (*self, value) {
+            (Self::Whole, Value::Number(x)) => x.fract() == 0.0,
+            (Self::MoreThan(bound), Value::Number(x)) => x > bound,
+            (Self::AtLeast(bound), Value::Number(x)) => x >= bound,
+            (Self::AtMostTwoTo(power), Value::Number(x)) => x <= two_to(power),
+            (Self::LessThanTwoTo(power), Value::Number(x)) => x < two_to(power),
+            (Self::LessThanHalfTurn, Value::Angle(angle)) => {
+                compare_half_turns(angle, 0.0).is_gt() && compare_half_turns(angle, 1.0).is_lt()
+            }
+            (Self::NotZero, Value::Vector(v)) => v != DVec3::ZERO,
+            (Self::EachMoreThanZero, Value::Vector(v)) => v.min_element() > 0.0,
+            _ => true,
+        }
+    }
+}
+
+/// What the value must be, in words.
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("a whole number"),
+            Self::MoreThan(bound) => write!(f, "more than {bound}"),
+            Self::AtLeast(bound) => write!(f, "at least {bound}"),
+            Self::AtMostTwoTo(power) => write!(f, "at most {} (2^{power})", 1_u64 << power),
+            Self::LessThanTwoTo(power) => write!(f, "less than 2^{power}"),
+            Self::LessThanHalfTurn => f.write_str("more than 0 and less than 180deg"),
+            Self::NotZero => f.write_str("other than (0, 0, 0)"),
+            Self::EachMoreThanZero => f.write_str("more than 0 in every part"),
+        }
+    }
+}
+
+impl Block {
+    /// A field's row, found by its name.
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// The names of its fields.
+    pub fn field_names(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.fields.iter().map(|field| field.name)
+    }
+
+    /// The fields that a field excludes: those of the other ways to say the same.
+    pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        let choices = self.choices.iter().map(|choice| choice.ways);
+        let holds = |way: &&&[&str]| way.contains(&field);
+        let choice = choices
+            .into_iter()
+            .find(|ways| ways.iter().any(|way| holds(&way)));
+        let others = choice
+            .into_iter()
+            .flatten()
+            .filter(move |way| !way.contains(&field));
+        others.flat_map(|way| way.iter().copied())
+    }
+
+    /// The conditions that hold between a field and others, or something else: those that name it.
+    pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        let rules = self.together.iter().copied();
+        rules.filter(move |rule| {
+            let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            words.any(|word| word == field)
+        })
+    }
+
+    /// The fields without which there is no such block: those that have no default, and of alternatives the first.
+    pub fn least_fields(&self) -> Vec<&'static Field> {
+        let mut least: Vec<&Field> = Vec::new();
+        for field in self.fields {
+            let is_excluded = least
+                .iter()
+                .any(|other| self.excludes(other.name).any(|name| name == field.name));
+            let is_needed = matches!(field.preset, Preset::Required | Preset::Alternative);
+            if is_needed && !is_excluded {
+                least.push(field);
+            }
+        }
+        least
+    }
+
+    /// The field that is written like this but for capitals and `_`, or that people try this word for.
+    pub fn field_tried(&self, written: &str) -> Option<&'static Field> {
+        let mut fields = self.fields.iter();
+        let same = fields.find(|field| is_among(written, &[field.name]));
+        same.or_else(|| {
+            self.fields
+                .iter()
+                .find(|field| is_among(written, field.also_tried))
+        })
+    }
+
+    /// The field that was probably meant, if any is near: by its letters, or by a word within what was written, as in `near_clip` and
+    /// `eyepoint`.
+    pub fn nearest_field(&self, written: &str) -> Option<&'static Field> {
+        if let Some(name) = suggest::nearest(written, self.field_names()) {
+            return self.field(name);
+        }
+        let words = suggest::words(written);
+        let named = |word: &&str| {
+            self.fields
+                .iter()
+                .find(|field| field.name.eq_ignore_ascii_case(word))
+        };
+        if let Some(field) = words.iter().find_map(named) {
+            return Some(field);
+        }
+        let tried = words.iter().rev().find_map(|word| self.field_tried(word));
+        tried.or_else(|| {
+            let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);
+            self.fields
+                .iter()
+                .filter(starts)
+                .max_by_key(|field| field.name.len())
+        })
+    }
+}
+
+impl Field {
+    /// Whether a value keeps its conditions; one of another type has no say in it.
+    pub fn allows(&self, value: Value) -> bool {
+        self.must.iter().all(|condition| condition.holds(value))
+    }
+}
