@@ -301,7 +301,7 @@ fn every_fix_of_a_slip_helps() {
                 break;
             }
             count += 1;
-            if token.kind == TokenKind::Comment || count % 3 != 0 {
+            if token.kind == TokenKind::Comment || !count.is_multiple_of(3) {
                 continue;
             }
             let other = others[count / 3 % others.len()];
