@@ -380,6 +380,8 @@ pub enum Problem {
     MisplacedLet {
         #[label("only fields stand here")]
         span: Span,
+        /// Whether nothing else is wrong with its block.
+        is_alone: bool,
         /// All definitions in this place.
         definitions: Span,
         /// Where the block starts.

@@ -58,6 +58,12 @@ impl Way {
         }
     }
 
+    /// Leaves it to the author.
+    pub fn leave(&mut self) {
+        self.edits.clear();
+        self.removed.clear();
+    }
+
     /// In how many places something is taken away.
     pub fn places(&self) -> usize {
         self.removed.len().max(1)
@@ -77,6 +83,48 @@ impl fmt::Display for Way {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.help)?;
         f.write_str(self.note)
+    }
+}
+
+impl Problem {
+    /// Leaves what to do to the author, as other mistakes stand beside this one.
+    pub(super) fn leave(&mut self) {
+        match self {
+            Self::NestedComment { way, .. }
+            | Self::UnclosedParenthesis { way, .. }
+            | Self::StrayClosing { way, .. }
+            | Self::MissingOperand { way, .. }
+            | Self::NeedlessEquals { way, .. }
+            | Self::NeedlessSeparator { way, .. }
+            | Self::MissingEquals { way, .. }
+            | Self::MissingOperator { way, .. }
+            | Self::MissingComma { way, .. }
+            | Self::MissingSpace { way, .. }
+            | Self::NeedlessComma { way, .. }
+            | Self::DecimalComma { way, .. }
+            | Self::MissingParentheses { way, .. }
+            | Self::Brackets { way, .. }
+            | Self::UnknownOperator { way, .. }
+            | Self::PlusSign { way, .. }
+            | Self::BadNumber { way, .. }
+            | Self::MissingFieldName { way, .. }
+            | Self::MissingLet { way, .. } => way.leave(),
+            Self::MisplacedLet { is_alone, .. } => *is_alone = false,
+            _ => {}
+        }
+    }
+
+    /// Whether it makes doubtful where its block's fields end.
+    pub(super) fn is_structural(&self) -> bool {
+        matches!(
+            self,
+            Self::NestedBraces { .. }
+                | Self::UnclosedParenthesis { .. }
+                | Self::StrayClosing { .. }
+                | Self::Unexpected { .. }
+                | Self::MissingFieldName { .. }
+                | Self::MissingParentheses { .. }
+        )
     }
 }
 
@@ -115,6 +163,9 @@ impl Fixable for Problem {
                 let edit = Edit::new(*end, format!("{apart}}}"));
                 vec![Fix::new(format!("close the block of `{kind}`"), [edit])]
             }
+            Self::MisplacedLet {
+                is_alone: false, ..
+            } => Vec::new(),
             Self::MisplacedLet {
                 definitions, block, ..
             } => vec![moved_before(*definitions, *block, sources)],

@@ -24,11 +24,15 @@ impl<'s> Recovery<'_, 's> {
             ..Within::default()
         };
         let outside = std::mem::replace(&mut self.within, within);
+        let told = self.problems.len();
         let mut braces = 0_usize;
         loop {
             self.comments(Place::Start);
             if self.kind(0) == TokenKind::End || self.is_after_block(block) {
-                self.unclosed_block(block);
+                // A `{` within the block was reported: its `}` was taken for that.
+                if braces == 0 {
+                    self.unclosed_block(block);
+                }
                 break;
             }
             match self.word(0) {
@@ -62,6 +66,21 @@ impl<'s> Recovery<'_, 's> {
             }
         }
         self.within = outside;
+        // Where its fields end is doubtful: what else seems to be wrong may be something else.
+        let problems = self.problems.get_mut(told..).unwrap_or_default();
+        if problems.len() > 1 && problems.iter().any(Problem::is_structural) {
+            for problem in problems {
+                let is_of_value = matches!(
+                    problem,
+                    Problem::NeedlessSeparator { .. }
+                        | Problem::NeedlessEquals { .. }
+                        | Problem::MisplacedLet { .. }
+                );
+                if is_of_value {
+                    problem.leave();
+                }
+            }
+        }
     }
 
     /// Whether something starts here that shows that the block's `}` was forgotten: an item at the start of a line that is
@@ -174,6 +193,7 @@ impl<'s> Recovery<'_, 's> {
             index,
             Problem::MisplacedLet {
                 span,
+                is_alone: self.problems.len() == index,
                 definitions,
                 block: block.span,
             },
@@ -251,6 +271,7 @@ impl<'s> Recovery<'_, 's> {
         if value.kind == ValueKind::Bad {
             block.bad.push(value.span);
         }
+        self.leave_doubtful(index);
         block.fields.push(Field {
             name,
             span: name.span.to(value.span),
@@ -347,7 +368,7 @@ impl<'s> Recovery<'_, 's> {
             self.comments(place);
             let word = self.word(0);
             if matches!(word, ")" | "]") || (word == ">" && !values.is_empty()) {
-                self.stray_parenthesis();
+                self.stray_in_value(&values, !commas.is_empty() || stray);
                 stray = true;
                 continue;
             }
@@ -475,6 +496,40 @@ impl<'s> Recovery<'_, 's> {
         let token = self.tokens.get(self.next);
         let range = token.map_or(0..0, |token| token.start..token.end);
         self.text.get(range).unwrap_or_default()
+    }
+
+    /// `)` behind the value of a field: that of a list without its `(`, or one too many.
+    fn stray_in_value(&mut self, values: &[Value<'s>], is_list: bool) {
+        let index = self.problems.len();
+        let is_vector = self.within.takes == Some(Type::Vector);
+        let first = values.first().map(|first| first.span.start);
+        let is_whole = values.len() == 3 && values.iter().all(|value| self.is_number(value));
+        self.stray_parenthesis();
+        let is_end = self.starts_field(true) || matches!(self.word(0), "}" | "," | ";" | "");
+        let alone = values.len() == 1 && !is_list && is_end;
+        let Some(Problem::StrayClosing { way, .. }) = self.problems.get_mut(index) else {
+            return;
+        };
+        match first {
+            Some(first) if is_vector && is_whole && is_end => {
+                let edit = Edit::insert(self.id, first, "(");
+                *way = Way::write("write `(` before the first number", [edit]);
+            }
+            _ if !alone => *way = Way::told("write the parenthesis that opens it, or take it away"),
+            _ => {}
+        }
+    }
+
+    /// Where several things seem to be wrong with one value, none of them is sure.
+    pub(super) fn leave_doubtful(&mut self, index: usize) {
+        let problems = self.problems.get_mut(index..).unwrap_or_default();
+        let is_same = |other: &Problem| {
+            let first = problems.first().map(std::mem::discriminant);
+            first == Some(std::mem::discriminant(other))
+        };
+        if !problems.iter().all(is_same) {
+            problems.iter_mut().for_each(Problem::leave);
+        }
     }
 
     /// `)` or `]` that was never opened.

@@ -98,6 +98,11 @@ impl<'s> Recovery<'_, 's> {
             return;
         } else {
             definition.value = self.value_of_definition();
+            self.leave_doubtful(told);
+            if definition.equals.is_none() {
+                let problems = self.problems.get_mut(told..).unwrap_or_default();
+                problems.iter_mut().skip(1).for_each(Problem::leave);
+            }
             if self.problems.len() == told {
                 self.end_of_definition(&mut definition.value);
             } else if !self.is_on_new_line(0) && definition.value.kind == ValueKind::Bad {
@@ -666,9 +671,8 @@ impl<'s> Recovery<'_, 's> {
         if self.is(0, ";") && (ahead == 1 || glued.is_none()) {
             way.removed.push(self.bump());
         }
-        if self.problems.len() > told {
-            way.edits.clear();
-            way.removed.clear();
+        if self.problems.len() > told || value.span.range().is_empty() {
+            way.leave();
             self.problems.truncate(told);
         }
         self.problems.push(Problem::MissingLet {
@@ -738,7 +742,9 @@ impl<'s> Recovery<'_, 's> {
         let fields_below =
             self.is_on_new_line(behind) && self.is_name(behind) && !self.is_head(behind);
         let on_line = !self.is_on_new_line(behind) && self.is_name(behind);
-        if (fields_below || on_line) && self.closes_before_item(behind) {
+        let field = self.word_ahead(behind);
+        let is_field = self.words.takes(kind, field).is_some();
+        if (fields_below || on_line) && is_field && self.closes_before_item(behind) {
             way = Way::write(
                 format!("write `{} {{`", self.short(head)),
                 [Edit::insert(self.id, head.end, " {")],

@@ -221,7 +221,9 @@ impl<'s> Recovery<'_, 's> {
             .trim_end();
         let is_between =
             before.ends_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, ')' | '_' | '.'));
-        let way = match side == "before" || (is_between && self.ends_line()) {
+        // Without a factor the value would be of another type.
+        let is_term = matches!(sign.as_str(), "+" | "-");
+        let way = match side == "after" && is_term && is_between && self.ends_line() {
             true => Way::remove(format!("remove this `{sign}`"), operator),
             false => Way::told(format!(
                 "write a value {side} it, or take the `{sign}` away"
@@ -514,14 +516,19 @@ impl<'s> Recovery<'_, 's> {
         let takes = std::mem::replace(&mut self.within.takes, parts);
         self.depth += 1;
         self.open += 1;
-        let elements = self.elements(open, close);
+        let elements = self.elements(open, close, parts);
         self.open -= 1;
         self.depth -= 1;
         self.within.takes = takes;
         elements
     }
 
-    fn elements(&mut self, open: Span, close: &'static str) -> Option<Vec<Element<'s>>> {
+    fn elements(
+        &mut self,
+        open: Span,
+        close: &'static str,
+        parts: Option<Type>,
+    ) -> Option<Vec<Element<'s>>> {
         let mut elements: Vec<Element<'s>> = Vec::new();
         let mut needless: Option<(Span, &'static str)> = None;
         let mut missing = Vec::new();
@@ -553,6 +560,13 @@ impl<'s> Recovery<'_, 's> {
                 break;
             }
             match word {
+                ";" if !is_value_next => {
+                    self.unexpected("`,`", "write a comma between the parts of a list");
+                    let comma = self.bump();
+                    if let Some(last) = elements.last_mut() {
+                        last.comma = Some(comma);
+                    }
+                }
                 "," => {
                     let comma = self.bump();
                     match elements.last_mut() {
@@ -562,7 +576,7 @@ impl<'s> Recovery<'_, 's> {
                 }
                 _ if self.ends_list(is_value_next) => {
                     let is_told = missing.is_empty() && needless.is_none();
-                    self.unclosed(open, &elements, close, is_told);
+                    self.unclosed(open, &elements, close, is_told, parts);
                     return None;
                 }
                 _ => {
@@ -600,7 +614,7 @@ impl<'s> Recovery<'_, 's> {
             && is_right
             && (close == ")" || count != 3)
         {
-            self.missing_comma(&elements, first, &missing);
+            self.missing_comma(&elements, first, &missing, parts);
         }
         let is_doubtful = !missing.is_empty() || needless.is_some();
         (!is_doubtful || count == 3).then_some(elements)
@@ -626,11 +640,35 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    fn unclosed(&mut self, open: Span, elements: &[Element<'s>], close: &str, is_told: bool) {
+    fn unclosed(
+        &mut self,
+        open: Span,
+        elements: &[Element<'s>],
+        close: &str,
+        is_told: bool,
+        parts: Option<Type>,
+    ) {
         let last = elements.last();
         let is_whole =
             last.is_some_and(|last| last.comma.is_none() && last.value.kind != ValueKind::Bad);
-        let counts = self.open > 1 || !self.within.is_block || matches!(elements.len(), 1 | 3);
+        let count = elements.len();
+        let counts = match parts {
+            _ if !self.within.is_block => true,
+            Some(Type::Number) if self.within.takes == Some(Type::Number) => {
+                count == 1 || count == 3
+            }
+            Some(_) => count == 1,
+            None => count > 0,
+        };
+        let are_numbers = count != 3 || elements.iter().all(|e| self.is_number(&e.value));
+        let counts = counts && are_numbers;
+        // A field's name with nothing behind it, or a sign, does not end a value.
+        let is_end = match self.kind(0) {
+            TokenKind::Name => !matches!(self.word(1), "," | ")"),
+            TokenKind::End => true,
+            _ => self.is(0, "}"),
+        };
+        let is_told = is_told && is_end;
         let right = if close == ">" { "(…)" } else { ")" };
         let way = match is_whole && counts && is_told {
             true => {
@@ -651,7 +689,13 @@ impl<'s> Recovery<'_, 's> {
             .push(Problem::UnclosedParenthesis { span: open, way });
     }
 
-    fn missing_comma(&mut self, elements: &[Element<'s>], index: usize, all: &[usize]) {
+    fn missing_comma(
+        &mut self,
+        elements: &[Element<'s>],
+        index: usize,
+        all: &[usize],
+        parts: Option<Type>,
+    ) {
         let (Some(left), Some(right)) = (elements.get(index - 1), elements.get(index)) else {
             return;
         };
@@ -673,6 +717,20 @@ impl<'s> Recovery<'_, 's> {
         let places = all.iter().filter_map(|&index| elements.get(index - 1));
         let edits = places.map(|e| Edit::insert(self.id, e.value.span.end, ","));
         let edits: Vec<Edit> = edits.collect();
+        let is_list = elements.len() == 3 || (parts.is_none() && elements.len() == 2);
+        if !is_list
+            || !elements
+                .iter()
+                .all(|element| self.is_number(&element.value))
+        {
+            self.problems.push(Problem::MissingComma {
+                left: l,
+                right: r,
+                span: right.value.span,
+                way: Way::told("write a comma or an operator between them, or take one away"),
+            });
+            return;
+        }
         let texts: Vec<String> = elements.iter().map(|e| self.short(e.value.span)).collect();
         let whole = texts.join(", ");
         let help = match whole.len() {
@@ -685,6 +743,21 @@ impl<'s> Recovery<'_, 's> {
             span: right.value.span,
             way: Way::write(help, edits),
         });
+    }
+
+    /// Whether a value is a number, as far as can be told: what a name stands for is not known here.
+    pub(super) fn is_number(&self, value: &Value<'s>) -> bool {
+        match &value.kind {
+            ValueKind::Number(_) => true,
+            ValueKind::Name(name) => *name == "pi" || self.words.is_let(name),
+            ValueKind::Call(call) => self.words.is_function(call.function.text),
+            ValueKind::Negation { operand, .. } => self.is_number(operand),
+            ValueKind::Parentheses(inner) => self.is_number(inner),
+            ValueKind::Chain { first, rest } => {
+                self.is_number(first) && rest.iter().all(|step| self.is_number(&step.operand))
+            }
+            _ => false,
+        }
     }
 
     // Depth.
@@ -775,10 +848,15 @@ impl<'s> Recovery<'_, 's> {
             return bad(span);
         }
         let list = texts.join(", ");
+        let are_numbers = values.iter().all(|value| self.is_number(value));
         let problem = match (takes, values.len()) {
             (Some(Type::Color), 3) if numbers => Problem::MissingParentheses {
                 span,
                 way: Way::replace(span, format!("rgb({list})")),
+            },
+            (Some(Type::Vector) | None, 3) if !are_numbers => Problem::MissingParentheses {
+                span,
+                way: Way::told("write three numbers, such as `(0, 1, 0)`"),
             },
             (Some(Type::Vector) | None, 3) | (Some(Type::Colors), 2) => {
                 Problem::MissingParentheses {
