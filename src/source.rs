@@ -6,6 +6,8 @@
 
 use std::{ops::Range, sync::OnceLock};
 
+use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
+
 /// Which text a span points into. The file comes before the arguments, and they come in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
@@ -137,7 +139,7 @@ pub struct Source {
     name: String,
     text: String,
     invalid: Vec<usize>,
-    table: OnceLock<Table>,
+    lines: OnceLock<LineIndex>,
 }
 
 impl Source {
@@ -152,7 +154,7 @@ impl Source {
             name: name.into(),
             text,
             invalid,
-            table: OnceLock::new(),
+            lines: OnceLock::new(),
         }
     }
 
@@ -201,20 +203,17 @@ impl Source {
 
     /// How many lines the text has; the end of the last line need not be written.
     pub fn line_count(&self) -> usize {
-        self.table().line_starts.len()
+        self.line(self.text.len())
     }
 
     /// The bytes of a line, counted from 1, without the LF or CRLF at its end.
     pub fn line_range(&self, line: usize) -> Range<usize> {
-        let starts = &self.table().line_starts;
-        let start = match starts.get(line.saturating_sub(1)) {
-            Some(&start) => start,
-            None => self.text.len(),
+        let index = u32::try_from(line.saturating_sub(1)).ok();
+        let Some(range) = index.and_then(|index| self.lines().line(index)) else {
+            return self.text.len()..self.text.len();
         };
-        let Some(&next) = starts.get(line) else {
-            return start..self.text.len();
-        };
-        let ended = self.text.get(start..next).unwrap_or_default();
+        let start = usize::from(range.start());
+        let ended = self.slice(start..usize::from(range.end()));
         let line = ended.strip_suffix('\n').unwrap_or(ended);
         let line = line.strip_suffix('\r').unwrap_or(line);
         start..start + line.len()
@@ -222,28 +221,36 @@ impl Source {
 
     /// The line that an offset lies in, counted from 1.
     pub fn line(&self, offset: usize) -> usize {
-        self.table()
-            .line_starts
-            .partition_point(|&start| start <= offset)
+        self.line_col(offset).line as usize + 1
     }
 
     /// Line and column of an offset. A byte order mark has no column. An offset past the end counts as the end, one inside
     /// a character as the start of that character.
     pub fn place(&self, offset: usize) -> Place {
-        let offset = self.floor_char_boundary(offset);
-        let table = self.table();
-        let line = self.line(offset);
-        let start = table.line_starts.get(line - 1).copied().unwrap_or(0);
-        let start = if line == 1 { self.bom_len() } else { start };
-        let before = if offset <= start {
-            0
-        } else {
-            table.characters_before(&self.text, offset) - table.characters_before(&self.text, start)
+        let place = self.line_col(offset);
+        let characters = self.lines().to_wide(WideEncoding::Utf32, place);
+        let before = characters.map_or(place.col, |place| place.col) as usize;
+        let mark = match place.line {
+            0 if self.bom_len() > 0 => 1,
+            _ => 0,
         };
         Place {
-            line,
-            column: before + 1,
+            line: place.line as usize + 1,
+            column: before.saturating_sub(mark) + 1,
         }
+    }
+
+    /// Line and column of an offset, both counted from 0, the column in bytes; of offsets that are none as [`Self::place`] has it.
+    pub fn line_col(&self, offset: usize) -> LineCol {
+        let offset = self.floor_char_boundary(offset);
+        let offset = u32::try_from(offset).ok().map(TextSize::from);
+        let place = offset.and_then(|offset| self.lines().try_line_col(offset));
+        place.unwrap_or(LineCol { line: 0, col: 0 })
+    }
+
+    /// Where lines begin, and which characters in them take more than a byte.
+    pub fn lines(&self) -> &LineIndex {
+        self.lines.get_or_init(|| LineIndex::new(&self.text))
     }
 
     /// The greatest place between characters that is not past an offset.
@@ -253,10 +260,6 @@ impl Source {
             offset -= 1;
         }
         offset
-    }
-
-    fn table(&self) -> &Table {
-        self.table.get_or_init(|| Table::new(&self.text))
     }
 }
 
@@ -273,45 +276,6 @@ fn without_invalid(bytes: &[u8]) -> (String, Vec<usize>) {
         }
     }
     (text, invalid)
-}
-
-/// Where lines start, and how many characters stand before every [`Table::STEP`]th byte, so that the place of an offset
-/// takes the same short time wherever it lies, in a line of ten megabytes too.
-#[derive(Clone, Debug)]
-struct Table {
-    line_starts: Vec<usize>,
-    characters: Vec<usize>,
-}
-
-impl Table {
-    const STEP: usize = 1024;
-
-    fn new(text: &str) -> Self {
-        let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
-        let line_starts = [0].into_iter().chain(ends.map(|(at, _)| at + 1)).collect();
-        let mut before = 0;
-        let mut characters = vec![0];
-        for piece in text.as_bytes().chunks(Self::STEP) {
-            before += count_characters(piece);
-            characters.push(before);
-        }
-        Self {
-            line_starts,
-            characters,
-        }
-    }
-
-    fn characters_before(&self, text: &str, offset: usize) -> usize {
-        let step = offset / Self::STEP;
-        let bytes = text.as_bytes();
-        let rest = bytes.get(step * Self::STEP..offset).unwrap_or_default();
-        self.characters.get(step).copied().unwrap_or(0) + count_characters(rest)
-    }
-}
-
-/// How many characters start in these bytes of a UTF-8 text.
-fn count_characters(bytes: &[u8]) -> usize {
-    bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count()
 }
 
 #[cfg(test)]

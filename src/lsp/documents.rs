@@ -1,6 +1,6 @@
 //! The texts that are open in the editor, and places in them by line and column.
 
-use line_index::{LineCol, LineIndex, TextSize, WideEncoding, WideLineCol};
+use line_index::{LineCol, LineIndex, WideEncoding, WideLineCol};
 
 use crate::source::{Source, Sources};
 
@@ -34,7 +34,6 @@ pub struct Document {
     /// The text.
     pub sources: Sources,
     encoding: Encoding,
-    lines: LineIndex,
 }
 
 /// What takes the place of a part of a text; of all of it, if no range is given.
@@ -50,7 +49,6 @@ impl Document {
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
-            lines: LineIndex::new(&text),
             sources: Sources::new(Source::from_text(name, text)),
             encoding,
         }
@@ -63,7 +61,7 @@ impl Document {
     /// A change begins or ends below the text.
     pub fn change(&mut self, version: i32, changes: &[Change]) -> Result<(), String> {
         let mut text = self.text().to_owned();
-        let mut lines = self.lines.clone();
+        let mut lines = self.sources.file.lines().clone();
         // From this line on the table of lines is no longer that of the text. Editors send changes from the end to the start, for which it need not be
         // made anew each time.
         let mut first_wrong = u32::MAX;
@@ -99,18 +97,15 @@ impl Document {
     /// its end.
     pub fn offset(&self, place: Place) -> usize {
         let text = self.text();
-        offset(text, &self.lines, self.encoding, place).unwrap_or(text.len())
+        offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
     }
 
     /// The place of an offset.
     pub fn place(&self, offset: usize) -> Place {
-        let offset = self.sources.file.floor_char_boundary(offset);
-        let place = u32::try_from(offset).ok();
-        let place = place.and_then(|at| self.lines.try_line_col(TextSize::from(at)));
-        let Some(place) = place else { return (0, 0) };
+        let place = self.sources.file.line_col(offset);
         match self.encoding {
             Encoding::Utf8 => (place.line, place.col),
-            Encoding::Wide(encoding) => match self.lines.to_wide(encoding, place) {
+            Encoding::Wide(encoding) => match self.sources.file.lines().to_wide(encoding, place) {
                 Some(place) => (place.line, place.col),
                 None => (place.line, place.col),
             },
