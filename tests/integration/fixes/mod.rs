@@ -3,8 +3,10 @@
 
 mod fields;
 mod meaning;
+mod mistyped;
 mod names;
 mod removal;
+
 mod syntax;
 mod values;
 
