@@ -68,11 +68,25 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Element<'s>]) {
-        for argument in arguments {
-            self.value(&argument.value, None);
-        }
-        let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-        let near = suggest::nearest(function.text, functions);
+        let values = arguments
+            .iter()
+            .map(|argument| self.value(&argument.value, None));
+        let values: Vec<Option<Value>> = values.collect();
+        // Of equally near ones, one that takes these arguments.
+        let fits = |row: &&Function| {
+            let takes = |at: usize| row.takes.get(at).or(row.takes.last()).copied();
+            let mut kinds = values.iter().enumerate();
+            let is_count =
+                values.len() == row.takes.len() || row.more && values.len() > row.takes.len();
+            is_count
+                && kinds
+                    .all(|(at, value)| value.is_none_or(|value| takes(at) == Some(value.kind())))
+        };
+        let named = |rows: &mut dyn Iterator<Item = &'static Function>| {
+            suggest::nearest(function.text, rows.map(|row| row.name))
+        };
+        let fitting = named(&mut schema::FUNCTIONS.iter().filter(fits));
+        let near = fitting.or_else(|| named(&mut schema::FUNCTIONS.iter()));
         let is_let = self.names.place(function.text).is_some();
         let is_value = is_let || predefined(function.text).is_some();
         let (help, label) = match near {
@@ -111,7 +125,7 @@ impl<'s> Evaluator<'_, 's> {
                     format!("write `{} * (…)`", function.text),
                     [Edit::new(place, " * ")],
                 )),
-                None => fix::written(function.span, near.filter(|_| !is_value)),
+                None => fix::written(function.span, fitting.filter(|_| !is_value)),
             }),
         );
     }
@@ -143,9 +157,13 @@ impl<'s> Evaluator<'_, 's> {
             count => format!("there are {count}"),
         };
         let written = self.argument_example(row, arguments);
-        // What is written is not to be lost.
-        let keeps_all =
-            found == 0 || written != example(row) || self.filled_up(row, arguments).is_some();
+        // What is written is not to be lost, but for the alpha of a colour.
+        let keeps_all = found <= 1
+            || found < row.takes.len()
+            || row.takes == [Type::Vector]
+            || row.gives == Type::Color;
+        let is_example = written == example(row) && self.filled_up(row, arguments).is_none();
+        let keeps_all = keeps_all && (found == 0 || !is_example);
         let instead = (is_whole(&written) && keeps_all).then(|| written.clone());
         self.problems.push(
             Problem::ArgumentCount {

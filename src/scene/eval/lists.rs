@@ -47,7 +47,7 @@ impl<'s> Evaluator<'_, 's> {
         if !fits && values.iter().all(Option::is_some) {
             let kinds = if pair { Type::Color } else { Type::Number };
             if values.iter().flatten().all(|value| value.kind() == kinds) {
-                self.tuple_size(elements, span, pair);
+                self.tuple_size(elements, span, wanted, pair);
             }
         }
         None
@@ -111,7 +111,13 @@ impl<'s> Evaluator<'_, 's> {
         Some(format!("({})", parts.join(", ")))
     }
 
-    fn tuple_size(&mut self, elements: &[Element<'s>], span: Span, pair: bool) {
+    fn tuple_size(
+        &mut self,
+        elements: &[Element<'s>],
+        span: Span,
+        takes: Option<Type>,
+        pair: bool,
+    ) {
         let parts = |count: usize| match count {
             0 => "none".to_owned(),
             1 => "one".to_owned(),
@@ -133,6 +139,8 @@ impl<'s> Evaluator<'_, 's> {
         let instead = match (texts.get(..wanted), texts.as_slice()) {
             _ if !texts.iter().all(|text| is_whole(text)) => Vec::new(),
             _ if joined.is_some() => joined.iter().cloned().collect(),
+            // Whether it is to be a vector at all is not known.
+            _ if !pair && takes != Some(Type::Vector) => Vec::new(),
             (Some(kept), _) => vec![format!("({})", kept.join(", "))],
             (None, []) if pair => vec!["(gray, white)".to_owned()],
             (None, []) => vec!["(0, 1, 0)".to_owned()],

@@ -93,6 +93,12 @@ impl<'s> Evaluator<'_, 's> {
         let colors = matches!(wanted, Some(Type::Color | Type::Colors));
         let lets = self.names.to_compare();
         let near = lets.and_then(|lets| nearest(name, lets, wanted));
+        // `olive green`: of two colours the first one.
+        let first = name
+            .split_whitespace()
+            .next()
+            .filter(|first| first.len() < name.len());
+        let near = first.filter(|first| css::color(first).is_some()).or(near);
         let name = name.to_owned();
         if colors {
             let help = match near {
@@ -152,8 +158,7 @@ fn nearest<'n>(name: &str, lets: &[&'n str], wanted: Option<Type>) -> Option<&'n
         return suggest::nearest(name, lets.chain(colors));
     }
     let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
-    let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-    let near = suggest::nearest(name, lets.chain(constants).chain(functions));
+    let near = suggest::nearest(name, lets.chain(constants));
     near.or_else(|| match wanted {
         None => suggest::nearest(name, colors),
         Some(_) => None,

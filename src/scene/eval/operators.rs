@@ -50,7 +50,9 @@ impl<'s> Evaluator<'_, 's> {
         let mut left = self.value(first, None);
         let mut span = first.span;
         for (index, step) in rest.iter().enumerate() {
-            let right = self.value(&step.operand, None);
+            // What is added to something is of its type.
+            let alike = left.filter(|_| !step.operator.is_of_product());
+            let right = self.value(&step.operand, alike.map(|left| left.kind()));
             left = match (left, right) {
                 (Some(a), Some(b)) => {
                     let named = (index == 0).then_some(first);

@@ -188,7 +188,10 @@ pub fn list_for(row: &Field, texts: &[&str]) -> (Option<String>, Option<Vec<Stri
         // A third number could be on the wrong side of the other corner, or make a vertex of another one.
         (Type::Vector, [_, _]) if row.preset == Preset::Alternative => (None, Some(Vec::new())),
         (Type::Vector, _) => (None, None),
-        (Type::Number, [first, rest @ ..]) if rest.iter().all(|text| text == first) => {
+        // A field without a default, such as `far`, has conditions of its own.
+        (Type::Number, [first, rest @ ..])
+            if row.preset != Preset::Nothing && rest.iter().all(|text| text == first) =>
+        {
             write((*first).to_owned())
         }
         (Type::Color, [r, g, b, _]) => write(format!("rgb({r}, {g}, {b})")),

@@ -3,6 +3,7 @@
 
 mod fields;
 mod meaning;
+mod mistyped;
 mod names;
 mod removal;
 mod slips;

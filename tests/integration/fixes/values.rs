@@ -98,7 +98,7 @@ fn powers_parts_and_degrees_are_written_out() {
             "let a = 2 * sqrt(3)^2 / 4",
             "let a = 2 * sqrt(3) * sqrt(3) / 4",
         ),
-        ("let a = (1, 2)", "let a = (1, 2, 1)"),
+        ("sphere { center (1, 2) }", "sphere { center (1, 2, 1) }"),
         (
             "let a = 10deg sphere { center (0, 1, 0)  radius a + 2deg }",
             "let a = 10deg sphere { center (0, 1, 0)  radius (a + 2deg) / 1deg }",
