@@ -103,12 +103,13 @@ impl<'s> Recovery<'_, 's> {
                 let problems = self.problems.get_mut(told..).unwrap_or_default();
                 problems.iter_mut().skip(1).for_each(Problem::leave);
             }
-            if self.problems.len() == told {
+            if self.problems.len() == told || matches!(self.word(0), ")" | "]") {
                 self.end_of_definition(&mut definition.value);
             } else if !self.is_on_new_line(0) && definition.value.kind == ValueKind::Bad {
                 self.skip_to_item();
             }
         }
+        self.leave_doubtful(told);
         definition.span = keyword.to(definition.value.span);
         self.push_definition(definition, told);
     }
@@ -316,7 +317,14 @@ impl<'s> Recovery<'_, 's> {
     fn end_of_definition(&mut self, value: &mut Value<'s>) {
         while matches!(self.word(0), ")" | "]") {
             let told = self.problems.len();
+            let is_sure = self.is_known(value);
             self.stray_parenthesis();
+            let is_end = self.is_on_new_line(0) || matches!(self.word(0), ")" | "+" | "-");
+            if let Some(problem) = self.problems.last_mut()
+                && !(is_end && (is_sure || value.kind == ValueKind::Bad))
+            {
+                problem.leave();
+            }
             while matches!(self.word(0), "+" | "-" | "*" | "/") && !self.is_on_new_line(0) {
                 self.bump();
                 self.expression();
@@ -743,7 +751,12 @@ impl<'s> Recovery<'_, 's> {
             self.is_on_new_line(behind) && self.is_name(behind) && !self.is_head(behind);
         let on_line = !self.is_on_new_line(behind) && self.is_name(behind);
         let field = self.word_ahead(behind);
-        let is_field = self.words.takes(kind, field).is_some();
+        let is_field = self.words.takes(kind, field).is_some()
+            && self.starts_value(behind + 1)
+            && self
+                .words
+                .takes(kind, self.word_ahead(behind + 1))
+                .is_none();
         if (fields_below || on_line) && is_field && self.closes_before_item(behind) {
             way = Way::write(
                 format!("write `{} {{`", self.short(head)),
