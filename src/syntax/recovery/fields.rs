@@ -99,11 +99,12 @@ impl<'s> Recovery<'_, 's> {
             && self.is_on_new_line(0)
             && (known == "let" || self.words.is_kind(known))
             && self.words.is_kind(self.within.kind)
-            && self.indent(self.here_start()) <= self.indent(block.span.start)
+            && self.indent_here() <= self.indent(block.span.start)
     }
 
-    fn here_start(&self) -> usize {
-        self.tokens.get(self.next).map_or(0, |token| token.start)
+    fn indent_here(&mut self) -> usize {
+        let start = self.here().start;
+        self.indent(start)
     }
 
     fn indent(&self, at: usize) -> usize {
@@ -495,7 +496,9 @@ impl<'s> Recovery<'_, 's> {
         }
         let mut span = self.bump();
         while (self.is(0, "-") && self.is_name(1))
-            || (self.is_name(0) && !self.is_field_name(self.word_here()) && !self.is_on_new_line(0))
+            || (self.is_name(0)
+                && !self.is_field_name(self.word_seen(0))
+                && !self.is_on_new_line(0))
         {
             if self.is(0, "-") {
                 self.bump();
@@ -506,12 +509,6 @@ impl<'s> Recovery<'_, 's> {
             kind: ValueKind::Name(self.written(span)),
             span,
         }
-    }
-
-    fn word_here(&self) -> &'s str {
-        let token = self.tokens.get(self.next);
-        let range = token.map_or(0..0, |token| token.start..token.end);
-        self.text.get(range).unwrap_or_default()
     }
 
     /// `)` behind the value of a field: that of a list without its `(`, or one too many.

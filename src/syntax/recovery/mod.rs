@@ -234,6 +234,13 @@ impl<'w, 's> Recovery<'w, 's> {
         self.text.get(token.start..token.end).unwrap_or_default()
     }
 
+    /// The same of a token that was looked at already.
+    fn word_seen(&self, ahead: usize) -> &'s str {
+        let token = self.tokens.get(self.next + ahead);
+        let range = token.map_or(0..0, |token| token.start..token.end);
+        self.text.get(range).unwrap_or_default()
+    }
+
     fn is(&mut self, ahead: usize, word: &str) -> bool {
         self.word(ahead) == word && self.kind(ahead) != TokenKind::End
     }
