@@ -89,6 +89,8 @@ pub enum Problem {
     #[diagnostic(code(pinhole::comment_sign), help("write `{right}`"))]
     ForeignComment {
         sign: String,
+        /// Whether it is meant as a comment for sure.
+        is_sure: bool,
         /// The comment as it should be, for a message.
         right: String,
         #[label("`//` should stand here")]
@@ -164,13 +166,13 @@ pub enum Problem {
         span: Span,
     },
 
-    #[error("a number is missing between these commas")]
+    #[error("a value is missing beside this comma")]
     #[diagnostic(
         code(pinhole::missing_value),
-        help("write a number here, such as `(1, 0, 3)`")
+        help("write a value on both sides of it, such as `(1, 0, 3)`")
     )]
     MissingPart {
-        #[label("a number should stand before this")]
+        #[label("something is missing here")]
         span: Span,
     },
 

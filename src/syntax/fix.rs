@@ -147,6 +147,7 @@ impl Fixable for Problem {
         match self {
             Self::OddSpace { places, span, .. } => odd_spaces(places, sources.text(*span)),
             Self::LoneReturn { span } => vec![with_line_ends(*span, sources)],
+            Self::ForeignComment { is_sure: false, .. } => Vec::new(),
             Self::ForeignComment { right, places, .. } => vec![Fix::new(
                 format!("write `{right}`"),
                 places.iter().map(|place| Edit::new(*place, "//")),

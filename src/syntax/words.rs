@@ -4,10 +4,10 @@
 //! which of them are known: in `radius color olive` a value is missing. This is the one file of the stage that looks them
 //! up, in the schema and among the names that the text defines.
 
-use std::{collections::HashSet, sync::OnceLock};
+use std::{collections::HashMap, sync::OnceLock};
 
 use super::{
-    tokens::{Lexer, TokenKind},
+    tokens::{Lexer, TokenKind, numeric_part},
     tree::{Field, ValueKind},
 };
 use crate::scene::{
@@ -26,7 +26,7 @@ const FOREIGN_FUNCTIONS: &[&str] = &[
 pub struct Words<'s> {
     text: &'s str,
     /// The names behind every `let`, once somebody asks.
-    lets: OnceLock<HashSet<&'s str>>,
+    lets: OnceLock<HashMap<&'s str, bool>>,
 }
 
 impl<'s> Words<'s> {
@@ -63,23 +63,34 @@ impl<'s> Words<'s> {
 
     /// Whether a name is defined somewhere in the text.
     pub fn is_let(&self, name: &str) -> bool {
-        let lets = self.lets.get_or_init(|| {
-            let mut lets = HashSet::new();
+        self.lets().contains_key(name)
+    }
+
+    /// The names behind every `let`, each with whether its value starts with a plain number.
+    fn lets(&self) -> &HashMap<&'s str, bool> {
+        self.lets.get_or_init(|| {
+            let mut lets = HashMap::new();
             let mut lexer = Lexer::new(self.text, 0);
-            let mut is_behind = false;
+            // The last three tokens but comments.
+            let mut last = ["", "", ""];
             loop {
                 let token = lexer.token();
                 let word = self.text.get(token.start..token.end).unwrap_or_default();
-                match token.kind {
-                    TokenKind::End => return lets,
-                    TokenKind::Name if is_behind => is_behind = !lets.insert(word) && word == "let",
-                    TokenKind::Name => is_behind = word == "let",
-                    TokenKind::Comment => {}
-                    _ => is_behind = false,
+                match (token.kind, last) {
+                    (TokenKind::End, _) => return lets,
+                    (TokenKind::Comment, _) => continue,
+                    (TokenKind::Name, [.., "let"]) if word != "let" => {
+                        lets.entry(word).or_insert(false);
+                    }
+                    (TokenKind::Number, ["let", name, "="]) => {
+                        lets.insert(name, numeric_part(word) == word);
+                    }
+                    _ => {}
                 }
+                let [_, second, third] = last;
+                last = [second, third, word];
             }
-        });
-        lets.contains(name)
+        })
     }
 
     /// Whether a name stands for a value: one that is defined, a colour, a unit, pi or a function.
@@ -97,9 +108,17 @@ impl<'s> Words<'s> {
         predefined(name) == Some("a function")
     }
 
-    /// Whether a name can be multiplied: pi, or one that is defined.
+    /// Whether a function takes so many arguments.
+    pub fn takes_arguments(&self, name: &str, count: usize) -> bool {
+        schema::function(name).is_some_and(|function| match function.more {
+            true => count >= function.takes.len(),
+            false => count == function.takes.len(),
+        })
+    }
+
+    /// Whether a name is surely that of a number: pi, or one that is defined so.
     pub fn is_factor(&self, name: &str) -> bool {
-        matches!(predefined(name), Some("a number" | "a unit")) || self.is_let(name)
+        name == "pi" || self.lets().get(name).copied().unwrap_or(false)
     }
 
     /// Whether a function of another language stands for a vector or a colour.

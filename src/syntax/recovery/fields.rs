@@ -25,12 +25,17 @@ impl<'s> Recovery<'_, 's> {
         };
         let outside = std::mem::replace(&mut self.within, within);
         let told = self.problems.len();
-        let mut braces = 0_usize;
+        let (mut braces, mut had_braces) = (0_usize, false);
         loop {
             self.comments(Place::Start);
             if self.kind(0) == TokenKind::End || self.is_after_block(block) {
-                // A `{` within the block was reported: its `}` was taken for that.
-                if braces == 0 {
+                // A `{` within the block was reported, or a comment that took the `}`.
+                let told = self.problems.get(told..).unwrap_or_default();
+                let is_told = told.iter().any(|problem| {
+                    matches!(problem, Problem::ForeignComment { is_sure: false, .. })
+                });
+                block.span.end = self.last_end.max(block.span.end);
+                if !had_braces && !is_told {
                     self.unclosed_block(block);
                 }
                 break;
@@ -50,6 +55,7 @@ impl<'s> Recovery<'_, 's> {
                 "," | ";" => self.separator("fields"),
                 "{" => {
                     braces += 1;
+                    had_braces = true;
                     let span = self.bump();
                     self.problems.push(Problem::NestedBraces {
                         what: "braces within a block".to_owned(),
@@ -59,6 +65,7 @@ impl<'s> Recovery<'_, 's> {
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
                     // What the outer block lacks may stand in the inner one.
                     block.bad.push(block.keyword());
+                    had_braces = true;
                     self.nested_block();
                 }
                 _ if self.is_name(0) => self.field(block),
@@ -92,11 +99,12 @@ impl<'s> Recovery<'_, 's> {
             && self.is_on_new_line(0)
             && (known == "let" || self.words.is_kind(known))
             && self.words.is_kind(self.within.kind)
-            && self.indent(self.here_start()) <= self.indent(block.span.start)
+            && self.indent_here() <= self.indent(block.span.start)
     }
 
-    fn here_start(&self) -> usize {
-        self.tokens.get(self.next).map_or(0, |token| token.start)
+    fn indent_here(&mut self) -> usize {
+        let start = self.here().start;
+        self.indent(start)
     }
 
     fn indent(&self, at: usize) -> usize {
@@ -106,7 +114,6 @@ impl<'s> Recovery<'_, 's> {
     }
 
     fn unclosed_block(&mut self, block: &mut Block<'s>) {
-        block.span.end = self.last_end.max(block.span.end);
         let Some(open) = block.open else { return };
         let again = match self.items.last() {
             Some(Item::Block(last)) => last.close.is_none() && last.fields.is_empty(),
@@ -368,7 +375,7 @@ impl<'s> Recovery<'_, 's> {
             self.comments(place);
             let word = self.word(0);
             if matches!(word, ")" | "]") || (word == ">" && !values.is_empty()) {
-                self.stray_in_value(&values, !commas.is_empty() || stray);
+                self.stray_in_value(&values, commas.len(), stray);
                 stray = true;
                 continue;
             }
@@ -386,7 +393,10 @@ impl<'s> Recovery<'_, 's> {
             let is_first = values.is_empty();
             let starts = match self.kind(0) {
                 TokenKind::Name => {
-                    !self.is(0, "let") && !self.is_head(0) && self.is_value_name(&values)
+                    let kind = self.word(1);
+                    // The kind of a block behind it stands in the head, not this.
+                    let is_head = self.is_head(0) && !(self.is_name(1) && self.words.is_kind(kind));
+                    !self.is(0, "let") && !is_head && self.is_value_name(&values)
                 }
                 TokenKind::Sign => match word {
                     "{" => is_first && self.is_flat_list(),
@@ -421,6 +431,13 @@ impl<'s> Recovery<'_, 's> {
         match values.first() {
             None if stray => bad(after),
             None => {
+                if self.is(0, ",") && self.starts_value(1) && !self.is_name(1) {
+                    self.unexpected("a value", "take the comma away, or write a value before it");
+                    while self.is(0, ",") || (self.starts_value(0) && !self.is_name(0)) {
+                        self.bump();
+                    }
+                    return bad(after.to(self.end_of_text()));
+                }
                 if self.kind(0) == TokenKind::Sign
                     && !matches!(self.word(0), "}" | "," | ";" | "{" | "#" | "-")
                 {
@@ -479,7 +496,9 @@ impl<'s> Recovery<'_, 's> {
         }
         let mut span = self.bump();
         while (self.is(0, "-") && self.is_name(1))
-            || (self.is_name(0) && !self.is_field_name(self.word_here()) && !self.is_on_new_line(0))
+            || (self.is_name(0)
+                && !self.is_field_name(self.word_seen(0))
+                && !self.is_on_new_line(0))
         {
             if self.is(0, "-") {
                 self.bump();
@@ -492,21 +511,21 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    fn word_here(&self) -> &'s str {
-        let token = self.tokens.get(self.next);
-        let range = token.map_or(0..0, |token| token.start..token.end);
-        self.text.get(range).unwrap_or_default()
-    }
-
     /// `)` behind the value of a field: that of a list without its `(`, or one too many.
-    fn stray_in_value(&mut self, values: &[Value<'s>], is_list: bool) {
+    fn stray_in_value(&mut self, values: &[Value<'s>], commas: usize, stray: bool) {
         let index = self.problems.len();
         let is_vector = self.within.takes == Some(Type::Vector);
         let first = values.first().map(|first| first.span.start);
-        let is_whole = values.len() == 3 && values.iter().all(|value| self.is_number(value));
+        let is_plain = |value: &Value<'s>| {
+            !matches!(value.kind, ValueKind::Chain { .. }) && self.is_number(value)
+        };
+        let is_whole = values.len() == 3 && commas == 2 && !stray && values.iter().all(is_plain);
+        let is_known = values.first().is_some_and(|value| self.is_known(value));
         self.stray_parenthesis();
-        let is_end = self.starts_field(true) || matches!(self.word(0), "}" | "," | ";" | "");
-        let alone = values.len() == 1 && !is_list && is_end;
+        let word = self.word(0);
+        let is_end =
+            (self.is_name(0) && self.is_field_name(word)) || matches!(word, "}" | "," | ";" | "");
+        let alone = values.len() == 1 && commas == 0 && !stray && is_end && is_known;
         let Some(Problem::StrayClosing { way, .. }) = self.problems.get_mut(index) else {
             return;
         };
@@ -558,7 +577,15 @@ impl<'s> Recovery<'_, 's> {
             );
             self.bump();
             // What stands behind it up to the next field belongs to it.
-            while !self.is_name(0) && !matches!(self.word(0), "" | "{" | "}" | "let" | "," | ";") {
+            let mut open = 0_usize;
+            while (open > 0 || !(self.is_name(0) || matches!(self.word(0), "," | ";")))
+                && !matches!(self.word(0), "" | "{" | "}" | "let")
+            {
+                match self.word(0) {
+                    "(" => open += 1,
+                    ")" => open = open.saturating_sub(1),
+                    _ => {}
+                }
                 self.bump();
             }
             block
@@ -577,6 +604,8 @@ impl<'s> Recovery<'_, 's> {
                 self.bump();
             }
         }
+        let problems = self.problems.get_mut(index..).unwrap_or_default();
+        problems.iter_mut().for_each(Problem::leave);
         let span = Span::new(self.id, start.start, self.last_end);
         block.bad.push(span);
         let is_vector = |value: &Value<'s>| match &value.kind {

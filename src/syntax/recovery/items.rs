@@ -103,12 +103,13 @@ impl<'s> Recovery<'_, 's> {
                 let problems = self.problems.get_mut(told..).unwrap_or_default();
                 problems.iter_mut().skip(1).for_each(Problem::leave);
             }
-            if self.problems.len() == told {
+            if self.problems.len() == told || matches!(self.word(0), ")" | "]") {
                 self.end_of_definition(&mut definition.value);
             } else if !self.is_on_new_line(0) && definition.value.kind == ValueKind::Bad {
                 self.skip_to_item();
             }
         }
+        self.leave_doubtful(told);
         definition.span = keyword.to(definition.value.span);
         self.push_definition(definition, told);
     }
@@ -255,18 +256,12 @@ impl<'s> Recovery<'_, 's> {
             TokenKind::End => true,
             TokenKind::Name => {
                 self.is(0, "let")
-                    || (is_new && !self.words.is_value(self.word_now()))
+                    || (is_new && !self.words.is_value(self.word_seen(0)))
                     || (is_new && self.is_head(0))
             }
             TokenKind::Sign => matches!(self.word(0), "}" | "{" | ";"),
             _ => false,
         }
-    }
-
-    fn word_now(&self) -> &'s str {
-        let token = self.tokens.get(self.next);
-        let range = token.map_or(0..0, |token| token.start..token.end);
-        self.text.get(range).unwrap_or_default()
     }
 
     /// The value of a definition, or of a `--set`: what is written on a line.
@@ -316,7 +311,14 @@ impl<'s> Recovery<'_, 's> {
     fn end_of_definition(&mut self, value: &mut Value<'s>) {
         while matches!(self.word(0), ")" | "]") {
             let told = self.problems.len();
+            let is_sure = self.is_known(value);
             self.stray_parenthesis();
+            let is_end = self.is_on_new_line(0) || matches!(self.word(0), ")" | "+" | "-");
+            if let Some(problem) = self.problems.last_mut()
+                && !(is_end && (is_sure || value.kind == ValueKind::Bad))
+            {
+                problem.leave();
+            }
             while matches!(self.word(0), "+" | "-" | "*" | "/") && !self.is_on_new_line(0) {
                 self.bump();
                 self.expression();
@@ -603,7 +605,7 @@ impl<'s> Recovery<'_, 's> {
                 if self.is(0, "let")
                     || is_assignment
                     || self.is_head(0)
-                    || foreign_statement(self.word_now()).is_some()
+                    || foreign_statement(self.word_seen(0)).is_some()
                 {
                     return;
                 }
@@ -709,7 +711,7 @@ impl<'s> Recovery<'_, 's> {
         let start = self.here();
         let has_name = self.is_name(1)
             && !self.is_on_new_line(1)
-            && self.words.takes(kind, self.word_ahead(1)).is_none();
+            && self.words.takes(kind, self.word_seen(1)).is_none();
         let behind = 1 + usize::from(has_name);
         let last = self.peek(behind - 1);
         let head = start.to(self.span_of(last));
@@ -742,8 +744,10 @@ impl<'s> Recovery<'_, 's> {
         let fields_below =
             self.is_on_new_line(behind) && self.is_name(behind) && !self.is_head(behind);
         let on_line = !self.is_on_new_line(behind) && self.is_name(behind);
-        let field = self.word_ahead(behind);
-        let is_field = self.words.takes(kind, field).is_some();
+        let field = self.word_seen(behind);
+        let is_field = self.words.takes(kind, field).is_some()
+            && self.starts_value(behind + 1)
+            && self.words.takes(kind, self.word_seen(behind + 1)).is_none();
         if (fields_below || on_line) && is_field && self.closes_before_item(behind) {
             way = Way::write(
                 format!("write `{} {{`", self.short(head)),
@@ -766,12 +770,6 @@ impl<'s> Recovery<'_, 's> {
         block.span = head.to(bad);
         self.items.push(Item::Block(block));
         true
-    }
-
-    fn word_ahead(&self, ahead: usize) -> &'s str {
-        let token = self.tokens.get(self.next + ahead);
-        let range = token.map_or(0..0, |token| token.start..token.end);
-        self.text.get(range).unwrap_or_default()
     }
 
     /// The `)` that closes the `(` at a token ahead, if nothing but fields stands between.
@@ -815,7 +813,7 @@ impl<'s> Recovery<'_, 's> {
             }
             if self.is_on_new_line(0) && !closes {
                 let is_field =
-                    self.is_name(0) && !self.is_head(0) && !self.words.is_kind(self.word_now());
+                    self.is_name(0) && !self.is_head(0) && !self.words.is_kind(self.word_seen(0));
                 let line = self
                     .text
                     .get(self.last_end..self.here().start)

@@ -47,6 +47,8 @@ pub struct Recovery<'w, 's> {
     pub(super) read_to: usize,
     /// What the items that are read stand in.
     within: Within<'s>,
+    /// Where the sign stands that was read last in front of a value.
+    prefix: usize,
     /// Parentheses, signs and calls around what is read.
     depth: usize,
     /// Lists around what is read.
@@ -107,6 +109,7 @@ impl<'w, 's> Recovery<'w, 's> {
             cut: None,
             read_to: 0,
             within: Within::default(),
+            prefix: usize::MAX,
             depth: 0,
             blocks: 0,
             open: 0,
@@ -229,6 +232,13 @@ impl<'w, 's> Recovery<'w, 's> {
     fn word(&mut self, ahead: usize) -> &'s str {
         let token = self.peek(ahead);
         self.text.get(token.start..token.end).unwrap_or_default()
+    }
+
+    /// The same of a token that was looked at already.
+    fn word_seen(&self, ahead: usize) -> &'s str {
+        let token = self.tokens.get(self.next + ahead);
+        let range = token.map_or(0..0, |token| token.start..token.end);
+        self.text.get(range).unwrap_or_default()
     }
 
     fn is(&mut self, ahead: usize, word: &str) -> bool {
@@ -400,7 +410,10 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             _ => {
                 let words = self.text.get(sign.end..end).unwrap_or_default();
+                // The comment may have taken the block's end.
+                let is_sure = !(self.within.is_block && words.contains('}'));
                 self.problems.push(Problem::ForeignComment {
+                    is_sure,
                     sign: self.short(sign),
                     right: shorten(&format!("//{words}")),
                     span: sign,

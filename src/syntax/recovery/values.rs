@@ -128,6 +128,7 @@ impl<'s> Recovery<'_, 's> {
                 }
                 let is_right = self.is(0, "-");
                 let sign = self.bump();
+                self.prefix = sign.start;
                 if !is_right {
                     self.unknown_operator("−", sign, Way::replace(sign, "-"));
                 }
@@ -213,14 +214,8 @@ impl<'s> Recovery<'_, 's> {
 
     fn missing_operand(&mut self, operator: Span, side: &'static str) {
         let sign = self.short(operator);
-        // A sign in front of a value is one of its own: without it nothing would be left.
-        let before = self
-            .text
-            .get(..operator.start)
-            .unwrap_or_default()
-            .trim_end();
-        let is_between =
-            before.ends_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, ')' | '_' | '.'));
+        // Without a sign in front of a value nothing would be left.
+        let is_between = self.prefix != operator.start;
         // Without a factor the value would be of another type.
         let is_term = matches!(sign.as_str(), "+" | "-");
         let way = match side == "after" && is_term && is_between && self.ends_line() {
@@ -279,7 +274,12 @@ impl<'s> Recovery<'_, 's> {
     fn call(&mut self, name: Name<'s>) -> Value<'s> {
         let index = self.problems.len();
         let start = self.here().start;
-        let elements = self.list(")", None);
+        let shape = Shape {
+            parts: None,
+            takes: None,
+            function: Some(name.text),
+        };
+        let elements = self.list(")", shape);
         let parentheses = Span::new(self.id, start, self.last_end);
         let span = name.span.to(parentheses);
         if self.words.is_foreign_function(name.text) && self.problems.len() == index {
@@ -434,7 +434,12 @@ impl<'s> Recovery<'_, 's> {
             Some(Type::Method) => None,
             takes => takes,
         };
-        let elements = self.list(close, parts);
+        let shape = Shape {
+            parts,
+            takes,
+            function: None,
+        };
+        let elements = self.list(close, shape);
         let span = Span::new(self.id, start.start, self.last_end);
         let Some(elements) = elements.filter(|_| !self.too_deep) else {
             return bad(span);
@@ -507,16 +512,16 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// The values of a list, a comma between two; none if something was wrong that makes their number doubtful.
-    fn list(&mut self, close: &'static str, parts: Option<Type>) -> Option<Vec<Element<'s>>> {
+    fn list(&mut self, close: &'static str, shape: Shape<'s>) -> Option<Vec<Element<'s>>> {
         if self.is_too_deep() {
             self.pass_over();
             return None;
         }
         let open = self.bump();
-        let takes = std::mem::replace(&mut self.within.takes, parts);
+        let takes = std::mem::replace(&mut self.within.takes, shape.parts);
         self.depth += 1;
         self.open += 1;
-        let elements = self.elements(open, close, parts);
+        let elements = self.elements(open, close, shape);
         self.open -= 1;
         self.depth -= 1;
         self.within.takes = takes;
@@ -527,7 +532,7 @@ impl<'s> Recovery<'_, 's> {
         &mut self,
         open: Span,
         close: &'static str,
-        parts: Option<Type>,
+        shape: Shape<'s>,
     ) -> Option<Vec<Element<'s>>> {
         let mut elements: Vec<Element<'s>> = Vec::new();
         let mut needless: Option<(Span, &'static str)> = None;
@@ -576,7 +581,7 @@ impl<'s> Recovery<'_, 's> {
                 }
                 _ if self.ends_list(is_value_next) => {
                     let is_told = missing.is_empty() && needless.is_none();
-                    self.unclosed(open, &elements, close, is_told, parts);
+                    self.unclosed(open, &elements, close, is_told, shape);
                     return None;
                 }
                 _ => {
@@ -600,13 +605,13 @@ impl<'s> Recovery<'_, 's> {
         }
         let count = elements.len();
         if let Some((span, place)) = needless {
-            self.problems.push(match count {
-                2 if close == ")" && self.is_vector_meant() => Problem::MissingPart { span },
-                _ => Problem::NeedlessComma {
+            self.problems.push(match self.fits(shape, count) {
+                true => Problem::NeedlessComma {
                     span,
                     place,
                     way: Way::remove("remove this comma", span),
                 },
+                false => Problem::MissingPart { span },
             });
         }
         // Where the parentheses are to be written anew, the commas are.
@@ -614,14 +619,10 @@ impl<'s> Recovery<'_, 's> {
             && is_right
             && (close == ")" || count != 3)
         {
-            self.missing_comma(&elements, first, &missing, parts);
+            self.missing_comma(&elements, first, &missing, shape);
         }
         let is_doubtful = !missing.is_empty() || needless.is_some();
         (!is_doubtful || count == 3).then_some(elements)
-    }
-
-    fn is_vector_meant(&self) -> bool {
-        self.open == 1 && self.within.is_block
     }
 
     /// Whether a list must have ended before this: a brace, the end, `let`, or the name of a field.
@@ -646,22 +647,16 @@ impl<'s> Recovery<'_, 's> {
         elements: &[Element<'s>],
         close: &str,
         is_told: bool,
-        parts: Option<Type>,
+        shape: Shape<'s>,
     ) {
         let last = elements.last();
         let is_whole =
             last.is_some_and(|last| last.comma.is_none() && last.value.kind != ValueKind::Bad);
         let count = elements.len();
-        let counts = match parts {
-            _ if !self.within.is_block => true,
-            Some(Type::Number) if self.within.takes == Some(Type::Number) => {
-                count == 1 || count == 3
-            }
-            Some(_) => count == 1,
-            None => count > 0,
-        };
+        let counts = self.fits(shape, count);
+        let are_known = elements.iter().all(|e| self.is_known(&e.value));
         let are_numbers = count != 3 || elements.iter().all(|e| self.is_number(&e.value));
-        let counts = counts && are_numbers;
+        let counts = counts && are_numbers && are_known;
         // A field's name with nothing behind it, or a sign, does not end a value.
         let is_end = match self.kind(0) {
             TokenKind::Name => !matches!(self.word(1), "," | ")"),
@@ -694,7 +689,7 @@ impl<'s> Recovery<'_, 's> {
         elements: &[Element<'s>],
         index: usize,
         all: &[usize],
-        parts: Option<Type>,
+        shape: Shape<'s>,
     ) {
         let (Some(left), Some(right)) = (elements.get(index - 1), elements.get(index)) else {
             return;
@@ -717,12 +712,10 @@ impl<'s> Recovery<'_, 's> {
         let places = all.iter().filter_map(|&index| elements.get(index - 1));
         let edits = places.map(|e| Edit::insert(self.id, e.value.span.end, ","));
         let edits: Vec<Edit> = edits.collect();
-        let is_list = elements.len() == 3 || (parts.is_none() && elements.len() == 2);
-        if !is_list
-            || !elements
-                .iter()
-                .all(|element| self.is_number(&element.value))
-        {
+        let are_numbers = elements
+            .iter()
+            .all(|element| self.is_number(&element.value));
+        if !self.fits(shape, elements.len()) || !are_numbers {
             self.problems.push(Problem::MissingComma {
                 left: l,
                 right: r,
@@ -743,6 +736,32 @@ impl<'s> Recovery<'_, 's> {
             span: right.value.span,
             way: Way::write(help, edits),
         });
+    }
+
+    /// Whether so many values make a list of some shape.
+    fn fits(&self, shape: Shape<'s>, count: usize) -> bool {
+        match (shape.function, shape.takes) {
+            (Some(function), _) => self.words.takes_arguments(function, count),
+            (None, Some(Type::Vector)) => count == 3,
+            (None, Some(Type::Colors)) => count == 2,
+            (None, Some(Type::Method)) => false,
+            (None, Some(_)) => count == 1,
+            (None, None) => matches!(count, 1 | 3),
+        }
+    }
+
+    /// Whether all names in a value are known, and its functions have as many arguments as they take.
+    pub(super) fn is_known(&self, value: &Value<'s>) -> bool {
+        let is_right = match &value.kind {
+            ValueKind::Name(name) => self.words.is_value(name) && !self.words.is_function(name),
+            ValueKind::Call(call) => {
+                let count = call.arguments.len();
+                self.words.takes_arguments(call.function.text, count)
+            }
+            ValueKind::Bad | ValueKind::Missing => false,
+            _ => true,
+        };
+        is_right && value.parts().iter().all(|part| self.is_known(part))
     }
 
     /// Whether a value is a number, as far as can be told: what a name stands for is not known here.
@@ -854,6 +873,9 @@ impl<'s> Recovery<'_, 's> {
                 span,
                 way: Way::replace(span, format!("rgb({list})")),
             },
+            (Some(Type::Colors), 2) if !values.iter().all(|value| self.is_color(value)) => {
+                self.missing_between(&values)
+            }
             (Some(Type::Vector) | None, 3) if !are_numbers => Problem::MissingParentheses {
                 span,
                 way: Way::told("write three numbers, such as `(0, 1, 0)`"),
@@ -878,6 +900,15 @@ impl<'s> Recovery<'_, 's> {
         };
         self.problems.push(problem);
         bad(span)
+    }
+
+    fn is_color(&self, value: &Value<'s>) -> bool {
+        match &value.kind {
+            ValueKind::Name(name) => self.words.is_color(name) || self.words.is_let(name),
+            ValueKind::ColorCode(_) => true,
+            ValueKind::Call(call) => call.function.text == "rgb",
+            _ => false,
+        }
     }
 
     /// `0 -1`, where three numbers were to stand: a number, and a negative one.
@@ -989,6 +1020,17 @@ impl<'s> Recovery<'_, 's> {
             _ => None,
         }
     }
+}
+
+/// What a list is: of which it depends how many values it has.
+#[derive(Clone, Copy)]
+struct Shape<'s> {
+    /// What its values are, if that is known.
+    parts: Option<Type>,
+    /// What it is as a whole, if that is known.
+    takes: Option<Type>,
+    /// The function that it is the arguments of.
+    function: Option<&'s str>,
 }
 
 /// A product without its sign.
