@@ -21,7 +21,7 @@
 //!
 //! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the terminal, JSON and editors show
 //!   alike. [`explain`] has a page for each kind of mistake.
-//! - [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
+//! - The facts of the language, its blocks, fields and names: [`schema`]. [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
 //!   resolved.
 //! - [`tracer`] knows what is seen at a point of the picture, without a wrong decision; its documentation says how.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
@@ -44,6 +44,7 @@ pub mod source;
 pub mod suggest;
 pub mod threads;
 
+pub mod schema;
 pub mod syntax;
 
 pub mod scene;

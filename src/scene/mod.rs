@@ -14,7 +14,6 @@
     )
 )]
 
-pub mod css;
 pub mod describe;
 mod error;
 mod eval;
@@ -24,15 +23,14 @@ mod fix_all;
 mod lower;
 mod model;
 mod overrides;
-pub mod schema;
 mod semantic_model;
 mod unseen;
 mod value;
 
-pub use eval::{example_call, predefined};
+pub use crate::schema::{self, Method, Value, css, predefined};
+pub use eval::example_call;
 pub use examples::example_beside;
 pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{analyze, read, read_in_parts, read_unless};
 pub use model::*;
 pub use semantic_model::{Parts, SemanticModel};
-pub use value::Value;

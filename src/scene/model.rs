@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{color::Color, diagnostic::Diagnostic, math::Angle, source::Span};
+use crate::{color::Color, diagnostic::Diagnostic, math::Angle, schema::Method, source::Span};
 
 /// The smallest scene that shows something: a sphere on a floor.
 pub const SMALLEST: &str = "\
@@ -107,62 +107,6 @@ pub struct Sampler {
     pub count: Count,
     /// The seed, below 2^53.
     pub seed: u64,
-}
-
-/// A sampling technique.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Method {
-    /// An even grid, centred.
-    Regular,
-    /// Independent and uniform.
-    Random,
-    /// One at random in each cell of a grid.
-    Jittered,
-    /// One in each row and each column (Latin hypercube).
-    NRooks,
-    /// Both at once (Kensler's correlated multi-jittering).
-    MultiJittered,
-    /// The Hammersley points, shifted per pixel.
-    Hammersley,
-    /// The Halton points in bases 2 and 3, shifted per pixel.
-    Halton,
-    /// Sobol' points with Owen scrambling, per pixel.
-    Sobol,
-    /// Points uniform over the whole picture.
-    Scatter,
-    /// No samples: the mean itself.
-    Exact,
-}
-
-impl Method {
-    /// All that take samples, in the order of the language's table.
-    pub const SAMPLED: [Self; 9] = [
-        Self::Regular,
-        Self::Random,
-        Self::Jittered,
-        Self::NRooks,
-        Self::MultiJittered,
-        Self::Hammersley,
-        Self::Halton,
-        Self::Sobol,
-        Self::Scatter,
-    ];
-
-    /// Its word in the language.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Regular => "regular",
-            Self::Random => "random",
-            Self::Jittered => "jittered",
-            Self::NRooks => "n_rooks",
-            Self::MultiJittered => "multi_jittered",
-            Self::Hammersley => "hammersley",
-            Self::Halton => "halton",
-            Self::Sobol => "sobol",
-            Self::Scatter => "scatter",
-            Self::Exact => "exact",
-        }
-    }
 }
 
 /// A number of samples; `per_pixel` times the number of pixels, or `total`, is at most 2^53.

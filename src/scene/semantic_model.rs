@@ -5,11 +5,12 @@
 use super::{
     Camera, Image, Object, Sampler, Scene, Value,
     error::Problems,
-    eval::{Evaluator, Names, predefined},
+    eval::{Evaluator, Names},
     schema::Type,
 };
 use crate::{
     diagnostic::Diagnostic,
+    schema::predefined,
     source::Sources,
     syntax::{
         Parsed,

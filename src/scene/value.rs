@@ -1,130 +1,16 @@
-//! Values and what can be done with them.
+//! What can be done with values.
 //!
 //! Operators and functions know no places in a text: they say what comes out, or that the types do not go together, and
 //! the caller adds the place. What is not finite comes out as it is; the caller reports it.
 
-use std::fmt;
-
 use glam::DVec3;
 
-use super::Method;
+pub use crate::schema::Value;
 use crate::{
     color::Color,
     math::{Angle, trig},
-    numbers,
     syntax::tree::Operator,
 };
-
-/// What a value can be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Type {
-    /// A number.
-    Number,
-    /// A number with a unit.
-    Angle,
-    /// Three numbers.
-    Vector,
-    /// An sRGB colour.
-    Color,
-    /// Two colours.
-    Colors,
-    /// The name of a sampling technique.
-    Method,
-}
-
-impl Type {
-    /// The type with its article.
-    pub fn noun(self) -> &'static str {
-        match self {
-            Self::Number => "a number",
-            Self::Angle => "an angle",
-            Self::Vector => "a vector",
-            Self::Color => "a colour",
-            Self::Colors => "a pair of colours",
-            Self::Method => "a method",
-        }
-    }
-
-    /// The type without an article.
-    pub fn word(self) -> &'static str {
-        let noun = self.noun();
-        noun.split_once(' ').map_or(noun, |(_, word)| word)
-    }
-
-    /// Two of the type.
-    pub fn two(self) -> &'static str {
-        match self {
-            Self::Number => "two numbers",
-            Self::Angle => "two angles",
-            Self::Vector => "two vectors",
-            Self::Color => "two colours",
-            Self::Colors => "two pairs of colours",
-            Self::Method => "two methods",
-        }
-    }
-}
-
-/// A value of the language.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// An angle.
-    Angle(Angle),
-    /// A vector.
-    Vector(DVec3),
-    /// A colour.
-    Color(Color),
-    /// A pair of colours.
-    Colors([Color; 2]),
-    /// A sampling technique.
-    Method(Method),
-}
-
-impl Value {
-    /// What it is.
-    pub fn kind(&self) -> Type {
-        match self {
-            Self::Number(_) => Type::Number,
-            Self::Angle(_) => Type::Angle,
-            Self::Vector(_) => Type::Vector,
-            Self::Color(_) => Type::Color,
-            Self::Colors(_) => Type::Colors,
-            Self::Method(_) => Type::Method,
-        }
-    }
-
-    /// Whether no part of it is infinite or not a number.
-    pub fn is_finite(&self) -> bool {
-        match self {
-            Self::Number(number) => number.is_finite(),
-            Self::Angle(angle) => angle.is_finite(),
-            Self::Vector(vector) => vector.is_finite(),
-            Self::Color(_) | Self::Colors(_) | Self::Method(_) => true,
-        }
-    }
-}
-
-/// As people read it, in the language's notation: six digits of each number.
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => f.write_str(&numbers::short(*number)),
-            Self::Angle(Angle {
-                degrees: 0.0,
-                radians,
-            }) if *radians != 0.0 => write!(f, "{}rad", numbers::short(*radians)),
-            Self::Angle(angle) => {
-                let degrees = angle.degrees + angle.radians.to_degrees();
-                write!(f, "{}deg", numbers::short(degrees))
-            }
-            Self::Vector(vector) => f.write_str(&numbers::short_vector(*vector)),
-            Self::Color(color) => write!(f, "{color}"),
-            Self::Colors([first, second]) => write!(f, "({first}, {second})"),
-            Self::Method(method) => f.write_str(method.name()),
-        }
-    }
-}
 
 /// `left OPERATOR right`, if the types go together.
 pub fn operate(operator: Operator, left: Value, right: Value) -> Option<Value> {

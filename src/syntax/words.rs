@@ -10,10 +10,7 @@ use super::{
     tokens::{Lexer, TokenKind, numeric_part},
     tree::{Field, ValueKind},
 };
-use crate::scene::{
-    predefined,
-    schema::{self, Condition, Type},
-};
+use crate::schema::{self, Condition, Type, predefined};
 
 /// Functions of other languages that stand for a vector or a colour.
 const FOREIGN_FUNCTIONS: &[&str] = &[

@@ -1,6 +1,6 @@
 //! Functions and their arguments.
 
-use super::{Evaluator, predefined};
+use super::Evaluator;
 use crate::{
     color::Color,
     diagnostic::{Edit, Fix},
@@ -8,7 +8,7 @@ use crate::{
     scene::{
         css,
         error::Problem,
-        fix,
+        fix, predefined,
         schema::{self, Function, Type},
         value::{self, Value},
     },

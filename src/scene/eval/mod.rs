@@ -12,7 +12,7 @@ mod names;
 mod operators;
 
 pub use calls::{example as example_call, in_bytes};
-pub use names::{Names, predefined};
+pub use names::Names;
 
 use super::{
     error::{Problem, Problems},

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    scene::{css, schema, value::Value},
+    scene::value::Value,
     source::{SourceId, Span},
     suggest::Budget,
     syntax::tree::Name,
@@ -166,23 +166,5 @@ impl<'s> Names<'s> {
     pub fn all(&self) -> impl Iterator<Item = &'s str> {
         let whole = self.whole().into_iter();
         whole.flat_map(|whole| whole.definitions.keys().copied())
-    }
-}
-
-/// What a predefined name is, if it is one.
-pub fn predefined(name: &str) -> Option<&'static str> {
-    if css::color(name).is_some() {
-        Some("a colour")
-    } else if schema::function(name).is_some() {
-        Some("a function")
-    } else {
-        let constant = schema::CONSTANTS
-            .iter()
-            .any(|&(constant, _)| constant == name);
-        match name {
-            "pi" if constant => Some("a number"),
-            _ if constant => Some("a unit"),
-            _ => None,
-        }
     }
 }

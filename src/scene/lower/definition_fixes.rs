@@ -8,7 +8,7 @@ use crate::{
     diagnostic::{Edit, Fix, with_comments},
     scene::{
         error::Problem,
-        eval::predefined,
+        predefined,
         schema::{self, Type},
     },
     source::{SourceId, Span},

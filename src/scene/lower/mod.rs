@@ -30,10 +30,10 @@ use self::words::mentions;
 use super::{
     Object,
     error::{Problem, Problems},
-    eval::{Names, predefined},
+    eval::Names,
     fix,
     overrides::Override,
-    schema,
+    predefined, schema,
     value::Value,
 };
 use crate::{

@@ -3,7 +3,7 @@
 use super::{Place, Recovery, Within};
 use crate::{
     diagnostic::Edit,
-    scene::schema::Type,
+    schema::Type,
     source::Span,
     syntax::{
         Problem,

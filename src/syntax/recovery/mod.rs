@@ -19,7 +19,7 @@ use super::{
     words::Words,
 };
 use crate::{
-    scene::schema::Type,
+    schema::Type,
     source::{SourceId, Span},
 };
 

@@ -2,7 +2,7 @@
 
 use super::Recovery;
 use crate::{
-    scene::schema::Type,
+    schema::Type,
     source::Span,
     syntax::{
         Problem,

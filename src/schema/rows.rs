@@ -4,9 +4,9 @@ use std::fmt;
 
 use glam::DVec3;
 
+use super::types::{Type, Value};
 use crate::{
     math::compare_half_turns,
-    scene::value::{Type, Value},
     suggest::{self, is_among},
 };
 

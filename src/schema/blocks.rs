@@ -1,7 +1,9 @@
 //! The table of blocks and their fields.
 
-use super::rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread};
-use crate::scene::value::Type;
+use super::{
+    rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread},
+    types::Type,
+};
 
 /// A field without conditions or alternatives; rows start from it.
 const FIELD: Field = Field {

@@ -1,9 +1,7 @@
 //! The tables of predefined words: methods, functions and constants.
 
-use crate::{
-    scene::{Method, value::Type},
-    suggest::{self, is_among},
-};
+use super::types::{Method, Type};
+use crate::suggest::{self, is_among};
 
 /// Every sampling technique, with a line of help.
 pub const METHODS: &[(Method, &str)] = &[

@@ -3,11 +3,13 @@
 //! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought among them, and the
 //! language's reference is tested against them.
 //!
-//! `rows` has what a row says; the rows stand in `blocks` and `builtins`, and here they are looked up.
+//! `types` has what a value can be, `rows` what a row says; the rows stand in `blocks` and `builtins`, the colours' names in `css`, and here they are looked up.
 
 mod blocks;
 mod builtins;
+pub mod css;
 mod rows;
+mod types;
 
 pub use blocks::BLOCKS;
 pub use builtins::{
@@ -16,7 +18,8 @@ pub use builtins::{
 
 pub use rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread};
 
-pub use super::value::Type;
+pub use types::{Method, Type, Value};
+
 use crate::suggest::{self, is_among};
 
 /// A block's row, found by its word.
@@ -35,4 +38,20 @@ pub fn nearest_block(written: &str) -> Option<&'static Block> {
         .iter()
         .find(|block| is_among(written, block.also_tried));
     tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
+}
+
+/// What a predefined name is, if it is one.
+pub fn predefined(name: &str) -> Option<&'static str> {
+    if css::color(name).is_some() {
+        Some("a colour")
+    } else if function(name).is_some() {
+        Some("a function")
+    } else {
+        let constant = CONSTANTS.iter().any(|&(constant, _)| constant == name);
+        match name {
+            "pi" if constant => Some("a number"),
+            _ if constant => Some("a unit"),
+            _ => None,
+        }
+    }
 }

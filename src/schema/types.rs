@@ -1,0 +1,174 @@
+//! What a value can be: the language's types and their values.
+
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::{color::Color, math::Angle, numbers};
+
+/// What a value can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Type {
+    /// A number.
+    Number,
+    /// A number with a unit.
+    Angle,
+    /// Three numbers.
+    Vector,
+    /// An sRGB colour.
+    Color,
+    /// Two colours.
+    Colors,
+    /// The name of a sampling technique.
+    Method,
+}
+
+impl Type {
+    /// The type with its article.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Angle => "an angle",
+            Self::Vector => "a vector",
+            Self::Color => "a colour",
+            Self::Colors => "a pair of colours",
+            Self::Method => "a method",
+        }
+    }
+
+    /// The type without an article.
+    pub fn word(self) -> &'static str {
+        let noun = self.noun();
+        noun.split_once(' ').map_or(noun, |(_, word)| word)
+    }
+
+    /// Two of the type.
+    pub fn two(self) -> &'static str {
+        match self {
+            Self::Number => "two numbers",
+            Self::Angle => "two angles",
+            Self::Vector => "two vectors",
+            Self::Color => "two colours",
+            Self::Colors => "two pairs of colours",
+            Self::Method => "two methods",
+        }
+    }
+}
+
+/// A value of the language.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// An angle.
+    Angle(Angle),
+    /// A vector.
+    Vector(DVec3),
+    /// A colour.
+    Color(Color),
+    /// A pair of colours.
+    Colors([Color; 2]),
+    /// A sampling technique.
+    Method(Method),
+}
+
+impl Value {
+    /// What it is.
+    pub fn kind(&self) -> Type {
+        match self {
+            Self::Number(_) => Type::Number,
+            Self::Angle(_) => Type::Angle,
+            Self::Vector(_) => Type::Vector,
+            Self::Color(_) => Type::Color,
+            Self::Colors(_) => Type::Colors,
+            Self::Method(_) => Type::Method,
+        }
+    }
+
+    /// Whether no part of it is infinite or not a number.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Self::Number(number) => number.is_finite(),
+            Self::Angle(angle) => angle.is_finite(),
+            Self::Vector(vector) => vector.is_finite(),
+            Self::Color(_) | Self::Colors(_) | Self::Method(_) => true,
+        }
+    }
+}
+
+/// As people read it, in the language's notation: six digits of each number.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => f.write_str(&numbers::short(*number)),
+            Self::Angle(Angle {
+                degrees: 0.0,
+                radians,
+            }) if *radians != 0.0 => write!(f, "{}rad", numbers::short(*radians)),
+            Self::Angle(angle) => {
+                let degrees = angle.degrees + angle.radians.to_degrees();
+                write!(f, "{}deg", numbers::short(degrees))
+            }
+            Self::Vector(vector) => f.write_str(&numbers::short_vector(*vector)),
+            Self::Color(color) => write!(f, "{color}"),
+            Self::Colors([first, second]) => write!(f, "({first}, {second})"),
+            Self::Method(method) => f.write_str(method.name()),
+        }
+    }
+}
+
+/// A sampling technique.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// An even grid, centred.
+    Regular,
+    /// Independent and uniform.
+    Random,
+    /// One at random in each cell of a grid.
+    Jittered,
+    /// One in each row and each column (Latin hypercube).
+    NRooks,
+    /// Both at once (Kensler's correlated multi-jittering).
+    MultiJittered,
+    /// The Hammersley points, shifted per pixel.
+    Hammersley,
+    /// The Halton points in bases 2 and 3, shifted per pixel.
+    Halton,
+    /// Sobol' points with Owen scrambling, per pixel.
+    Sobol,
+    /// Points uniform over the whole picture.
+    Scatter,
+    /// No samples: the mean itself.
+    Exact,
+}
+
+impl Method {
+    /// All that take samples, in the order of the language's table.
+    pub const SAMPLED: [Self; 9] = [
+        Self::Regular,
+        Self::Random,
+        Self::Jittered,
+        Self::NRooks,
+        Self::MultiJittered,
+        Self::Hammersley,
+        Self::Halton,
+        Self::Sobol,
+        Self::Scatter,
+    ];
+
+    /// Its word in the language.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::Random => "random",
+            Self::Jittered => "jittered",
+            Self::NRooks => "n_rooks",
+            Self::MultiJittered => "multi_jittered",
+            Self::Hammersley => "hammersley",
+            Self::Halton => "halton",
+            Self::Sobol => "sobol",
+            Self::Scatter => "scatter",
+            Self::Exact => "exact",
+        }
+    }
+}
