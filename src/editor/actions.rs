@@ -4,6 +4,7 @@ use super::{Analysis, formatting, words::file};
 use crate::{
     diagnostic::{self, Diagnostic, Edit, Fix},
     format::format,
+    scene,
     source::{Source, SourceId, Span},
 };
 
@@ -35,33 +36,45 @@ pub fn fixes<'a>(analysis: &'a Analysis<'_>, within: Span) -> Vec<(&'a Diagnosti
     fixes.collect()
 }
 
+/// Whether a text is so short that it can be read again for every fix that is offered without anybody's seeing it.
+pub fn is_short(analysis: &Analysis<'_>) -> bool {
+    analysis.text().len() <= 1 << 15
+}
+
 /// Whether a text is short, and in the canonical layout.
 fn is_laid_out(analysis: &Analysis<'_>) -> bool {
-    /// To lay a longer one out for every fix would take time that is seen.
-    const LONGEST: usize = 1 << 15;
-    analysis.text().len() <= LONGEST
-        && formatting(analysis).is_some_and(|changes| changes.is_empty())
+    is_short(analysis) && formatting(analysis).is_some_and(|changes| changes.is_empty())
 }
 
 /// The fix with the text that it leads to laid out, if that changes anything.
 fn laid_out(text: &str, fix: &Fix) -> Option<Fix> {
     let fixed = diagnostic::apply(fix, SourceId::File, text);
     let laid_out = format(&Source::from_text("", fixed.as_str())).ok()?;
-    if laid_out == fixed {
-        return None;
-    }
+    let edit = change(text, &laid_out);
+    (laid_out != fixed).then(|| Fix::new(fix.title.as_str(), [edit]))
+}
+
+/// All that can be put right without being asked, as one change; none if nothing can.
+pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
+    let fixed = scene::fix_all(analysis.survey.sources());
+    let edit = change(analysis.text(), &fixed.text);
+    (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed", [edit]))
+}
+
+/// What has to take the place of what for a text to become another one.
+fn change(text: &str, new: &str) -> Edit {
     let same = |(a, b): &(char, char)| a == b;
     let width = |(c, _): (char, char)| c.len_utf8();
     let start: usize = text
         .chars()
-        .zip(laid_out.chars())
+        .zip(new.chars())
         .take_while(same)
         .map(width)
         .sum();
-    let [old, new] = [text, laid_out.as_str()].map(|text| text.get(start..).unwrap_or_default());
+    let [old, new] = [text, new].map(|text| text.get(start..).unwrap_or_default());
     let backwards = old.chars().rev().zip(new.chars().rev());
     let end: usize = backwards.take_while(same).map(width).sum();
     let place = file(start, text.len() - end);
     let written = new.get(..new.len() - end).unwrap_or_default();
-    Some(Fix::new(fix.title.as_str(), [Edit::new(place, written)]))
+    Edit::new(place, written)
 }

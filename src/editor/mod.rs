@@ -20,7 +20,7 @@ mod signature;
 mod symbols;
 mod words;
 
-pub use actions::fixes;
+pub use actions::{fix_all, fixes, is_short};
 pub use analysis::Analysis;
 pub use colors::{Swatch, presentations, swatches};
 pub use completion::{Completion, CompletionKind, Piece, completions};

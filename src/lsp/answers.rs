@@ -170,22 +170,28 @@ fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentation
 }
 
 fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) -> Answer {
-    let is_wanted = |kinds: Vec<lsp::CodeActionKind>| {
-        let mut kinds = kinds.iter();
-        kinds.any(|kind| {
-            matches!(
-                kind,
-                lsp::CodeActionKind::QuickFix | lsp::CodeActionKind::Empty
-            )
-        })
+    use lsp::CodeActionKind as Kind;
+    let only = params.context.only;
+    let is_wanted = |wanted: &[Kind]| {
+        let mut only = only.iter().flatten();
+        only.any(|kind| *kind == Kind::Empty || wanted.contains(kind))
     };
-    if !params.context.only.is_none_or(is_wanted) {
-        return written(&json!([]));
+    let mut actions = Vec::new();
+    if only.is_none() || is_wanted(&[Kind::QuickFix]) {
+        let fixes = editor::fixes(analysis, page.span(params.range)).into_iter();
+        actions.extend(fixes.map(|(diagnostic, fix)| page.action(diagnostic, &fix)));
     }
-    let fixes = editor::fixes(analysis, page.span(params.range)).into_iter();
-    let actions: Vec<_> = fixes
-        .map(|(diagnostic, fix)| page.action(diagnostic, &fix))
-        .collect();
+    // Beside a fix it is offered where there are others.
+    let fixable = || {
+        analysis
+            .diagnostics()
+            .iter()
+            .filter(|it| !it.fixes.is_empty())
+    };
+    let is_more = !actions.is_empty() && fixable().count() > 1 && editor::is_short(analysis);
+    if is_more || is_wanted(&[Kind::Source, Kind::SourceFixAll]) {
+        actions.extend(editor::fix_all(analysis).map(|fix| page.action_on_all(&fix)));
+    }
     written(&actions)
 }
 

@@ -110,7 +110,10 @@ pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
         document_formatting_provider: Some(lsp::DocumentFormattingProvider::Bool(true)),
         code_action_provider: Some(lsp::CodeActionProvider::CodeActionOptions(
             lsp::CodeActionOptions {
-                code_action_kinds: Some(vec![lsp::CodeActionKind::QuickFix]),
+                code_action_kinds: Some(vec![
+                    lsp::CodeActionKind::QuickFix,
+                    lsp::CodeActionKind::SourceFixAll,
+                ]),
                 ..Default::default()
             },
         )),

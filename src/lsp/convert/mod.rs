@@ -225,6 +225,17 @@ impl Page<'_> {
         }
     }
 
+    /// What puts all mistakes right that can be.
+    pub fn action_on_all(&self, fix: &Fix) -> lsp::CodeAction {
+        let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
+        lsp::CodeAction {
+            title: fix.title.clone(),
+            kind: Some(lsp::CodeActionKind::SourceFixAll),
+            edit: Some(self.edit(edits)),
+            ..Default::default()
+        }
+    }
+
     /// An outline in levels, or one of all entries for a client that knows no levels.
     #[allow(deprecated, reason = "a struct must be given all its fields")]
     pub fn symbols(&self, symbols: Vec<Symbol>) -> lsp::DocumentSymbolResponse {

@@ -183,6 +183,17 @@ fn texts_change_while_one_types() {
     );
     assert_eq!(others, json!([]));
 
+    let all = client.about(
+        "codeAction",
+        json!({ "range": range(0, 0, 0), "context": { "diagnostics": [], "only": ["source.fixAll"] } }),
+    );
+    assert_eq!(all[0]["kind"], "source.fixAll");
+    let edit = &all[0]["edit"]["documentChanges"][0]["edits"];
+    assert_eq!(
+        edit,
+        &json!([{ "range": range(2, 54, 54), "newText": "i" }])
+    );
+
     let completions = client.at("completion", 2, 50 + 11);
     let labels: Vec<&str> = completions
         .as_array()
