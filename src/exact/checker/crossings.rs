@@ -4,7 +4,7 @@
 //! compiler makes vectors of, with a bound: the terms that the series is cut off by, and roundings.
 
 use super::homography::{Sum, UNIT};
-use super::special::{turn_exactly, waves, waves_of};
+use super::special::{turn_exactly, waves};
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
@@ -33,7 +33,17 @@ pub(super) struct Series {
 
 impl Series {
     pub(super) fn at(&self, t: f64, depth: f64) -> f64 {
-        let waves = waves(t, self.terms);
+        match self.terms {
+            0..=2 => self.at_with::<2, 4>(t, depth),
+            3..=4 => self.at_with::<4, 6>(t, depth),
+            5..=7 => self.at_with::<7, 9>(t, depth),
+            8..=12 => self.at_with::<12, 14>(t, depth),
+            _ => self.at_with::<MAX_TERMS, { MAX_TERMS + 2 }>(t, depth),
+        }
+    }
+
+    fn at_with<const MOST: usize, const ROWS: usize>(&self, t: f64, depth: f64) -> f64 {
+        let waves = waves::<MOST, ROWS>(t);
         let u = 1.0 / depth;
         let sum = (1..=self.terms)
             .rev()
@@ -157,7 +167,7 @@ impl LineCrossings {
         j: f64,
         i: f64,
     ) -> f64 {
-        let waves = waves_of::<TERMS, ROWS>(t + i * self.turned[1].hi);
+        let waves = waves::<TERMS, ROWS>(t + i * self.turned[1].hi);
         let u = 1.0 / (self.depth + (j + i) * self.rise);
         let (mut x, mut k) = (0.0, TERMS);
         while k > 0 {

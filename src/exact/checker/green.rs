@@ -121,9 +121,23 @@ fn terms(board: &Homography, nearest: f64, edges: &[Option<Edge>], area: f64) ->
 
 /// Ψ at a corner, and its size before anything cancels.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
+    match terms {
+        0..=2 => potential_of::<2, 4>(board, corner, terms),
+        3..=4 => potential_of::<4, 6>(board, corner, terms),
+        5..=7 => potential_of::<7, 9>(board, corner, terms),
+        8..=12 => potential_of::<12, 14>(board, corner, terms),
+        _ => potential_of::<MAX_TERMS, { MAX_TERMS + 2 }>(board, corner, terms),
+    }
+}
+
+fn potential_of<const MOST: usize, const ROWS: usize>(
+    board: &Homography,
+    corner: &Corner,
+    terms: usize,
+) -> (f64, f64) {
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
-        let mut waves = waves(turn(corner.floor[i]), terms);
+        let mut waves = waves::<MOST, ROWS>(turn(corner.floor[i]));
         let mut power = 1.0;
         for wave in &mut waves[1..=terms] {
             *wave *= power;

@@ -129,21 +129,6 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be read.
-///
-/// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
-/// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
-/// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
-pub(super) fn waves(t: f64, terms: usize) -> [f64; ORDERS] {
-    match terms {
-        0..=2 => waves_of::<2, ORDERS>(t),
-        3..=4 => waves_of::<4, ORDERS>(t),
-        5..=7 => waves_of::<7, ORDERS>(t),
-        8..=12 => waves_of::<12, ORDERS>(t),
-        _ => waves_of::<20, ORDERS>(t),
-    }
-}
-
 /// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. From 2^51 on
 /// t has no fraction left to tell of.
 #[inline(always)]
@@ -154,9 +139,15 @@ fn from_middle(t: f64) -> (f64, f64) {
     (middle - (shifted - ROUND), sign)
 }
 
-/// The same where the number of terms is known to the compiler, which makes vectors of many of them. There must be two rows more than terms.
+/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be read.
+///
+/// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
+/// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
+/// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
+///
+/// The number of terms is known to the compiler, which makes vectors of many places; there must be two rows more than terms.
 #[inline(always)]
-pub(super) fn waves_of<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
+pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
     let (eta, sign) = from_middle(t);
     let (square, odd) = (eta * eta, sign * eta);
     let mut all = [0.0; ROWS];
@@ -350,7 +341,7 @@ mod tests {
     #[test]
     fn waves_are_the_fourier_series() {
         for t in [-3.7, -1.0, -0.2, 0.0, 0.31, 0.5, 1.25, 2.0, 7.9] {
-            for (k, wave) in waves(t, 20).into_iter().enumerate().skip(2) {
+            for (k, wave) in waves::<20, ORDERS>(t).into_iter().enumerate().skip(2) {
                 let mut sum = 0.0;
                 for n in (1..4001).step_by(2) {
                     let x = f64::from(n) * PI;
