@@ -191,7 +191,7 @@ impl<'a> Span<'a> {
                     ..straight
                 })
             }
-            // Too flat for its tangents to be told apart.
+            // Too flat for its tangents to be told apart: each y is good to eight roundings.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -406,6 +406,7 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
+        // Some twenty operations on coordinates of both arcs, and what those are off themselves; the slack counts on both sides, for three points and the chord.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest

@@ -236,6 +236,7 @@ fn within_a_square(arc: &Arc, sign: f64) -> Sum {
     let area = arc.area();
     Sum {
         value: sign * area,
+        // The formulas of the area have a dozen operations.
         bound: 16.0 * UNIT * area,
     }
 }

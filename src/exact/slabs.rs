@@ -48,6 +48,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Curve::Line(line) => {
+                // As in `arrangement`.
                 regions.doubt(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),

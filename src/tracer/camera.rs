@@ -54,7 +54,7 @@ fn normalized(v: &Exact3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// a + b, which is nothing where no more is left of them than their roundings: a roll by 45 degrees takes equal numbers from each other.
+/// a + b, which is nothing where no more is left of them than their roundings, at most four in each: a roll by 45 degrees takes equal numbers from each other.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);

@@ -131,7 +131,7 @@ struct EyeOffset {
 impl EyeOffset {
     /// Splits a coordinate without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
-        // Twice the side must not overflow; a unit four times as large loses nothing at that size.
+        // Twice the side must not overflow, which it does above 9e307; a unit four times as large loses nothing at that size.
         let exponent = if square > 1e300 { -2 } else { 0 };
         let [coordinate, square] = [coordinate, square].map(|x| libm::ldexp(x, exponent));
         // The remainder of f64 is exact, and so are the differences of numbers within a factor of two (Sterbenz).

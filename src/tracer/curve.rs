@@ -358,6 +358,7 @@ impl Conic {
         let determinant = a * c - b * b;
         hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
         let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
+        // Six terms of three roundings, which are summed; no extreme lies between them.
         let rad = self.rad + 16.0 * f64::UNIT * size;
         Range {
             low: range.low - rad,

@@ -99,7 +99,7 @@ fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
     }
 }
 
-/// A coordinate or the square of a ray's direction, with what its few roundings may have cost.
+/// A coordinate or the square of a ray's direction, with what its roundings may have cost, which are fewer than 32.
 fn rounded(x: &Big) -> Ball<Big> {
     Ball {
         rad: x.magnitude() * (32.0 * Big::UNIT),

@@ -342,7 +342,7 @@ impl Sphere<f64> {
         );
         let mixed = 2.0 * (cx * cy).abs() * hx * hy;
         let sizes = 2.0 * (x.0 + y.0) + x.1.abs() + y.1.abs() + mixed;
-        // The expansion is made of the same products as Q, and the rectangle is within the window.
+        // The expansion is made of the same products as Q, and the rectangle is within the window: the value at the centre, two gradients and the square have Q's bound each.
         let slack = mixed + 4.0 * self.rad_q + sizes * (UP - 1.0);
         let q = Range {
             low: q - greatest(x.0, -x.1) - greatest(y.0, -y.1) - slack,

@@ -100,6 +100,7 @@ pub fn curves(
             equal::merge(out);
             room = out.len() + most;
         }
+        // Equal ones were merged, and more are left than may be.
         match room > 2 * most {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

@@ -80,6 +80,7 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
+            // Terms fall by more than half each, so that the roundings of all of them are below 16 of the first.
             sum.bound += (16.0 * UNIT + 2.0 * board.misfit) * size;
         }
     }

@@ -223,6 +223,7 @@ impl Homography {
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
+        // Three roundings in the factors of either form, four in its value, and one in the quotient.
         (place, 16.0 * UNIT / level * terms)
     }
 

@@ -111,6 +111,7 @@ impl Homography {
         }
         Some(Sum {
             value: sign * measure(polygon).0.abs(),
+            // A polygon within a pixel: products of steps below 1, rounded, and summed.
             bound: 2.0 * UNIT,
         })
     }

@@ -99,6 +99,13 @@ impl<'s> Evaluator<'_, 's> {
             .next()
             .filter(|first| first.len() < name.len());
         let near = first.filter(|first| css::color(first).is_some()).or(near);
+        // `ff0000`, the code of a colour without its sign.
+        let code = format!("#{name}");
+        let is_code = matches!(name.len(), 3 | 6) && name.bytes().all(|c| c.is_ascii_hexdigit());
+        let near = match is_code && colors {
+            true => Some(code.as_str()),
+            false => near,
+        };
         let name = name.to_owned();
         if colors {
             let help = match near {

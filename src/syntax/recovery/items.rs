@@ -643,7 +643,8 @@ impl<'s> Recovery<'_, 's> {
             None => name,
         };
         let text = self.written(name);
-        if ahead == 0 && glued.is_none() && self.words.is_let(text) {
+        let is_again = self.words.is_let(text) || self.is_in_line(text, 2);
+        if ahead == 0 && glued.is_none() && is_again {
             self.problems.push(Problem::NotInLanguage {
                 what: "assignments: a name keeps its value",
                 help: "give the new value a name of its own with `let NAME = VALUE`",
@@ -694,6 +695,18 @@ impl<'s> Recovery<'_, 's> {
             self.skip_to_item();
         }
         true
+    }
+
+    /// Whether a word stands in the rest of the line, behind so many tokens.
+    fn is_in_line(&mut self, word: &str, behind: usize) -> bool {
+        let mut ahead = behind;
+        while !self.is_on_new_line(ahead) && self.kind(ahead) != TokenKind::End {
+            if self.is(ahead, word) {
+                return true;
+            }
+            ahead += 1;
+        }
+        false
     }
 
     fn skip_rest_of_line(&mut self) {

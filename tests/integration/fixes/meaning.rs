@@ -57,6 +57,10 @@ fn fields_by_their_meaning() {
             "sphere { center (0, 0, 0)  colorred }",
             "sphere { center (0, 0, 0)  color red }",
         ),
+        (
+            "sphere { center (0, 0, 0)  color ff0000 }",
+            "sphere { center (0, 0, 0)  color #ff0000 }",
+        ),
         ("image { backgroundblack }", "image { background black }"),
         (
             "triangle { center (0, 1, 0)  normal (0, 0, 1) }",

@@ -190,6 +190,7 @@ const ROWS: &[(&str, &str, &str)] = &[
         "sphere My_Ball { center (0, 1, 0) }",
     ),
     ("let x = 1\nx = x + 1", "not_in_language", ""),
+    ("x = x + 1", "not_in_language", ""),
     ("let f(x) = 2 * x", "not_in_language", ""),
     (
         "let a = 1\nif (a > 0) {\n  box { center (0, 1, 0) }\n}",
