@@ -2,28 +2,13 @@
 
 use gen_lsp_types as lsp;
 use lsp_server::{ErrorCode, Request};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::convert::{self, Page};
+use super::{
+    convert::{self, Page},
+    params::{Answer, Refusal, parsed, written},
+};
 use crate::editor::{self, Analysis};
-
-/// Why a request gets no answer.
-pub struct Refusal(pub ErrorCode, pub String);
-
-/// What is answered, as JSON.
-pub type Answer = Result<Value, Refusal>;
-
-/// What was asked, in the protocol's types.
-pub fn parsed<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    serde_json::from_value(params)
-        .map_err(|error| Refusal(ErrorCode::InvalidParams, error.to_string()))
-}
-
-/// What is answered, as JSON.
-pub fn written(result: &impl serde::Serialize) -> Answer {
-    serde_json::to_value(result)
-        .map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
-}
 
 /// The answer to a request about a document.
 pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Answer {

@@ -8,6 +8,7 @@ mod answers;
 mod convert;
 mod documents;
 mod pages;
+mod params;
 mod server;
 pub mod stdio;
 mod uri;

@@ -15,10 +15,11 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response}
 use serde_json::{Value, json};
 
 use super::{
-    answers::{Refusal, answer, diagnostics, parsed, written},
+    answers::{answer, diagnostics},
     convert::{self, Client, Page},
     documents::Document,
     pages::Pages,
+    params::{Refusal, parsed, written},
 };
 use crate::editor::Analysis;
 

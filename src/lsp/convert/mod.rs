@@ -11,9 +11,9 @@ use line_index::WideEncoding;
 use serde_json::Value;
 
 use super::{
-    answers::{Refusal, parsed},
     documents::{Change, Document, Place},
     pages::Pages,
+    params::{Refusal, parsed},
     uri,
 };
 use crate::{
