@@ -57,8 +57,8 @@ use self::{
 /// A pixel whose bound is no greater than this, in area, is not cut into quarters: 1e-9 is asked for, roundings of sums included.
 const ENOUGH: f64 = 9e-10;
 /// A piece with more curves than this is quartered before anything is computed of it: n curves cross in some n² places, and at each of them all have to be
-/// looked at, while about half of them pass through a quarter. (Measured: a heap of 300 objects takes half the time with 6 that it takes with 24, and seven
-/// times that with 96; a dozen objects take a tenth longer with 6.)
+/// looked at, while about half of them pass through a quarter. (Measured: a heap of 300 objects takes half the time with 6 that it takes with 24, and with 96 seven
+/// times as long; a dozen objects take a tenth longer with 6.)
 const MOST_CURVES: usize = 12;
 /// With each quartering so many more are allowed: curves that stay together in small pieces are not likely to part in smaller ones. (Measured: of a heap 1
 /// more takes two thirds of the time, and 16 more four times as long.)
