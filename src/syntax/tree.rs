@@ -282,3 +282,66 @@ impl Operator {
         }
     }
 }
+
+/// A number that is right, with its unit if it has one.
+pub(super) fn number(written: &str) -> ValueKind<'_> {
+    let units = [("deg", Unit::Degrees), ("rad", Unit::Radians)];
+    let angle = units.into_iter().find_map(|(word, unit)| {
+        let number = written.strip_suffix(word)?;
+        Some(ValueKind::Angle { number, unit })
+    });
+    angle.unwrap_or(ValueKind::Number(written))
+}
+
+/// `-VALUE`
+pub(super) fn negation(sign: Span, operand: Value<'_>) -> Value<'_> {
+    Value {
+        span: sign.to(operand.span),
+        kind: ValueKind::Negation {
+            sign,
+            operand: Box::new(operand),
+        },
+    }
+}
+
+/// `VALUE OPERATOR VALUE`; operators of one precedence make one chain.
+pub(super) fn chain<'s>(
+    left: Value<'s>,
+    operator: Operator,
+    sign: Span,
+    operand: Value<'s>,
+) -> Value<'s> {
+    let is_sum = |operator| matches!(operator, Operator::Add | Operator::Subtract);
+    let span = left.span.to(operand.span);
+    let step = Step {
+        operator,
+        sign,
+        operand,
+    };
+    let kind = match left.kind {
+        ValueKind::Chain { first, mut rest }
+            if rest
+                .last()
+                .is_some_and(|last| is_sum(last.operator) == is_sum(operator)) =>
+        {
+            rest.push(step);
+            ValueKind::Chain { first, rest }
+        }
+        kind => ValueKind::Chain {
+            first: Box::new(Value {
+                kind,
+                span: left.span,
+            }),
+            rest: vec![step],
+        },
+    };
+    Value { kind, span }
+}
+
+/// A value that cannot be told.
+pub(super) fn bad<'s>(span: Span) -> Value<'s> {
+    Value {
+        kind: ValueKind::Bad,
+        span,
+    }
+}

@@ -9,9 +9,8 @@ use crate::{
         Problem,
         fix::Way,
         messages::shorten,
-        parser::{bad, number},
         tokens::{TokenKind, numeric_part},
-        tree::{Block, Field, Item, Name, Value, ValueKind},
+        tree::{Block, Field, Item, Name, Value, ValueKind, bad, number},
     },
 };
 

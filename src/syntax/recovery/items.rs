@@ -9,9 +9,8 @@ use crate::{
         Problem,
         fix::{Way, written_length},
         messages::{foreign_statement, shorten},
-        parser::bad,
         tokens::TokenKind,
-        tree::{Block, Definition, Item, Name, Value, ValueKind},
+        tree::{Block, Definition, Item, Name, Value, ValueKind, bad},
     },
 };
 

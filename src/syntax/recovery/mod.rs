@@ -13,9 +13,8 @@ mod values;
 use super::{
     Problem,
     messages::{foreign_file, foreign_statement, shorten},
-    parser::bad,
     tokens::{Lexer, Token, TokenKind, line_end},
-    tree::{Item, Name, Value},
+    tree::{Item, Name, Value, bad},
     words::Words,
 };
 use crate::{

@@ -8,9 +8,8 @@ use crate::{
         Problem,
         fix::Way,
         messages::{angle_unit, metres, scaled, shorten},
-        parser::{bad, number},
         tokens::{TokenKind, numeric_part},
-        tree::{Unit, Value, ValueKind},
+        tree::{Unit, Value, ValueKind, bad, number},
     },
 };
 

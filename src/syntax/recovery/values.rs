@@ -9,9 +9,8 @@ use crate::{
         NESTING_LIMIT, Problem,
         fix::Way,
         messages::shorten,
-        parser::{bad, chain, negation},
         tokens::{TokenKind, numeric_part},
-        tree::{Call, Element, Name, Operator, Step, Value, ValueKind},
+        tree::{Call, Element, Name, Operator, Step, Value, ValueKind, bad, chain, negation},
     },
 };
 
