@@ -149,7 +149,7 @@ impl<'a> Integrator<'a> {
         };
         let mut curves = Vec::new();
         let mut room = Room::default();
-        let mut batches = BoardBatches::new(self.world);
+        let mut batches = BoardBatches::new();
         // Pixels of a checkerboard for which that is not enough.
         let mut others = Vec::new();
         let flow = self.quartering.parts(part, &mut room, &mut |part| {
@@ -159,19 +159,16 @@ impl<'a> Integrator<'a> {
             match part {
                 Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
                 Part::Open {
-                    x, y, candidates, ..
-                } => match candidates {
-                    [only] if self.is_floor(only) => {
-                        batches.push(
-                            BoardPixel {
-                                x,
-                                y,
-                                candidate: *only,
-                            },
-                            &mut |floor, sum| {
-                                self.set(floor, sum, &mut film, &mut others);
-                            },
-                        );
+                    x,
+                    y,
+                    candidates,
+                    checks,
+                } => match (candidates, checks) {
+                    ([candidate], Some(checks)) => {
+                        let candidate = *candidate;
+                        let pixel = BoardPixel { x, y, candidate };
+                        let mut set = |pixel, sum| self.set(pixel, sum, &mut film, &mut others);
+                        batches.push(pixel, checks, &mut set);
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
@@ -244,12 +241,6 @@ impl<'a> Integrator<'a> {
             0.0
         };
         self.mean(&together.by_slot, (together.bound + rounding).min(1.0))
-    }
-
-    /// Whether an object that is all that may be seen fills what it is seen in, in two colours.
-    fn is_floor(&self, only: &Candidate) -> bool {
-        let [first, second] = self.world.slots(only.object);
-        only.is_whole && first != second
     }
 
     /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one of the others.

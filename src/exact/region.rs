@@ -7,13 +7,13 @@
 use glam::DVec2;
 
 use crate::{
-    math::Real,
-    tracer::{Candidate, SubPixel, World, candidates},
+    math::{Big, Double, Real},
+    tracer::{Candidate, LOOSE_LINE, Object, Precision, SubPixel, World, candidates},
 };
 
 use super::{
     budget::Budget,
-    checker::{Homography, board_forms},
+    checker::{Homography, size},
     conic_segment::Arc,
 };
 
@@ -42,9 +42,11 @@ pub struct Regions<'a> {
     budget: &'a Budget<'a>,
 }
 
-struct Checkered {
-    board: Homography,
-    odd: bool,
+/// A checkerboard as a sub-pixel sees it.
+pub struct Checkered {
+    pub board: Homography,
+    /// Whether the square [0, 1)² has the second colour.
+    pub odd: bool,
     /// How far its forms' values may be off, by the size of their terms.
     doubt: f64,
 }
@@ -183,12 +185,34 @@ impl<'a> Regions<'a> {
 
 impl Checkered {
     /// An object as a sub-pixel sees it, if it is a checkerboard.
-    fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
-        let seen = board_forms::board(world, object, sub_pixel)?;
+    pub fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
+        let checkered = Self::in_precision::<Double>(world, object, sub_pixel)?;
+        match checkered.doubt < LOOSE_LINE {
+            true => Some(checkered),
+            false => Self::in_precision::<Big>(world, object, sub_pixel),
+        }
+    }
+
+    fn in_precision<T: Precision>(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
+        let Object::Checkerboard(board) = &*T::object(&world.geometry, object) else {
+            return None;
+        };
+        let camera = &T::frame(&world.geometry).camera;
+        let side = camera.pitch.times(&T::from_f64(sub_pixel.side));
+        let seen = board.local(&sub_pixel.middle(camera), &[side.clone(), side]);
+        let forms = [seen.across[0], seen.across[1], seen.below].into_iter();
+        let doubt = forms.zip(seen.rads).fold(0.0, |doubt: f64, (form, rad)| {
+            let size = size(&form);
+            // Squares may be too small for the range of `f64`.
+            match size.is_finite() && size > 0.0 {
+                true => doubt.max(rad / size),
+                false => f64::INFINITY,
+            }
+        });
         Some(Self {
-            board: Homography::of(&seen),
+            board: Homography::new(seen.across, seen.below),
             odd: seen.odd,
-            doubt: seen.doubt(),
+            doubt,
         })
     }
 }

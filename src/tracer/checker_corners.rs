@@ -13,14 +13,14 @@ use std::{array, ops::ControlFlow};
 use multiversion::multiversion;
 
 use super::{
-    checkerboard::Checkerboard,
-    local_form::{LocalForm, PixelFrame, ROUNDINGS},
+    checkerboard::LocalBoard,
+    local_form::{LocalForm, ROUNDINGS},
     object::Object,
     world::{Precision, World},
 };
 use crate::{
     area::Area,
-    math::{ROUND, UP, floor},
+    math::{Double, ROUND, Real, UP, floor},
 };
 
 /// The form below a quotient is at least so many times as great as its error: then (a ± e)/(l ± f) is within 4/3 of (e + f·|a/l|)/l of a/l, and this takes
@@ -39,9 +39,9 @@ const LANES: usize = 40;
 /// The squares of a board that a pixel shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Checks {
-    pub(super) squares: Squares,
-    /// From which to which, in x and in z.
-    pub(super) ranges: [(f64, f64); 2],
+    pub(crate) squares: Squares,
+    /// The squares of its corners, in x and in z: above on the left and on the right, and below.
+    pub(crate) corners: [[f64; 4]; 2],
 }
 
 /// A block of pixels in which nothing but one board is seen.
@@ -81,14 +81,14 @@ pub fn show(
     object: usize,
     each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
 ) -> Option<ControlFlow<()>> {
-    let Object::Checkerboard(board) = &*f64::object(&world.geometry, object) else {
+    let Object::Checkerboard(board) = &*Double::object(&world.geometry, object) else {
         return None;
     };
-    let mesh = Mesh::new(
-        board,
-        &PixelFrame::new(&f64::frame(&world.geometry).camera, part),
-        part,
-    )?;
+    let camera = &Double::frame(&world.geometry).camera;
+    let sides = [part.width, part.height]
+        .map(|pixels| camera.pitch.times(&Double::from_f64(f64::from(pixels))));
+    let board = board.local(&camera.direction(&camera.middle(part)), &sides);
+    let mesh = Mesh::new(Squares::new(&board), part)?;
     let [mut above, mut below] = [CornerRow::new(), CornerRow::new()];
     mesh.corners(0, &mut above);
     for row in 0..part.height {
@@ -118,8 +118,7 @@ impl CornerRow {
 
 impl Mesh {
     /// `None` if the board is too far for its squares to be told apart so.
-    fn new(board: &Checkerboard<f64>, frame: &PixelFrame, block: Area) -> Option<Self> {
-        let squares = Squares::new(board, frame);
+    fn new(squares: Squares, block: Area) -> Option<Self> {
         let Squares { across, below, .. } = squares;
         let least = below.factors[2] - below.spread() * UP;
         if least <= CLEAR * below.rad {
@@ -237,14 +236,8 @@ impl Mesh {
             below.at(column),
             below.at(column + 1),
         ];
-        let mut ranges = [(f64::INFINITY, f64::NEG_INFINITY); 2];
-        for corner in corners {
-            for ((low, high), square) in ranges.iter_mut().zip(corner) {
-                if square.is_nan() {
-                    return None;
-                }
-                (*low, *high) = (low.min(square), high.max(square));
-            }
+        if corners.as_flattened().iter().any(|square| square.is_nan()) {
+            return None;
         }
         let Area { width, height, .. } = self.block;
         let x = middle(2 * column as u32 + 1, width);
@@ -262,7 +255,18 @@ impl Mesh {
                 below: local(below),
                 odd: *odd,
             },
-            ranges,
+            corners: [0, 1].map(|axis| corners.map(|corner| corner[axis])),
+        })
+    }
+}
+
+impl Checks {
+    /// From which to which square there are any in the pixel, in x and in z.
+    pub(crate) fn ranges(&self) -> [(f64, f64); 2] {
+        self.corners.map(|squares| {
+            let low = squares.into_iter().fold(f64::INFINITY, f64::min);
+            let high = squares.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            (low, high)
         })
     }
 }
@@ -291,20 +295,24 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 
 /// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Squares {
-    pub(super) across: [LocalForm; 2],
-    pub(super) below: LocalForm,
-    pub(super) odd: bool,
+pub(crate) struct Squares {
+    pub(crate) across: [LocalForm; 2],
+    pub(crate) below: LocalForm,
+    pub(crate) odd: bool,
 }
 
 /// The corners of a pixel, or of a part of the picture, from its middle.
 const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
 
 impl Squares {
-    pub(super) fn new(board: &Checkerboard<f64>, frame: &PixelFrame) -> Self {
+    pub(super) fn new(board: &LocalBoard) -> Self {
+        let [a, b, below] = board.rads;
         Self {
-            across: board.across.each_ref().map(|form| form.local(frame)),
-            below: board.below.local(frame),
+            across: [
+                LocalForm::new(board.across[0], a),
+                LocalForm::new(board.across[1], b),
+            ],
+            below: LocalForm::new(board.below, below),
             odd: board.odd,
         }
     }

@@ -13,9 +13,12 @@ use super::{
     interval::{Cover, Patch},
 };
 use crate::{
-    math::{Ball, Double, Doubt, Radius, Real},
+    math::{Ball, Double, Doubt, Radius, Real, UP},
     scene,
 };
+
+/// From how many squares on a board is not moved nearer: from 2^52 on a rounded quotient may not be the nearest whole number.
+const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
@@ -27,6 +30,20 @@ pub struct Checkerboard<T: Real> {
     /// N for x and for z, each measured from the whole square nearest to the eye.
     pub across: [Form<T>; 2],
     /// Whether those two whole squares' sum is odd.
+    pub odd: bool,
+}
+
+/// A checkerboard in a pixel, a part of one, or a rectangle of pixels: the point (x, y), from its centre in units of its sides, shows the board's point
+/// (N₀/ℓ, N₁/ℓ), in squares from a corner of squares nearby, where ℓ > 0.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalBoard {
+    /// The factors of x, y and 1 in N₀ and N₁; all forms are scaled by one power of two to be about 1.
+    pub across: [[f64; 3]; 2],
+    /// Those of ℓ.
+    pub below: [f64; 3],
+    /// How far a value of each of these forms may be from the true one, but for the rounding of the factors.
+    pub rads: [f64; 3],
+    /// Whether the square [0, 1)² has the second colour.
     pub odd: bool,
 }
 
@@ -87,6 +104,54 @@ impl<T: Real> Checkerboard<T> {
             odd ^= odd_here;
         }
         Ok(odd)
+    }
+}
+
+impl<T: Real> Checkerboard<T> {
+    /// The board about a ray, in units of the sides of what lies there of the picture. A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin
+    /// near: the one that makes them small at the corner where ℓ is largest (elsewhere it may be next to 0).
+    pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
+        let half = sides.each_ref().map(|side| side.magnitude() * 0.5);
+        let sizes = [
+            (center.x.magnitude() + half[0]) * UP,
+            (center.y.magnitude() + half[1]) * UP,
+            center.z.magnitude() * UP,
+        ];
+        let local = |form: &Form<T>| {
+            let [a, b, _] = form.factors();
+            let factors = [a.times(&sides[0]), b.times(&sides[1]), form.at(center).mid];
+            (factors, form.rad_within(sizes))
+        };
+        let (below, rad) = local(&self.below);
+        let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
+        let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
+        let highest = corner(&below);
+        let mut odd = self.odd;
+        let [a, b] = self.across.each_ref().map(|form| {
+            let (factors, own_rad) = local(form);
+            let times = (corner(&factors) / highest).round();
+            if !(times.abs() < MOST_SQUARES && highest > 0.0) {
+                return (factors, own_rad);
+            }
+            odd ^= times as i64 & 1 == 1;
+            let often = T::from_f64(times);
+            let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
+            // The error of ℓ is at least 12 roundings of it, so that twice as much is enough for those of the product and the difference, too.
+            (factors, own_rad + rad * (2.0 * times.abs()))
+        });
+        let forms = [a, b, (below, rad)];
+        let sizes = forms.iter().flat_map(|(factors, _)| factors);
+        let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
+        let exponent = -size.exponent();
+        let [a, b, below] = forms
+            .each_ref()
+            .map(|(factors, _)| factors.each_ref().map(|c| c.scaled(exponent).to_f64()));
+        LocalBoard {
+            across: [a, b],
+            below,
+            rads: forms.map(|(_, rad)| rad.scaled(exponent).to_f64()),
+            odd,
+        }
     }
 }
 

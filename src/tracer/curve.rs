@@ -11,9 +11,6 @@ use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
 
 use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
 
-/// From how many squares on a board is not moved nearer to a sub-pixel: from 2^52 on a rounded quotient may not be the nearest whole number.
-const MOST_SQUARES: f64 = (1u64 << 52) as f64;
-
 /// The error of a line's form, in units of its greatest slope, from which on double-double was not enough: eight roundings of an `f64`, more than
 /// the three of its factors come to.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
@@ -32,15 +29,6 @@ pub enum Curve {
 pub struct Line {
     /// a, b and c.
     pub factors: [f64; 3],
-    /// How far a value of the form may be from the true one, in the pixel.
-    pub rad: f64,
-}
-
-/// A linear form in double-double.
-#[derive(Clone, Copy, Debug)]
-pub struct Fine {
-    /// The factors of x, y and 1.
-    pub factors: [Double; 3],
     /// How far a value of the form may be from the true one, in the pixel.
     pub rad: f64,
 }
@@ -90,8 +78,7 @@ pub struct SubPixelFrame<T: Real> {
 impl<T: Real> SubPixelFrame<T> {
     /// The place of a sub-pixel.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
-        let offset = sub_pixel.offset(glam::DVec2::ZERO);
-        let r = camera.direction(&camera.sample_point(sub_pixel.x, sub_pixel.y, offset));
+        let r = sub_pixel.middle(camera);
         // Five roundings in a coordinate, and its pitch.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
@@ -115,41 +102,6 @@ impl<T: Real> SubPixelFrame<T> {
             factors,
             rad: rad.scaled(exponent).to_f64() + rounding,
         })
-    }
-
-    /// The factors of some forms and a last one in the sub-pixel, scaled by one power of two to be about 1. A multiple of the last is subtracted
-    /// from each of the others, which moves the board's origin near the sub-pixel: the one that makes it small at the corner where the last form
-    /// is largest (elsewhere the last may be next to 0). Also whether the sum of the multiples is odd.
-    pub fn board_forms(&self, forms: [&Form<T>; 2], last: &Form<T>) -> ([Fine; 3], bool) {
-        let (below, rad) = self.local(last);
-        let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
-        let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
-        let steep = corner(&below);
-        let mut odd = false;
-        let local = forms.map(|form| {
-            let (factors, own_rad) = self.local(form);
-            let times = (corner(&factors) / steep).round();
-            if !(times.abs() < MOST_SQUARES && steep > 0.0) {
-                return (factors, own_rad);
-            }
-            odd ^= times as i64 & 1 == 1;
-            let often = T::from_f64(times);
-            let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
-            (factors, own_rad + rad * (2.0 * times.abs()))
-        });
-        let [a, b] = local;
-        let local = [a, b, (below, rad)];
-        let sizes = local.iter().flat_map(|(factors, _)| factors);
-        let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
-        let exponent = -size.exponent();
-        let lines = local.map(|(factors, rad)| {
-            let factors = factors.map(|factor| double(&factor.scaled(exponent)));
-            Fine {
-                rad: rad.scaled(exponent).to_f64(),
-                factors,
-            }
-        });
-        (lines, odd)
     }
 
     fn local(&self, form: &Form<T>) -> ([T; 3], T::Radius) {

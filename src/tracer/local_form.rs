@@ -16,8 +16,8 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct LocalForm {
     /// Factors of x, y and 1.
-    pub(super) factors: [f64; 3],
-    pub(super) rad: f64,
+    pub(crate) factors: [f64; 3],
+    pub(crate) rad: f64,
 }
 
 /// A linear form in units of its error.
@@ -50,14 +50,16 @@ pub(super) enum Side {
     Unknown,
 }
 
-/// Roundings on the way to a value of a local form, generously counted.
+/// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear one each factor has one, and so has its quotient by the error;
+/// products and sums, where offsets are at most ½, have two. Of a quadratic one each of six terms has five at most, generously counted.
+const LINEAR_ROUNDINGS: f64 = 4.0 * f64::UNIT;
 pub(super) const ROUNDINGS: f64 = 16.0 * f64::UNIT;
 
 impl LocalForm {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
-        let rad = (inherited + (a + b + c) * ROUNDINGS + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + (a + b + c) * LINEAR_ROUNDINGS + 16.0 * f64::TINY) * UP;
         Self { factors, rad }
     }
 
@@ -82,12 +84,13 @@ impl LocalForm {
     }
 
     /// self − k · other, for a whole number k.
-    pub(super) fn less(&self, k: f64, other: &Self) -> Self {
+    pub(crate) fn less(&self, k: f64, other: &Self) -> Self {
         let sizes: f64 = (0..3)
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
         let factors = [0, 1, 2].map(|i| self.factors[i] - k * other.factors[i]);
-        let inherited = self.rad + k.abs() * other.rad + sizes * ROUNDINGS;
+        // Of a product and a difference.
+        let inherited = self.rad + k.abs() * other.rad + sizes * (2.0 * f64::UNIT);
         Self::new(factors, inherited)
     }
 }

@@ -4,6 +4,9 @@
 
 use glam::DVec2;
 
+use super::camera::{Camera, Direction};
+use crate::math::Real;
+
 /// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
 /// down.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +39,11 @@ impl SubPixel {
             side: 0.5 * self.side,
             ..self
         })
+    }
+
+    /// The ray through its centre.
+    pub(crate) fn middle<T: Real>(&self, camera: &Camera<T>) -> Direction<T> {
+        camera.direction(&camera.sample_point(self.x, self.y, self.center))
     }
 
     /// A point of it as an offset from the pixel's centre.

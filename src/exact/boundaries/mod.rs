@@ -170,9 +170,7 @@ fn drop_behind_middle(
     let Some(front) = front.filter(|front| front.is_whole) else {
         return;
     };
-    let offset = sub_pixel.offset(DVec2::ZERO);
-    let camera = &world.geometry.fast.camera;
-    let r = camera.direction(&camera.sample_point(sub_pixel.x, sub_pixel.y, offset));
+    let r = sub_pixel.middle(&world.geometry.fast.camera);
     let is_met = |back: &Candidate| {
         let object = f64::object(&world.geometry, back.object);
         let first = || object.first(&r).ok().flatten();

@@ -1,15 +1,14 @@
 //! Pixels that show nothing but a checkerboard and few of its lines: most pixels of most pictures. They are computed in batches of eight.
 //!
-//! In: such pixels one by one, in any order. Out: their integrals of the board's sign. Pixels are sorted by how many lines of either family cross them; eight with
-//! the same two numbers are computed at once by `strips_simd`, which bounds the errors. A pixel's sum is made of its own numbers, by the same operations whichever
-//! others it is computed with, so that it depends neither on their order nor on which part of a picture is wanted.
+//! In: such pixels one by one, in any order, with the squares of their corners. Out: their integrals of the board's sign. Pixels are sorted by how many lines of either
+//! family cross them; eight with the same two numbers are computed at once by `strips_simd`, which bounds the errors. A pixel's sum is made of its own numbers, by the
+//! same operations whichever others it is computed with, so that it depends neither on their order nor on which part of a picture is wanted.
 
 use super::{
-    board_forms::{self, Boards, PIXELS, Views},
     homography::Sum,
-    strips_simd::{Corners, Lines, Room, STRIPS},
+    strips_simd::{Lines, PIXELS, Room, STRIPS},
 };
-use crate::tracer::{Candidate, World};
+use crate::tracer::{Candidate, Checks};
 
 /// At most so many lines cross the strips. For each pair of numbers there is a batch of pixels, and pixels with more lines are few. (Measured: with 8 or 128 times differ by about a tenth at most.)
 const MOST: usize = 32;
@@ -25,143 +24,81 @@ pub(in crate::exact) struct BoardPixel {
     pub candidate: Candidate,
 }
 
-/// The pixels that wait.
+/// The pixels that wait, by the numbers of lines that cross them.
 #[derive(Debug)]
-pub(in crate::exact) struct BoardBatches<'a> {
-    world: &'a World,
-    /// Pixels not looked at so far, all of one checkerboard.
-    next: Vec<BoardPixel>,
-    /// That checkerboard, as an object of the scene, and what its pixels have in common.
-    boards: Option<(usize, Boards)>,
-    views: Views,
-    corners: Corners,
-    batches: Batches,
+pub(in crate::exact) struct BoardBatches {
+    batches: Vec<Batch>,
     room: Room,
 }
 
-impl<'a> BoardBatches<'a> {
+/// Pixels that the same numbers of lines cross.
+#[derive(Debug, Default)]
+struct Batch {
+    /// Which pixels they are: no more than are computed together.
+    pixels: Vec<BoardPixel>,
+    lines: Lines,
+}
+
+impl BoardBatches {
     /// None so far.
-    pub fn new(world: &'a World) -> Self {
+    pub fn new() -> Self {
+        let batches = (0..=STRIPS).flat_map(|_| (0..=MOST).map(|_| Batch::default()));
         Self {
-            world,
-            next: Vec::with_capacity(PIXELS),
-            boards: None,
-            views: Views::default(),
-            corners: Corners::default(),
-            batches: Batches::default(),
+            batches: batches.collect(),
             room: Room::default(),
         }
     }
 
-    /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where something else has to be
-    /// tried.
-    pub fn push(&mut self, pixel: BoardPixel, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        let object = pixel.candidate.object;
-        if !matches!(self.boards, Some((known, _)) if known == object) {
-            self.look(tell);
-            self.boards = board_forms::boards(self.world, object).map(|boards| (object, boards));
+    /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where too many lines cross.
+    pub fn push(
+        &mut self,
+        pixel: BoardPixel,
+        checks: &Checks,
+        tell: &mut impl FnMut(BoardPixel, Option<Sum>),
+    ) {
+        let ranges = checks.ranges();
+        let [a, b] = ranges.map(|(low, high)| high - low);
+        let (few, many, families) = match a <= b {
+            true => (a, b, [0, 1]),
+            false => (b, a, [1, 0]),
+        };
+        if few > STRIPS as f64 || many > MOST as f64 {
+            return tell(pixel, None);
         }
-        self.next.push(pixel);
-        if self.next.len() == PIXELS {
-            self.look(tell);
+        let crossing = [few as usize, many as usize];
+        let batch = &mut self.batches[crossing[0] * (MOST + 1) + crossing[1]];
+        let first = ranges.map(|(low, _)| low);
+        let lines = &mut batch.lines;
+        lines.set(batch.pixels.len(), checks, families, first);
+        batch.pixels.push(pixel);
+        if batch.pixels.len() == PIXELS {
+            batch.compute(crossing, &mut self.room, tell);
         }
     }
 
     /// Computes all that still wait.
     pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        self.look(tell);
-        for batch in self.batches.all() {
-            compute(batch, &mut self.room, tell);
+        for (i, batch) in self.batches.iter_mut().enumerate() {
+            batch.compute([i / (MOST + 1), i % (MOST + 1)], &mut self.room, tell);
         }
-    }
-
-    /// Sorts the pixels that come next by what crosses them.
-    fn look(&mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-        let Some(&last) = self.next.last() else {
-            return;
-        };
-        let Some((_, boards)) = &self.boards else {
-            self.next.drain(..).for_each(|pixel| tell(pixel, None));
-            return;
-        };
-        let (mut columns, mut rows) = ([last.x; PIXELS], [last.y; PIXELS]);
-        for (i, pixel) in self.next.iter().enumerate() {
-            (columns[i], rows[i]) = (pixel.x, pixel.y);
-        }
-        boards.at(&columns, &rows, &mut self.views);
-        self.corners.look(&self.views);
-        for (i, pixel) in self.next.drain(..).enumerate() {
-            let Some(batch) = self.batches.of(&self.corners, i) else {
-                tell(pixel, None);
-                continue;
-            };
-            if batch.push(pixel, &self.views, &self.corners, i) {
-                compute(batch, &mut self.room, tell);
-            }
-        }
-    }
-}
-
-/// The integrals of a batch's pixels, after which it is empty.
-fn compute(batch: &mut Batch, room: &mut Room, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
-    if batch.pixels.is_empty() {
-        return;
-    }
-    let sums = batch.lines.sums(batch.crossing, room);
-    for (i, pixel) in batch.pixels.drain(..).enumerate() {
-        tell(pixel, Some(sums.of(i)));
-    }
-}
-
-/// Pixels that the same numbers of lines cross.
-#[derive(Debug)]
-struct Batch {
-    /// Which pixels they are: no more than are computed together.
-    pub pixels: Vec<BoardPixel>,
-    lines: Lines,
-    /// How many lines of either family cross each of them, fewer first.
-    crossing: [usize; 2],
-}
-
-/// All batches there may be.
-#[derive(Debug)]
-struct Batches(Vec<Batch>);
-
-impl Default for Batches {
-    fn default() -> Self {
-        let crossings = (0..=STRIPS).flat_map(|few| (0..=MOST).map(move |many| [few, many]));
-        let batch = |crossing| Batch {
-            pixels: Vec::new(),
-            lines: Lines::default(),
-            crossing,
-        };
-        Self(crossings.map(batch).collect())
-    }
-}
-
-impl Batches {
-    /// All of them.
-    pub fn all(&mut self) -> impl Iterator<Item = &mut Batch> {
-        self.0.iter_mut()
-    }
-
-    /// Where a pixel goes; none if too many lines cross it.
-    pub fn of(&mut self, corners: &Corners, pixel: usize) -> Option<&mut Batch> {
-        let [a, b] = corners.lines.each_ref().map(|lines| lines[pixel]);
-        let (few, many) = if a <= b { (a, b) } else { (b, a) };
-        if !(few <= STRIPS as f64 && many <= MOST as f64) {
-            return None;
-        }
-        self.0.get_mut(few as usize * (MOST + 1) + many as usize)
     }
 }
 
 impl Batch {
-    /// Adds a pixel to those of which there are fewer than can be computed together; says whether there is no room for more.
-    pub fn push(&mut self, at: BoardPixel, views: &Views, corners: &Corners, pixel: usize) -> bool {
-        self.lines.set(self.pixels.len(), views, corners, pixel);
-        self.pixels.push(at);
-        self.pixels.len() == PIXELS
+    /// The integrals of the pixels, after which there are none.
+    fn compute(
+        &mut self,
+        crossing: [usize; 2],
+        room: &mut Room,
+        tell: &mut impl FnMut(BoardPixel, Option<Sum>),
+    ) {
+        if self.pixels.is_empty() {
+            return;
+        }
+        let sums = self.lines.sums(crossing, room);
+        for (i, pixel) in self.pixels.drain(..).enumerate() {
+            tell(pixel, Some(sums.of(i)));
+        }
     }
 }
 
@@ -169,13 +106,18 @@ impl Batch {
 mod tests {
     use super::*;
     use crate::{
-        exact::{budget::Budget, checker::Homography, clip::PIXEL},
+        area::Area,
+        exact::{
+            budget::Budget,
+            clip::PIXEL,
+            region::Checkered,
+        },
         scene,
         source::{Source, Sources},
-        tracer::{SubPixel, candidates},
+        tracer::{Part, Quartering, SubPixel, World},
     };
     use proptest::prelude::*;
-    use std::{collections::HashMap, sync::atomic::AtomicBool};
+    use std::{ops::ControlFlow, sync::atomic::AtomicBool};
 
     const SIZE: [u32; 2] = [24, 18];
 
@@ -189,62 +131,29 @@ mod tests {
         World::new(&scene::read(&sources).scene.expect("a scene"))
     }
 
-    fn pixels() -> Vec<(u32, u32)> {
+    /// The sums of all pixels of which the squares of the corners are known.
+    fn sums(world: &World) -> Vec<(BoardPixel, Option<Sum>)> {
         let [width, height] = SIZE;
-        (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .collect()
-    }
-
-    /// The sums of some pixels that come in this order.
-    fn sums(
-        world: &World,
-        order: impl IntoIterator<Item = (u32, u32)>,
-    ) -> HashMap<(u32, u32), Option<Sum>> {
-        let candidate = candidates::everything(world)[0];
-        let mut batches = BoardBatches::new(world);
-        let mut known = HashMap::new();
-        let mut tell = |pixel: BoardPixel, sum| {
-            assert!(known.insert((pixel.x, pixel.y), sum).is_none());
+        let mut batches = BoardBatches::new();
+        let mut known = Vec::new();
+        let mut tell = |pixel, sum| known.push((pixel, sum));
+        let mut visit = |part: Part| {
+            if let Part::Open {
+                x,
+                y,
+                candidates: [candidate],
+                checks: Some(checks),
+            } = part
+            {
+                let candidate = *candidate;
+                batches.push(BoardPixel { x, y, candidate }, checks, &mut tell);
+            }
+            ControlFlow::Continue(())
         };
-        for (x, y) in order {
-            batches.push(BoardPixel { x, y, candidate }, &mut tell);
-        }
+        let whole = Area::whole(width, height);
+        let _ = Quartering::new(world).parts(whole, &mut Default::default(), &mut visit);
         batches.finish(&mut tell);
         known
-    }
-
-    #[test]
-    fn no_pixel_depends_on_those_it_is_computed_with() {
-        for camera in [
-            "eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75",
-            "eye (0.3, 40, 0.2) lookat (0, 0, 0.1) roll 20deg fov 5deg",
-            "eye (-7, 2, 1e6) lookat (-6.4, 0, 1000001) fov 60deg",
-        ] {
-            let world = world(camera, 0.7);
-            let all = sums(&world, pixels());
-            assert_eq!(all.len(), pixels().len());
-            let some = |step: usize| pixels().into_iter().step_by(step);
-            let by_column = |(x, y): &(u32, u32)| (*x, *y);
-            let mut columns = pixels();
-            columns.sort_by_key(by_column);
-            let orders = [
-                pixels().into_iter().rev().collect(),
-                columns,
-                some(3).collect(),
-                some(7).collect(),
-                vec![(11, 17)],
-            ];
-            let bits = |sum: &Option<Sum>| sum.map(|sum| [sum.value, sum.bound].map(f64::to_bits));
-            for order in orders {
-                let count = order.len();
-                let found = sums(&world, order);
-                assert_eq!(found.len(), count);
-                for (pixel, sum) in found {
-                    assert_eq!(bits(&sum), bits(&all[&pixel]), "{camera} at {pixel:?}");
-                }
-            }
-        }
     }
 
     proptest! {
@@ -272,15 +181,15 @@ mod tests {
             );
             let world = world(&camera, libm::pow(10.0, square));
             let mut compared = 0;
-            for ((x, y), sum) in sums(&world, pixels()) {
+            for (BoardPixel { x, y, .. }, sum) in sums(&world) {
                 // None where too many lines cross; not a number where squares are as large as numbers can be.
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };
-                let seen = board_forms::board(&world, 0, SubPixel::pixel(x, y)).expect("a board");
+                let seen = Checkered::new(&world, 0, SubPixel::pixel(x, y)).expect("a board");
                 let cancel = AtomicBool::new(false);
                 let budget = Budget::of_pixel(1, &cancel);
-                let other = Homography::of(&seen).over(&PIXEL, &budget);
+                let other = seen.board.over(&PIXEL, &budget);
                 let value = if seen.odd { -other.value } else { other.value };
                 let off = (sum.value - value).abs();
                 prop_assert!(off <= sum.bound + other.bound, "{camera} at {x}, {y}: {sum:?} and {other:?}");

@@ -7,7 +7,6 @@
 use glam::DVec2;
 
 use super::super::clip::{Chord, measure, split};
-use super::board_forms::Board;
 use crate::math::{Double, Real, two_product};
 
 /// The unit roundoff of `f64`.
@@ -109,7 +108,7 @@ pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
 }
 
 /// What the terms of a form add up to at most.
-fn size([x, y, z]: &[f64; 3]) -> f64 {
+pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
@@ -121,11 +120,6 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Of a board as a sub-pixel sees it.
-    pub fn of(seen: &Board) -> Self {
-        Self::new(seen.across, seen.below)
-    }
-
     /// Of three linear forms, N_a and N_b, and L; they may have any common positive factor. The nearer the origin of a and b is to the pixel,
     /// the smaller the bounds.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {

@@ -9,7 +9,6 @@
 //!
 //! What roundings of the forms displace is added to every bound. Where more is in doubt than the polygon's area, the answer is the mean of both colours.
 
-pub(super) mod board_forms;
 pub(super) mod board_pixels;
 mod crossings;
 mod green;
@@ -27,7 +26,7 @@ use super::{
 };
 
 pub(super) use self::{
-    homography::{Homography, Sum, UNIT, form},
+    homography::{Homography, Sum, UNIT, form, size},
     special::square_wave,
 };
 

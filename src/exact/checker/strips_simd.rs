@@ -20,116 +20,49 @@ use multiversion::multiversion;
 
 use super::{
     super::clip::PIXEL,
-    board_forms::{PIXELS, Views},
     homography::{Sum, UNIT},
     special::square_wave,
 };
-use crate::math::ROUND;
+use crate::tracer::{Checks, LocalForm, Squares};
 
 /// At most so many lines cut the pixels into strips: their sides, 34 of 320 bytes, stay in the first-level cache.
 pub(super) const STRIPS: usize = 6;
 
-/// A family whose lines are farther away than this, in squares, is left to others: sums of numbers of lines are exact below.
-const OUT_OF_REACH: f64 = 1e9;
+/// So many pixels at a time: as many numbers as the widest vectors have.
+pub(super) const PIXELS: usize = 8;
 
 /// A number of each pixel.
 type Row = [f64; PIXELS];
 
-/// The factors of a linear form.
-type FormRows = [Row; 3];
-
 /// Sides of strips: parts of the sub-pixel's four, and a chord for each line.
 const SIDES: usize = 4 * (STRIPS + 1) + STRIPS;
-
-/// In which squares some pixels have their corners.
-#[derive(Debug, Default)]
-pub(super) struct Corners {
-    /// By family and corner, the lower one's number.
-    pub squares: [[Row; 4]; 2],
-    /// By family, the number of the first square.
-    pub first: [Row; 2],
-    /// By family, how many lines cross the pixel; infinite where its corners do not show it.
-    pub lines: [Row; 2],
-}
-
-impl Corners {
-    /// Of pixels that see a board so.
-    pub fn look(&mut self, views: &Views) {
-        look_simd(views, self);
-    }
-
-    #[inline(always)]
-    fn see(&mut self, views: &Views) {
-        let Views {
-            across, below, rad, ..
-        } = views;
-        let mut levels = [[0.0; PIXELS]; 4];
-        // Where it is infinite nothing is known of the pixel.
-        let mut doubt = [0.0; PIXELS];
-        for (level, at) in levels.iter_mut().zip(PIXEL) {
-            for i in 0..PIXELS {
-                level[i] = below[0][i] * at.x + below[1][i] * at.y + below[2][i];
-                let is_good = (level[i] > 0.0) & (rad[i] < f64::INFINITY);
-                doubt[i] += if is_good { 0.0 } else { f64::INFINITY };
-            }
-        }
-        let (mut firsts, mut lasts) = ([[OUT_OF_REACH; PIXELS]; 2], [[-OUT_OF_REACH; PIXELS]; 2]);
-        for family in 0..2 {
-            let [x, y, z] = &across[family];
-            let (first, last) = (&mut firsts[family], &mut lasts[family]);
-            for corner in 0..4 {
-                let (at, level) = (PIXEL[corner], &levels[corner]);
-                let mut squares = [0.0; PIXELS];
-                for i in 0..PIXELS {
-                    let place = (x[i] * at.x + y[i] * at.y + z[i]) / level[i];
-                    doubt[i] += if place.abs() < OUT_OF_REACH {
-                        0.0
-                    } else {
-                        f64::INFINITY
-                    };
-                    let nearest = nearest(place);
-                    let square = nearest - if nearest > place { 1.0 } else { 0.0 };
-                    squares[i] = square;
-                    first[i] = first[i].min(square);
-                    last[i] = last[i].max(square);
-                }
-                self.squares[family][corner] = squares;
-            }
-        }
-        for family in 0..2 {
-            self.first[family] = firsts[family];
-            let mut lines = [0.0; PIXELS];
-            for i in 0..PIXELS {
-                lines[i] = lasts[family][i] - firsts[family][i] + doubt[i];
-            }
-            self.lines[family] = lines;
-        }
-    }
-}
-
-#[multiversion(targets = "simd")]
-fn look_simd(views: &Views, corners: &mut Corners) {
-    corners.see(views);
-}
 
 /// The boards of some pixels, the family with fewer lines first.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    few: Family,
-    many: Family,
+    few: FormRows,
+    many: FormRows,
     below: FormRows,
-    rad: Row,
-    /// Of each pixel, −1 where square [0, 1)² has the second colour.
+    /// Of each pixel, −1 where its first squares of both families have the second colour.
     sign: Row,
-    /// In which squares of the first family the corners lie.
+    /// In which squares of the first family the corners lie, from the first of them.
     squares: [Row; 4],
 }
 
-/// The lines of one family.
+/// A linear form of each pixel: the factors of x, y and 1, and how far its values may be off.
 #[derive(Debug, Default)]
-struct Family {
-    across: FormRows,
-    first: Row,
+struct FormRows {
+    factors: [Row; 3],
+    rad: Row,
+}
+
+impl FormRows {
+    fn set(&mut self, place: usize, form: &LocalForm) {
+        for (row, factor) in self.factors.iter_mut().zip(form.factors) {
+            row[place] = factor;
+        }
+        self.rad[place] = form.rad;
+    }
 }
 
 /// Directed sides of strips, from `start` on by `step`, one of each pixel, with the signs of the strips that they bound.
@@ -168,24 +101,20 @@ impl Sums {
 }
 
 impl Lines {
-    /// Sets one of the pixels.
-    pub fn set(&mut self, place: usize, views: &Views, corners: &Corners, pixel: usize) {
-        let [a, b] = corners.lines.each_ref().map(|lines| lines[pixel]);
-        let order = if a <= b { [0, 1] } else { [1, 0] };
-        for (family, from) in [&mut self.few, &mut self.many].into_iter().zip(order) {
-            family.first[place] = corners.first[from][pixel];
-            for (out, factor) in family.across.iter_mut().zip(&views.across[from]) {
-                out[place] = factor[pixel];
-            }
+    /// Sets one of the pixels: the family with fewer lines comes first, and lines are counted from each family's first square.
+    pub fn set(&mut self, place: usize, checks: &Checks, families: [usize; 2], first: [f64; 2]) {
+        let Squares { across, below, odd } = &checks.squares;
+        let [few, many] = families.map(|family| across[family].less(first[family], below));
+        self.few.set(place, &few);
+        self.many.set(place, &many);
+        self.below.set(place, below);
+        let [above_left, above_right, below_left, below_right] = checks.corners[families[0]];
+        let around = [above_left, above_right, below_right, below_left];
+        for (row, square) in self.squares.iter_mut().zip(around) {
+            row[place] = square - first[families[0]];
         }
-        for (out, factor) in self.below.iter_mut().zip(&views.below) {
-            out[place] = factor[pixel];
-        }
-        for (out, square) in self.squares.iter_mut().zip(&corners.squares[order[0]]) {
-            out[place] = square[pixel];
-        }
-        self.rad[place] = views.rad[pixel];
-        self.sign[place] = views.sign[pixel];
+        let wave = square_wave(first[0] + first[1]);
+        self.sign[place] = if *odd { -wave } else { wave };
     }
 
     /// The integrals over the pixels, which so many lines of either family cross.
@@ -223,10 +152,7 @@ impl Lines {
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         Sums {
-            values: array::from_fn(|i| {
-                let wave = square_wave(self.many.first[i] + self.few.first[i]);
-                self.sign[i] * wave * sums[i]
-            }),
+            values: array::from_fn(|i| self.sign[i] * sums[i]),
             bounds: array::from_fn(|i| {
                 let roundings = UNIT * lines * (16.0 * lengths[i] + 8.0 * strips + 2.0 * lines);
                 let displaced = offs[i] * (1.0 + strips) + displaced[i] + points;
@@ -235,15 +161,15 @@ impl Lines {
         }
     }
 
-    /// Adds how far line `line` of a family, counted from its first, may be from the computed one: its factors have three roundings, its value four.
+    /// Adds how far line `line` of a family, counted from its first, may be from the computed one: its forms are off, its factors have three roundings, its value four.
     #[inline(always)]
-    fn add_off(&self, family: &Family, line: f64, out: &mut Row) {
+    fn add_off(&self, across: &FormRows, n: f64, out: &mut Row) {
+        let below = &self.below;
         for (i, out) in out.iter_mut().enumerate() {
-            let n = family.first[i] + line;
-            let size = |k: usize| family.across[k][i].abs() + (n * self.below[k][i]).abs();
-            let slope = |k: usize| (family.across[k][i] - n * self.below[k][i]).abs();
-            let value =
-                7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2)) + self.rad[i] * (1.0 + n.abs());
+            let size = |k: usize| across.factors[k][i].abs() + (n * below.factors[k][i]).abs();
+            let slope = |k: usize| (across.factors[k][i] - n * below.factors[k][i]).abs();
+            let roundings = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
+            let value = roundings + across.rad[i] + n * below.rad[i];
             *out += value / slope(0).max(slope(1));
         }
     }
@@ -263,7 +189,7 @@ impl Lines {
         }
         for strip in 0..=few {
             let sign = if strip % 2 == 0 { 1.0 } else { -1.0 };
-            let is_last = strip == few;
+            let (n, is_last) = ((strip + 1) as f64, strip == few);
             let mut ends = [[[0.0; PIXELS]; 2]; 2];
             let mut crossings = [[0.0; PIXELS]; 2];
             for corner in 0..4 {
@@ -275,8 +201,7 @@ impl Lines {
                 let mut places = [0.0; PIXELS];
                 let mut crossed = [[0.0; PIXELS]; 2];
                 for i in 0..PIXELS {
-                    let n = self.few.first[i] + (strip + 1) as f64;
-                    let factor = |k: usize| self.few.across[k][i] - n * self.below[k][i];
+                    let factor = |k: usize| self.few.factors[k][i] - n * self.below.factors[k][i];
                     let line = [factor(0), factor(1), factor(2)];
                     let (start, end) = (value(line, from), value(line, to));
                     let place = start / (start - end);
@@ -352,8 +277,7 @@ impl Lines {
         let mut area = [0.0; PIXELS];
         let (mut form, mut origin) = ([[0.0; PIXELS]; 3], [[0.0; PIXELS]; 2]);
         for i in 0..PIXELS {
-            let n = self.many.first[i] + line;
-            let factor = |k: usize| self.many.across[k][i] - n * self.below[k][i];
+            let factor = |k: usize| self.many.factors[k][i] - line * self.below.factors[k][i];
             let (x, y, z) = (factor(0), factor(1), factor(2));
             let foot = -z / (x * x + y * y);
             (form[0][i], form[1][i], form[2][i]) = (x, y, z);
@@ -376,12 +300,6 @@ impl Lines {
         }
         area
     }
-}
-
-/// A whole number that is nearest to one below 2^51.
-#[inline(always)]
-fn nearest(x: f64) -> f64 {
-    (x + ROUND) - ROUND
 }
 
 #[multiversion(targets = "simd")]

@@ -65,7 +65,7 @@ impl PreparedPixel {
             pattern: Pattern::Plain(0.0),
             depth: Depth::Unknown,
         };
-        surface.pattern = self.lines(&checks.squares, checks.ranges, &surface)?;
+        surface.pattern = self.lines(&checks.squares, checks.ranges(), &surface)?;
         self.surfaces.push(surface);
         Ok(())
     }
@@ -201,7 +201,7 @@ impl PreparedPixel {
         frame: &PixelFrame,
         surface: &PixelSurface,
     ) -> Result<Pattern, Hard> {
-        let squares = Squares::new(board, frame);
+        let squares = Squares::new(&board.local(&frame.center, &frame.sides));
         let Squares { across, below, .. } = &squares;
         let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
         if !sizes.iter().all(|&rad| rad < LARGEST) {
