@@ -19,7 +19,7 @@
 //! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
 
 mod arrangement;
-pub mod boundaries;
+mod boundaries;
 mod branches;
 mod budget;
 mod by_key;

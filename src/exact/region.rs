@@ -116,23 +116,13 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// The object that is seen in a region. Where the last precision says so, the point asked may be one of a few at which things are nearer to
-    /// each other than it tells; elsewhere in the region more may be known.
+    /// The object that is seen in a region. Where not even the last precision says so for certain, all of the region is in doubt.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         self.budget
             .charge(REGION_WORK + OBJECT_WORK * self.candidates.len() as f64);
-        let at = |point| candidates::object_at(self.world, self.sub_pixel, point, self.candidates);
-        let (seen, is_sure) = at(region.inside);
-        // A point between two of a polygon lies in it, but not if an arc takes off from that.
-        if is_sure || region.arcs.iter().any(|(bulge, _)| *bulge < 0.0) {
-            return seen;
-        }
-        let between = |vertex: &DVec2| at(region.inside.midpoint(*vertex));
-        let others: Vec<_> = region.polygon.iter().map(between).collect();
-        if let Some((sure, _)) = others.iter().find(|(_, is_sure)| *is_sure) {
-            return *sure;
-        }
-        if others.iter().any(|(other, _)| *other != seen) {
+        let (seen, is_sure) =
+            candidates::object_at(self.world, self.sub_pixel, region.inside, self.candidates);
+        if !is_sure {
             self.doubt(region.area);
         }
         seen
@@ -193,7 +183,11 @@ impl Checkered {
         }
     }
 
-    fn in_precision<T: Precision>(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
+    fn in_precision<T: Precision>(
+        world: &World,
+        object: usize,
+        sub_pixel: SubPixel,
+    ) -> Option<Self> {
         let Object::Checkerboard(board) = &*T::object(&world.geometry, object) else {
             return None;
         };

@@ -107,11 +107,7 @@ mod tests {
     use super::*;
     use crate::{
         area::Area,
-        exact::{
-            budget::Budget,
-            clip::PIXEL,
-            region::Checkered,
-        },
+        exact::{budget::Budget, clip::PIXEL, region::Checkered},
         scene,
         source::{Source, Sources},
         tracer::{Part, Quartering, SubPixel, World},
@@ -180,8 +176,9 @@ mod tests {
                 x + ahead[0], y + ahead[1], z + ahead[2]
             );
             let world = world(&camera, libm::pow(10.0, square));
-            let mut compared = 0;
-            for (BoardPixel { x, y, .. }, sum) in sums(&world) {
+            let (sums, mut compared) = (sums(&world), 0);
+            let are_all_flat = sums.is_empty();
+            for (BoardPixel { x, y, .. }, sum) in sums {
                 // None where too many lines cross; not a number where squares are as large as numbers can be.
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
@@ -195,7 +192,7 @@ mod tests {
                 prop_assert!(off <= sum.bound + other.bound, "{camera} at {x}, {y}: {sum:?} and {other:?}");
                 compared += 1;
             }
-            prop_assert!(compared > 0 || fov < 1.0 || square < 0.0, "{camera}");
+            prop_assert!(compared > 0 || are_all_flat || fov < 1.0 || square < 0.0, "{camera}");
         }
     }
 }

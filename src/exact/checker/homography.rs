@@ -20,9 +20,6 @@ const LEAST_DETERMINANT: f64 = 1e-100;
 /// the bound, and a hundredth of what is asked for.
 const BESIDE: f64 = 1e-11;
 
-/// Below this area the better bound on a displacement is not worth computing: it is far below what is asked for.
-const LITTLE: f64 = 1e-14;
-
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::exact) struct Sum {
@@ -227,10 +224,6 @@ impl Homography {
     /// however far they may move along it.
     pub(in crate::exact) fn displaced(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
-        let anyhow = self.displacement * perimeter;
-        if anyhow <= LITTLE {
-            return anyhow;
-        }
         let levels = polygon.iter().map(|&p| form(&self.below, p));
         let [least, more] = self.upwards;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);
@@ -241,7 +234,7 @@ impl Homography {
             let [along, up] = [self.horizon.dot(step), self.horizon.perp_dot(step)].map(f64::abs);
             sum + across * along + self.displacement * up
         });
-        anyhow.min(sides)
+        sides.min(self.displacement * perimeter)
     }
 }
 

@@ -46,9 +46,6 @@ impl Homography {
         if visible.polygon.len() < 3 {
             return Sum::default();
         }
-        if let Some(sum) = self.of_one_square(&visible.polygon) {
-            return sum;
-        }
         if self.squares(&visible.polygon) <= FEW {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
@@ -91,27 +88,5 @@ impl Homography {
         // At the horizon it is infinite, or not a number.
         let spans = (high.floor() - low.floor() + 1.0).element_sum();
         spans + measure(&floor).0.abs()
-    }
-
-    /// The integral over a polygon whose corners are all in one square, whatever roundings do.
-    fn of_one_square(&self, polygon: &[DVec2]) -> Option<Sum> {
-        let mut sign = 1.0;
-        for axis in 0..2 {
-            let square = |&at: &DVec2| {
-                let (place, off) = self.place(axis, at, form(&self.below, at));
-                let square = (place - off).floor();
-                (square == (place + off).floor()).then_some(square)
-            };
-            let first = square(polygon.first()?)?;
-            if !polygon.iter().all(|at| square(at) == Some(first)) {
-                return None;
-            }
-            sign *= square_wave(first);
-        }
-        Some(Sum {
-            value: sign * measure(polygon).0.abs(),
-            // A polygon within a pixel: products of steps below 1, rounded, and summed.
-            bound: 2.0 * UNIT,
-        })
     }
 }

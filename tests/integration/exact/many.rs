@@ -1,10 +1,5 @@
 //! Many objects in one pixel.
 
-use pinhole::{
-    exact::boundaries,
-    tracer::{SubPixel, candidates},
-};
-
 use super::*;
 
 /// Tilted triangles in rows, in one pixel: their planes cross each other all over it, but no two of them lie above each other.
@@ -27,22 +22,10 @@ fn side_by_side(random: &mut Random, rows: u32) -> String {
 }
 
 #[test]
-fn objects_that_no_ray_meets_together_have_no_curves_between_them() {
+fn objects_side_by_side_add_up() {
     let mut random = Random(71);
     for rows in [3, 5, 8] {
         let scene = read(&side_by_side(&mut random, rows));
-        let world = World::new(&scene);
-        let (everything, mut candidates) = (candidates::everything(&world), Vec::new());
-        let sub_pixel = SubPixel::pixel(0, 0);
-        boundaries::narrowed(&world, sub_pixel, &everything, &mut candidates);
-        assert_eq!(candidates.len(), (rows * rows) as usize, "all are seen");
-        let (most, mut curves) = (3 * candidates.len(), Vec::new());
-        let cancel = AtomicBool::new(false);
-        let found = boundaries::curves(&world, sub_pixel, &candidates, most, &cancel, &mut curves);
-        assert!(found.is_ok(), "more than {most}");
-        let fewer = curves.len() - 1;
-        let found = boundaries::curves(&world, sub_pixel, &candidates, fewer, &cancel, &mut curves);
-        assert!(found.is_err(), "no more than {fewer}");
         adds_up(&scene, &format!("{rows} rows of triangles"));
     }
 }
