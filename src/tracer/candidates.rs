@@ -6,10 +6,7 @@
 
 use glam::DVec2;
 
-use crate::{
-    area::Area,
-    math::{Big, Double, Doubt},
-};
+use crate::area::Area;
 
 use super::{
     curve::{Crossings, Surface},
@@ -231,26 +228,7 @@ pub fn object_at(
     candidates: &[Candidate],
 ) -> (Option<usize>, bool) {
     let offset = sub_pixel.offset(at);
-    let point = world
-        .geometry
-        .fast
-        .camera
-        .sample_point(sub_pixel.x, sub_pixel.y, offset);
-    let among = || candidates.iter().map(|candidate| candidate.object);
-    let fast = world.nearest(
-        &f64::frame(&world.geometry).camera.direction(&point),
-        among(),
-    );
-    let seen = fast.or_else(|Doubt| {
-        let r = Double::frame(&world.geometry).camera.direction(&point);
-        world.nearest(&r, among())
-    });
-    let is_sure = seen.is_ok();
-    let seen = seen.or_else(|Doubt| {
-        let r = Big::frame(&world.geometry).camera.direction(&point);
-        world.nearest(&r, among())
-    });
-    // The last precision is never in doubt.
-    let object = seen.unwrap_or_default().map(|(object, _)| object);
-    (object, is_sure)
+    let camera = &world.geometry.fast.camera;
+    let point = camera.sample_point(sub_pixel.x, sub_pixel.y, offset);
+    world.object_among(&point, candidates.iter().map(|candidate| candidate.object))
 }

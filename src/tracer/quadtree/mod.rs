@@ -64,10 +64,4 @@ impl Quadtree {
             None => Some(Vec::new()),
         }
     }
-
-    /// How many bytes it takes.
-    #[cfg(test)]
-    pub fn bytes(&self) -> usize {
-        self.tree.bytes()
-    }
 }

@@ -77,12 +77,6 @@ impl Tree {
         Self::by_threads(CellSquare::ROOT, items, cancel)
     }
 
-    /// How many bytes it takes.
-    #[cfg(test)]
-    pub(super) fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<Cell>() + self.entries.capacity() * size_of::<Entry>()
-    }
-
     /// The tree of a cell.
     fn new(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
         // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
