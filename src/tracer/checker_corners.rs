@@ -14,7 +14,7 @@ use multiversion::multiversion;
 
 use super::{
     checkerboard::Checkerboard,
-    local_form::{LocalForm, PixelFrame, ROUNDINGS},
+    local_form::{LocalForm, Patch, ROUNDINGS},
     object::Object,
     world::{Precision, World},
 };
@@ -86,7 +86,7 @@ pub fn show(
     };
     let mesh = Mesh::new(
         board,
-        &PixelFrame::new(&f64::frame(&world.geometry).camera, part),
+        &Patch::new(&f64::frame(&world.geometry).camera, part),
         part,
     )?;
     let [mut above, mut below] = [CornerRow::new(), CornerRow::new()];
@@ -118,7 +118,7 @@ impl CornerRow {
 
 impl Mesh {
     /// `None` if the board is too far for its squares to be told apart so.
-    fn new(board: &Checkerboard<f64>, frame: &PixelFrame, block: Area) -> Option<Self> {
+    fn new(board: &Checkerboard<f64>, frame: &Patch, block: Area) -> Option<Self> {
         let squares = Squares::new(board, frame);
         let Squares { across, below, .. } = squares;
         let least = below.factors[2] - below.spread() * UP;
@@ -301,7 +301,7 @@ pub(super) struct Squares {
 const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
 
 impl Squares {
-    pub(super) fn new(board: &Checkerboard<f64>, frame: &PixelFrame) -> Self {
+    pub(super) fn new(board: &Checkerboard<f64>, frame: &Patch) -> Self {
         Self {
             across: board.across.each_ref().map(|form| form.local(frame)),
             below: board.below.local(frame),

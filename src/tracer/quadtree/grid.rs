@@ -6,7 +6,8 @@
 use crate::tracer::{
     bounds2d::Extent,
     camera::{Direction, Window},
-    interval::{Patch, Range},
+    interval::Range,
+    local_form::Patch,
 };
 
 /// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of pixels at its rim, roundings included, are inside.
@@ -154,7 +155,7 @@ impl Grid {
     /// What holds all rays through a patch; none outside of the window.
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         let center = [patch.center.x, patch.center.y];
-        self.ends([0, 1].map(|i| Range::about(center[i], patch.half[i])))
+        self.ends([0, 1].map(|i| Range::about(center[i], 0.5 * patch.sides[i])))
     }
 
     /// An object in the grid; none outside of the window.

@@ -16,7 +16,7 @@ mod tree;
 use std::sync::atomic::AtomicBool;
 
 use self::{rectangle_query::Search, tree::Tree};
-use super::{camera::Direction, interval::Patch};
+use super::{camera::Direction, local_form::Patch};
 use crate::threads::Threads;
 
 pub use self::grid::{Grid, Item, Nearness};

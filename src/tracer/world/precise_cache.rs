@@ -72,8 +72,7 @@ impl<T: Real> Kept<T> {
     /// How many there are.
     #[cfg(test)]
     pub fn len(&self) -> usize {
-        let is_taken = |place: &&Mutex<_>| lock(place).is_some();
-        self.0.iter().filter(is_taken).count()
+        self.0.iter().filter(|place| lock(place).is_some()).count()
     }
 }
 
@@ -85,6 +84,7 @@ fn lock<T>(place: &Mutex<T>) -> MutexGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tracer::convex::Convex;
 
     #[test]
     fn an_object_is_prepared_once_until_another_takes_its_place() {
@@ -93,7 +93,7 @@ mod tests {
             let mut times = 0;
             kept.object(index, || {
                 times += 1;
-                Object::EdgeOn
+                Object::Convex(Convex::nothing())
             });
             times
         };
