@@ -78,36 +78,14 @@ impl Rectangle {
     }
 
     #[inline]
-    fn holds(&self, other: &Self) -> bool {
-        let holds = |i: usize| (self.low[i] <= other.low[i]) & (other.high[i] <= self.high[i]);
+    pub(super) fn holds(&self, at: [u32; 2]) -> bool {
+        let holds = |i: usize| (self.low[i] <= at[i]) & (at[i] <= self.high[i]);
         holds(0) & holds(1)
     }
 
-    /// What two that meet have in common.
-    pub(super) fn within(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1].map(|i| self.low[i].max(other.low[i])),
-            high: [0, 1].map(|i| self.high[i].min(other.high[i])),
-        }
-    }
-
-    /// Its longer side.
-    pub(super) fn side(&self) -> u32 {
-        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) + 1
-    }
-}
-
-impl Item {
-    /// Whether it may be met in a rectangle.
     #[inline]
-    pub fn meets(&self, rectangle: &Rectangle) -> bool {
-        self.bounds.meets(rectangle)
-    }
-
-    /// Whether it may be met everywhere in a rectangle.
-    #[inline]
-    pub fn may_fill(&self, rectangle: &Rectangle) -> bool {
-        self.bounds.holds(rectangle)
+    pub(super) fn contains(&self, other: &Self) -> bool {
+        self.holds(other.low) && self.holds(other.high)
     }
 }
 
