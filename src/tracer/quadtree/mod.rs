@@ -17,7 +17,6 @@ use std::sync::atomic::AtomicBool;
 
 use self::{rectangle_query::Search, tree::Tree};
 use super::{camera::Direction, local_form::Patch};
-use crate::threads::Threads;
 
 pub use self::grid::{Grid, Item, Nearness};
 pub use self::point_query::Descent;
@@ -31,17 +30,9 @@ pub struct Quadtree {
 }
 
 impl Quadtree {
-    /// A quadtree over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
-    pub fn new(
-        grid: Grid,
-        items: Vec<Item>,
-        threads: Option<&Threads>,
-        cancel: &AtomicBool,
-    ) -> Self {
-        let tree = match threads {
-            Some(threads) => threads.install(|| Tree::of_many(items, cancel)),
-            None => Tree::of(items, cancel),
-        };
+    /// A quadtree over some objects. Cancelled, it lacks some of them.
+    pub fn new(grid: Grid, items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        let tree = Tree::new(items, cancel);
         Self { grid, tree }
     }
 

@@ -5,16 +5,11 @@
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
-use rayon::prelude::*;
-
 use super::grid::{Item, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
 /// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take the same time within a twentieth.
 pub const OBJECTS_A_CELL: usize = 32;
-
-/// A cell with more objects is divided by several threads: some milliseconds' work, at 0.7 µs an object (benches/README.md).
-const OBJECTS_A_THREAD: usize = 1 << 14;
 
 /// Cells, the first of which holds the others.
 #[derive(Debug)]
@@ -36,56 +31,17 @@ pub(super) struct Cell {
 
 impl Tree {
     /// The tree of all cells. Cancelled, it lacks some of the items.
-    pub(super) fn of(items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        Self::new(CellSquare::ROOT, items, cancel)
-    }
-
-    /// The same, by several threads.
-    pub(super) fn of_many(items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        Self::by_threads(CellSquare::ROOT, items, cancel)
-    }
-
-    /// The tree of a cell.
-    fn new(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
+    pub(super) fn new(items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        let mut tree = Self {
+            cells: vec![Cell::EMPTY],
+            entries: Vec::new(),
+        };
         // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
         let mut stack = items;
-        let mut tree = Self::empty();
-        tree.divide(0, square, &mut stack, 0, cancel);
+        tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
         tree.entries.shrink_to_fit();
         tree
-    }
-
-    /// The tree of a cell, by several threads.
-    fn by_threads(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        if items.len() <= OBJECTS_A_THREAD || square.level == 0 {
-            return Self::new(square, items, cancel);
-        }
-        if cancel::is_set(cancel) {
-            return Self::empty();
-        }
-        let mut tree = Self::empty();
-        let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| square.keeps(item));
-        tree.list(0, &own);
-        let quarters = [0, 1, 2, 3].map(|quarter| {
-            let square = square.quarter(quarter);
-            let items = below
-                .iter()
-                .filter(|item| item.bounds.meets(&square.bounds()));
-            (square, items.copied().collect::<Vec<_>>())
-        });
-        drop((own, below));
-        let quarters = quarters.into_par_iter();
-        let quarters = quarters.map(|(square, items)| Self::by_threads(square, items, cancel));
-        tree.join(quarters.collect());
-        tree
-    }
-
-    fn empty() -> Self {
-        Self {
-            cells: vec![Cell::EMPTY],
-            entries: Vec::new(),
-        }
     }
 
     /// Fills a cell and all below it with the items from `start` on.
@@ -138,33 +94,6 @@ impl Tree {
             end: self.entries.len() as u32,
             ..self.cells[cell]
         };
-    }
-
-    /// Puts the trees of its quarters below the only cell so far: their own cells together, then what is below each of them.
-    fn join(&mut self, quarters: Vec<Self>) {
-        self.cells[0].quarters = 1;
-        let mut rest = Vec::new();
-        for quarter in quarters {
-            let (cells, entries) = (4 + rest.len() as u32, self.entries.len() as u32);
-            self.entries.extend_from_slice(&quarter.entries);
-            let mut moved = quarter.cells.into_iter().map(|cell| Cell {
-                quarters: match cell.quarters {
-                    0 => 0,
-                    own => own + cells,
-                },
-                start: cell.start + entries,
-                end: cell.end + entries,
-                nearest: cell.nearest,
-            });
-            if let Some(cell) = moved.next() {
-                self.cells[0].nearest = self.cells[0].nearest.max(cell.nearest);
-                self.cells.push(cell);
-            }
-            rest.extend(moved);
-        }
-        self.cells.append(&mut rest);
-        self.cells.shrink_to_fit();
-        self.entries.shrink_to_fit();
     }
 }
 

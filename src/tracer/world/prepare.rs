@@ -61,7 +61,7 @@ pub fn prepare(
         items.extend(seen.drain(..).flatten());
     }
     // Before the rest, which finds room where this had lists that are gone.
-    let quadtree = Quadtree::new(grid, items, threads.as_ref(), cancel);
+    let quadtree = Quadtree::new(grid, items, cancel);
     let rest = match cancel::is_set(cancel) {
         false => &scene.objects[..],
         true => &[],
