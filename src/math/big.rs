@@ -139,6 +139,16 @@ impl Exact {
         }
     }
 
+    /// The scalar product of two vectors.
+    pub fn dot(a: &[Self; 3], b: &[Self; 3]) -> Self {
+        &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
+    }
+
+    /// The vector product of two vectors.
+    pub fn cross(a: &[Self; 3], b: &[Self; 3]) -> [Self; 3] {
+        [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
+    }
+
     /// The nearest [`Big`].
     pub fn to_big(&self) -> Big {
         Big::round(self.0.clone())

@@ -5,15 +5,13 @@
 //! that may be seen there; or one by one, where to know more would cost more.
 
 use std::{
-    ops::ControlFlow,
+    ops::{ControlFlow, Range},
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use rayon::prelude::*;
-
 use super::{
     Control,
-    tally::{Counts, Tally},
+    tally::Tally,
     tile::{Samples, Tile},
 };
 use crate::{
@@ -21,14 +19,14 @@ use crate::{
     film::{self, Encoder},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Candidate, Checks, Part, PreparedPixel, Quartering, Room, World, samples},
+    tracer::{Candidate, Checks, Part, Quartering, Room, World, samples},
 };
 
 /// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
 const WIDE_SAMPLES: u64 = 8;
 
-/// A pixel's samples are taken so many at a time, which takes 40 µs together and 0.3 ms one by one; a pixel with more is shared by the threads.
-const SAMPLES_A_TASK: u64 = 1 << 12;
+/// A pixel's samples are taken so many at a time, which takes 40 µs together and 0.3 ms one by one.
+const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
 /// What all tiles have in common.
 pub(super) struct Renderer<'a, P> {
@@ -114,70 +112,32 @@ impl<P: film::Pixel> Renderer<'_, P> {
             _ => trace,
         };
         film.rays += samples;
-        if samples <= SAMPLES_A_TASK {
-            self.look([x, y], trace, &mut tally.pixel);
-            self.chunk(x, y, samples, 0, trace, tally);
-            film.unreported += samples;
-        } else {
-            self.many(x, y, samples, trace, tally);
+        if let Trace::Together(candidates, checks) = trace {
+            samples::prepare(self.world, [x, y], candidates, checks, &mut tally.pixel);
+        }
+        for first in (0..samples).step_by(SAMPLES_A_CHUNK as usize) {
+            let end = samples.min(first + SAMPLES_A_CHUNK);
+            self.chunk([x, y], samples, first..end, trace, tally);
+            film.unreported += end - first;
+            if film.unreported >= SAMPLES_A_CHUNK {
+                (self.control.progress)(std::mem::take(&mut film.unreported));
+            }
+            self.go_on()?;
         }
         let Tally { counts, means, .. } = tally;
         film.pixels[index] = means.take(counts, self.colors, self.encoder);
         self.go_on()
     }
 
-    /// Prepares a pixel, where samples are traced together.
-    fn look(&self, at: [u32; 2], trace: Trace, pixel: &mut PreparedPixel) {
-        if let Trace::Together(candidates, checks) = trace {
-            samples::prepare(self.world, at, candidates, checks, pixel);
-        }
-    }
-
-    /// All samples of a pixel that has many, on all threads.
-    fn many(&self, x: u32, y: u32, samples: u64, trace: Trace, tally: &mut Tally<P>) {
-        // A few thousand chunks at a time, so that what is gathered from the threads stays small.
-        const BATCH: u64 = SAMPLES_A_TASK << 10;
-        let mut first = 0;
-        while first < samples && !self.control.cancel.load(Ordering::Relaxed) {
-            let end = samples.min(first.saturating_add(BATCH));
-            let chunks = (end - first).div_ceil(SAMPLES_A_TASK);
-            let slots = self.colors.len();
-            let sums = (0..chunks)
-                .into_par_iter()
-                .fold(
-                    || {
-                        let mut tally = Tally::<P>::new(slots);
-                        self.look([x, y], trace, &mut tally.pixel);
-                        tally
-                    },
-                    |mut tally, chunk| {
-                        if !self.control.cancel.load(Ordering::Relaxed) {
-                            let first = first + chunk * SAMPLES_A_TASK;
-                            self.chunk(x, y, samples, first, trace, &mut tally);
-                        }
-                        tally
-                    },
-                )
-                .map(|tally| tally.counts)
-                .reduce(
-                    || Counts::new(0),
-                    |mut a, b| {
-                        if a.is_empty() {
-                            return b;
-                        }
-                        a.merge(&b);
-                        a
-                    },
-                );
-            tally.counts.merge(&sums);
-            (self.control.progress)(end - first);
-            first = end;
-        }
-    }
-
-    /// Counts up to [`SAMPLES_A_TASK`] samples of a pixel that has `samples`, from the one with index `first` on.
-    fn chunk(&self, x: u32, y: u32, samples: u64, first: u64, trace: Trace, tally: &mut Tally<P>) {
-        let end = samples.min(first + SAMPLES_A_TASK);
+    /// Counts some of a pixel's samples.
+    fn chunk(
+        &self,
+        [x, y]: [u32; 2],
+        samples: u64,
+        some: Range<u64>,
+        trace: Trace,
+        tally: &mut Tally<P>,
+    ) {
         let Tally {
             counts,
             pixel,
@@ -185,12 +145,11 @@ impl<P: film::Pixel> Renderer<'_, P> {
             ..
         } = tally;
         let vectors = match trace {
-            Trace::Together(..) if end - first >= WIDE_SAMPLES => Vectors::Widest,
+            Trace::Together(..) if some.end - some.start >= WIDE_SAMPLES => Vectors::Widest,
             // To choose others takes longer, and rays that are traced one by one afterwards are slower for it.
             _ => Vectors::Baseline,
         };
-        self.sampling
-            .place(vectors, [x, y], samples, first..end, points);
+        self.sampling.place(vectors, [x, y], samples, some, points);
         // One by one, each may take its time.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {

@@ -43,21 +43,11 @@ impl Counts {
         }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.seen.is_empty()
-    }
-
     pub(super) fn add(&mut self, slot: usize, count: u64) {
         if self.of[slot] == 0 {
             self.seen.push(slot);
         }
         self.of[slot] += count;
-    }
-
-    pub(super) fn merge(&mut self, other: &Self) {
-        for &slot in &other.seen {
-            self.add(slot, other.of[slot]);
-        }
     }
 
     /// The slots that were seen, in their order, and how often.

@@ -7,12 +7,8 @@
 //! precision cannot tell: outside of them every decision says for certain that the object is missed.
 
 use super::{
-    camera::Camera,
-    cuboid,
-    interval::{Patch, Range},
-    object::Object,
-    sphere::Sphere,
-    triangle::{Triangle, Vertices},
+    camera::Camera, convex::Convex, cuboid, interval::Range, local_form::Patch, object::Object,
+    sphere::Sphere, triangle,
 };
 use crate::{
     math::{Ball3, Double, Radius, Real, UP},
@@ -43,29 +39,21 @@ impl Object<f64> {
     ) -> (Self, Option<Extent>) {
         let mut corners = None;
         let object = match shape {
-            Shape::Triangle(triangle) => match Triangle::with_corners(double, triangle) {
-                Some((triangle, of_triangle)) => {
-                    corners = Some(of_triangle);
-                    Object::Triangle(Box::new(triangle))
-                }
-                None => Object::EdgeOn,
-            },
+            Shape::Triangle(shape) => {
+                let (triangle, of_triangle) = triangle::prepare(double, shape).unzip();
+                corners = of_triangle;
+                Object::Convex(triangle.unwrap_or_else(Convex::nothing))
+            }
             _ => Object::new(double, shape),
         };
         let object = object.narrowed(&fast.window);
+        let ahead = fast.window.z;
         let hull = match (&object, shape) {
-            (Self::EdgeOn, _) => return (object, None),
             // All but flat to the eye, where slopes are no numbers of an X.
-            _ if fast.window.z < LEAST => Hull::Unbounded,
-            (Self::Sphere(sphere), _) => of_sphere(sphere, fast.window.z),
-            (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), fast.window.z),
-            _ => match &corners {
-                Some(Vertices { points, exponent }) => {
-                    let scale = libm::ldexp(1.0, *exponent);
-                    of_corners(points, fast.window.z).times_nearest(scale)
-                }
-                None => Hull::Unbounded,
-            },
+            _ if ahead < LEAST => Hull::Unbounded,
+            (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
+            (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
+            _ => corners.map_or(Hull::Unbounded, |corners| of_corners(&corners, ahead)),
         };
         let extent = match hull {
             Hull::Behind => None,
@@ -89,18 +77,6 @@ enum Hull {
     Ahead(Extent),
     /// It is on both sides, or endless, or out of the range of numbers.
     Unbounded,
-}
-
-impl Hull {
-    fn times_nearest(self, power: f64) -> Self {
-        match self {
-            Self::Ahead(extent) => Self::Ahead(Extent {
-                nearest: extent.nearest * power,
-                ..extent
-            }),
-            other => other,
-        }
-    }
 }
 
 impl Extent {

@@ -35,22 +35,13 @@ fn exact3(v: DVec3) -> Exact3 {
     v.to_array().map(Exact::new)
 }
 
-fn cross(a: &Exact3, b: &Exact3) -> Exact3 {
-    [
-        &(&a[1] * &b[2]) - &(&a[2] * &b[1]),
-        &(&a[2] * &b[0]) - &(&a[0] * &b[2]),
-        &(&a[0] * &b[1]) - &(&a[1] * &b[0]),
-    ]
-}
-
 fn is_zero(v: &Exact3) -> bool {
     v.iter().all(|x| x.sign().is_eq())
 }
 
 /// v/|v|, each component to the last bits of a [`Big`].
 fn normalized(v: &Exact3) -> [Big; 3] {
-    let squares = v.each_ref().map(|x| x * x);
-    let length = (&(&squares[0] + &squares[1]) + &squares[2]).to_big().sqrt();
+    let length = Exact::dot(v, v).to_big().sqrt();
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
@@ -85,11 +76,11 @@ impl Basis {
         let forward = view_direction(camera);
         let up = exact3(camera.up);
         let backward = forward.each_ref().map(|x| &Exact::new(0.0) - x);
-        let mut right = cross(&up, &backward);
+        let mut right = Exact::cross(&up, &backward);
         if is_zero(&right) {
-            right = cross(&exact3(scene::level_direction(camera.up)), &up);
+            right = Exact::cross(&exact3(scene::level_direction(camera.up)), &up);
         }
-        let top = cross(&backward, &right);
+        let top = Exact::cross(&backward, &right);
 
         let (u, v, w) = (normalized(&right), normalized(&top), normalized(&backward));
         let (sin, cos) = Big::sin_cos(camera.roll);
@@ -140,6 +131,13 @@ pub struct Window<R> {
     pub y: R,
     /// Z.
     pub z: R,
+}
+
+impl<R: Copy> Window<R> {
+    /// The three bounds.
+    pub fn sizes(&self) -> [R; 3] {
+        [self.x, self.y, self.z]
+    }
 }
 
 /// The camera in one precision.

@@ -6,15 +6,12 @@
 
 use glam::DVec2;
 
-use crate::{
-    area::Area,
-    math::{Big, Double, Doubt},
-};
+use crate::area::Area;
 
 use super::{
-    curve::{Crossings, Surface},
-    interval::{Patch, Range},
-    object::Object,
+    curve::Crossings,
+    interval::Range,
+    local_form::Patch,
     quadtree::Nearness,
     sub_pixel::SubPixel,
     world::{Precision, World, depth_order},
@@ -171,10 +168,8 @@ pub(super) fn cover(
 /// comes before them in the file. Of layers the nearest one hides all others; of those in one plane it is the first.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
     let is_flat = |candidate: &&Candidate| {
-        !matches!(
-            *f64::object(&world.geometry, candidate.object),
-            Object::Sphere(_)
-        )
+        let object = f64::object(&world.geometry, candidate.object);
+        object.convex().is_ok()
     };
     let may_cover = |candidate: &&Candidate| candidate.is_whole && !candidate.is_cut();
     let fronts = candidates.iter().filter(may_cover).filter(is_flat);
@@ -191,34 +186,28 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
 
 /// Whether an object that every ray through a patch meets hides another there by the forms of their planes.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
-    let ahead = |a: &Surface<f64>, i: usize, b: &Surface<f64>, j: usize| {
-        let (Surface::Plane(a), Surface::Plane(b)) = (a, b) else {
-            return false;
-        };
-        if a.minus(b).over(patch).low > 0.0 {
-            return true;
-        }
-        // Only planes that are equal in `f64` can be one.
-        front < back && a.equals(b) && {
-            let part = |object, at| (object, f64::object(&world.geometry, object).first_part(at));
-            depth_order::is_one_plane(&world.geometry, part(front, i), part(back, j))
-        }
+    let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
+    let (Ok(a), Ok(b)) = (a.convex(), b.convex()) else {
+        return false;
     };
-    let (a, b) = (
-        f64::object(&world.geometry, front),
-        f64::object(&world.geometry, back),
-    );
-    let (planes_a, planes_b) = (a.surfaces(Crossings::First), b.surfaces(Crossings::First));
-    let mut pairs = planes_b.iter().enumerate().map(|(j, b)| {
-        let mut fronts = planes_a.iter().enumerate();
-        match a.is_seen_from_inside() {
-            true => fronts.any(|(i, a)| ahead(a, i, b, j)),
-            false => fronts.all(|(i, a)| ahead(a, i, b, j)),
-        }
-    });
-    match b.is_seen_from_inside() {
-        true => pairs.all(|covered| covered),
-        false => pairs.any(|covered| covered),
+    let ahead = |i: usize, j: usize| {
+        let (front_face, back_face) = (&a.firsts()[i], &b.firsts()[j]);
+        front_face.minus(back_face).over(patch).low > 0.0
+            // Only planes that are equal in `f64` can be one.
+            || front < back && front_face.equals(back_face) && {
+                let parts = ((front, a.part(i)), (back, b.part(j)));
+                depth_order::is_one_plane(&world.geometry, parts.0, parts.1)
+            }
+    };
+    let fronts = 0..a.firsts().len();
+    let is_behind = |j: usize| match a.is_inside() {
+        true => fronts.clone().any(|i| ahead(i, j)),
+        false => fronts.clone().all(|i| ahead(i, j)),
+    };
+    let mut backs = 0..b.firsts().len();
+    match b.is_inside() {
+        true => backs.all(is_behind),
+        false => backs.any(is_behind),
     }
 }
 
@@ -231,26 +220,7 @@ pub fn object_at(
     candidates: &[Candidate],
 ) -> (Option<usize>, bool) {
     let offset = sub_pixel.offset(at);
-    let point = world
-        .geometry
-        .fast
-        .camera
-        .sample_point(sub_pixel.x, sub_pixel.y, offset);
-    let among = || candidates.iter().map(|candidate| candidate.object);
-    let fast = world.nearest(
-        &f64::frame(&world.geometry).camera.direction(&point),
-        among(),
-    );
-    let seen = fast.or_else(|Doubt| {
-        let r = Double::frame(&world.geometry).camera.direction(&point);
-        world.nearest(&r, among())
-    });
-    let is_sure = seen.is_ok();
-    let seen = seen.or_else(|Doubt| {
-        let r = Big::frame(&world.geometry).camera.direction(&point);
-        world.nearest(&r, among())
-    });
-    // The last precision is never in doubt.
-    let object = seen.unwrap_or_default().map(|(object, _)| object);
-    (object, is_sure)
+    let camera = &world.geometry.fast.camera;
+    let point = camera.sample_point(sub_pixel.x, sub_pixel.y, offset);
+    world.object_among(&point, candidates.iter().map(|candidate| candidate.object))
 }

@@ -4,16 +4,13 @@
 //! depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole squares are kept apart, since only their parity matters: far
 //! from the origin they would cost N its precision. Errors: those of the forms; a ratio whose error reaches a whole number is in doubt.
 
-use std::cmp::Ordering;
-
 use super::{
     camera::{Camera, Direction, Window},
-    crossing::{Crossing, SurfacePart},
+    convex::Convex,
     form::{Form, axis_vector, inverse_depth},
-    interval::{Cover, Patch},
 };
 use crate::{
-    math::{Ball, Double, Doubt, Radius, Real, UP},
+    math::{Ball, Double, Doubt, Radius, Real},
     scene,
 };
 
@@ -23,8 +20,8 @@ const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Checkerboard<T: Real> {
-    /// ℓ, the inverse depth of its plane.
-    pub plane: Form<T>,
+    /// Its plane, which a ray meets where ℓ, its inverse depth, is positive.
+    pub plane: Convex<T>,
     /// ℓ in the unit of N, a power of two that is right for the eye's height.
     pub below: Form<T>,
     /// N for x and for z, each measured from the whole square nearest to the eye.
@@ -66,32 +63,19 @@ impl<T: Real> Checkerboard<T> {
         let numerator = |axis: usize, from_square: &EyeOffset| {
             // x = e_x + λ r_x, so x/square = e_x/square + (r_x/square)/ℓ, all over ℓ = r_y/h.
             let along = camera.turned(&axis_vector(axis));
-            let exponent = -libm::frexp(from_square.square).1;
-            let side = Ball::exact(from_square.square).scaled(exponent);
+            let exponent = -libm::frexp(square).1;
+            let side = Ball::exact(square).scaled(exponent);
             let offset = Ball::exact(from_square.rest).scaled(exponent) / &side;
-            let side = side.scaled(camera.exponent + scale - from_square.exponent - exponent);
+            let side = side.scaled(camera.exponent + scale - exponent);
             let v = [0, 1, 2].map(|i| &offset * &(&up[i] / &h) + &along[i] / &side);
             Form::new(camera, &v)
         };
         Some(Self {
             below: inverse_depth(camera, &axis_vector(1), &h),
-            plane,
+            plane: Convex::new(Vec::new(), vec![(0, plane)], Vec::new()),
             across: [numerator(0, &x), numerator(2, &z)],
             odd: x.odd != z.odd,
         })
-    }
-
-    /// The crossing, if the ray meets the plane in front of the eye.
-    #[inline]
-    pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        let inverse_depth = self.plane.at(r);
-        match inverse_depth.sign()? {
-            Ordering::Greater => Ok(Some(Crossing {
-                inverse_depth,
-                part: SurfacePart::Plane(0),
-            })),
-            _ => Ok(None),
-        }
     }
 
     /// Whether the square that the ray meets has the second colour: floor(x/square) + floor(z/square) is odd.
@@ -111,16 +95,10 @@ impl<T: Real> Checkerboard<T> {
     /// The board about a ray, in units of the sides of what lies there of the picture. A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin
     /// near: the one that makes them small at the corner where ℓ is largest (elsewhere it may be next to 0).
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
-        let half = sides.each_ref().map(|side| side.magnitude() * 0.5);
-        let sizes = [
-            (center.x.magnitude() + half[0]) * UP,
-            (center.y.magnitude() + half[1]) * UP,
-            center.z.magnitude() * UP,
-        ];
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
             let factors = [a.times(&sides[0]), b.times(&sides[1]), form.at(center).mid];
-            (factors, form.rad_within(sizes))
+            (factors, form.rad())
         };
         let (below, rad) = local(&self.below);
         let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
@@ -155,20 +133,6 @@ impl<T: Real> Checkerboard<T> {
     }
 }
 
-impl Checkerboard<f64> {
-    /// How it stands to a rectangle; `None` if no ray through it meets the board.
-    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
-        let inverse_depth = self.plane.over(patch);
-        if inverse_depth.high < 0.0 {
-            return None;
-        }
-        Some(Cover {
-            is_whole: inverse_depth.low > 0.0,
-            inverse_depth,
-        })
-    }
-}
-
 impl Checkerboard<Double> {
     /// The same checkerboard for `f64`.
     pub fn narrowed(&self, window: &Window<f64>) -> Checkerboard<f64> {
@@ -185,10 +149,6 @@ impl Checkerboard<Double> {
 struct EyeOffset {
     /// The rest, at most half a square either way.
     rest: f64,
-    /// The side of a square, in the rest's unit.
-    square: f64,
-    /// That unit, as a power of two: its exponent.
-    exponent: i32,
     /// Whether the number of whole squares is odd.
     odd: bool,
 }
@@ -196,23 +156,17 @@ struct EyeOffset {
 impl EyeOffset {
     /// Splits a coordinate without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
-        // Twice the side must not overflow, which it does above 9e307; a unit four times as large loses nothing at that size.
-        let exponent = if square > 1e300 { -2 } else { 0 };
-        let [coordinate, square] = [coordinate, square].map(|x| libm::ldexp(x, exponent));
-        // The remainder of f64 is exact, and so are the differences of numbers within a factor of two (Sterbenz).
-        let rest = coordinate % (2.0 * square);
-        let whole = if rest.abs() < square * 0.5 {
-            0.0
-        } else if rest.abs() <= square * 1.5 {
-            1.0
-        } else {
-            2.0
+        // The remainder of f64 is exact, by infinity too, and so are the differences of numbers within a factor of two (Sterbenz).
+        let mut rest = coordinate % (2.0 * square);
+        let whole = match rest.abs() {
+            size if size < square * 0.5 => 0,
+            size if size <= square * 1.5 => 1,
+            _ => 2,
         };
-        Self {
-            rest: rest - whole * square.copysign(rest),
-            square,
-            exponent,
-            odd: whole == 1.0,
+        for _ in 0..whole {
+            rest -= square.copysign(rest);
         }
+        let odd = whole == 1;
+        Self { rest, odd }
     }
 }

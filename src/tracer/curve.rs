@@ -7,7 +7,7 @@
 //! Errors: each form is prepared anew in the sub-pixel's coordinates and in high precision, with a bound on its values there, so that what is left
 //! is good to the last bit of an `f64` however far the sub-pixel is from the picture's centre.
 
-use crate::math::{Ball, Ball3, Double, Radius, Real, UP};
+use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
 
@@ -93,26 +93,15 @@ impl<T: Real> SubPixelFrame<T> {
     /// A form's zero line.
     pub fn line(&self, form: &Form<T>) -> Curve {
         let (factors, rad) = self.local(form);
-        let size = factors[0].magnitude().max(factors[1].magnitude());
-        // A form without slope has no zero line; any power of two will do.
-        let exponent = -size.exponent();
-        let factors = factors.map(|factor| factor.scaled(exponent).to_f64());
-        let rounding = f64::UNIT * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-        Curve::Line(Line {
-            factors,
-            rad: rad.scaled(exponent).to_f64() + rounding,
-        })
+        line(&factors, rad)
     }
 
     fn local(&self, form: &Form<T>) -> ([T; 3], T::Radius) {
         let [a, b, c] = form.factors();
-        let [x, y, z] = &self.center;
+        let [x, y, _] = &self.center;
         let middle = a.times(&x.mid).plus(&b.times(&y.mid)).plus(c);
-        let half = self.pitch.size() * 0.5;
-        let sizes = [x.size() + half, y.size() + half, z.size()].map(|size| size * UP);
-        let slopes = [a, b].map(|factor| factor.times(&self.pitch.mid));
-        let [a, b] = slopes;
-        ([a, b, middle], form.rad_within(sizes))
+        let [a, b] = [a, b].map(|factor| factor.times(&self.pitch.mid));
+        ([a, b, middle], form.rad())
     }
 
     /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r = 0 that bounds it then.
@@ -121,7 +110,7 @@ impl<T: Real> SubPixelFrame<T> {
     /// behind it, which lie on either side of it, no precision tells the one from the other where the sphere is a plane but for its 1e-200th part.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Curve> {
         let (c, square) = sphere.parts();
-        let ahead = || self.line_of(&self.along(&c));
+        let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
             return vec![ahead()];
         }
@@ -170,7 +159,7 @@ impl<T: Real> SubPixelFrame<T> {
         }
         let linear = self.along(&n);
         if h.mid.is_zero() {
-            return Some(self.line_of(&linear));
+            return Some(line_of(&linear));
         }
         Some(self.circle(&c, &square, &linear, &h))
     }
@@ -205,18 +194,24 @@ impl<T: Real> SubPixelFrame<T> {
             crate::math::dot(v, &self.center),
         ]
     }
+}
 
-    fn line_of(&self, linear: &Linear<T>) -> Curve {
-        let size = linear[0].size().max(linear[1].size());
-        let exponent = -size.exponent();
-        let factors = linear.each_ref().map(|x| x.mid.scaled(exponent).to_f64());
-        let rad = linear[0].rad + linear[1].rad + linear[2].rad;
-        let rounding = f64::UNIT * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-        Curve::Line(Line {
-            factors,
-            rad: rad.scaled(exponent).to_f64() + rounding,
-        })
-    }
+fn line_of<T: Real>(linear: &Linear<T>) -> Curve {
+    let factors = linear.each_ref().map(|x| x.mid.clone());
+    line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
+}
+
+/// A linear form's zero line.
+fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Curve {
+    let size = factors[0].magnitude().max(factors[1].magnitude());
+    // A form without slope has no zero line; any power of two will do.
+    let exponent = -size.exponent();
+    let factors = factors.each_ref().map(|x| x.scaled(exponent).to_f64());
+    let rounding = f64::UNIT * (factors[0].abs() + factors[1].abs() + factors[2].abs());
+    Curve::Line(Line {
+        factors,
+        rad: rad.scaled(exponent).to_f64() + rounding,
+    })
 }
 
 /// The product of two linear forms.

@@ -50,9 +50,12 @@ impl<T: Real> Form<T> {
         let [a, b, c] = &self.factors;
         Ball {
             mid: a.times(&r.x).plus(&b.times(&r.y)).plus(c),
-            rad: match T::LAST {
-                true => self.rad_within([&r.x, &r.y, &r.z].map(Real::magnitude)),
-                false => self.rad,
+            rad: match &self.rads {
+                Some(rads) if T::LAST => {
+                    let [x, y, z] = [&r.x, &r.y, &r.z].map(Real::magnitude);
+                    (rads[0] * x + rads[1] * y + rads[2] * z) * UP
+                }
+                _ => self.rad,
             },
         }
     }
@@ -67,15 +70,6 @@ impl<T: Real> Form<T> {
         self.rad
     }
 
-    /// How far its values may be from the true ones where |X|, |Y| and |Z| are no greater than these.
-    pub fn rad_within(&self, sizes: [T::Radius; 3]) -> T::Radius {
-        let Some(rads) = &self.rads else {
-            return self.rad;
-        };
-        let [x, y, z] = [0, 1, 2].map(|i| rads[i] * sizes[i]);
-        (x + y + z) * UP
-    }
-
     /// The difference of two forms.
     pub fn minus(&self, other: &Self) -> Self {
         let sizes = [0, 1, 2].map(|i| self.factors[i].magnitude() + other.factors[i].magnitude());
@@ -85,13 +79,13 @@ impl<T: Real> Form<T> {
             // X and Y are at most 1.
             rad: (self.rad + other.rad + sum * (ROUNDINGS * T::UNIT)) * UP,
             // Each has as many roundings of its own factors as their difference has.
-            rads: match (&self.rads, &other.rads) {
-                (Some(own), Some(others)) => {
-                    let both = |i: usize| (own[i] + others[i]) * (2.0 * UP);
-                    Some(Box::new([0, 1, 2].map(both)))
-                }
-                _ => None,
-            },
+            rads: self
+                .rads
+                .as_ref()
+                .zip(other.rads.as_ref())
+                .map(|(own, others)| {
+                    Box::new([0, 1, 2].map(|i| (own[i] + others[i]) * (2.0 * UP)))
+                }),
         }
     }
 

@@ -1,28 +1,6 @@
-//! What is certain of an object over a whole rectangle of the picture.
-//!
-//! In: an object's forms, and a rectangle of the view plane. Out: whether all of its rays meet the object, and the interval of its inverse depths.
-//!
-//! The ranges of an object's forms over the rectangle, widened by the error bounds of its decisions, so that what is said here of
-//! the rectangle is also what every sample in it says.
+//! Intervals: what is certain of numbers all over a rectangle of the picture.
 
-use glam::DVec2;
-
-use crate::{area::Area, math::UP};
-
-use super::{
-    camera::{Camera, Direction},
-    form::Form,
-    sub_pixel::SubPixel,
-};
-
-/// A rectangle of the view plane.
-#[derive(Clone, Debug)]
-pub struct Patch {
-    /// The direction through its centre.
-    pub center: Direction<f64>,
-    /// Half its extent in X and Y, rounded up.
-    pub half: [f64; 2],
-}
+use crate::math::UP;
 
 /// The numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,48 +14,20 @@ pub struct Range {
 /// How an object that may be seen in a rectangle stands to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cover {
-    /// Whether every ray through the rectangle meets the object, between the near and the far plane.
+    /// Whether every ray through the rectangle meets the object.
     pub is_whole: bool,
     /// Holds the inverse depths of what is met of it, seen or hidden.
     pub inverse_depth: Range,
 }
 
-impl Patch {
-    /// The rectangle of some pixels.
-    pub fn new(camera: &Camera<f64>, area: Area) -> Self {
-        let half = |pixels: u32| 0.5 * f64::from(pixels) * camera.pitch * UP + f64::MIN_POSITIVE;
-        let middle = camera.middle(area);
-        Self {
-            center: camera.direction(&middle),
-            half: [half(area.width), half(area.height)],
-        }
-    }
-
-    /// The square of a sub-pixel.
-    pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
-        let half = 0.5 * sub_pixel.side * camera.pitch * UP + f64::MIN_POSITIVE;
-        let middle = camera.sample_point(sub_pixel.x, sub_pixel.y, sub_pixel.offset(DVec2::ZERO));
-        Self {
-            center: camera.direction(&middle),
-            half: [half; 2],
-        }
-    }
-}
-
-impl Patch {
-    /// All that a camera sees.
-    pub fn window(camera: &Camera<f64>) -> Self {
-        let window = camera.window;
-        Self {
-            center: Direction {
-                x: 0.0,
-                y: 0.0,
-                z: window.z,
-                square: window.z * window.z,
-            },
-            half: [window.x, window.y],
-        }
-    }
+/// Where all numbers of a range stand to 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Side {
+    Above,
+    Below,
+    Both,
+    /// It has overflowed.
+    Unknown,
 }
 
 impl Range {
@@ -105,6 +55,18 @@ impl Range {
         }
     }
 
+    pub fn side(self) -> Side {
+        if !(self.low.is_finite() && self.high.is_finite()) {
+            Side::Unknown
+        } else if self.low > 0.0 {
+            Side::Above
+        } else if self.high < 0.0 {
+            Side::Below
+        } else {
+            Side::Both
+        }
+    }
+
     /// Whether it holds 0, as far as is known: NaN holds everything.
     pub fn holds_zero(self) -> bool {
         !(self.low > 0.0 || self.high < 0.0)
@@ -125,15 +87,5 @@ impl Range {
             low: self.low * power,
             high: self.high * power,
         }
-    }
-}
-
-impl Form<f64> {
-    /// The range of its values over a rectangle.
-    pub fn over(&self, patch: &Patch) -> Range {
-        let [a, b, _] = self.factors();
-        let spread = a.abs() * patch.half[0] + b.abs() * patch.half[1];
-        let middle = self.at(&patch.center);
-        Range::about(middle.mid, spread + middle.rad)
     }
 }

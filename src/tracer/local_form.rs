@@ -1,90 +1,134 @@
-//! Linear and quadratic forms in the coordinates of a pixel or of a rectangle of pixels.
+//! Linear and quadratic forms over a rectangle of the view plane: a pixel, a part of one, or many.
 //!
-//! In: a form over the view plane, and the pixel. Out: the same form as a function of the offset from the pixel's centre, in units of its sides.
-//! Errors: one bound for all values there, the form's own taken twice (its factors, its value at the centre) and the roundings of its evaluation.
+//! In: a form over the view plane, and the rectangle. Out: the same form as a function of the offset from the rectangle's centre, in units of its
+//! sides, and the range of its values. Errors: one bound for all values there, of what the form's factors and its value at the centre are off and of
+//! the roundings of its evaluation; so what a range says of the rectangle, every sample in it says.
 
 use super::{
     camera::{Camera, Direction},
     form::Form,
+    interval::Range,
+    sub_pixel::SubPixel,
 };
 use crate::{
     area::Area,
     math::{Real, UP},
 };
 
-/// A linear form of the offset, and a bound on the error of its computed values in the pixel.
-#[derive(Clone, Copy, Debug)]
-pub struct LocalForm {
-    /// Factors of x, y and 1.
-    pub(crate) factors: [f64; 3],
-    pub(crate) rad: f64,
-}
+/// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear one each factor has one, and so has its quotient by the error;
+/// products and sums, where offsets are at most ½, have two. Of a quadratic one each of six terms has five at most, generously counted.
+const LINEAR_ROUNDINGS: f64 = 4.0 * f64::UNIT;
+pub const ROUNDINGS: f64 = 16.0 * f64::UNIT;
 
-/// A linear form in units of its error.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ScaledLine(pub(super) [f64; 3]);
-
-/// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of its values.
-#[derive(Clone, Copy, Debug)]
-pub struct LocalQuadratic {
-    pub(super) factors: [f64; 6],
-    pub(super) rad: f64,
-}
-
-/// A pixel, or a rectangle of pixels; the offsets of its forms are in units of its sides.
+/// A rectangle of the view plane.
 #[derive(Clone, Debug)]
-pub struct PixelFrame {
-    /// The ray through its centre.
+pub struct Patch {
+    /// The direction through its centre.
     pub center: Direction<f64>,
     /// Its sides in units of X and Y.
     pub sides: [f64; 2],
 }
 
-/// Where a form stands to 0 all over a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Side {
-    Above,
-    Below,
-    Both,
-    /// It has overflowed.
-    Unknown,
+/// A linear form of the offset, and a bound on the error of its computed values.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalForm {
+    /// Factors of x, y and 1.
+    pub factors: [f64; 3],
+    pub rad: f64,
 }
 
-/// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear one each factor has one, and so has its quotient by the error;
-/// products and sums, where offsets are at most ½, have two. Of a quadratic one each of six terms has five at most, generously counted.
-const LINEAR_ROUNDINGS: f64 = 4.0 * f64::UNIT;
-pub(super) const ROUNDINGS: f64 = 16.0 * f64::UNIT;
+/// A linear form in units of its error.
+#[derive(Clone, Copy, Debug)]
+pub struct ScaledLine(pub [f64; 3]);
+
+/// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of its values.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalQuadratic {
+    pub factors: [f64; 6],
+    pub rad: f64,
+}
+
+impl Patch {
+    /// The rectangle of some pixels.
+    pub fn new(camera: &Camera<f64>, area: Area) -> Self {
+        Self {
+            center: camera.direction(&camera.middle(area)),
+            sides: [area.width, area.height].map(|pixels| f64::from(pixels) * camera.pitch),
+        }
+    }
+
+    /// The square of a sub-pixel.
+    pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
+        Self {
+            center: sub_pixel.middle(camera),
+            sides: [sub_pixel.side * camera.pitch; 2],
+        }
+    }
+
+    /// All that a camera sees.
+    pub fn window(camera: &Camera<f64>) -> Self {
+        let window = camera.window;
+        Self {
+            center: Direction {
+                x: 0.0,
+                y: 0.0,
+                z: window.z,
+                square: window.z * window.z,
+            },
+            sides: [2.0 * window.x, 2.0 * window.y],
+        }
+    }
+}
+
+impl Form<f64> {
+    /// The form over a rectangle. Its own error bound counts twice: for its factors, and for its value at the centre.
+    #[inline]
+    pub fn local(&self, patch: &Patch) -> LocalForm {
+        let [a, b, _] = *self.factors();
+        let [width, height] = patch.sides;
+        let factors = [a * width, b * height, self.at(&patch.center).mid];
+        LocalForm::new(factors, 2.0 * self.rad())
+    }
+
+    /// The range of its values over a rectangle.
+    #[inline]
+    pub fn over(&self, patch: &Patch) -> Range {
+        self.local(patch).range()
+    }
+}
 
 impl LocalForm {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
+    #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
         let rad = (inherited + (a + b + c) * LINEAR_ROUNDINGS + 16.0 * f64::TINY) * UP;
         Self { factors, rad }
     }
 
-    /// Half the difference between its greatest and its least value in the pixel.
-    pub(super) fn spread(&self) -> f64 {
+    /// Half the difference between its greatest and its least value.
+    pub fn spread(&self) -> f64 {
         let [a, b, _] = self.factors;
         0.5 * (a.abs() + b.abs())
     }
 
-    pub(super) fn side(&self) -> Side {
-        side(self.factors[2], self.spread() * UP, self.rad)
+    /// The range of its values.
+    pub fn range(&self) -> Range {
+        Range::about(self.factors[2], self.spread() + self.rad)
     }
 
-    pub(super) fn line(&self) -> ScaledLine {
+    pub fn line(&self) -> ScaledLine {
         ScaledLine(self.factors.map(|factor| factor / self.rad))
     }
 
     #[inline(always)]
-    pub(super) fn at(&self, x: f64, y: f64) -> f64 {
+    pub fn at(&self, x: f64, y: f64) -> f64 {
         let [a, b, c] = self.factors;
         a * x + b * y + c
     }
 
     /// self − k · other, for a whole number k.
-    pub(crate) fn less(&self, k: f64, other: &Self) -> Self {
+    pub fn less(&self, k: f64, other: &Self) -> Self {
         let sizes: f64 = (0..3)
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
@@ -92,39 +136,6 @@ impl LocalForm {
         // Of a product and a difference.
         let inherited = self.rad + k.abs() * other.rad + sizes * (2.0 * f64::UNIT);
         Self::new(factors, inherited)
-    }
-}
-
-impl PixelFrame {
-    pub(super) fn new(camera: &Camera<f64>, area: Area) -> Self {
-        Self {
-            center: camera.direction(&camera.middle(area)),
-            sides: [area.width, area.height].map(|pixels| f64::from(pixels) * camera.pitch),
-        }
-    }
-}
-
-/// A form's side, from its value at the centre.
-fn side(center: f64, spread: f64, rad: f64) -> Side {
-    let reach = spread + rad;
-    if !(center.abs() + reach).is_finite() {
-        Side::Unknown
-    } else if center > reach {
-        Side::Above
-    } else if center < -reach {
-        Side::Below
-    } else {
-        Side::Both
-    }
-}
-
-impl Form<f64> {
-    /// The form in a pixel. Its own error bound counts twice: for its factors, and for its value at the pixel's centre.
-    pub(super) fn local(&self, frame: &PixelFrame) -> LocalForm {
-        let [a, b, _] = *self.factors();
-        let [width, height] = frame.sides;
-        let factors = [a * width, b * height, self.at(&frame.center).mid];
-        LocalForm::new(factors, 2.0 * self.rad())
     }
 }
 
@@ -136,14 +147,23 @@ impl LocalQuadratic {
         Self { factors, rad }
     }
 
-    pub(super) fn side(&self) -> Side {
-        let [c, x, y, xx, xy, yy] = self.factors;
-        let spread = 0.5 * (x.abs() + y.abs()) + 0.25 * (xx.abs() + xy.abs() + yy.abs());
-        side(c, spread * UP, self.rad)
+    /// The range of its values, by the extremes along each axis and a bound on what is mixed.
+    pub fn range(&self) -> Range {
+        let [c, x, y, xx, xy, yy] = self.factors.map(|factor| 0.25 * factor);
+        let c = 4.0 * c;
+        let slack = xy.abs() + self.rad;
+        let reach = |sign: f64| {
+            let along = greatest(x.abs(), sign * xx) + greatest(y.abs(), sign * yy);
+            (along + slack) * UP
+        };
+        Range {
+            low: c - reach(-1.0),
+            high: c + reach(1.0),
+        }
     }
 
     /// The same in units of its error.
-    pub(super) fn certain(&self) -> Self {
+    pub fn certain(&self) -> Self {
         Self {
             factors: self.factors.map(|factor| factor / self.rad),
             rad: 1.0,
@@ -151,8 +171,13 @@ impl LocalQuadratic {
     }
 
     #[inline(always)]
-    pub(super) fn at(&self, x: f64, y: f64) -> f64 {
+    pub fn at(&self, x: f64, y: f64) -> f64 {
         let [c, fx, fy, xx, xy, yy] = self.factors;
         c + x * (fx + xx * x + xy * y) + y * (fy + yy * y)
     }
+}
+
+/// The greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at the end, or where it is level before that.
+fn greatest(a: f64, b: f64) -> f64 {
+    if a < -b { a * a / -b } else { 2.0 * a + b }
 }

@@ -16,6 +16,7 @@ mod local_form;
 mod sub_pixel;
 
 mod checkerboard;
+mod convex;
 mod cuboid;
 mod curve;
 mod interval;
@@ -43,8 +44,7 @@ pub(crate) use checker_corners::Squares;
 pub use cull::{GRID, Part, Quartering, Room};
 pub use curve::{Conic, Curve, Line};
 pub(crate) use curve::{LOOSE_LINE, SubPixelFrame, Surface};
-pub(crate) use interval::Patch;
-pub(crate) use local_form::LocalForm;
+pub(crate) use local_form::{LocalForm, Patch};
 pub(crate) use object::Object;
 pub use ray::{Hit, ray};
 pub use samples::PreparedPixel;

@@ -52,7 +52,7 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     sort(&world.geometry, &mut crossings);
 
     let among = candidates.iter().copied();
-    let seen = world.seen_in_direction(&r, among).unwrap_or_default();
+    let seen = world.seen(&r, among).unwrap_or_default();
     let along = [&r.x, &r.y, &r.z].map(rounded);
     let turned: Ball3<Big> = [0, 1, 2].map(|i| {
         let part = |j: usize| &camera.axes[j][i] * &along[j];

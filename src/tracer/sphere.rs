@@ -13,8 +13,8 @@ use glam::DVec3;
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, SurfacePart},
-    interval::{Cover, Patch, Range},
-    local_form::{LocalForm, LocalQuadratic, PixelFrame},
+    interval::{Cover, Range},
+    local_form::{LocalForm, LocalQuadratic, Patch},
 };
 use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
 
@@ -73,7 +73,7 @@ impl<T: Real> Sphere<T> {
             rad_c,
             square.size(),
             square.rad,
-            &camera.window,
+            camera.window.sizes(),
         );
         Self {
             center: c.map(|x| x.mid),
@@ -98,7 +98,13 @@ impl<T: Real> Sphere<T> {
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = match T::LAST {
             // No precision follows it, so that the error is bounded for this ray: in the middle of the widest views it is far smaller than elsewhere.
-            true => self.radii_of(r),
+            true => radii::<T>(
+                self.center.each_ref().map(Real::magnitude),
+                self.rad_c,
+                self.square.magnitude(),
+                self.rad_square,
+                [&r.x, &r.y, &r.z].map(Real::magnitude),
+            ),
             false => (self.rad_q, self.rad_b),
         };
         let q = Ball {
@@ -110,17 +116,6 @@ impl<T: Real> Sphere<T> {
             rad: rad_b,
         };
         (q, b)
-    }
-
-    fn radii_of(&self, r: &Direction<T>) -> (T::Radius, T::Radius) {
-        let [x, y, z] = [&r.x, &r.y, &r.z].map(Real::magnitude);
-        radii::<T>(
-            self.center.each_ref().map(Real::magnitude),
-            self.rad_c,
-            self.square.magnitude(),
-            self.rad_square,
-            &Window { x, y, z },
-        )
     }
 
     /// The nearest crossing in front of the eye. A ray that only touches the sphere misses it.
@@ -237,10 +232,8 @@ impl Sphere<f64> {
     /// the second way of writing it bounds it where b ≤ 0.
     fn exits(&self, q: Range, b: Range, patch: &Patch) -> Range {
         let reach = |i: usize, at: f64| {
-            (
-                at.abs() + patch.half[i],
-                (at.abs() - patch.half[i]).max(0.0),
-            )
+            let half = 0.5 * patch.sides[i];
+            (at.abs() + half, (at.abs() - half).max(0.0))
         };
         let (x, y) = (reach(0, patch.center.x), reach(1, patch.center.y));
         let z = patch.center.z;
@@ -264,20 +257,24 @@ impl Sphere<f64> {
         }
     }
 
-    /// Q and c·r in a pixel.
+    /// Q and c·r over a rectangle, Q by its expansion about the centre.
     ///
-    /// Q's own bound is generous enough for its value at the centre; its gradient and its second derivatives are made of the same
-    /// products as Q, and half a pixel is within the window. All of them together stay below so many times that bound.
-    pub fn local(&self, frame: &PixelFrame) -> (LocalQuadratic, LocalForm) {
-        const TIMES: f64 = 16.0;
+    /// Its factors are made of the same products as Q, and the rectangle is within the window, so that Q's bound counts once for the value at the
+    /// centre, twice for each gradient and once for each of the three second derivatives.
+    pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
+        const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
-        let (r, [width, height]) = (&frame.center, frame.sides);
-        let [q, along_x, along_y] = self.expanded(r);
+        let (r, [width, height]) = (&patch.center, patch.sides);
+        let (k, l, m) = (
+            cy * r.z - cz * r.y,
+            cz * r.x - cx * r.z,
+            cx * r.y - cy * r.x,
+        );
         let q = LocalQuadratic::new(
             [
-                q,
-                2.0 * along_x * width,
-                2.0 * along_y * height,
+                self.square * r.square - (k * k + l * l + m * m),
+                2.0 * (self.square * r.x - (l * cz - m * cy)) * width,
+                2.0 * (self.square * r.y - (m * cx - k * cz)) * height,
                 (self.square - cy * cy - cz * cz) * width * width,
                 2.0 * cx * cy * width * height,
                 (self.square - cx * cx - cz * cz) * height * height,
@@ -286,6 +283,11 @@ impl Sphere<f64> {
         );
         let b = [cx * width, cy * height, cx * r.x + cy * r.y + cz * r.z];
         (q, LocalForm::new(b, 2.0 * self.rad_b))
+    }
+
+    fn ranges(&self, patch: &Patch) -> (Range, Range) {
+        let (q, b) = self.local(patch);
+        (q.range(), b.range())
     }
 
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
@@ -309,48 +311,6 @@ impl Sphere<f64> {
         } else {
             Range::ALL
         }
-    }
-
-    /// Q in a direction, and half its derivatives to the right and upwards.
-    fn expanded(&self, r: &Direction<f64>) -> [f64; 3] {
-        let [cx, cy, cz] = self.center;
-        let (k, l, m) = (
-            cy * r.z - cz * r.y,
-            cz * r.x - cx * r.z,
-            cx * r.y - cy * r.x,
-        );
-        [
-            self.square * r.square - (k * k + l * l + m * m),
-            self.square * r.x - (l * cz - m * cy),
-            self.square * r.y - (m * cx - k * cz),
-        ]
-    }
-
-    /// The ranges of Q and of c·r over a rectangle: Q's by the extremes of its expansion about the centre along each axis, and a bound on what is mixed.
-    fn ranges(&self, patch: &Patch) -> (Range, Range) {
-        let [cx, cy, cz] = self.center;
-        let r = &patch.center;
-        let [hx, hy] = patch.half;
-        let [q, along_x, along_y] = self.expanded(r);
-        let x = (
-            along_x.abs() * hx,
-            (self.square - cy * cy - cz * cz) * hx * hx,
-        );
-        let y = (
-            along_y.abs() * hy,
-            (self.square - cx * cx - cz * cz) * hy * hy,
-        );
-        let mixed = 2.0 * (cx * cy).abs() * hx * hy;
-        let sizes = 2.0 * (x.0 + y.0) + x.1.abs() + y.1.abs() + mixed;
-        // The expansion is made of the same products as Q, and the rectangle is within the window: the value at the centre, two gradients and the square have Q's bound each.
-        let slack = mixed + 4.0 * self.rad_q + sizes * (UP - 1.0);
-        let q = Range {
-            low: q - greatest(x.0, -x.1) - greatest(y.0, -y.1) - slack,
-            high: q + greatest(x.0, x.1) + greatest(y.0, y.1) + slack,
-        };
-        let b = cx * r.x + cy * r.y + cz * r.z;
-        let spread = cx.abs() * hx + cy.abs() * hy;
-        (q, Range::about(b, spread + self.rad_b))
     }
 }
 
@@ -393,7 +353,7 @@ impl Sphere<Double> {
             0.0,
             self.square.hi,
             self.square.hi * f64::UNIT,
-            window,
+            window.sizes(),
         );
         Sphere {
             center,
@@ -412,11 +372,6 @@ impl Sphere<Double> {
     }
 }
 
-/// The greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at the end, or where it is level before that.
-fn greatest(a: f64, b: f64) -> f64 {
-    if a < -b { a * a / -b } else { 2.0 * a + b }
-}
-
 /// C = c·c − R², scaled, with a small relative error, and its exact sign.
 fn power<T: Real>(
     eye: DVec3,
@@ -433,22 +388,20 @@ fn power<T: Real>(
         return (power, side);
     }
     let c = [0, 1, 2].map(|i| Exact::difference(center[i], eye[i]));
-    let squares = c.each_ref().map(|x| x * x);
-    let square = &Exact::new(radius) * &Exact::new(radius);
-    let power = &(&(&squares[0] + &squares[1]) + &squares[2]) - &square;
+    let radius = Exact::new(radius);
+    let power = &Exact::dot(&c, &c) - &(&radius * &radius);
     let side = power.sign();
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Error bounds of Q and c·r over a window, from the sizes of the centre's coordinates, their error, R² and its error.
+/// Error bounds of Q and c·r for |X|, |Y| and |Z| up to some, from the sizes of the centre's coordinates, their error, R² and its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,
     square: T::Radius,
     rad_square: T::Radius,
-    window: &Window<T::Radius>,
+    [x, y, z]: [T::Radius; 3],
 ) -> (T::Radius, T::Radius) {
-    let Window { x, y, z } = *window;
     let unit = ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;

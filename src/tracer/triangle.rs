@@ -1,188 +1,94 @@
 //! The triangle: three edges, each a line in the view plane.
 //!
-//! In: the triangle's numbers and the camera. Out: three edge forms and the form of its plane's inverse depth; for a ray, its crossing. A ray
-//! meets the triangle where no edge form is negative: the edge functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous
-//! coordinates", 1997). Errors: each form's own bound.
+//! In: the triangle's numbers and the camera. Out: a [`Convex`] object of three edges, each form the determinant of the edge's ends and the ray, and
+//! one face; and its corners.
 
 use std::{array, cmp::Ordering};
 
 use glam::DVec3;
 
 use super::{
-    camera::{Camera, Direction, Window},
-    crossing::{Crossing, SurfacePart},
+    camera::Camera,
+    convex::Convex,
     form::{Form, inverse_depth},
-    interval::{Cover, Patch},
 };
 use crate::{
-    math::{Ball, Ball3, Big, Double, Doubt, Exact, Radius, Real, cross, sin_cos},
+    math::{Ball, Ball3, Big, Exact, Radius, Real, cross, sin_cos},
     scene::{self, CenteredTriangle, Outline},
 };
 
-/// A triangle prepared for one picture.
-#[derive(Clone, Debug)]
-pub struct Triangle<T: Real> {
-    /// For each edge the form that is ≥ 0 on the triangle's side of it: the determinant of the edge's ends and the ray.
-    pub edges: [Form<T>; 3],
-    /// The inverse depth of its plane.
-    pub plane: Form<T>,
-}
-
-/// The corners of a triangle in the camera's axes, their lengths times a power of two.
-#[derive(Clone, Debug)]
-pub struct Vertices<T: Real> {
-    /// Left base end, right base end, apex.
-    pub points: [Ball3<T>; 3],
-    /// That power's exponent.
-    pub exponent: i32,
-}
-
-impl<T: Real> Triangle<T> {
-    /// Prepares a triangle; `None` if its plane holds the eye, which sees it edge-on: not at all.
-    pub fn new(camera: &Camera<T>, shape: &scene::Triangle) -> Option<Self> {
-        Self::with_corners(camera, shape).map(|(triangle, _)| triangle)
-    }
-
-    /// Prepares a triangle, and tells where its corners are.
-    pub fn with_corners(
-        camera: &Camera<T>,
-        shape: &scene::Triangle,
-    ) -> Option<(Self, Vertices<T>)> {
-        match &shape.outline {
-            Outline::Vertices(vertices) => Self::by_vertices(camera, vertices),
-            Outline::Centered(triangle) => Self::by_centroid(camera, triangle),
-        }
-    }
-
-    /// Two triangles that share an edge have the same two points for it, so that of every ray they know exactly the same.
-    fn by_vertices(camera: &Camera<T>, vertices: &[DVec3; 3]) -> Option<(Self, Vertices<T>)> {
-        let (normal, height, side) = plane_through(camera, vertices);
-        if side.is_eq() {
-            return None;
-        }
-        let from_eye = vertices.map(|vertex| camera.relative(vertex));
-        let exponents = from_eye.each_ref().map(|v| exponent_of(array::from_ref(v)));
-        let exponent = -exponents.into_iter().fold(i32::MIN, i32::max);
-        let points = from_eye.map(|v| camera.turned(&v.map(|x| x.scaled(exponent))));
-        // a × b = a × (b − a). The edges' forms matter by their signs alone, so each may have a scale of its own.
-        let edge = |a: usize, b: usize| {
-            let along: Ball3<T> =
-                array::from_fn(|i| Ball::difference(vertices[b][i], vertices[a][i]));
-            let own = -exponent_of(array::from_ref(&along));
-            let along = camera.turned(&along.map(|x| x.scaled(own)));
-            let n = cross(&points[a], &along);
-            Form::new(camera, &facing(n, side))
-        };
-        let triangle = Self {
-            edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
-            plane: inverse_depth(camera, &normal, &height),
-        };
-        Some((triangle, Vertices { points, exponent }))
-    }
-
-    fn by_centroid(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<(Self, Vertices<T>)> {
-        let from_eye = camera.relative(shape.centroid);
-        let (normal, height, side) = plane(camera, shape);
-        if side.is_eq() {
-            return None;
-        }
-        let plane = inverse_depth(camera, &normal, &height);
-
-        // The eye sees each corner at c + o, c being the centroid. Both may be of any size beside each other.
-        let offsets = offsets::<T>(shape);
-        let [far, near] = [
-            exponent_of(array::from_ref(&from_eye)),
-            exponent_of(&offsets) + camera.exponent,
-        ];
-        let center = camera.turned(&from_eye.map(|x| x.scaled(-far)));
-        let offsets =
-            offsets.map(|offset| camera.turned(&offset.map(|x| x.scaled(camera.exponent - near))));
-        let exponent = -far.max(near);
-        let sum = |c: &Ball3<T>, o: &Ball3<T>| -> Ball3<T> {
-            array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
-        };
-        // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners themselves little would be left of a
-        // triangle far away beside its size: of a × b, a = c + o and b = c + p, that is c × (p − o) + o × p.
-        let edge = |a: usize, b: usize| {
-            let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
-            let n = sum(&cross(&center, &along), &cross(&offsets[a], &offsets[b]));
-            Form::new(camera, &facing(n, side))
-        };
-        let triangle = Self {
-            edges: [edge(0, 1), edge(1, 2), edge(2, 0)],
-            plane,
-        };
-        let corners = Vertices {
-            points: offsets.each_ref().map(|offset| sum(&center, offset)),
-            exponent,
-        };
-        Some((triangle, corners))
-    }
-
-    /// The crossing, if the ray meets the closed triangle in front of the eye.
-    #[inline]
-    pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        let (mut doubt, mut is_inside) = (false, false);
-        for edge in &self.edges {
-            match edge.at(r).sign() {
-                Ok(Ordering::Less) => return Ok(None),
-                Ok(sign) => is_inside |= sign.is_gt(),
-                Err(Doubt) => doubt = true,
-            }
-        }
-        if doubt {
-            return Err(Doubt);
-        }
-        let inverse_depth = self.plane.at(r);
-        // With all three determinants zero the ray lies in the plane, or, in the last precision, the triangle is too small or too nearly edge-on
-        // to be told from nothing; else the sum of them, and so the depth, is positive.
-        if !is_inside || inverse_depth.sign()? != Ordering::Greater {
-            return Ok(None);
-        }
-        Ok(Some(Crossing {
-            inverse_depth,
-            part: SurfacePart::Plane(0),
-        }))
+/// Prepares a triangle, and tells its corners in the camera's axes; `None` if its plane holds the eye, which sees it edge-on: not at all.
+pub fn prepare<T: Real>(
+    camera: &Camera<T>,
+    shape: &scene::Triangle,
+) -> Option<(Convex<T>, [Ball3<T>; 3])> {
+    match &shape.outline {
+        Outline::Vertices(vertices) => by_vertices(camera, vertices),
+        Outline::Centered(triangle) => by_centroid(camera, triangle),
     }
 }
 
-impl Triangle<f64> {
-    /// How it stands to a rectangle; `None` if no ray through it meets the triangle.
-    pub fn cover(&self, patch: &Patch) -> Option<Cover> {
-        let mut is_whole = true;
-        for edge in &self.edges {
-            let range = edge.over(patch);
-            if range.high < 0.0 {
-                return None;
-            }
-            is_whole &= range.low > 0.0;
-        }
-        Some(Cover {
-            is_whole,
-            inverse_depth: self.plane.over(patch),
-        })
-    }
+/// Two triangles that share an edge have the same two points for it, so that of every ray they know exactly the same.
+fn by_vertices<T: Real>(
+    camera: &Camera<T>,
+    vertices: &[DVec3; 3],
+) -> Option<(Convex<T>, [Ball3<T>; 3])> {
+    let plane = SeenPlane::through(camera, vertices)?;
+    let corners = vertices.map(|vertex| camera.turned(&camera.relative(vertex)));
+    // a × b = a × (b − a). The edges' forms matter by their signs alone, so each may have a scale of its own.
+    let edge = |a: usize, b: usize| {
+        let along: Ball3<T> = array::from_fn(|i| Ball::difference(vertices[b][i], vertices[a][i]));
+        cross(
+            &scaled_to_one(&corners[a]),
+            &camera.turned(&scaled_to_one(&along)),
+        )
+    };
+    let triangle = plane.with_edges(camera, [edge(0, 1), edge(1, 2), edge(2, 0)]);
+    Some((triangle, corners))
 }
 
-impl Triangle<Double> {
-    /// The same triangle for `f64`.
-    pub fn narrowed(&self, window: &Window<f64>) -> Triangle<f64> {
-        Triangle {
-            edges: self.edges.each_ref().map(|edge| edge.narrowed(window)),
-            plane: self.plane.narrowed(window),
-        }
-    }
+fn by_centroid<T: Real>(
+    camera: &Camera<T>,
+    shape: &CenteredTriangle,
+) -> Option<(Convex<T>, [Ball3<T>; 3])> {
+    let plane = SeenPlane::across(camera, shape)?;
+    // The eye sees each corner at c + o, c being the centroid. Both may be of any size beside each other.
+    let from_eye = camera.relative(shape.centroid);
+    let offsets = offsets::<T>(shape);
+    let [far, near] = [
+        exponent_of(array::from_ref(&from_eye)),
+        exponent_of(&offsets) + camera.exponent,
+    ];
+    let center = camera.turned(&from_eye.map(|x| x.scaled(-far)));
+    let offsets =
+        offsets.map(|offset| camera.turned(&offset.map(|x| x.scaled(camera.exponent - near))));
+    let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
+        array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
+    };
+    // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners themselves little would be left of a
+    // triangle far away beside its size: of a × b, a = c + o and b = c + p, that is c × (p − o) + o × p.
+    let edge = |a: usize, b: usize| {
+        let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
+        let turn = cross(&offsets[a], &offsets[b]);
+        sum(&cross(&center, &along), &turn, -far.max(near))
+    };
+    let triangle = plane.with_edges(camera, [edge(0, 1), edge(1, 2), edge(2, 0)]);
+    Some((
+        triangle,
+        offsets.each_ref().map(|offset| sum(&center, offset, 0)),
+    ))
+}
+
+/// A vector times a power of two that brings its greatest coordinate near to 1.
+fn scaled_to_one<T: Real>(v: &Ball3<T>) -> Ball3<T> {
+    let exponent = exponent_of(array::from_ref(v));
+    v.each_ref().map(|x| x.scaled(-exponent))
 }
 
 /// The exponent of the greatest coordinate.
 fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
     let sizes = points.iter().flatten().map(Ball::size);
     sizes.fold(T::Radius::ZERO, Radius::max).exponent()
-}
-
-/// An edge's form for a triangle of which the eye sees this side: seen from behind, its turn is the other way round.
-fn facing<T: Real>(n: Ball3<T>, side: Ordering) -> Ball3<T> {
-    if side.is_lt() { n.map(|x| -x) } else { n }
 }
 
 /// The vertices of a triangle in the world: as they are written, or left base end, right base end, apex, each coordinate rounded once.
@@ -196,54 +102,59 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
         .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
 }
 
-/// The triangle's plane as seen from the eye: n and h of n·q = h, and on which side of the plane the eye lies, as the sign of
-/// h for the normal that the scene gives.
-///
-/// Here n is divided by its greatest component, and each number is a rounding of the true one: so triangles in one plane, with
+/// A plane n·q = h as seen from the eye, n divided by its greatest component, each number a rounding of the true one. So triangles in one plane, with
 /// normals of whatever lengths, get the same n and h, and planes along the axes those of a box's faces.
-fn plane<T: Real>(camera: &Camera<T>, shape: &CenteredTriangle) -> (Ball3<T>, Ball<T>, Ordering) {
-    let normal = shape.normal.to_array();
-    let greatest = shape.normal.abs().max_element();
-    let pivot = normal.into_iter().find(|x| x.abs() == greatest);
-    let pivot = pivot.unwrap_or(1.0);
-    let terms = [0, 1, 2]
-        .map(|i| &Exact::difference(shape.centroid[i], camera.eye[i]) * &Exact::new(normal[i]));
-    let h = &(&terms[0] + &terms[1]) + &terms[2];
-    let n = normal.map(|x| Ball::quotient(x, pivot));
-    let height = h
-        .to_big()
-        .over(&Big::from_f64(pivot))
-        .scaled(camera.exponent);
-    (n, Ball::from_big(&height), h.sign())
+struct SeenPlane<T: Real> {
+    normal: Ball3<T>,
+    height: Ball<T>,
+    /// On which side of it the eye lies: the sign of h for the normal that the scene gives.
+    side: Ordering,
 }
 
-/// The same of the plane through three points, whose normal is (b − a) × (c − a).
-fn plane_through<T: Real>(
-    camera: &Camera<T>,
-    vertices: &[DVec3; 3],
-) -> (Ball3<T>, Ball<T>, Ordering) {
-    let [a, b, c] = vertices;
-    let along = |to: &DVec3| -> [Exact; 3] { array::from_fn(|i| Exact::difference(to[i], a[i])) };
-    let (one, other) = (along(b), along(c));
-    let normal: [Exact; 3] = array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        &(&one[j] * &other[k]) - &(&one[k] * &other[j])
-    });
-    let terms: [Exact; 3] =
-        array::from_fn(|i| &Exact::difference(a[i], camera.eye[i]) * &normal[i]);
-    let h = &(&terms[0] + &terms[1]) + &terms[2];
-    let parts = normal.each_ref().map(Exact::to_big);
-    let greater = |a: Big, b: &Big| {
-        if b.magnitude() > a.magnitude() {
-            b.clone()
-        } else {
-            a
-        }
-    };
-    let pivot = parts.iter().fold(Big::from_f64(0.0), greater);
-    let n = parts.map(|x| Ball::from_big(&x.over(&pivot)));
-    let height = h.to_big().over(&pivot).scaled(camera.exponent);
-    (n, Ball::from_big(&height), h.sign())
+impl<T: Real> SeenPlane<T> {
+    /// Through three points, the normal being (b − a) × (c − a); none if it holds the eye.
+    fn through(camera: &Camera<T>, [a, b, c]: &[DVec3; 3]) -> Option<Self> {
+        let along = |to: &DVec3| array::from_fn(|i| Exact::difference(to[i], a[i]));
+        Self::new(camera, *a, &Exact::cross(&along(b), &along(c)))
+    }
+
+    /// Through a triangle's centroid; none if it holds the eye.
+    fn across(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<Self> {
+        Self::new(
+            camera,
+            shape.centroid,
+            &shape.normal.to_array().map(Exact::new),
+        )
+    }
+
+    fn new(camera: &Camera<T>, point: DVec3, normal: &[Exact; 3]) -> Option<Self> {
+        let from_eye = array::from_fn(|i| Exact::difference(point[i], camera.eye[i]));
+        let h = Exact::dot(&from_eye, normal);
+        let side = h.sign();
+        let parts = normal.each_ref().map(Exact::to_big);
+        let greater = |a: Big, b: &Big| match b.magnitude() > a.magnitude() {
+            true => b.clone(),
+            false => a,
+        };
+        let pivot = parts.iter().fold(Big::from_f64(0.0), greater);
+        let over_pivot = |x: &Big| x.over(&pivot);
+        (!side.is_eq()).then(|| Self {
+            normal: parts.each_ref().map(|x| Ball::from_big(&over_pivot(x))),
+            height: Ball::from_big(&over_pivot(&h.to_big()).scaled(camera.exponent)),
+            side,
+        })
+    }
+
+    /// The triangle in it with these edges; seen from behind, each turns the other way round.
+    fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
+        let facing = |n: Ball3<T>| match self.side.is_lt() {
+            true => n.map(|x| -x),
+            false => n,
+        };
+        let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));
+        let plane = inverse_depth(camera, &self.normal, &self.height);
+        Convex::new(edges.collect(), vec![(0, plane)], Vec::new())
+    }
 }
 
 /// The vertices as seen from the centroid, in the world's axes: left base end, right base end, apex.

@@ -6,7 +6,8 @@
 use crate::tracer::{
     bounds2d::Extent,
     camera::{Direction, Window},
-    interval::{Patch, Range},
+    interval::Range,
+    local_form::Patch,
 };
 
 /// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of pixels at its rim, roundings included, are inside.
@@ -77,36 +78,14 @@ impl Rectangle {
     }
 
     #[inline]
-    fn holds(&self, other: &Self) -> bool {
-        let holds = |i: usize| (self.low[i] <= other.low[i]) & (other.high[i] <= self.high[i]);
+    pub(super) fn holds(&self, at: [u32; 2]) -> bool {
+        let holds = |i: usize| (self.low[i] <= at[i]) & (at[i] <= self.high[i]);
         holds(0) & holds(1)
     }
 
-    /// What two that meet have in common.
-    pub(super) fn within(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1].map(|i| self.low[i].max(other.low[i])),
-            high: [0, 1].map(|i| self.high[i].min(other.high[i])),
-        }
-    }
-
-    /// Its longer side.
-    pub(super) fn side(&self) -> u32 {
-        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) + 1
-    }
-}
-
-impl Item {
-    /// Whether it may be met in a rectangle.
     #[inline]
-    pub fn meets(&self, rectangle: &Rectangle) -> bool {
-        self.bounds.meets(rectangle)
-    }
-
-    /// Whether it may be met everywhere in a rectangle.
-    #[inline]
-    pub fn may_fill(&self, rectangle: &Rectangle) -> bool {
-        self.bounds.holds(rectangle)
+    pub(super) fn contains(&self, other: &Self) -> bool {
+        self.holds(other.low) && self.holds(other.high)
     }
 }
 
@@ -154,7 +133,7 @@ impl Grid {
     /// What holds all rays through a patch; none outside of the window.
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         let center = [patch.center.x, patch.center.y];
-        self.ends([0, 1].map(|i| Range::about(center[i], patch.half[i])))
+        self.ends([0, 1].map(|i| Range::about(center[i], 0.5 * patch.sides[i])))
     }
 
     /// An object in the grid; none outside of the window.

@@ -16,8 +16,7 @@ mod tree;
 use std::sync::atomic::AtomicBool;
 
 use self::{rectangle_query::Search, tree::Tree};
-use super::{camera::Direction, interval::Patch};
-use crate::threads::Threads;
+use super::{camera::Direction, local_form::Patch};
 
 pub use self::grid::{Grid, Item, Nearness};
 pub use self::point_query::Descent;
@@ -31,17 +30,9 @@ pub struct Quadtree {
 }
 
 impl Quadtree {
-    /// A quadtree over some objects, built by some threads, or by this one alone. Cancelled, it lacks some of them.
-    pub fn new(
-        grid: Grid,
-        items: Vec<Item>,
-        threads: Option<&Threads>,
-        cancel: &AtomicBool,
-    ) -> Self {
-        let tree = match threads {
-            Some(threads) => threads.install(|| Tree::of_many(items, cancel)),
-            None => Tree::of(items, cancel),
-        };
+    /// A quadtree over some objects. Cancelled, it lacks some of them.
+    pub fn new(grid: Grid, items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        let tree = Tree::new(items, cancel);
         Self { grid, tree }
     }
 
@@ -63,11 +54,5 @@ impl Quadtree {
             Some(rectangle) => Search::new(&self.tree, &rectangle, most, behind).run(),
             None => Some(Vec::new()),
         }
-    }
-
-    /// How many bytes it takes.
-    #[cfg(test)]
-    pub fn bytes(&self) -> usize {
-        self.tree.bytes()
     }
 }

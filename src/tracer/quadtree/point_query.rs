@@ -3,8 +3,8 @@
 //! In: a place in the grid. Out: the lists of the cells that hold it, from the root down, each ended where the rest is hidden.
 
 use super::{
-    grid::{LEVELS, Nearness},
-    tree::{Entry, Tree, part_of},
+    grid::{Item, LEVELS, Nearness},
+    tree::Tree,
 };
 
 /// The way from the root to the smallest cell that holds a point.
@@ -35,7 +35,7 @@ impl<'a> Descent<'a> {
         }
         let list = List {
             entries: &self.tree.entries[cell.start as usize..cell.end as usize],
-            at: self.at.map(|x| part_of(self.level, x)),
+            at: self.at,
         };
         self.cell = (cell.quarters > 0).then(|| {
             self.level -= 1;
@@ -49,9 +49,8 @@ impl<'a> Descent<'a> {
 /// The list of a cell.
 #[derive(Clone, Copy, Debug)]
 pub struct List<'a> {
-    entries: &'a [Entry],
-    /// Where the point is, in parts of the cell.
-    at: [u8; 2],
+    entries: &'a [Item],
+    at: [u32; 2],
 }
 
 impl<'a> List<'a> {
@@ -63,10 +62,7 @@ impl<'a> List<'a> {
                 return None;
             }
             self.entries = rest;
-            let holds = |axis: usize| {
-                (entry.low[axis] <= self.at[axis]) & (self.at[axis] <= entry.high[axis])
-            };
-            if holds(0) & holds(1) {
+            if entry.bounds.holds(self.at) {
                 return Some(entry.object as usize);
             }
         }

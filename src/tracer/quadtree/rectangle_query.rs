@@ -56,21 +56,17 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {
             return Some(());
         }
-        // An object in a smaller cell is too small to hide anything. One that lies in several cells may fill what the rectangle has of this one.
-        let part = (square.side() >= self.rectangle.side())
-            .then(|| self.rectangle.within(&square.bounds()));
-        for entry in &self.tree.entries[cell.start as usize..cell.end as usize] {
-            if entry.nearest <= self.hidden {
+        for item in &self.tree.entries[cell.start as usize..cell.end as usize] {
+            if item.nearest <= self.hidden {
                 break;
             }
-            let item = square.item(entry);
-            if item.meets(self.rectangle) {
+            if item.bounds.meets(self.rectangle) {
                 if self.found.len() == self.most {
                     return None;
                 }
                 self.found.push((item.nearest, item.object));
-                if part.is_some_and(|part| item.may_fill(&part)) {
-                    self.hidden = self.hidden.max((self.behind)(entry.object));
+                if item.bounds.contains(self.rectangle) {
+                    self.hidden = self.hidden.max((self.behind)(item.object));
                 }
             }
         }

@@ -1,11 +1,9 @@
 //! The cells of a quadtree, and the objects listed in them.
 //!
 //! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A cell is divided while it holds many objects; an
-//! object larger than its quarters stays in it. Within a cell, bounds are kept in 256 parts of its side, rounded outwards.
+//! object larger than its quarters stays in it.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
-
-use rayon::prelude::*;
 
 use super::grid::{Item, LEVELS, Nearness, Rectangle};
 use crate::cancel;
@@ -13,26 +11,11 @@ use crate::cancel;
 /// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take the same time within a twentieth.
 pub const OBJECTS_A_CELL: usize = 32;
 
-/// A cell with more objects is divided by several threads: some milliseconds' work, at 0.7 µs an object (benches/README.md).
-const OBJECTS_A_THREAD: usize = 1 << 14;
-
-/// An object in a list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Entry {
-    /// Above what its inverse depths may be.
-    pub(super) nearest: Nearness,
-    /// Its index in the file.
-    pub(super) object: u32,
-    /// Its bounds in parts of the cell, ends included.
-    pub(super) low: [u8; 2],
-    pub(super) high: [u8; 2],
-}
-
 /// Cells, the first of which holds the others.
 #[derive(Debug)]
 pub(super) struct Tree {
     pub(super) cells: Vec<Cell>,
-    pub(super) entries: Vec<Entry>,
+    pub(super) entries: Vec<Item>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -46,82 +29,19 @@ pub(super) struct Cell {
     pub(super) nearest: Nearness,
 }
 
-/// Which of 256 parts of a cell with a side of 2^level holds a coordinate in the cell; of the smallest cells not all parts are used.
-#[inline]
-pub(super) fn part_of(level: u32, x: u32) -> u8 {
-    let within = x & ((1 << level) - 1);
-    match level {
-        0..8 => (within << (8 - level)) as u8,
-        _ => (within >> (level - 8)) as u8,
-    }
-}
-
-/// The first and the last coordinate of a part, from the cell's corner.
-#[inline]
-fn units_of(level: u32, part: u8) -> (u32, u32) {
-    let part = u32::from(part);
-    match level {
-        0..8 => (part >> (8 - level), part >> (8 - level)),
-        _ => (part << (level - 8), ((part + 1) << (level - 8)) - 1),
-    }
-}
-
 impl Tree {
     /// The tree of all cells. Cancelled, it lacks some of the items.
-    pub(super) fn of(items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        Self::new(CellSquare::ROOT, items, cancel)
-    }
-
-    /// The same, by several threads.
-    pub(super) fn of_many(items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        Self::by_threads(CellSquare::ROOT, items, cancel)
-    }
-
-    /// How many bytes it takes.
-    #[cfg(test)]
-    pub(super) fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<Cell>() + self.entries.capacity() * size_of::<Entry>()
-    }
-
-    /// The tree of a cell.
-    fn new(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
+    pub(super) fn new(items: Vec<Item>, cancel: &AtomicBool) -> Self {
+        let mut tree = Self {
+            cells: vec![Cell::EMPTY],
+            entries: Vec::new(),
+        };
         // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
         let mut stack = items;
-        let mut tree = Self::empty();
-        tree.divide(0, square, &mut stack, 0, cancel);
+        tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
         tree.entries.shrink_to_fit();
         tree
-    }
-
-    /// The tree of a cell, by several threads.
-    fn by_threads(square: CellSquare, items: Vec<Item>, cancel: &AtomicBool) -> Self {
-        if items.len() <= OBJECTS_A_THREAD || square.level == 0 {
-            return Self::new(square, items, cancel);
-        }
-        if cancel::is_set(cancel) {
-            return Self::empty();
-        }
-        let mut tree = Self::empty();
-        let (own, below): (Vec<_>, _) = items.into_iter().partition(|item| square.keeps(item));
-        tree.list(0, square, &own);
-        let quarters = [0, 1, 2, 3].map(|quarter| {
-            let square = square.quarter(quarter);
-            let items = below.iter().filter(|item| item.meets(&square.bounds()));
-            (square, items.copied().collect::<Vec<_>>())
-        });
-        drop((own, below));
-        let quarters = quarters.into_par_iter();
-        let quarters = quarters.map(|(square, items)| Self::by_threads(square, items, cancel));
-        tree.join(quarters.collect());
-        tree
-    }
-
-    fn empty() -> Self {
-        Self {
-            cells: vec![Cell::EMPTY],
-            entries: Vec::new(),
-        }
     }
 
     /// Fills a cell and all below it with the items from `start` on.
@@ -137,11 +57,11 @@ impl Tree {
             return;
         }
         if stack.len() - start <= OBJECTS_A_CELL || square.level == 0 {
-            return self.list(cell, square, &stack[start..]);
+            return self.list(cell, &stack[start..]);
         }
         stack[start..].sort_by_key(|item| !square.keeps(item));
         let own = stack[start..].partition_point(|item| square.keeps(item));
-        self.list(cell, square, &stack[start..start + own]);
+        self.list(cell, &stack[start..start + own]);
         let (start, end) = (start + own, stack.len());
         let quarters = self.cells.len();
         self.cells.extend([Cell::EMPTY; 4]);
@@ -151,7 +71,7 @@ impl Tree {
             let bounds = below.bounds();
             for index in start..end {
                 let item = stack[index];
-                if item.meets(&bounds) {
+                if item.bounds.meets(&bounds) {
                     stack.push(item);
                 }
             }
@@ -163,10 +83,9 @@ impl Tree {
     }
 
     /// Lists items in a cell, behind all lists so far.
-    fn list(&mut self, cell: usize, square: CellSquare, items: &[Item]) {
+    fn list(&mut self, cell: usize, items: &[Item]) {
         let start = self.entries.len();
-        self.entries
-            .extend(items.iter().map(|item| square.entry(item)));
+        self.entries.extend_from_slice(items);
         let list = &mut self.entries[start..];
         list.sort_unstable_by_key(|entry| (Reverse(entry.nearest), entry.object));
         self.cells[cell] = Cell {
@@ -175,33 +94,6 @@ impl Tree {
             end: self.entries.len() as u32,
             ..self.cells[cell]
         };
-    }
-
-    /// Puts the trees of its quarters below the only cell so far: their own cells together, then what is below each of them.
-    fn join(&mut self, quarters: Vec<Self>) {
-        self.cells[0].quarters = 1;
-        let mut rest = Vec::new();
-        for quarter in quarters {
-            let (cells, entries) = (4 + rest.len() as u32, self.entries.len() as u32);
-            self.entries.extend_from_slice(&quarter.entries);
-            let mut moved = quarter.cells.into_iter().map(|cell| Cell {
-                quarters: match cell.quarters {
-                    0 => 0,
-                    own => own + cells,
-                },
-                start: cell.start + entries,
-                end: cell.end + entries,
-                nearest: cell.nearest,
-            });
-            if let Some(cell) = moved.next() {
-                self.cells[0].nearest = self.cells[0].nearest.max(cell.nearest);
-                self.cells.push(cell);
-            }
-            rest.extend(moved);
-        }
-        self.cells.append(&mut rest);
-        self.cells.shrink_to_fit();
-        self.entries.shrink_to_fit();
     }
 }
 
@@ -236,11 +128,6 @@ impl CellSquare {
         }
     }
 
-    /// Its side.
-    pub(super) fn side(self) -> u32 {
-        1 << self.level
-    }
-
     /// Whether an object is as large as the cell's quarters or larger, and so not listed below it: a smaller one meets two of them along each axis.
     fn keeps(self, item: &Item) -> bool {
         let Rectangle { low, high } = item.bounds;
@@ -254,35 +141,6 @@ impl CellSquare {
         Self {
             corner: [x + ((quarter & 1) << level), y + ((quarter >> 1) << level)],
             level,
-        }
-    }
-
-    fn entry(self, item: &Item) -> Entry {
-        let bounds = self.bounds();
-        let parts = |at: [u32; 2]| {
-            [0, 1].map(|i| part_of(self.level, at[i].clamp(bounds.low[i], bounds.high[i])))
-        };
-        Entry {
-            nearest: item.nearest,
-            object: item.object,
-            low: parts(item.bounds.low),
-            high: parts(item.bounds.high),
-        }
-    }
-
-    /// An object of the cell's list with its bounds in the cell: those that it was listed with, or wider by a part.
-    #[inline]
-    pub(super) fn item(self, entry: &Entry) -> Item {
-        let low = entry.low.map(|part| units_of(self.level, part).0);
-        let high = entry.high.map(|part| units_of(self.level, part).1);
-        let [x, y] = self.corner;
-        Item {
-            bounds: Rectangle {
-                low: [x + low[0], y + low[1]],
-                high: [x + high[0], y + high[1]],
-            },
-            nearest: entry.nearest,
-            object: entry.object,
         }
     }
 }

@@ -4,15 +4,14 @@
 //! not overlap. A form that has one sign all over the pixel by its bound is left out. What is rare or has overflowed is left to the world, sample by
 //! sample.
 
-use std::borrow::Borrow;
-
 use super::{
     super::{
         candidates::Candidate,
         checker_corners::{Checks, Squares, is_odd},
         checkerboard::Checkerboard,
         form::Form,
-        local_form::{LocalForm, PixelFrame, ROUNDINGS, Side},
+        interval::Side,
+        local_form::{LocalForm, Patch, ROUNDINGS},
         object::Object,
         sphere::Sphere,
         world::{Precision, World},
@@ -39,7 +38,7 @@ enum Met {
 
 impl PreparedPixel {
     pub(super) fn prepare(&mut self, world: &World) -> Result<(), Hard> {
-        let frame = PixelFrame::new(
+        let frame = Patch::new(
             &f64::frame(&world.geometry).camera,
             Area::pixel(self.x, self.y),
         );
@@ -71,7 +70,7 @@ impl PreparedPixel {
     }
 
     /// Writes down a candidate's boundaries and colours.
-    fn surface(&mut self, world: &World, frame: &PixelFrame, place: usize) -> Result<(), Hard> {
+    fn surface(&mut self, world: &World, frame: &Patch, place: usize) -> Result<(), Hard> {
         let candidate = self.candidates[place];
         let object = &*f64::object(&world.geometry, candidate.object);
         let start = self.lines.len();
@@ -82,13 +81,10 @@ impl PreparedPixel {
             pattern: Pattern::Plain(0.0),
             depth: Depth::Unknown,
         };
-        let met = match object {
-            Object::EdgeOn => Met::No,
+        let met = match object.convex() {
             _ if candidate.is_whole => Met::Yes,
-            Object::Triangle(triangle) => self.edges(&triangle.edges, frame)?,
-            Object::Checkerboard(board) => self.edges([&board.plane], frame)?,
-            Object::Cuboid(cuboid) => self.edges(cuboid.sides(), frame)?,
-            Object::Sphere(sphere) => self.silhouette(sphere, frame, &mut surface)?,
+            Ok(convex) => self.edges(convex.bounds(), frame)?,
+            Err(sphere) => self.silhouette(sphere, frame, &mut surface)?,
         };
         if matches!(met, Met::No) {
             self.lines.truncate(start);
@@ -111,13 +107,9 @@ impl PreparedPixel {
     }
 
     /// Adds forms that are all ≥ 0 where an object is hit.
-    fn edges(
-        &mut self,
-        forms: impl IntoIterator<Item: Borrow<Form<f64>>>,
-        frame: &PixelFrame,
-    ) -> Result<Met, Hard> {
+    fn edges(&mut self, forms: &[Form<f64>], frame: &Patch) -> Result<Met, Hard> {
         for form in forms {
-            if let Met::No = self.edge(form.borrow().local(frame))? {
+            if let Met::No = self.edge(form.local(frame))? {
                 return Ok(Met::No);
             }
         }
@@ -125,7 +117,7 @@ impl PreparedPixel {
     }
 
     fn edge(&mut self, local: LocalForm) -> Result<Met, Hard> {
-        match local.side() {
+        match local.range().side() {
             Side::Above => Ok(Met::Yes),
             Side::Below => Ok(Met::No),
             Side::Both => {
@@ -140,7 +132,7 @@ impl PreparedPixel {
     fn silhouette(
         &mut self,
         sphere: &Sphere<f64>,
-        frame: &PixelFrame,
+        frame: &Patch,
         surface: &mut PixelSurface,
     ) -> Result<Met, Hard> {
         if !sphere.is_outside() {
@@ -148,7 +140,7 @@ impl PreparedPixel {
             return Err(Hard);
         }
         let (q, b) = sphere.local(frame);
-        match q.side() {
+        match q.range().side() {
             Side::Above => {}
             Side::Below => return Ok(Met::No),
             Side::Both => surface.conic = Some(q.certain()),
@@ -161,14 +153,16 @@ impl PreparedPixel {
     fn clips(
         &mut self,
         world: &World,
-        frame: &PixelFrame,
+        frame: &Patch,
         candidate: Candidate,
         object: &Object<f64>,
     ) -> Result<Met, Hard> {
         let prepared = f64::frame(&world.geometry);
-        let plane = match object {
-            Object::Triangle(triangle) => Some(&triangle.plane),
-            Object::Checkerboard(board) => Some(&board.plane),
+        let plane = match object
+            .convex()
+            .map(|convex| (convex.firsts(), convex.seconds()))
+        {
+            Ok(([plane], [])) => Some(plane),
             _ => None,
         };
         let mut met = Met::Yes;
@@ -181,9 +175,7 @@ impl PreparedPixel {
         if let Some(far) = &prepared.far
             && !candidate.is_whole
         {
-            let depth = far.local(frame);
-            let is_before =
-                candidate.inverse_depth.low > depth.factors[2] + depth.spread() * UP + depth.rad;
+            let is_before = candidate.inverse_depth.low > far.over(frame).high;
             if !is_before {
                 let plane = plane.ok_or(Hard)?;
                 if let Met::No = self.edge(plane.minus(far).local(frame))? {
@@ -198,7 +190,7 @@ impl PreparedPixel {
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
-        frame: &PixelFrame,
+        frame: &Patch,
         surface: &PixelSurface,
     ) -> Result<Pattern, Hard> {
         let squares = Squares::new(&board.local(&frame.center, &frame.sides));
@@ -230,7 +222,7 @@ impl PreparedPixel {
             while k <= last {
                 let line = across.less(k, below);
                 // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more odd step.
-                match line.side() {
+                match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
@@ -252,7 +244,7 @@ impl PreparedPixel {
     }
 
     /// Sorts the surfaces from back to front, or has them compared at every sample.
-    fn order(&mut self, world: &World, frame: &PixelFrame) -> Result<(), Hard> {
+    fn order(&mut self, world: &World, frame: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
         let range = |surface: &PixelSurface| candidates[surface.place].inverse_depth;
         self.surfaces
@@ -269,27 +261,17 @@ impl PreparedPixel {
         for surface in &mut self.surfaces {
             let start = self.planes.len();
             let object = &*f64::object(&world.geometry, self.candidates[surface.place].object);
-            surface.depth = match object {
-                Object::EdgeOn => return Err(Hard),
-                Object::Triangle(triangle) => {
-                    self.planes.push(triangle.plane.local(frame));
-                    Depth::Least([start, start + 1])
-                }
-                Object::Checkerboard(board) => {
-                    self.planes.push(board.plane.local(frame));
-                    Depth::Least([start, start + 1])
-                }
-                Object::Cuboid(cuboid) => {
-                    self.planes
-                        .extend(cuboid.firsts().map(|face| face.local(frame)));
+            surface.depth = match object.convex() {
+                Ok(convex) => {
+                    let faces = convex.firsts().iter().map(|face| face.local(frame));
+                    self.planes.extend(faces);
                     let range = [start, self.planes.len()];
-                    if object.is_seen_from_inside() {
-                        Depth::Greatest(range)
-                    } else {
-                        Depth::Least(range)
+                    match convex.is_inside() {
+                        true => Depth::Greatest(range),
+                        false => Depth::Least(range),
                     }
                 }
-                Object::Sphere(sphere) => {
+                Err(sphere) => {
                     let (factor, error) = sphere.depth_factor().ok_or(Hard)?;
                     let (q, b) = sphere.local(frame);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();

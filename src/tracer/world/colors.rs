@@ -12,47 +12,35 @@ use crate::{
 /// The colours of the objects.
 #[derive(Debug)]
 pub(super) struct Colors {
-    /// The distinct ones, and the background.
+    /// The distinct ones in file order, and the background behind them.
     pub palette: Vec<Color>,
-    /// The distinct pairs of slots of the palette: an object's colour, and a checkerboard's second one.
-    pub pairs: Vec<[usize; 2]>,
-    /// For each object its pair.
-    pub of_objects: Vec<u32>,
+    /// The slots of each object's colour, and of a checkerboard's second one.
+    pub of_objects: Vec<[u32; 2]>,
 }
 
 impl Colors {
-    /// The distinct colours of all objects in file order with the background behind them, and the places of the objects' among them.
     pub(super) fn new(objects: &[scene::Object], background: Color) -> Self {
         let mut palette = Vec::new();
-        let mut places = HashMap::new();
-        let mut place = |color: Color| {
-            *places
+        let mut slots = HashMap::new();
+        let mut slot = |color: Color| {
+            *slots
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    palette.len() - 1
+                    // No more than twice the objects, which fit into memory.
+                    (palette.len() - 1) as u32
                 })
         };
-        let mut pairs = Vec::new();
-        let mut places_of_pairs = HashMap::new();
-        let pair = |object: &scene::Object| {
-            let pair = match object.shape {
-                Shape::Sphere(scene::Sphere { color, .. })
-                | Shape::Triangle(scene::Triangle { color, .. })
-                | Shape::Box(scene::Cuboid { color, .. }) => [place(color); 2],
-                Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut place),
-            };
-            *places_of_pairs.entry(pair).or_insert_with(|| {
-                pairs.push(pair);
-                // No more than objects.
-                (pairs.len() - 1) as u32
-            })
+        let of_object = |object: &scene::Object| match object.shape {
+            Shape::Sphere(scene::Sphere { color, .. })
+            | Shape::Triangle(scene::Triangle { color, .. })
+            | Shape::Box(scene::Cuboid { color, .. }) => [slot(color); 2],
+            Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut slot),
         };
-        let of_objects = objects.iter().map(pair).collect();
+        let of_objects = objects.iter().map(of_object).collect();
         palette.push(background);
         Self {
             palette,
-            pairs,
             of_objects,
         }
     }

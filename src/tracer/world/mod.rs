@@ -18,18 +18,18 @@ use std::{cmp::Ordering, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
-use self::{colors::Colors, prepare::prepare};
+use self::{colors::Colors, precision::first_certain, prepare::prepare};
 use super::{
     camera::{Basis, Direction, Point},
     crossing::Crossing,
     object::Object,
-    quadtree::{Descent, Nearness, Quadtree},
+    quadtree::{Nearness, Quadtree},
 };
 use crate::{
     area::Area,
     cancel::{self, Cancelled},
     color::Color,
-    math::{Big, Double, Doubt, Real},
+    math::{Doubt, Real},
     scene::Scene,
 };
 
@@ -117,7 +117,7 @@ impl World {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
         match self.seen_fast(&point) {
             Ok(seen) => self.slot(seen),
-            Err(Doubt) => self.slot(self.seen_after_doubt(&point)),
+            Err(Doubt) => self.slot_after_doubt(&point),
         }
     }
 
@@ -130,25 +130,32 @@ impl World {
         among: impl Iterator<Item = usize> + Clone,
     ) -> usize {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
-        let among = || among.clone();
-        let seen = self.seen_among::<f64>(&point, among());
-        let seen = seen.or_else(|Doubt| self.seen_among::<Double>(&point, among()));
-        let seen = seen.or_else(|Doubt| self.seen_among::<Big>(&point, among()));
-        // The last precision is never in doubt.
-        self.slot(seen.unwrap_or_default())
+        self.slot_of(&point, among)
     }
 
-    /// What [`slot_at`](World::slot_at) answers in one precision alone and without the quadtree, or `None` if that is in doubt.
-    #[cfg(test)]
-    pub(super) fn slot_by<T: Precision>(&self, x: u32, y: u32, offset: DVec2) -> Option<usize> {
-        let point = self.geometry.fast.camera.sample_point(x, y, offset);
-        let seen = self.seen::<T>(&point).ok()?;
-        Some(self.slot(seen))
+    fn slot_of(&self, point: &Point, among: impl Iterator<Item = usize> + Clone) -> usize {
+        let among = || among.clone();
+        let (seen, _) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
+        self.slot(seen)
+    }
+
+    /// The object that is seen at a point, of some in file order; and whether the last precision was not asked.
+    pub(super) fn object_among(
+        &self,
+        point: &Point,
+        among: impl Iterator<Item = usize> + Clone,
+    ) -> (Option<usize>, bool) {
+        let among = || among.clone();
+        let (nearest, is_sure) = first_certain!(&self.geometry, point, |r| {
+            let nearest = self.nearest(r, among());
+            nearest.map(|nearest| nearest.map(|nearest| nearest.object))
+        });
+        (nearest, is_sure)
     }
 
     /// The slots of the palette that an object's colour has, and a checkerboard's second one.
     pub fn slots(&self, object: usize) -> [usize; 2] {
-        self.colors.pairs[self.colors.of_objects[object] as usize]
+        self.colors.of_objects[object].map(|slot| slot as usize)
     }
 
     /// The slot of the background's colour.
@@ -166,86 +173,29 @@ impl World {
         self.geometry.objects.is_empty()
     }
 
-    /// What is seen as far as `f64` can tell, by way of the quadtree.
+    /// What is seen as far as `f64` can tell, of the objects on the way down the quadtree.
     #[inline]
     fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
-        match self.quadtree.at(&r) {
-            Some(descent) => {
-                let nearest = self.nearest_on(descent, &r)?;
-                self.with_color(&r, nearest)
-            }
-            None => self.seen::<f64>(point),
-        }
-    }
-
-    /// The nearest crossing with the objects on the way down the quadtree.
-    #[inline]
-    fn nearest_on(
-        &self,
-        mut descent: Descent,
-        r: &Direction<f64>,
-    ) -> Result<Option<Nearest<f64>>, Doubt> {
+        let mut descent = self.quadtree.at(&r).ok_or(Doubt)?;
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
         while let Some(mut list) = descent.next(bar) {
             while let Some(index) = list.next(bar) {
-                self.raise(r, index, &mut nearest, &mut bar)?;
+                if self.meet(&r, index, &mut nearest)?
+                    && let Some(Nearest { crossing, .. }) = &nearest
+                {
+                    bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
+                }
             }
         }
-        Ok(nearest)
+        self.with_color(&r, nearest)
     }
 
-    /// As [`meet`](World::meet); and where an object is the nearest so far, all that is farther is behind the bar.
-    #[inline]
-    fn raise(
-        &self,
-        r: &Direction<f64>,
-        index: usize,
-        nearest: &mut Option<Nearest<f64>>,
-        bar: &mut Nearness,
-    ) -> Result<(), Doubt> {
-        if self.meet(r, index, nearest)?
-            && let Some(Nearest { crossing, .. }) = nearest
-        {
-            *bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
-        }
-        Ok(())
-    }
-
-    #[cfg(test)]
-    pub(super) fn double_camera(&self) -> &super::camera::Camera<Double> {
-        &self.geometry.double.camera
-    }
-
-    /// How many objects were prepared in the higher precisions and kept.
-    #[cfg(test)]
-    pub(super) fn prepared(&self) -> usize {
-        self.geometry.double.prepared() + self.geometry.big.prepared()
-    }
-
-    /// How much memory it takes by object, spheres alone being in it and none of them kept in a higher precision.
-    #[cfg(test)]
-    pub(super) fn bytes_per_object(&self) -> f64 {
-        let each = size_of::<Object<f64>>() + size_of::<precision::Numbers>() + size_of::<u32>();
-        each as f64 + self.quadtree.bytes() as f64 / self.len() as f64
-    }
-
-    /// What is seen where `f64` was in doubt.
     #[cold]
-    fn seen_after_doubt(&self, point: &Point) -> Option<Seen> {
-        let candidates = self.candidates(point);
-        let among = || candidates.iter().copied();
-        let r = self.geometry.double.camera.direction(point);
-        match self.seen_in_direction(&r, among()) {
-            Ok(seen) => seen,
-            // The last precision is never in doubt.
-            Err(Doubt) => {
-                let r = self.geometry.big.camera.direction(point);
-                self.seen_in_direction(&r, among()).unwrap_or_default()
-            }
-        }
+    fn slot_after_doubt(&self, point: &Point) -> usize {
+        self.slot_of(point, self.candidates(point).iter().copied())
     }
 
     /// The objects that the ray through a point may meet, in file order.
@@ -262,29 +212,14 @@ impl World {
         candidates
     }
 
-    fn seen<T: Precision>(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
-        let r = T::frame(&self.geometry).camera.direction(point);
-        self.seen_in_direction(&r, 0..self.len())
-    }
-
-    #[inline]
-    fn seen_among<T: Precision>(
-        &self,
-        point: &Point,
-        among: impl Iterator<Item = usize>,
-    ) -> Result<Option<Seen>, Doubt> {
-        let r = T::frame(&self.geometry).camera.direction(point);
-        self.seen_in_direction(&r, among)
-    }
-
     /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
     #[inline]
-    pub(super) fn seen_in_direction<T: Precision>(
+    pub(super) fn seen<T: Precision>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
     ) -> Result<Option<Seen>, Doubt> {
-        let nearest = self.nearest_crossing(r, among)?;
+        let nearest = self.nearest(r, among)?;
         self.with_color(r, nearest)
     }
 
@@ -306,19 +241,8 @@ impl World {
         }))
     }
 
-    /// Of some objects, in file order, the one with the nearest crossing, and whether that is its second one.
     #[inline]
-    pub(super) fn nearest<T: Precision>(
-        &self,
-        r: &Direction<T>,
-        among: impl Iterator<Item = usize>,
-    ) -> Result<Option<(usize, bool)>, Doubt> {
-        let nearest = self.nearest_crossing(r, among)?;
-        Ok(nearest.map(|nearest| (nearest.object, nearest.second)))
-    }
-
-    #[inline]
-    fn nearest_crossing<T: Precision>(
+    fn nearest<T: Precision>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
@@ -400,7 +324,7 @@ impl World {
     }
 
     #[inline]
-    fn slot(&self, seen: Option<Seen>) -> usize {
+    pub(super) fn slot(&self, seen: Option<Seen>) -> usize {
         match seen {
             None => self.background(),
             Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],

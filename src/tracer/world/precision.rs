@@ -18,6 +18,29 @@ use crate::{
     },
 };
 
+/// The answer to a question about a ray in the first precision that is certain of it, the ray having its direction there; and whether that is
+/// not the last precision, in which what it does not tell apart counts as equal, so that it is never in doubt.
+macro_rules! first_certain {
+    ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
+        let (geometry, point): (&Geometry, &Point) = ($geometry, $point);
+        let asked = {
+            let $r = &geometry.fast.camera.direction(point);
+            $answer
+        };
+        let asked = asked.or_else(|Doubt| {
+            let $r = &geometry.double.camera.direction(point);
+            $answer
+        });
+        let is_sure = asked.is_ok();
+        let asked = asked.or_else(|Doubt| {
+            let $r = &geometry.big.camera.direction(point);
+            $answer
+        });
+        (asked.unwrap_or_default(), is_sure)
+    }};
+}
+pub(super) use first_certain;
+
 /// The numbers of the scene that an object is prepared from.
 #[derive(Debug)]
 pub enum Numbers {
@@ -43,14 +66,15 @@ pub struct Geometry {
 #[derive(Debug)]
 pub struct Frame<T: Real> {
     pub camera: Camera<T>,
-    /// The objects that were asked for, of many the last.
-    kept: Kept<T>,
+    /// The objects that were asked for, of many the last; none for `f64`, whose are all there.
+    pub(in crate::tracer) kept: Kept<T>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
 }
 
 impl<T: Real> Frame<T> {
-    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: Kept<T>) -> Self {
+    /// With places for so many objects.
+    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
         // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
@@ -62,14 +86,9 @@ impl<T: Real> Frame<T> {
         Self {
             near: (near > 0.0).then(|| clip(near)),
             far: far.map(clip),
-            kept,
+            kept: Kept::new(kept),
             camera,
         }
-    }
-
-    #[cfg(test)]
-    pub(super) fn prepared(&self) -> usize {
-        self.kept.len()
     }
 }
 

@@ -7,10 +7,7 @@ use std::sync::atomic::AtomicBool;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{
-    precise_cache::Kept,
-    precision::{Frame, Geometry, Numbers},
-};
+use super::precision::{Frame, Geometry, Numbers};
 use crate::{
     cancel,
     scene::{self, Scene},
@@ -37,8 +34,8 @@ pub fn prepare(
     cancel: &AtomicBool,
 ) -> (Geometry, Quadtree) {
     let count = scene.objects.len();
-    let double = Frame::new(basis, scene, reach, Kept::new(count));
-    let fast = Frame::new(basis, scene, reach, Kept::None);
+    let double = Frame::new(basis, scene, reach, count);
+    let fast = Frame::new(basis, scene, reach, 0);
     let grid = Grid::new(&fast.camera.window);
     let prepare = |index: usize, object: &scene::Object| {
         let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
@@ -64,7 +61,7 @@ pub fn prepare(
         items.extend(seen.drain(..).flatten());
     }
     // Before the rest, which finds room where this had lists that are gone.
-    let quadtree = Quadtree::new(grid, items, threads.as_ref(), cancel);
+    let quadtree = Quadtree::new(grid, items, cancel);
     let rest = match cancel::is_set(cancel) {
         false => &scene.objects[..],
         true => &[],
@@ -74,7 +71,7 @@ pub fn prepare(
         objects,
         fast,
         double,
-        big: Frame::new(basis, scene, reach, Kept::new(count)),
+        big: Frame::new(basis, scene, reach, count),
     };
     (geometry, quadtree)
 }
