@@ -37,11 +37,9 @@ use std::{
     sync::atomic::{AtomicBool, Ordering::Relaxed},
 };
 
-use glam::DVec2;
-
 use crate::{
     area::Area,
-    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World, candidates},
+    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World},
 };
 
 use self::{
@@ -289,7 +287,7 @@ impl<'a> Integrator<'a> {
                     false => slabs::shares(curves, regions),
                 }
             }
-            false => self.in_doubt(sub_pixel, &candidates),
+            false => Shares::unknown(self.world, sub_pixel, &candidates),
         };
         let state = match is_computed {
             true => State::Computed,
@@ -300,18 +298,6 @@ impl<'a> Integrator<'a> {
             candidates,
             shares,
             state,
-        }
-    }
-
-    /// What is said of a sub-pixel of which nothing is computed: all of it may be what its middle is not.
-    fn in_doubt(&self, sub_pixel: SubPixel, candidates: &[Candidate]) -> Shares {
-        let (seen, _) = candidates::object_at(self.world, sub_pixel, DVec2::ZERO, candidates);
-        let slot = seen.map_or(self.world.background(), |object| {
-            self.world.slots(object)[0]
-        });
-        Shares {
-            by_slot: vec![(slot, 1.0)],
-            bound: 1.0,
         }
     }
 

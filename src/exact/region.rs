@@ -140,15 +140,8 @@ impl<'a> Regions<'a> {
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Out of the range of numbers: nothing is known of the sub-pixel but what is in its middle.
-            let (seen, _) =
-                candidates::object_at(self.world, self.sub_pixel, DVec2::ZERO, self.candidates);
-            let background = self.world.background();
-            let [first, second] = seen.map_or([background; 2], |object| self.world.slots(object));
-            shares.by_slot.clear();
-            shares.add(first, 0.5);
-            shares.add(second, 0.5);
-            shares.bound = 1.0;
+            // Out of the range of numbers.
+            return Shares::unknown(self.world, self.sub_pixel, self.candidates);
         }
         if let [_, _, ..] = shares.by_slot.as_slice() {
             // Sums and products of a few numbers below 1.
@@ -212,6 +205,16 @@ impl Checkered {
 }
 
 impl Shares {
+    /// Of a sub-pixel of which nothing is known but what is in its middle.
+    pub fn unknown(world: &World, sub_pixel: SubPixel, candidates: &[Candidate]) -> Self {
+        let (seen, _) = candidates::object_at(world, sub_pixel, DVec2::ZERO, candidates);
+        let [first, second] = seen.map_or([world.background(); 2], |object| world.slots(object));
+        Self {
+            by_slot: vec![(first, 0.5), (second, 0.5)],
+            bound: 1.0,
+        }
+    }
+
     /// Adds those of a part that is so much of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
         if !self.by_slot.is_empty() {
