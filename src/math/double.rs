@@ -1,7 +1,5 @@
 //! Double-double numbers: the unevaluated sum of two `f64`, good for about 32 digits.
 
-use std::ops::RangeInclusive;
-
 use super::{Big, Real};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
@@ -77,20 +75,6 @@ impl Real for Double {
         };
         Self { hi, lo }
     }
-    /// What a rounded quotient leaves, a − hi·b, is an `f64` (Boldo and Daumas, "Representable correcting terms for possibly
-    /// underflowing floating point operations", 2003), so that the second part is rounded once, too.
-    fn quotient(a: f64, b: f64) -> Self {
-        // 2^±400: the quotient lies within 2^±801 then, and what is left, a multiple of the last bits of both, within 2^−906 and 2^801.
-        const RANGE: RangeInclusive<f64> =
-            f64::from_bits((1023 - 400) << 52)..=f64::from_bits((1023 + 400) << 52);
-        if !RANGE.contains(&a.abs()) || !RANGE.contains(&b.abs()) {
-            return Self::from_big(&Big::from_f64(a).over(&Big::from_f64(b)));
-        }
-        let hi = a / b;
-        let product = two_product(hi, b);
-        let rest = (a - product.hi) - product.lo;
-        Self { hi, lo: rest / b }
-    }
     fn to_f64(&self) -> f64 {
         self.hi
     }
@@ -156,38 +140,5 @@ impl Real for Double {
         }
         let (lo, lo_odd) = Real::floor(&self.lo);
         (quick_two_sum(hi, lo), hi_odd != lo_odd)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(20_000))]
-
-        /// Of all finite numbers, of such beside the limits of the fast way, and of few digits, so that some divide evenly.
-        #[test]
-        fn quotients_are_those_of_big_numbers(
-            a in prop_oneof![number(-1074..1024), number(-405..-395), number(-3..3), -40.0..40.0, whole()],
-            b in prop_oneof![number(-1074..1024), number(395..405), number(-3..3), -40.0..40.0, whole()],
-        ) {
-            prop_assume!(b != 0.0);
-            let exact = Double::from_big(&Big::from_f64(a).over(&Big::from_f64(b)));
-            prop_assert_eq!(Double::quotient(a, b), exact, "{} / {}", a, b);
-        }
-    }
-
-    fn number(exponents: std::ops::Range<i32>) -> impl Strategy<Value = f64> {
-        (1.0..2.0, exponents, any::<bool>()).prop_map(|(digits, exponent, is_negative)| {
-            let size = libm::ldexp(digits, exponent);
-            if is_negative { -size } else { size }
-        })
-    }
-
-    fn whole() -> impl Strategy<Value = f64> {
-        (-1000..1000).prop_map(f64::from)
     }
 }

@@ -7,6 +7,7 @@ mod angle;
 mod ball;
 mod big;
 mod double;
+mod exact;
 pub mod predicates;
 mod radius;
 mod real;
@@ -16,8 +17,9 @@ mod vectors;
 
 pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
-pub use big::{Big, Exact, compare_half_turns};
+pub use big::{Big, compare_half_turns};
 pub use double::{Double, two_product, two_sum};
+pub use exact::{Exact, Exact3};
 pub use radius::{Radius, Wide};
 pub use real::{ROUND, Real, floor};
 pub use sine::sin_cos;

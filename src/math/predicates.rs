@@ -1,89 +1,57 @@
-//! Questions that are answered without rounding.
-//!
-//! An f64 is a whole number times a power of two, so sums and products of f64s can be had as whole numbers of any length.
-//! That is slow, some microseconds, and for what is asked seldom: once for a scene, or where no precision tells two surfaces apart.
+//! Questions about the numbers of a scene that are answered without rounding.
 
 use std::cmp::Ordering;
 
-use dashu_int::IBig;
 use glam::DVec3;
 
-use super::{Double, two_product, two_sum};
+use super::{Exact, Exact3, two_sum};
 
 /// The plane through a point across a normal, which has any length but 0.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Plane {
-    /// A vector across it.
-    pub normal: DVec3,
-    /// A point of it.
-    pub point: DVec3,
+    normal: Exact3,
+    point: DVec3,
 }
 
 impl Plane {
-    /// The plane through three points, if its normal can be had in `f64` without rounding, as it can of points that people write.
-    pub fn through([a, b, c]: [DVec3; 3]) -> Option<Self> {
-        // Of other numbers products might lose what is below the least f64.
-        let is_tame = |x: f64| x == 0.0 || (1e-120..=1e120).contains(&x.abs());
-        let mut numbers = [a, b, c].into_iter().flat_map(|point| point.to_array());
-        if !numbers.all(is_tame) {
-            return None;
-        }
-        let is_exact = |number: Double| (number.lo == 0.0).then_some(number.hi);
-        let difference = |x: f64, y: f64| is_exact(two_sum(x, -y));
-        let along = |to: DVec3| {
-            let [x, y, z] = [0, 1, 2].map(|axis| difference(to[axis], a[axis]));
-            Some([x?, y?, z?])
-        };
-        let (one, other) = (along(b)?, along(c)?);
-        let part = |i: usize, j: usize| {
-            let product = |i: usize, j: usize| is_exact(two_product(one[i], other[j]));
-            difference(product(i, j)?, product(j, i)?)
-        };
-        Some(Self {
-            normal: DVec3::new(part(1, 2)?, part(2, 0)?, part(0, 1)?),
-            point: a,
-        })
+    /// The plane through a point across a normal.
+    pub fn across(normal: DVec3, point: DVec3) -> Self {
+        let normal = Exact::vector(normal);
+        Self { normal, point }
+    }
+
+    /// The plane through three points.
+    pub fn through([a, b, c]: [DVec3; 3]) -> Self {
+        let normal = Exact::cross(&Exact::between(a, b), &Exact::between(a, c));
+        Self { normal, point: a }
     }
 
     /// Whether it is the same plane as another: their normals are parallel, and the points' difference lies across these.
     pub fn equals(&self, other: &Self) -> bool {
-        cross_is_zero(self.normal, DVec3::ZERO, other.normal)
-            && dot_sign(self.normal, self.point, other.point).is_eq()
+        let between = Exact::between(self.point, other.point);
+        Exact::is_zero(&Exact::cross(&self.normal, &other.normal))
+            && Exact::dot(&self.normal, &between).sign().is_eq()
     }
 }
 
-/// Whether the cross product of `up` with `to − from` is zero, the difference being taken exactly.
+/// Whether the cross product of `up` with `to − from` is zero.
 pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
-    let up = up.to_array().map(whole);
-    let [fx, fy, fz] = from.to_array().map(whole);
-    let [tx, ty, tz] = to.to_array().map(whole);
-    let along = [tx - fx, ty - fy, tz - fz];
-    let [ux, uy, uz] = &up;
-    let [ax, ay, az] = &along;
-    uy * az == uz * ay && uz * ax == ux * az && ux * ay == uy * ax
+    Exact::is_zero(&Exact::cross(&Exact::vector(up), &Exact::between(from, to)))
+}
+
+/// The sign of the dot product of `up` with `to − from`.
+pub fn dot_sign(up: DVec3, from: DVec3, to: DVec3) -> Ordering {
+    Exact::dot(&Exact::vector(up), &Exact::between(from, to)).sign()
 }
 
 /// Whether three points lie on one line.
-pub fn are_on_one_line(points: [DVec3; 3]) -> bool {
-    let [a, b, c] = points.map(|point| point.to_array().map(whole));
-    let along = |to: &[IBig; 3]| [0, 1, 2].map(|axis| &to[axis] - &a[axis]);
-    let ([ax, ay, az], [bx, by, bz]) = (along(&b), along(&c));
-    &ay * &bz == &az * &by && &az * &bx == &ax * &bz && &ax * &by == &ay * &bx
-}
-
-/// The sign of the exact dot product of `up` with `to − from`.
-pub fn dot_sign(up: DVec3, from: DVec3, to: DVec3) -> Ordering {
-    let [ux, uy, uz] = up.to_array().map(whole);
-    let [fx, fy, fz] = from.to_array().map(whole);
-    let [tx, ty, tz] = to.to_array().map(whole);
-    let dot = ux * (tx - fx) + uy * (ty - fy) + uz * (tz - fz);
-    dot.cmp(&IBig::ZERO)
+pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
+    Exact::is_zero(&Exact::cross(&Exact::between(a, b), &Exact::between(a, c)))
 }
 
 /// Whether three lengths are the sides of a triangle: each is less than the two others together.
 pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
-    let less = |side, one, other| exceeds(one, other, side);
-    less(a, b, c) && less(b, c, a) && less(c, a, b)
+    exceeds(b, c, a) && exceeds(c, a, b) && exceeds(a, b, c)
 }
 
 /// Whether the exact sum of two positive numbers is more than a third one.
@@ -100,12 +68,9 @@ fn exceeds(one: f64, other: f64, bound: f64) -> bool {
 /// `center − size/2` and `center + size/2`, each rounded once.
 pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     let corner = |sign: f64| {
-        let axis = |center: f64, size: f64| offset_by_half(center, sign * size);
-        DVec3::new(
-            axis(center.x, size.x),
-            axis(center.y, size.y),
-            axis(center.z, size.z),
-        )
+        [0, 1, 2]
+            .map(|i| offset_by_half(center[i], sign * size[i]))
+            .into()
     };
     (corner(-1.0), corner(1.0))
 }
@@ -121,33 +86,9 @@ fn offset_by_half(a: f64, b: f64) -> f64 {
     }
 }
 
-/// A number as a multiple of the least f64, 2^−1074.
-fn whole(number: f64) -> IBig {
-    let bits = number.to_bits();
-    let exponent = (bits >> 52) & 0x7ff;
-    let fraction = bits & ((1 << 52) - 1);
-    let magnitude = match exponent {
-        0 => IBig::from(fraction),
-        _ => IBig::from(fraction | (1 << 52)) << (exponent - 1) as usize,
-    };
-    if number.is_sign_negative() {
-        -magnitude
-    } else {
-        magnitude
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn whole_numbers() {
-        assert_eq!(whole(f64::from_bits(1)), IBig::ONE);
-        assert_eq!(whole(f64::MIN_POSITIVE), IBig::ONE << 52);
-        assert_eq!(whole(-1.0), -(IBig::ONE << 1074));
-        assert_eq!(whole(0.0), IBig::ZERO);
-    }
 
     #[test]
     fn parallel_is_not_nearly_parallel() {
@@ -166,10 +107,7 @@ mod tests {
 
     #[test]
     fn planes_are_one_or_not_to_the_last_bit() {
-        let plane = |normal: [f64; 3], point: [f64; 3]| Plane {
-            normal: normal.into(),
-            point: point.into(),
-        };
+        let plane = |normal: [f64; 3], point: [f64; 3]| Plane::across(normal.into(), point.into());
         // x + 2y + 3z = 5.25, and what is small beside 10^16 is not lost.
         let normal = [1.0, 2.0, 3.0];
         let near = plane(normal, [0.0, 0.0, 1.75]);
@@ -187,18 +125,19 @@ mod tests {
     }
 
     #[test]
-    fn triangles() {
-        assert!(forms_triangle([2.0, 2.0, 1.0]));
-        assert!(!forms_triangle([1.0, 2.0, 3.0]));
-        assert!(forms_triangle([1.0, 2.0, 3.0_f64.next_down()]));
-        // The sum rounds to the third side, and is a little more.
+    fn sides_of_triangles() {
+        // Once the sum rounds to the third side, and is a little more; once it was rounded up.
         let little = f64::EPSILON / 4.0;
-        assert!(forms_triangle([1.0, little, 1.0]));
-        assert!(
-            !forms_triangle([0.1, 0.2, 0.1 + 0.2]),
-            "the sum was rounded up"
-        );
-        assert!(forms_triangle([f64::MAX; 3]));
+        for (sides, is_triangle) in [
+            ([2.0, 2.0, 1.0], true),
+            ([1.0, 2.0, 3.0], false),
+            ([1.0, 2.0, 3.0_f64.next_down()], true),
+            ([1.0, little, 1.0], true),
+            ([0.1, 0.2, 0.1 + 0.2], false),
+            ([f64::MAX; 3], true),
+        ] {
+            assert_eq!(forms_triangle(sides), is_triangle, "{sides:?}");
+        }
     }
 
     #[test]

@@ -30,10 +30,6 @@ pub trait Real: Clone + Debug + Sized {
     fn difference(a: f64, b: f64) -> Self;
     /// The rounding of a more precise number.
     fn from_big(x: &Big) -> Self;
-    /// a / b, rounded once.
-    fn quotient(a: f64, b: f64) -> Self {
-        Self::from_big(&Big::from_f64(a).over(&Big::from_f64(b)))
-    }
     /// The nearest `f64`, or one of the two nearest.
     fn to_f64(&self) -> f64;
     /// Its absolute value, rounded.

@@ -156,10 +156,6 @@ mod tests {
 
     use super::*;
 
-    fn big(x: &Double) -> Big {
-        Big::from_f64(x.hi).plus(&Big::from_f64(x.lo))
-    }
-
     /// How wide a ball may be, in units of double-double: what the rules of [`Ball`] make of an angle in degrees, in radians, and of both. A product with
     /// a rounded constant gives 8 units of r for degrees, three differences 12 π/4 at most for radians. From there the series come to 19.9 units of the
     /// sine and 19.6 of the cosine for degrees, 23.4 and 22.1 for radians, all where |r| = π/4; and a sum of two products of these, √½ each, to
@@ -167,65 +163,58 @@ mod tests {
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
     /// Whether both balls hold the true numbers and are no wider than they have to be.
-    fn is_right(angle: Angle) -> bool {
-        let widest = match (angle.degrees == 0.0, angle.radians == 0.0) {
+    fn is_right(degrees: f64, radians: f64) -> bool {
+        let widest = match (degrees == 0.0, radians == 0.0) {
             (_, true) => WIDEST[0],
             (true, _) => WIDEST[1],
             _ => WIDEST[2],
         };
-        let (sin, cos) = sin_cos(angle);
+        let angle = Angle { degrees, radians };
+        let (sin, cos) = sin_cos::<Double>(angle);
         let (true_sin, true_cos) = Big::sin_cos(angle);
         [(sin, true_sin), (cos, true_cos)]
             .iter()
-            .all(|(ball, truth)| {
-                let error = Real::to_f64(&big(&ball.mid).minus(truth)).abs();
-                error <= ball.rad && ball.rad <= widest * Double::UNIT
+            .all(|(Ball { mid, rad }, truth)| {
+                let mid = Big::from_f64(mid.hi).plus(&Big::from_f64(mid.lo));
+                let error = Real::to_f64(&mid.minus(truth)).abs();
+                error <= *rad && *rad <= widest * Double::UNIT
             })
-    }
-
-    /// Angles at and beside multiples of an eighth of a turn.
-    fn near_eighths() -> impl Strategy<Value = (f64, i32)> {
-        (
-            -400..400i32,
-            prop_oneof![Just(0.0), -1e-6..1e-6, -1e-300..1e-300],
-        )
-            .prop_map(|(n, off)| (off, n))
     }
 
     proptest! {
         #[test]
         fn the_true_numbers_lie_within(degrees in -1e6..1e6f64, radians in -1e6..1e6f64, size in 0..300i32) {
             let small = libm::exp2(f64::from(-size));
-            prop_assert!(is_right(Angle::from_degrees(degrees * small)));
-            prop_assert!(is_right(Angle::from_radians(radians * small)));
-            let both = Angle { degrees, radians: radians * small };
-            prop_assert!(is_right(both));
+            prop_assert!(is_right(degrees * small, 0.0));
+            prop_assert!(is_right(0.0, radians * small));
+            prop_assert!(is_right(degrees, radians * small));
         }
 
         #[test]
-        fn so_they_do_where_one_of_them_is_small((off, eighths) in near_eighths()) {
-            let eighths = f64::from(eighths);
-            prop_assert!(is_right(Angle::from_degrees(45.0 * eighths + off)));
-            prop_assert!(is_right(Angle::from_radians(std::f64::consts::FRAC_PI_4 * eighths + off)));
+        fn so_they_do_at_and_beside_eighths_of_a_turn(
+            off in prop_oneof![Just(0.0), -1e-6..1e-6, -1e-300..1e-300],
+            eighths in (-400..400i32).prop_map(f64::from),
+        ) {
+            prop_assert!(is_right(45.0 * eighths + off, 0.0));
+            prop_assert!(is_right(0.0, std::f64::consts::FRAC_PI_4 * eighths + off));
         }
     }
 
-    /// Where both parts are 45° beside a quarter turn, the ball is as wide as it gets.
     #[test]
-    fn the_widest_balls_hold_the_true_numbers() {
-        let (degrees, radians) = (-302176.406925716, -675013.4458038831 / 64.0);
-        assert!(is_right(Angle { degrees, radians }));
+    fn angles_far_away_and_the_widest_balls_are_right() {
+        // Where both parts are 45° beside a quarter turn, the ball is as wide as it gets.
+        assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
+        for radians in [1e7, -3e20, MOST_RADIANS, 1e300] {
+            assert!(is_right(0.0, radians), "{radians}");
+        }
     }
 
     #[test]
-    fn quarter_turns_are_exact_and_farther_angles_right() {
+    fn quarter_turns_have_no_error() {
         for (degrees, expected) in [(0.0, (0.0, 1.0)), (-90.0, (-1.0, 0.0)), (5.4e5, (0.0, 1.0))] {
             let (sin, cos) = sin_cos::<Double>(Angle::from_degrees(degrees));
             assert_eq!((sin.mid.hi, cos.mid.hi), expected, "{degrees}");
             assert_eq!((sin.rad, cos.rad), (0.0, 0.0), "{degrees}");
-        }
-        for radians in [1e7, -3e20, MOST_RADIANS, 1e300] {
-            assert!(is_right(Angle::from_radians(radians)), "{radians}");
         }
     }
 }

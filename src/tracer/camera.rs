@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     area::Area,
-    math::{Ball, Ball3, Big, Exact, Real, UP},
+    math::{Ball, Ball3, Big, Exact, Exact3, Real, UP},
     scene::{self, Image, Lens, Outline, Scene, Shape, View},
 };
 
@@ -27,16 +27,6 @@ pub struct Basis {
     pub d: Big,
     /// The exact sign of the view direction's y.
     pub looks: std::cmp::Ordering,
-}
-
-type Exact3 = [Exact; 3];
-
-fn exact3(v: DVec3) -> Exact3 {
-    v.to_array().map(Exact::new)
-}
-
-fn is_zero(v: &Exact3) -> bool {
-    v.iter().all(|x| x.sign().is_eq())
 }
 
 /// v/|v|, each component to the last bits of a [`Big`].
@@ -58,11 +48,8 @@ fn sum(a: &Big, b: &Big) -> Big {
 /// lookat − eye, or the direction, as it is.
 fn view_direction(camera: &scene::Camera) -> Exact3 {
     match camera.view {
-        View::Lookat(lookat) => {
-            let (to, from) = (lookat.to_array(), camera.eye.to_array());
-            [0, 1, 2].map(|i| Exact::difference(to[i], from[i]))
-        }
-        View::Direction(direction) => exact3(direction),
+        View::Lookat(lookat) => Exact::between(camera.eye, lookat),
+        View::Direction(direction) => Exact::vector(direction),
     }
 }
 
@@ -74,11 +61,11 @@ impl Basis {
     /// which looks along h and has the same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
-        let up = exact3(camera.up);
+        let up = Exact::vector(camera.up);
         let backward = forward.each_ref().map(|x| &Exact::new(0.0) - x);
         let mut right = Exact::cross(&up, &backward);
-        if is_zero(&right) {
-            right = Exact::cross(&exact3(scene::level_direction(camera.up)), &up);
+        if Exact::is_zero(&right) {
+            right = Exact::cross(&Exact::vector(scene::level_direction(camera.up)), &up);
         }
         let top = Exact::cross(&backward, &right);
 

@@ -387,7 +387,7 @@ fn power<T: Real>(
     {
         return (power, side);
     }
-    let c = [0, 1, 2].map(|i| Exact::difference(center[i], eye[i]));
+    let c = Exact::between(eye, center);
     let radius = Exact::new(radius);
     let power = &Exact::dot(&c, &c) - &(&radius * &radius);
     let side = power.sign();

@@ -13,7 +13,7 @@ use super::{
     form::{Form, inverse_depth},
 };
 use crate::{
-    math::{Ball, Ball3, Big, Exact, Radius, Real, cross, sin_cos},
+    math::{Ball, Ball3, Big, Exact, Exact3, Radius, Real, cross, sin_cos},
     scene::{self, CenteredTriangle, Outline},
 };
 
@@ -114,30 +114,22 @@ struct SeenPlane<T: Real> {
 impl<T: Real> SeenPlane<T> {
     /// Through three points, the normal being (b − a) × (c − a); none if it holds the eye.
     fn through(camera: &Camera<T>, [a, b, c]: &[DVec3; 3]) -> Option<Self> {
-        let along = |to: &DVec3| array::from_fn(|i| Exact::difference(to[i], a[i]));
-        Self::new(camera, *a, &Exact::cross(&along(b), &along(c)))
+        let normal = Exact::cross(&Exact::between(*a, *b), &Exact::between(*a, *c));
+        Self::new(camera, *a, &normal)
     }
 
     /// Through a triangle's centroid; none if it holds the eye.
     fn across(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<Self> {
-        Self::new(
-            camera,
-            shape.centroid,
-            &shape.normal.to_array().map(Exact::new),
-        )
+        Self::new(camera, shape.centroid, &Exact::vector(shape.normal))
     }
 
-    fn new(camera: &Camera<T>, point: DVec3, normal: &[Exact; 3]) -> Option<Self> {
-        let from_eye = array::from_fn(|i| Exact::difference(point[i], camera.eye[i]));
-        let h = Exact::dot(&from_eye, normal);
+    fn new(camera: &Camera<T>, point: DVec3, normal: &Exact3) -> Option<Self> {
+        let h = Exact::dot(&Exact::between(camera.eye, point), normal);
         let side = h.sign();
         let parts = normal.each_ref().map(Exact::to_big);
-        let greater = |a: Big, b: &Big| match b.magnitude() > a.magnitude() {
-            true => b.clone(),
-            false => a,
-        };
-        let pivot = parts.iter().fold(Big::from_f64(0.0), greater);
-        let over_pivot = |x: &Big| x.over(&pivot);
+        let sizes = parts.each_ref().map(Real::magnitude);
+        let pivot = (1..3).fold(0, |i, j| if sizes[j] > sizes[i] { j } else { i });
+        let over_pivot = |x: &Big| x.over(&parts[pivot]);
         (!side.is_eq()).then(|| Self {
             normal: parts.each_ref().map(|x| Ball::from_big(&over_pivot(x))),
             height: Ball::from_big(&over_pivot(&h.to_big()).scaled(camera.exponent)),

@@ -120,20 +120,16 @@ impl Numbers {
         Some(match **shape {
             Shape::Sphere(_) => return None,
             Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
-                Outline::Vertices(vertices) => return Plane::through(vertices),
-                Outline::Centered(triangle) => Plane {
-                    normal: triangle.normal,
-                    point: triangle.centroid,
-                },
+                Outline::Vertices(vertices) => Plane::through(vertices),
+                Outline::Centered(triangle) => Plane::across(triangle.normal, triangle.centroid),
             },
-            Shape::Box(scene::Cuboid { min, max, .. }) => Plane {
-                normal: DVec3::AXES[usize::from(index / 2)],
-                point: if index % 2 == 1 { max } else { min },
-            },
-            Shape::Checkerboard(scene::Checkerboard { y, .. }) => Plane {
-                normal: DVec3::Y,
-                point: DVec3::Y * y,
-            },
+            Shape::Box(scene::Cuboid { min, max, .. }) => {
+                let corner = if index % 2 == 1 { max } else { min };
+                Plane::across(DVec3::AXES[usize::from(index / 2)], corner)
+            }
+            Shape::Checkerboard(scene::Checkerboard { y, .. }) => {
+                Plane::across(DVec3::Y, DVec3::Y * y)
+            }
         })
     }
 
