@@ -26,7 +26,7 @@ const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 /// is at most n·|h|, so each vertex is at most 2n·|h| from the line, as the greater slope is at least 1/2; and the polygon is no longer than √2.
 const WIDE: f64 = 3.0;
 
-/// How far the roundings of a vertex may move it.
+/// How far the roundings of a vertex may move it across its line: the form's value has four, of terms that are 2 at most, and its greater slope is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some lines.

@@ -191,7 +191,7 @@ impl<'a> Span<'a> {
                     ..straight
                 })
             }
-            // Too flat for its tangents to be told apart: each y is good to eight roundings.
+            // Too flat for its tangents to be told apart: each y has six operations, and its middle two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {

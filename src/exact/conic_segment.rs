@@ -236,8 +236,8 @@ fn within_a_square(arc: &Arc, sign: f64) -> Sum {
     let area = arc.area();
     Sum {
         value: sign * area,
-        // The formulas of the area have a dozen operations.
-        bound: 16.0 * UNIT * area,
+        // A triangle's area has five operations. Its part has up to ten, of terms of which the difference is a quarter where the series ends.
+        bound: 48.0 * UNIT * area,
     }
 }
 

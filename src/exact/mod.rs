@@ -232,12 +232,7 @@ impl<'a> Integrator<'a> {
             bound += after - worst.bound();
             open.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
         }
-        // A mean of several colours adds the rounding of its sum.
-        let rounding = if together.by_slot.len() > 1 {
-            4.0 * UNIT
-        } else {
-            0.0
-        };
+        let rounding = rounding(together.by_slot.len());
         self.mean(&together.by_slot, (together.bound + rounding).min(1.0))
     }
 
@@ -249,7 +244,9 @@ impl<'a> Integrator<'a> {
         film: &mut PartPixels,
         others: &mut Vec<BoardPixel>,
     ) {
-        let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + 8.0 * UNIT));
+        // A share is rounded once, and the mean of two.
+        let roundings = UNIT + rounding(2);
+        let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= ENOUGH) else {
             return others.push(floor);
         };
@@ -316,6 +313,15 @@ impl<'a> Integrator<'a> {
             }
         }
         ExactPixel { mean, bound }
+    }
+}
+
+/// What the mean of so many colours is rounded by at most: the sum of its products and that of the shares have as many roundings as there are colours, a
+/// product has one, and so has the quotient. One colour has none.
+fn rounding(colors: usize) -> f64 {
+    match colors {
+        0..=1 => 0.0,
+        _ => (2 * colors + 2) as f64 * UNIT,
     }
 }
 

@@ -143,10 +143,6 @@ impl<'a> Regions<'a> {
             // Out of the range of numbers.
             return Shares::unknown(self.world, self.sub_pixel, self.candidates);
         }
-        if let [_, _, ..] = shares.by_slot.as_slice() {
-            // Sums and products of a few numbers below 1.
-            shares.bound += 8.0 * f64::UNIT;
-        }
         // No channel is off by more than all.
         shares.bound = shares.bound.min(1.0);
         shares
@@ -217,10 +213,6 @@ impl Shares {
 
     /// Adds those of a part that is so much of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
-        if !self.by_slot.is_empty() {
-            // Products and sums that are 1 together.
-            self.bound += f64::UNIT;
-        }
         for &(slot, share) in &part.by_slot {
             self.add(slot, area * share);
         }
@@ -229,7 +221,11 @@ impl Shares {
 
     fn add(&mut self, slot: usize, area: f64) {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
-            Some((_, share)) => *share += area,
+            Some((_, share)) => {
+                *share += area;
+                // The rounding of a sum that is no greater than 1.
+                self.bound += f64::UNIT;
+            }
             None => self.by_slot.push((slot, area)),
         }
     }

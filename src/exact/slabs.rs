@@ -20,7 +20,7 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// Curves may be out of order by so much: the rounding of a y.
+/// Curves may be out of order by so much: two y of at most 1, good to eight roundings each.
 const TIE: f64 = 16.0 * f64::UNIT;
 
 /// Curves that are nowhere farther apart than this, in pixels, are not told apart: a thousand roundings of a coordinate, and 10⁻¹³ of area.
@@ -37,8 +37,8 @@ const MANY: usize = 4096;
 /// Steps of the false position: halving alone gets from a pixel to a rounding in 53.
 const STEPS: usize = 60;
 
-/// What rounding may do to the area of a region in a slab, for each part of its width: two y of at most 1/2, each off by a few
-/// units of its last place.
+/// What rounding may do to the area of a region in a slab, for each part of its width: two y of at most 1/2, good to
+/// eight roundings each, and as much for products and sums.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some curves.

@@ -106,7 +106,8 @@ impl LineCrossings {
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
             // t is off by two roundings, and three of the way that it goes within a chunk, which X′, at most π X's bound, takes to X; half
-            // that way on the average, and four times all that for certain. The sum of the block is off by as many roundings of the terms as are added in a lane.
+            // that way on the average, and four times all that for certain. A term has 14 roundings of its own, counted as in `green`; the sum of the block as many as
+            // are added in a lane.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);

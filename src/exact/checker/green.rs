@@ -80,7 +80,7 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // Terms fall by more than half each, so that the roundings of all of them are below 16 of the first.
+            // The k-th term has 3k + 4 roundings at most and less than 2^−k of the first one's size, Σ (3k + 4)/2^k = 14; and K's product has two.
             sum.bound += (16.0 * UNIT + 2.0 * board.misfit) * size;
         }
     }
@@ -288,8 +288,7 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at either end is rounded, by fewer than 32 operations. Every term is proportional to K, which is rounded, too; so are the slopes, whose powers are in the
-        // later terms, which are smaller.
+        // X at either end: its terms, counted as Ψ's, have 14 roundings of the first one's size. Every term is proportional to K, which is rounded, too.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.misfit * all);

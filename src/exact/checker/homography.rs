@@ -135,7 +135,8 @@ impl Homography {
                 below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
-        // How far det M may be off, relative to it, where each product is off by so much of itself.
+        // How far det M may be off, relative to it, where each of the three factors of a product is off by so much of itself, or each of its sums and products in
+        // double-double by two units; and 1/det M by its own roundings.
         let det_off = |unit: f64| match is_singular {
             true => f64::INFINITY,
             false => 8.0 * unit * products / det.abs() + 4.0 * UNIT,
@@ -214,7 +215,7 @@ impl Homography {
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
-        // Three roundings in the factors of either form, four in its value, and one in the quotient.
+        // Three roundings in the factors of either form, four in its value, and one in the quotient; twice that, where ℓ is off by half of itself at most.
         (place, 16.0 * UNIT / level * terms)
     }
 

@@ -44,8 +44,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
         }
         while let Some(square) = squares.next(&mut tally) {
             let (area, perimeter) = measure(&squares.piece);
-            // Of each of a few products of two steps three roundings.
-            let rounding = 4.0 * UNIT * perimeter * perimeter;
+            // For each corner three roundings of products of two distances, which are half the perimeter at most, and one of the sum.
+            let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
                 rounding,
@@ -133,7 +133,8 @@ impl Cutter {
         std::mem::swap(&mut self.rest, &mut self.spare);
         if self.rest.len() > self.too_many {
             let (area, perimeter) = measure(&self.rest);
-            tally.add(0.0, area.abs() + 4.0 * UNIT * perimeter * perimeter);
+            let rounding = self.rest.len() as f64 * UNIT * perimeter * perimeter;
+            tally.add(0.0, area.abs() + rounding);
             self.rest.clear();
         }
         let Some([from, to]) = chord else { return };
@@ -164,6 +165,7 @@ impl Tally {
     fn sum(&self) -> Sum {
         Sum {
             value: self.value + self.rest,
+            // The last sum is 1 at most, and those of the rest are far smaller.
             bound: self.bound + 2.0 * UNIT,
         }
     }

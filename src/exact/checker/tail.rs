@@ -347,7 +347,8 @@ fn level(
     let later: f64 = (WAVES + 1..=series.terms).map(size).sum();
     // m^−s is off by s·gN/2m from its value in the middle.
     let unsteady = if is_steady { 4.0 / STEADY } else { 0.0 };
-    // The ends are off by a few roundings of a turn, n times that in the mode n, and θ by one of itself. The series of Lerch are good to
+    // To reach the mode n the place of an end is turned n/2 times, by products of four roundings: 4n for two ends, and as many for the steps that they are turned by.
+    // A mode has some 30 operations of its own, at either end. The series of Lerch are good to
     // some 500 units in the last place of w/2 times their first term, and lack up to 0.04·s(s + 1)/w²; there are two.
     let lerch = if is_steady {
         0.0
