@@ -32,7 +32,13 @@ fn objects_that_no_ray_meets_together_have_no_curves_between_them() {
     for rows in [3, 5, 8] {
         let scene = read(&side_by_side(&mut random, rows));
         let world = World::new(&scene);
-        let (everything, mut candidates) = (candidates::everything(&world), Vec::new());
+        let (mut everything, mut candidates) = (Vec::new(), Vec::new());
+        assert!(candidates::within(
+            &world,
+            world.picture(),
+            usize::MAX,
+            &mut everything
+        ));
         let sub_pixel = SubPixel::pixel(0, 0);
         boundaries::narrowed(&world, sub_pixel, &everything, &mut candidates);
         assert_eq!(candidates.len(), (rows * rows) as usize, "all are seen");
