@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     area::Area,
-    math::{Ball, Ball3, Big, Exact, Exact3, Real, UP},
-    scene::{self, Image, Lens, Outline, Scene, Shape, View},
+    math::{Ball, Ball3, Big, Exact, Exact3, Radius, Real, UP},
+    scene::{self, CenteredTriangle, Image, Lens, Outline, Scene, Shape, View},
 };
 
 /// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only at the end.
@@ -80,23 +80,19 @@ impl Basis {
         let turned = [0, 1, 2].map(|i| turned(&u[i], &v[i]));
 
         let view_height = Big::from_f64(camera.view_height);
-        let (d, slope) = match camera.lens {
-            Lens::Distance(d) => {
-                let d = Big::from_f64(d);
-                let slope = view_height.over(&d);
-                (d, slope)
-            }
-            Lens::Fov(angle) => {
-                let slope = Big::from_f64(2.0).times(&Big::tan_half(angle));
-                (view_height.over(&slope), slope)
-            }
+        let slope = |angle| Big::from_f64(2.0).times(&Big::tan_half(angle));
+        let slope = match camera.lens {
+            Lens::Distance(d) => view_height.over(&Big::from_f64(d)),
+            Lens::Fov(angle) => slope(angle),
             Lens::HorizontalFov(angle) => {
-                let across = Big::from_f64(2.0).times(&Big::tan_half(angle));
                 let [width, height] =
                     [image.width, image.height].map(|pixels| Big::from_f64(f64::from(pixels)));
-                let slope = across.times(&height).over(&width);
-                (view_height.over(&slope), slope)
+                slope(angle).times(&height).over(&width)
             }
+        };
+        let d = match camera.lens {
+            Lens::Distance(d) => Big::from_f64(d),
+            _ => view_height.over(&slope),
         };
         Self {
             u: turned.each_ref().map(|(u, _)| u.clone()),
@@ -176,10 +172,9 @@ impl<T: Real> Camera<T> {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
         // The power of two that brings the widest X or Y below 1; a narrow view needs none.
-        let exponent = if widest.to_f64() <= 1.0 {
-            0
-        } else {
-            exponent_of(&widest)
+        let exponent = match widest.to_f64() <= 1.0 {
+            true => 0,
+            false => widest.magnitude().exponent(),
         };
         let pitch = basis.pitch.scaled(-exponent);
         let z = Big::from_f64(1.0).scaled(-exponent);
@@ -275,45 +270,21 @@ const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
 /// The power of two that brings the farthest lengths of a scene between those of [`LENGTHS`], 0 if they are.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
-    let eye = scene.camera.eye;
-    let farthest = scene
-        .objects
-        .iter()
-        .map(|object| match object.shape {
-            Shape::Sphere(scene::Sphere { center, radius, .. }) => {
-                (center - eye).abs().max_element().max(radius)
-            }
-            Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
-                Outline::Vertices(vertices) => {
-                    let sizes = vertices.map(|vertex| (vertex - eye).abs().max_element());
-                    sizes.into_iter().fold(0.0, f64::max)
-                }
-                Outline::Centered(triangle) => (triangle.centroid - eye)
-                    .abs()
-                    .max(triangle.sides)
-                    .max_element(),
-            },
-            Shape::Box(scene::Cuboid { min, max, .. }) => {
-                (min - eye).abs().max((max - eye).abs()).max_element()
-            }
-            Shape::Checkerboard(scene::Checkerboard { y, .. }) => (y - eye.y).abs(),
-        })
-        .fold(0.0, f64::max);
-    match libm::frexp(farthest.min(f64::MAX)).1 {
+    let far = |point: DVec3| (point - scene.camera.eye).abs().max_element();
+    let farthest = scene.objects.iter().map(|object| match object.shape {
+        Shape::Sphere(scene::Sphere { center, radius, .. }) => far(center).max(radius),
+        Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
+            Outline::Vertices(vertices) => vertices.map(far).into_iter().fold(0.0, f64::max),
+            Outline::Centered(CenteredTriangle {
+                centroid, sides, ..
+            }) => far(centroid).max(sides.max_element()),
+        },
+        Shape::Box(scene::Cuboid { min, max, .. }) => far(min).max(far(max)),
+        Shape::Checkerboard(scene::Checkerboard { y, .. }) => (y - scene.camera.eye.y).abs(),
+    });
+    match Radius::exponent(farthest.fold(0.0, f64::max)) {
         exponent if LENGTHS.contains(&exponent) => 0,
         exponent if exponent > 0 => LENGTHS.end() - exponent,
         exponent => -exponent,
     }
-}
-
-/// e with |x| < 2^e ≤ 2|x|, within what a scaling by it may be off.
-fn exponent_of(x: &Big) -> i32 {
-    let mut x = x.clone();
-    let mut exponent = 0;
-    // Wider than any f64: a picture of 2^20 pixels at a distance of 5e-324.
-    while !x.to_f64().is_finite() {
-        x = x.scaled(-1000);
-        exponent += 1000;
-    }
-    exponent + libm::frexp(x.to_f64()).1
 }

@@ -37,20 +37,6 @@ impl Candidate {
     }
 }
 
-/// All objects, as candidates for any part of the picture.
-pub fn everything(world: &World) -> Vec<Candidate> {
-    let candidate = |object| Candidate {
-        object,
-        is_whole: false,
-        inverse_depth: Range::ALL,
-        crossings: match world.geometry.fast.near {
-            Some(_) => Crossings::Both,
-            None => Crossings::First,
-        },
-    };
-    (0..world.len()).map(candidate).collect()
-}
-
 /// Of some candidates, in file order, those that may be seen in a part of the picture.
 pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Candidate>) {
     let patch = Patch::new(&world.geometry.fast.camera, part);

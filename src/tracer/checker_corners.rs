@@ -119,16 +119,11 @@ impl CornerRow {
 impl Mesh {
     /// `None` if the board is too far for its squares to be told apart so.
     fn new(squares: Squares, block: Area) -> Option<Self> {
-        let Squares { across, below, .. } = squares;
-        let least = below.factors[2] - below.spread() * UP;
-        if least <= CLEAR * below.rad {
-            return None;
-        }
+        let Squares { across, .. } = squares;
+        let least = squares.least()?;
         let slack = across.map(|across| {
             let greatest = (across.factors[2].abs() + across.spread() + across.rad) / least;
-            // As in `Squares::ranges`.
-            let inherited = (across.rad + greatest * below.rad) * CLEAR / least;
-            (inherited + (greatest + 1.0) * ROUNDINGS) * UP
+            squares.slack(&across, greatest, least)
         });
         if !slack.iter().all(|&slack| slack < UNSURE) {
             return None;
@@ -317,13 +312,22 @@ impl Squares {
         }
     }
 
+    /// The least value of ℓ in the pixel, if it is clearly positive.
+    fn least(&self) -> Option<f64> {
+        let least = self.below.factors[2] - self.below.spread() * UP;
+        (least > CLEAR * self.below.rad).then_some(least)
+    }
+
+    /// How far a computed quotient may be from the true one, if it is no greater than this.
+    fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
+        let inherited = (across.rad + greatest * self.below.rad) * CLEAR / least;
+        (inherited + (greatest + 1.0) * ROUNDINGS) * UP
+    }
+
     /// From which to which square there are any in the pixel, in x and in z: perhaps one square more than there are. `None` if that
     /// is not certain.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
-        let least = self.below.factors[2] - self.below.spread() * UP;
-        if least <= CLEAR * self.below.rad {
-            return None;
-        }
+        let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
             // A ratio of linear forms is the greatest and the least at corners.
@@ -334,7 +338,7 @@ impl Squares {
             let low = values.into_iter().fold(f64::INFINITY, f64::min);
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let size = low.abs().max(high.abs());
-            let slack = (across.rad + size * self.below.rad) * CLEAR / least + size * ROUNDINGS;
+            let slack = self.slack(across, size, least);
             (slack < UNSURE).then(|| (floor(low - slack), floor(high + slack)))
         });
         Some([x?, z?])

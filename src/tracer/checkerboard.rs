@@ -34,7 +34,7 @@ pub struct Checkerboard<T: Real> {
 /// (N₀/ℓ, N₁/ℓ), in squares from a corner of squares nearby, where ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// The factors of x, y and 1 in N₀ and N₁; all forms are scaled by one power of two to be about 1.
+    /// The factors of x, y and 1 in N₀ and N₁; in the last precision, whose numbers `f64` need not hold, all forms are scaled to be about 1.
     pub across: [[f64; 3]; 2],
     /// Those of ℓ.
     pub below: [f64; 3],
@@ -120,14 +120,20 @@ impl<T: Real> Checkerboard<T> {
         let forms = [a, b, (below, rad)];
         let sizes = forms.iter().flat_map(|(factors, _)| factors);
         let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
-        let exponent = -size.exponent();
+        let scaled = |c: &T| match T::LAST {
+            true => c.scaled(-size.exponent()).to_f64(),
+            false => c.to_f64(),
+        };
         let [a, b, below] = forms
             .each_ref()
-            .map(|(factors, _)| factors.each_ref().map(|c| c.scaled(exponent).to_f64()));
+            .map(|(factors, _)| factors.each_ref().map(scaled));
         LocalBoard {
             across: [a, b],
             below,
-            rads: forms.map(|(_, rad)| rad.scaled(exponent).to_f64()),
+            rads: forms.map(|(_, rad)| match T::LAST {
+                true => rad.scaled(-size.exponent()).to_f64(),
+                false => rad.to_f64(),
+            }),
             odd,
         }
     }

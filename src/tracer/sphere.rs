@@ -188,7 +188,8 @@ impl Sphere<f64> {
 
     /// How it stands to a rectangle; `None` if no ray through it meets the sphere.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
-        let (q, b) = self.ranges(patch);
+        let (q, b) = self.local(patch);
+        let (q, b) = (q.range(), b.range());
         // Not so only after an overflow.
         if !(q.low <= q.high && b.low <= b.high) {
             return Some(Cover {
@@ -221,11 +222,11 @@ impl Sphere<f64> {
 
     /// The inverse depths where rays leave it that enter it.
     pub fn behind(&self, patch: &Patch) -> Option<Range> {
-        if self.side != Ordering::Greater {
-            return None;
-        }
-        let (q, b) = self.ranges(patch);
-        Some(self.widened(self.exits(q, b, patch)))
+        let exits = || {
+            let (q, b) = self.local(patch);
+            self.exits(q.range(), b.range(), patch)
+        };
+        self.is_outside().then(|| self.widened(exits()))
     }
 
     /// The inverse depths of exits. With 1/λ = r·r/(b + √Q), which is (√Q − b)/(−C), it falls as b grows; for an eye inside
@@ -283,11 +284,6 @@ impl Sphere<f64> {
         );
         let b = [cx * width, cy * height, cx * r.x + cy * r.y + cz * r.z];
         (q, LocalForm::new(b, 2.0 * self.rad_b))
-    }
-
-    fn ranges(&self, patch: &Patch) -> (Range, Range) {
-        let (q, b) = self.local(patch);
-        (q.range(), b.range())
     }
 
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye

@@ -5,9 +5,10 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
 use super::{
-    SubPixel, World,
+    Candidate, World,
     bounds2d::Extent,
     candidates,
+    local_form::Patch,
     object::Object,
     world::{Geometry, Precision},
 };
@@ -15,7 +16,7 @@ use crate::{
     area::Area,
     math::{Ball, Big, Double},
     report::numerics::scenes::{SIZE, board, camera, cuboid, scene, sphere, spun, triangle},
-    scene::{Camera, Scene, Shape},
+    scene::{self, Camera, Scene, Shape},
 };
 
 /// Vigna's splitmix64.
@@ -99,32 +100,31 @@ impl Random {
         scene(camera, &shapes)
     }
 
-    fn point(&mut self) -> (u32, u32, DVec2) {
-        let pixel = |bits: usize| bits as u32;
+    fn point(&mut self) -> Sample {
+        let [x, y] = [0, 1].map(|_| self.below(SIZE as usize) as u32);
         let offset = dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5));
-        (
-            pixel(self.below(SIZE as usize)),
-            pixel(self.below(SIZE as usize)),
-            offset,
-        )
+        (x, y, offset)
     }
 }
 
+/// A pixel, and an offset in it.
+type Sample = (u32, u32, DVec2);
+
 /// What is seen at a point by the plain loop over all objects.
-fn plain(world: &World, (x, y, offset): (u32, u32, DVec2)) -> usize {
+fn plain(world: &World, (x, y, offset): Sample) -> usize {
     world.slot_among(x, y, offset, 0..world.len())
 }
 
 /// The same in one precision alone; none if that is in doubt.
-fn slot_by<T: Precision>(world: &World, (x, y, offset): (u32, u32, DVec2)) -> Option<usize> {
+fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
     let seen = world.seen(&r, 0..world.len()).ok()?;
     Some(world.slot(seen))
 }
 
-/// The pixel and the offset in it of a point of the view plane, if it is in the picture.
-fn point_of(world: &World, at: DVec2) -> Option<(u32, u32, DVec2)> {
+/// The sample at a point of the view plane, if it is in the picture.
+fn sample_of(world: &World, at: DVec2) -> Option<Sample> {
     let pixels = at / world.geometry.fast.camera.pitch + f64::from(SIZE) / 2.0;
     let floor = pixels.floor();
     let is_within = floor.min_element() >= 0.0 && floor.max_element() < f64::from(SIZE);
@@ -132,11 +132,9 @@ fn point_of(world: &World, at: DVec2) -> Option<(u32, u32, DVec2)> {
 }
 
 fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
-    let cameras = (&world.geometry.double.camera, &world.geometry.fast.camera);
-    let objects = scene.objects.iter();
-    objects
-        .map(|object| Object::with_extent(cameras.0, cameras.1, &object.shape).1)
-        .collect()
+    let (double, fast) = (&world.geometry.double.camera, &world.geometry.fast.camera);
+    let extent = |object: &scene::Object| Object::with_extent(double, fast, &object.shape).1;
+    scene.objects.iter().map(extent).collect()
 }
 
 #[test]
@@ -147,19 +145,15 @@ fn the_quadtree_changes_nothing() {
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
         // And at the ends of the bounds, where they matter, and within the last bits of them.
-        for Extent { across: [x, y], .. } in extents(&world, &scene).into_iter().flatten() {
+        for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
-                let along = |random: &mut Random, low: f64, high: f64| match random.below(3) {
-                    0 => low,
-                    1 => high,
-                    _ => random.within(low.max(-1.0), high.min(1.0)),
-                };
-                let at = dvec2(
-                    along(&mut random, x.low, x.high),
-                    along(&mut random, y.low, y.high),
-                );
+                let [x, y] = across.map(|range| match random.below(3) {
+                    0 => range.low,
+                    1 => range.high,
+                    _ => random.within(range.low.max(-1.0), range.high.min(1.0)),
+                });
                 let nudge = 1.0 + random.within(-8.0, 8.0) * f64::EPSILON;
-                points.extend(point_of(&world, at * nudge));
+                points.extend(sample_of(&world, dvec2(x, y) * nudge));
             }
         }
         for point in points {
@@ -204,8 +198,8 @@ fn f64_alone_decides_nearly_everything() {
 #[test]
 fn what_a_ray_meets_is_within_bounds() {
     let mut met = 0;
-    for seed in 0..40 {
-        let mut random = Random(1000 + seed);
+    for seed in 1000..1040 {
+        let mut random = Random(seed);
         let scene = random.scene(40);
         let world = World::new(&scene);
         let extents = extents(&world, &scene);
@@ -221,15 +215,12 @@ fn what_a_ray_meets_is_within_bounds() {
                     continue;
                 };
                 met += 1;
-                assert!(
-                    candidates.contains(&index),
-                    "seed {seed}: {index} at {point:?}"
-                );
+                let what = format!("seed {seed}: {index} at {point:?}");
+                assert!(candidates.contains(&index), "{what}");
                 let nearest = extent.expect("bounds of what is met").nearest;
-                let is_nearer = nearest < f64::INFINITY
-                    && crossing.inverse_depth.compare(&Ball::exact(nearest))
-                        == Ok(Ordering::Greater);
-                assert!(!is_nearer, "seed {seed}: {index} at {point:?}");
+                let nearer = |nearest| crossing.inverse_depth.compare(&Ball::exact(nearest));
+                let is_nearer = nearest < f64::INFINITY && nearer(nearest) == Ok(Ordering::Greater);
+                assert!(!is_nearer, "{what}");
             }
         }
     }
@@ -249,12 +240,11 @@ fn bounds_are_tight() {
         let [Some(Extent { across, .. })] = extents(&world, &scene)[..] else {
             panic!("no bounds of {shape:?}");
         };
-        let size = across[0].high - across[0].low;
-        for (end, inwards) in [(across[0].low, 1.0), (across[0].high, -1.0)] {
-            for (step, slot) in [(1e-6, 0), (-1e-6, 1)] {
-                let at = dvec2(end + inwards * step * size, 0.0);
-                let point = point_of(&world, at).expect("a point of the picture");
-                assert_eq!(plain(&world, point), slot, "{shape:?} at {at}");
+        let step = 1e-6 * (across[0].high - across[0].low);
+        for (end, inwards) in [(across[0].low, step), (across[0].high, -step)] {
+            for (x, slot) in [(end + inwards, 0), (end - inwards, 1)] {
+                let point = sample_of(&world, dvec2(x, 0.0)).expect("a point of the picture");
+                assert_eq!(plain(&world, point), slot, "{shape:?} at {x}");
             }
         }
     }
@@ -263,11 +253,10 @@ fn bounds_are_tight() {
 #[test]
 fn what_is_seen_in_a_part_is_a_candidate_there() {
     let mut seen = 0;
-    for seed in 0..60 {
-        let mut random = Random(2000 + seed);
-        let scene = random.scene(3 + seed as usize * 4);
-        let world = World::new(&scene);
-        let everything = candidates::everything(&world);
+    for seed in 2000..2060 {
+        let mut random = Random(seed);
+        let world = World::new(&random.scene(3 + (seed as usize - 2000) * 4));
+        let camera = &world.geometry.fast.camera;
         let (mut some, mut all) = (Vec::new(), Vec::new());
         for _ in 0..20 {
             let ((x, y, _), (right, bottom, _)) = (random.point(), random.point());
@@ -278,24 +267,24 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
                 height: y.abs_diff(bottom) % 8 + 1,
             };
             assert!(candidates::within(&world, part, usize::MAX, &mut some));
-            candidates::narrowed(&world, part, &everything, &mut all);
+            let patch = Patch::new(camera, part);
+            candidates::visible_among(&world, &patch, 0..world.len(), &mut all);
             // The quadtree's bounds may leave out more, but nothing else comes in.
-            let places: Vec<_> = some.iter().map(|candidate| candidate.object).collect();
-            assert!(places.is_sorted_by(|a, b| a < b));
-            assert!(
-                places
+            let objects = |candidates: &[Candidate]| -> Vec<_> {
+                candidates
                     .iter()
-                    .all(|place| all.iter().any(|candidate| candidate.object == *place))
-            );
+                    .map(|candidate| candidate.object)
+                    .collect()
+            };
+            let (some, all) = (objects(&some), objects(&all));
+            assert!(some.is_sorted_by(|a, b| a < b));
+            assert!(some.iter().all(|object| all.contains(object)));
             for (x, y) in part.iter() {
-                let sub_pixel = SubPixel::pixel(x, y);
-                let at = dvec2(random.within(-0.5, 0.5), random.within(-0.5, 0.5));
-                let (expected, _) = candidates::object_at(&world, sub_pixel, at, &everything);
-                assert_eq!(
-                    candidates::object_at(&world, sub_pixel, at, &some).0,
-                    expected,
-                    "seed {seed}: {part:?}"
-                );
+                let (_, _, offset) = random.point();
+                let point = camera.sample_point(x, y, offset);
+                let (expected, _) = world.object_among(&point, 0..world.len());
+                let (found, _) = world.object_among(&point, some.iter().copied());
+                assert_eq!(found, expected, "seed {seed}: {part:?}");
                 seen += usize::from(expected.is_some());
             }
         }
@@ -307,7 +296,6 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
 /// as for a scene where they are too many to be kept.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
-    let eye = dvec3(3.0, 3.5, 8.0);
     let mut shapes = vec![
         board(0.0, 0.25),
         cuboid(dvec3(-2.0, -1.0, -1.0), dvec3(2.0, 0.0, 1.0)),
@@ -325,8 +313,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
             shapes.push(triangle(at, normal * length, dvec3(2.0, 2.5, 3.0)));
         }
     }
-    let scene = scene(camera(eye, DVec3::ZERO), &shapes);
-    let world = World::new(&scene);
+    let world = World::new(&scene(camera(dvec3(3.0, 3.5, 8.0), DVec3::ZERO), &shapes));
     let mut together = 0;
     for _ in 0..2000 {
         let (x, y, offset) = random.point();
@@ -341,29 +328,23 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
 
 #[test]
 fn very_many_objects() {
-    // Enough that several threads divide them, all over the picture and many in one place.
-    let eye = DVec3::ZERO;
+    // Enough that several threads prepare them, all over the picture and many in one place.
     let mut random = Random(1);
+    let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);
     let template = stage.objects.remove(0);
     for index in 0..40_000 {
         let depth = random.within(1.0, 10.0);
         let spread = if index % 2 == 0 { 0.5 } else { 1e-9 };
-        let at = dvec3(
-            random.within(-spread, spread),
-            random.within(-spread, spread),
-            -1.0,
-        );
+        let [x, y] = [0, 1].map(|_| random.within(-spread, spread));
         let radius = random.within(0.001, 0.01) * spread;
         let mut object = template.clone();
-        object.shape = sphere(at * depth, radius * depth);
-        stage.objects.push(object);
-    }
-    // Each has its own colour.
-    for (index, object) in stage.objects.iter_mut().enumerate() {
+        object.shape = sphere(dvec3(x, y, -1.0) * depth, radius * depth);
         if let Shape::Sphere(sphere) = &mut object.shape {
-            sphere.color.srgb[0] = index as f64 / 256.0;
+            // Each has its own colour.
+            sphere.color.srgb[0] = f64::from(index) / 256.0;
         }
+        stage.objects.push(object);
     }
     let world = World::new(&stage);
     assert!(
@@ -375,13 +356,13 @@ fn very_many_objects() {
         let mut point = random.point();
         if number % 4 == 0 {
             // A cluster that is far smaller than a pixel, about the corner of the middle ones.
-            let (x, y) = (random.within(-1e-9, 1e-9), random.within(-1e-9, 1e-9));
-            point = point_of(&world, dvec2(x, y)).expect("the middle of the picture");
+            let [x, y] = [0, 1].map(|_| random.within(-1e-9, 1e-9));
+            point = sample_of(&world, dvec2(x, y)).expect("the middle of the picture");
         }
         let (x, y, offset) = point;
         let found = world.slot_at(x, y, offset);
         assert_eq!(found, plain(&world, point), "{point:?}");
-        seen += usize::from(found + 1 < world.palette().len());
+        seen += usize::from(found < world.background());
     }
     assert!(seen > 40, "{seen} points show a sphere");
 }
