@@ -8,10 +8,7 @@ use std::mem;
 
 use glam::DVec2;
 
-use crate::{
-    math::Real,
-    tracer::{Curve, Line},
-};
+use crate::{math::Real, tracer::Line};
 
 use super::{
     clip::{PIXEL, measure, split},
@@ -30,16 +27,10 @@ const WIDE: f64 = 3.0;
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some lines.
-pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
+pub fn shares(lines: &[Line], mut regions: Regions) -> Shares {
     let mut polygons = vec![PIXEL.to_vec()];
-    let lines = || {
-        curves.iter().filter_map(|curve| match curve {
-            Curve::Line(line) => Some(line),
-            Curve::Conic(_) => None,
-        })
-    };
     let mut worst = 0.0_f64;
-    for line in lines() {
+    for line in lines {
         let rad = line.rad + ROUNDING;
         worst = worst.max(rad);
         // The true line is within 2 rad of the computed one, the greater of whose slopes is at least 1/2, over a length of
@@ -63,7 +54,11 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         let inside = middle(polygon);
         // Next to a line the point may lie on the wrong side of it: then all of the polygon may.
         let is_low = || area <= WIDE * polygon.len() as f64 * worst;
-        let is_beside = || lines().any(|line| height(line, &inside).abs() <= line.rad + ROUNDING);
+        let is_beside = || {
+            lines
+                .iter()
+                .any(|line| height(line, &inside).abs() <= line.rad + ROUNDING)
+        };
         if area < SPECK || (is_low() && is_beside()) {
             regions.doubt(area);
         }

@@ -30,7 +30,7 @@ enum Origin {
     Pair(usize, usize),
 }
 
-/// The boundaries of what may be seen in a sub-pixel, in one precision.
+/// Asks some objects for their boundaries in a sub-pixel, in one precision.
 struct Boundaries<'a, T: Precision> {
     world: &'a World,
     candidates: &'a [Candidate],
@@ -57,7 +57,7 @@ pub fn curves(
 ) -> Result<usize, usize> {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates);
-    // What is known better in the last precision; and what lacks a curve in double-double, which may be too little to tell.
+    // Loose: whose curves are not known well enough in double-double. Lacking: pairs that have no curve there, which only the last precision tells for certain.
     let (mut loose, mut lacking) = (Vec::new(), Vec::new());
     let mut of_lacking = Vec::new();
     let mut looks = 0;

@@ -1,7 +1,7 @@
 //! How long a pixel may take.
 //!
-//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more is given the colour in its middle with
-//! its whole area as its bound, so that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the same picture.
+//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more counts as the mean of what may be
+//! there, with its whole area as its bound, so that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the same picture.
 
 use std::{
     cell::Cell,

@@ -1,4 +1,4 @@
-//! Convex polygons cut by lines: the clipper that all of `exact` uses.
+//! Convex polygons cut by lines: the one clipper of `exact`, but for the lanes of `strips_simd`.
 //!
 //! In: a convex polygon and a form that is linear in the picture. Out: the parts on both sides of the form's zero line (Sutherland and Hodgman, "Reentrant
 //! polygon clipping", 1974, one half-plane at a time). A crossing is off by a few roundings along its side; whoever cuts adds that to its bound.

@@ -124,15 +124,7 @@ impl Homography {
         };
         self.cut(arc, &mut chords);
         chords.sum.add(self.over(&chords.points, budget));
-        let area = arc.area();
-        if chords.sum.value.is_finite() && chords.sum.bound < area {
-            return chords.sum;
-        }
-        // Out of the range of numbers, or not worth having.
-        Sum {
-            value: 0.0,
-            bound: area,
-        }
+        chords.sum.or_unknown(arc.area())
     }
 
     /// Adds the slivers of an arc, and the points at which it was cut.

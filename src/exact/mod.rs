@@ -28,8 +28,6 @@ mod clip;
 mod conic_segment;
 mod region;
 mod slabs;
-#[cfg(test)]
-mod tests;
 
 use std::{
     collections::BinaryHeap,
@@ -66,7 +64,7 @@ const MORE_CURVES: usize = 4;
 const MOST_QUARTERINGS: usize = 16;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
-/// Units of work (some 50 ns each) of a piece: for itself, for each object in it, and for each object or pair of objects that is asked for curves. What they are is
+/// Units of work of a piece: for itself, for each object in it, and for each object or pair of objects that is asked for curves. What they are is
 /// not critical: they only end what takes too long.
 const PIECE_WORK: f64 = 100.0;
 const OBJECT_WORK: f64 = 4.0;
@@ -170,12 +168,12 @@ impl<'a> Integrator<'a> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // Infinitely many samples are worth any number of candidates.
+                // `Quartering::new` allows any number of candidates.
                 Part::Plain { .. } => unreachable!("every part of an exact picture is quartered"),
             }
             ControlFlow::Continue(())
         });
-        batches.finish(&mut |floor, sum| self.set(floor, sum, &mut film, &mut others));
+        batches.finish(&mut |pixel, sum| self.set(pixel, sum, &mut film, &mut others));
         for BoardPixel { x, y, candidate } in others {
             if cancel.load(Relaxed) {
                 break;
@@ -239,7 +237,7 @@ impl<'a> Integrator<'a> {
     /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one of the others.
     fn set(
         &self,
-        floor: BoardPixel,
+        pixel: BoardPixel,
         sum: Option<Sum>,
         film: &mut PartPixels,
         others: &mut Vec<BoardPixel>,
@@ -248,11 +246,11 @@ impl<'a> Integrator<'a> {
         let roundings = UNIT + rounding(2);
         let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= ENOUGH) else {
-            return others.push(floor);
+            return others.push(pixel);
         };
-        let [first, second] = self.world.slots(floor.candidate.object);
+        let [first, second] = self.world.slots(pixel.candidate.object);
         let shares = [(first, 0.5 + half), (second, 0.5 - half)];
-        film.set(floor.x, floor.y, self.mean(&shares, bound));
+        film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
     /// A piece of a pixel with what is seen there, if there are not too many curves.
@@ -279,9 +277,13 @@ impl<'a> Integrator<'a> {
         let shares = match is_computed {
             true => {
                 let regions = Regions::new(self.world, sub_pixel, &candidates, budget);
-                match curves.iter().all(|curve| matches!(curve, Curve::Line(_))) {
-                    true => arrangement::shares(curves, regions),
-                    false => slabs::shares(curves, regions),
+                let lines = curves.iter().map(|curve| match curve {
+                    Curve::Line(line) => Some(*line),
+                    Curve::Conic(_) => None,
+                });
+                match lines.collect::<Option<Vec<_>>>() {
+                    Some(lines) => arrangement::shares(&lines, regions),
+                    None => slabs::shares(curves, regions),
                 }
             }
             false => Shares::unknown(self.world, sub_pixel, &candidates),

@@ -17,9 +17,9 @@ use super::{
     conic_segment::Arc,
 };
 
-/// Units of work (some 50 ns each, as in `budget`) of a region: for itself, and for each object that its ray may meet.
+/// Units of work of a region: for itself, and for each object that its ray may meet.
 const REGION_WORK: f64 = 4.0;
-const OBJECT_WORK: f64 = 0.5;
+const RAY_WORK: f64 = 0.5;
 
 /// How much of a sub-pixel each colour has.
 #[derive(Clone, Debug, Default)]
@@ -116,10 +116,11 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// The object that is seen in a region. Where not even the last precision says so for certain, all of the region is in doubt.
+    /// The object that is seen in a region. Where double-double leaves it in doubt, so that the point may lie next to a boundary, all of the region counts as
+    /// doubtful.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         self.budget
-            .charge(REGION_WORK + OBJECT_WORK * self.candidates.len() as f64);
+            .charge(REGION_WORK + RAY_WORK * self.candidates.len() as f64);
         let (seen, is_sure) =
             candidates::object_at(self.world, self.sub_pixel, region.inside, self.candidates);
         if !is_sure {

@@ -1,7 +1,6 @@
 //! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above the other.
 //!
-//! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring branches in each slab, which are told to [`Regions`]. (A sweep
-//! after Bentley and Ottmann, "Algorithms for reporting and counting geometric intersections", 1979, over slabs instead of events.)
+//! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring branches in each slab, which are told to [`Regions`].
 //!
 //! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if by that two neighbours
 //! might cross within a slab, the slab is cut, where they cross if that can be seen, else in the middle. What cannot be told
@@ -48,7 +47,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Curve::Line(line) => {
-                // As in `arrangement`.
+                // As in `arrangement`, but that here it is y that is rounded, which `ROUNDING` counts.
                 regions.doubt(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
@@ -73,7 +72,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
-    let mut sweep = Sweep {
+    let mut all = Slabs {
         lines,
         graphs,
         regions,
@@ -84,25 +83,25 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     let slab = |left: f64, right: f64| ByKey(right - left, [left, right]);
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| slab(pair[0], pair[1])).collect();
     while let Some(ByKey(_, [left, right])) = slabs.pop() {
-        if sweep.regions.is_given_up() {
+        if all.regions.is_given_up() {
             break;
         }
-        if let Some(at) = sweep.slab(left, right, many.saturating_sub(slabs.len())) {
+        if let Some(at) = all.slab(left, right, many.saturating_sub(slabs.len())) {
             slabs.extend([slab(left, at), slab(at, right)]);
         }
     }
-    sweep.regions.finish()
+    all.regions.finish()
 }
 
-struct Sweep<'a> {
+struct Slabs<'a> {
     lines: Vec<Track<'a>>,
     graphs: Vec<Graph>,
     regions: Regions<'a>,
     slabs: usize,
 }
 
-impl Sweep<'_> {
-    /// Adds the regions of a slab, or says where it has to be cut; that not if it is too narrow, or as many as may be are done.
+impl Slabs<'_> {
+    /// Adds a slab's regions, or returns where to cut it. A slab that is too narrow, or beyond the limit, is never cut.
     fn slab(&mut self, left: f64, right: f64, may_be: usize) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let is_last = width < NARROW || self.slabs >= may_be;

@@ -6,31 +6,57 @@ use glam::DVec3;
 
 use super::{Exact, Exact3, two_sum};
 
-/// The plane through a point across a normal, which has any length but 0.
+/// A plane.
 #[derive(Clone, Debug)]
-pub struct Plane {
-    normal: Exact3,
-    point: DVec3,
+pub enum Plane {
+    /// Across the x, y or z axis (0, 1 or 2), at a coordinate.
+    Axial {
+        /// The axis.
+        axis: usize,
+        /// The coordinate of all its points along it.
+        at: f64,
+    },
+    /// Through a point across a normal.
+    Tilted {
+        /// The normal, of any length but 0.
+        normal: Exact3,
+        /// The point.
+        point: DVec3,
+    },
 }
 
 impl Plane {
     /// The plane through a point across a normal.
     pub fn across(normal: DVec3, point: DVec3) -> Self {
         let normal = Exact::vector(normal);
-        Self { normal, point }
+        Self::Tilted { normal, point }
     }
 
     /// The plane through three points.
     pub fn through([a, b, c]: [DVec3; 3]) -> Self {
         let normal = Exact::cross(&Exact::between(a, b), &Exact::between(a, c));
-        Self { normal, point: a }
+        Self::Tilted { normal, point: a }
     }
 
     /// Whether it is the same plane as another: their normals are parallel, and the points' difference lies across these.
     pub fn equals(&self, other: &Self) -> bool {
-        let between = Exact::between(self.point, other.point);
-        Exact::is_zero(&Exact::cross(&self.normal, &other.normal))
-            && Exact::dot(&self.normal, &between).sign().is_eq()
+        // Where a box stands on a floor, or boxes stand side by side, many samples ask.
+        if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
+            return a == b && p == q;
+        }
+        let ((a, p), (b, q)) = (self.normal_and_point(), other.normal_and_point());
+        Exact::is_zero(&Exact::cross(&a, &b))
+            && Exact::dot(&a, &Exact::between(p, q)).sign().is_eq()
+    }
+
+    fn normal_and_point(&self) -> (Exact3, DVec3) {
+        match self {
+            Self::Axial { axis, at } => {
+                let axis = DVec3::AXES[*axis];
+                (Exact::vector(axis), axis * *at)
+            }
+            Self::Tilted { normal, point } => (normal.clone(), *point),
+        }
     }
 }
 
@@ -116,6 +142,9 @@ mod tests {
         assert!(near.equals(&plane([-3.0, -6.0, -9.0], far)));
         let [long, short] = [600, -600].map(|exponent| normal.map(|x| libm::ldexp(x, exponent)));
         assert!(near.equals(&plane(long, far)) && plane(short, far).equals(&near));
+        let axial = Plane::Axial { axis: 2, at: 1.75 };
+        assert!(axial.equals(&axial) && axial.equals(&plane([0.0, 0.0, -3.0], far)));
+        assert!(!axial.equals(&Plane::Axial { axis: 1, at: 1.75 }) && !axial.equals(&near));
         let beside = [1e16, -5e15, 1.75_f64.next_up()];
         assert!(!near.equals(&plane(normal, beside)));
         let tilted = [1.0, 2.0_f64.next_up(), 3.0];

@@ -1,4 +1,4 @@
-//! Pixels that show nothing but a checkerboard and few of its lines: most pixels of most pictures. They are computed in batches of eight.
+//! Pixels that show nothing but a checkerboard and few of its lines: most pixels that are not of one colour. They are computed in batches of eight.
 //!
 //! In: such pixels one by one, in any order, with the squares of their corners. Out: their integrals of the board's sign. Pixels are sorted by how many lines of either
 //! family cross them; eight with the same two numbers are computed at once by `strips_simd`, which bounds the errors. A pixel's sum is made of its own numbers, by the
@@ -49,7 +49,8 @@ impl BoardBatches {
         }
     }
 
-    /// Has a pixel wait. Of all that are computed now the integrals are told, positive for the first colour; none where too many lines cross.
+    /// Queues a pixel. `tell` is called for each pixel of a batch that becomes full, with its integral, positive for the first colour; and at once, without one, for
+    /// a pixel that too many lines cross.
     pub fn push(
         &mut self,
         pixel: BoardPixel,

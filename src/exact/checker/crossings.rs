@@ -20,8 +20,7 @@ const BLOCKS: f64 = 128.0;
 const LEAST_BLOCK: f64 = 16.0;
 const MOST_BLOCK: f64 = 4096.0;
 
-/// In a sum over crossings so many are added on their own, as the terms' signs alternate; and the place of the first of so many is told more
-/// exactly.
+/// There are eight running sums, since the terms' signs alternate; and t is computed in double-double again every 64 crossings.
 const LANES: usize = 8;
 const CHUNK: usize = 64;
 

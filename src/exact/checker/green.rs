@@ -27,11 +27,11 @@ use std::f64::consts::PI;
 /// The series is long enough when what it neglects is below this, in square pixels: a thousandth of what is asked for.
 const TRUNCATION: f64 = 1e-12;
 
-/// What may be neglected at an edge's lines, in square pixels: at one that ends, and at one that runs into the horizon. Two of the latter and the roundings of
-/// ordinary views stay below the 1e-9 that is asked for (half of this counts, as of the sum of signs).
+/// What may be neglected at an edge's lines, in square pixels: at one that ends, and at one that runs into the horizon. A pixel has
+/// two edges of either kind at most where both matter; half of what they neglect together, as these are sums of signs, is `exact`'s ENOUGH.
 const FINITE_TAIL: f64 = 1e-10;
 const ENDLESS_TAIL: f64 = 8e-10;
-/// The same of a polygon that is a part of a pixel, by its area; but not less of the smallest than by this.
+/// A polygon may neglect the part of that which its area is of the pixel's, but at least this part.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
 
 /// (k + 1)!/2.

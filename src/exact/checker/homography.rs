@@ -53,9 +53,9 @@ pub(in crate::exact) struct Homography {
     displacement: f64,
     /// The direction of the horizon, of length 1.
     horizon: DVec2,
-    /// How far rounding may displace across the direction of the horizon: on the horizon, and more for every 1 of L.
+    /// How far rounding may displace across the direction of the horizon: where L is 0, and so much more for each unit of L.
     upwards: [f64; 2],
-    /// What roundings leave of L on the horizon.
+    /// Up to this L a point may lie on the horizon but for roundings, and is said to.
     horizon_off: f64,
 }
 
@@ -84,13 +84,20 @@ impl Sum {
         }
     }
 
-    /// This, or nothing if it is out of the range of numbers or not worth having: no sum is greater than the area.
-    pub fn within(self, polygon: &[DVec2]) -> Self {
-        let nothing = Self::nothing_known(polygon);
-        match self.value.is_finite() && self.bound < nothing.bound {
+    /// This sum over so much area; the mean of both colours if it is out of the range of numbers or its bound is no less than the area.
+    pub fn or_unknown(self, area: f64) -> Self {
+        match self.value.is_finite() && self.bound < area {
             true => self,
-            false => nothing,
+            false => Self {
+                value: 0.0,
+                bound: area,
+            },
         }
+    }
+
+    /// The same of a sum over a polygon.
+    pub fn within(self, polygon: &[DVec2]) -> Self {
+        self.or_unknown(measure(polygon).0.abs())
     }
 
     pub fn add(&mut self, other: Self) {

@@ -17,6 +17,8 @@ mod near;
 mod special;
 mod strips_simd;
 mod tail;
+#[cfg(test)]
+mod tests;
 
 use glam::DVec2;
 
@@ -72,7 +74,7 @@ impl Homography {
         sum.within(polygon)
     }
 
-    /// About how many squares a polygon shows: its area on the floor, and half its perimeter there. A slanted strip has many fewer than its box.
+    /// About how many squares a polygon shows: its area on the floor, and the rows and columns of its box there. A slanted strip has many fewer than its box.
     fn squares(&self, polygon: &[DVec2]) -> f64 {
         let floor: Vec<DVec2> = polygon
             .iter()

@@ -1,6 +1,6 @@
 //! The board's integral where its squares are near: each square is cut out of the picture.
 //!
-//! In: a convex polygon of the picture above which the board's horizon lies. Out: the sum of the signed areas of the squares in it, with a bound.
+//! In: a convex polygon of the picture on which ℓ > 0. Out: the sum of the signed areas of the squares in it, with a bound.
 //! The lines of one family cut the polygon into rows, and those of the other cut each row into squares (`clip`). The bound adds up how far each cut may be from the true line, times its length, and the
 //! roundings of the areas.
 
@@ -16,8 +16,8 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// A cut adds a corner at most, and the strips of one family two in all. Where so many more come together, lines are closer to each other
-/// than roundings.
+/// A cut should add one corner, and all cuts of a family two. Where these are so many more, lines are closer to each other than roundings, and what is left is given
+/// up.
 const SPARE_CORNERS: usize = 32;
 
 /// Beyond this a square's number is no longer exact in `f64` together with its neighbours'.
@@ -26,7 +26,7 @@ const LAST_SQUARE: f64 = 1e15;
 /// The integral over a convex polygon that does not reach the horizon. It is 0 with the polygon's area as its bound if there are more squares than the
 /// budget allows.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum {
-    let mut tally = Tally::default();
+    let mut tally = CompensatedSum::default();
     let [mut rows, mut squares] = [0, 1].map(|family| Cutter::new(board, family));
     rows.start(polygon);
     squares.start(polygon);
@@ -104,7 +104,7 @@ impl Cutter {
     }
 
     /// Makes `piece` the part of the rest between the lines i and i + 1, and returns i.
-    fn next(&mut self, tally: &mut Tally) -> Option<f64> {
+    fn next(&mut self, tally: &mut CompensatedSum) -> Option<f64> {
         let (i, last) = self.strips?;
         if self.rest.len() < 3 {
             return None;
@@ -120,7 +120,7 @@ impl Cutter {
     }
 
     /// Makes `piece` the part of the rest before the line n.
-    fn cut(&mut self, n: f64, tally: &mut Tally) {
+    fn cut(&mut self, n: f64, tally: &mut CompensatedSum) {
         let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
         self.piece.clear();
         self.spare.clear();
@@ -148,13 +148,13 @@ impl Cutter {
 
 /// A sum of many numbers with a bound on its error. The roundings of the additions are kept and added in the end.
 #[derive(Default)]
-struct Tally {
+struct CompensatedSum {
     value: f64,
     rest: f64,
     bound: f64,
 }
 
-impl Tally {
+impl CompensatedSum {
     fn add(&mut self, value: f64, bound: f64) {
         let sum = two_sum(self.value, value);
         self.value = sum.hi;

@@ -16,12 +16,12 @@ const VANISHING: f64 = 1e-17;
 /// A real and an imaginary part.
 pub(super) type Complex = [f64; 2];
 
-/// Less whole turns, in half turns: between −1 and 1.
+/// t less the nearest even number, t being counted in half turns: between −1 and 1.
 pub(super) fn turn(x: f64) -> f64 {
     x - 2.0 * (0.5 * x).round_ties_even()
 }
 
-/// The same of a double-double number.
+/// The same of a double-double number; what is left of both parts together may be a rounding more.
 pub(super) fn turn_exactly(x: &Double) -> Double {
     Double::from_f64(turn(x.hi)).plus(&Double::from_f64(turn(x.lo)))
 }
@@ -47,12 +47,12 @@ pub(super) fn phase(x: f64) -> Complex {
 }
 
 /// What bounds it from above: |x| + |y|.
-pub(super) fn size(z: Complex) -> f64 {
+fn size(z: Complex) -> f64 {
     z[0].abs() + z[1].abs()
 }
 
 /// One more than the highest order there is.
-pub(super) const ORDERS: usize = 22;
+const ORDERS: usize = 22;
 
 /// How many even powers of η there are in the waves of the highest order.
 const POWERS: usize = ORDERS / 2;
@@ -104,8 +104,8 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. From 2^51 on
-/// t has no fraction left to tell of.
+/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. t is
+/// below 2^51, up to which [`ROUND`] works.
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;

@@ -149,7 +149,8 @@ impl Lines {
             }
         }
         // For every line: a side's part has eight operations, on its length and a distance of √2 at most; each of its 5 sums a strip is rounded, and those of the
-        // lines twice. Each line that cuts, and the two next to them, may be off by 4 roundings of a point besides.
+        // lines twice. Each line that cuts, and the two next to them, may be off by 4 roundings of a point besides. What a displaced line sweeps is
+        // as long as the pixel's diagonal, √2, and its sign changes: 2√2 is less than 3.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         Sums {

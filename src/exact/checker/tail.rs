@@ -1,10 +1,10 @@
 //! Sums over the very many lines that an edge crosses, or that never end.
 //!
-//! In: an edge's crossings with the lines of one family, and the series X of [`green`](super::green). Out: Σ (−1)^j X with a bound: what is neglected of waves
+//! In: an edge's crossings with the lines of one family, and the series X of [`green`](super::green). Out: Σ (−1)^j X with a bound: what is neglected of modes
 //! and of the series, and the roundings of what is added.
 //!
 //! Crossing j lies at t_j = t + τj, m_j = g(w + j), and s changes its sign at every one. With
-//! A_k = Im (4/π) Σ_n e^(iπnt)/(n (iπn)^k) over the odd n, Σ_j (−1)^j A_k+1(t_j) m_j^(−2−k) is the sum of the waves
+//! A_k = Im (4/π) Σ_n e^(iπnt)/(n (iπn)^k) over the odd n, Σ_j (−1)^j A_k+1(t_j) m_j^(−2−k) is the sum of the modes
 //!
 //! g^(−2−k) Im (4/π) e^(iπnt)/(n (iπn)^(k+1)) V(θ), V_s(θ) = Σ_j e^(iθj) (w + j)^(−s), s = k + 2, θ = nπ(τ + 1) less turns,
 //!
@@ -13,7 +13,7 @@
 //! regular rest R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ about ζ = −iθ gives w^(−s)·(R + R′·s/w + …), term by term. It is
 //! the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
 //!
-//! Where m hardly changes along N crossings, the n-th wave is at most n^−3 of the sum of all sizes, so that a few hundred are enough. Σ_j is then what one
+//! Where m hardly changes along N crossings, the n-th mode is at most n^−3 of the sum of all sizes, so that a few hundred are enough. Σ_j is then what one
 //! Lerch series has more than another that begins where the edge ends; or a geometric sum, where m does not change.
 
 use super::super::budget::Budget;
@@ -29,24 +29,24 @@ const NEGLECTED: f64 = 1e-12;
 /// something that is itself small where crossings are many. (Measured: a quarter and four times as much change no bound.)
 const STEADY: f64 = 3e6;
 /// The terms of X that are summed by Fourier modes; later terms are only bounded.
-const WAVES: usize = 3;
+const MODE_TERMS: usize = 3;
 
 /// Up to so many crossings are added one by one: 60 µs, at 3 ns each. (Measured: with 5000 or 80,000 times differ by less than a tenth.)
 const SHORT: f64 = 20_000.0;
-/// No more crossings than these, nor waves, are added for an edge: that takes some milliseconds. Of the rest the bound says how much it may be.
+/// No more crossings than these, nor modes, are added for an edge: that takes some milliseconds. Of the rest the bound says how much it may be.
 const MOST: f64 = 300_000.0;
 /// The time that a mode takes, in crossings: 12 ns against 3, as measured.
 const MODE_COST: f64 = 4.0;
 /// The modes up to this one are always computed; a later one may be skipped where it is small. (Measured: with 7 a horizon takes up to a fifth longer, and with 123 no less.)
 const FIRST_MODES: f64 = 31.0;
-/// Shares of the tolerance, which together are less than all of it: of a sum or of modes that are left out, of what V_s lacks in the first wave, and of
-/// waves that have no modes. (Measured: the last two, a quarter and four times as great, change times by less than a tenth.)
+/// Shares of the tolerance, which together are less than all of it: of a sum that is left out, and as much for modes that are; of what V_s lacks in the first term
+/// of X, and of the terms that have no modes. (Measured: the last two, a quarter and four times as great, change times by less than a tenth.)
 const LEFT_OUT: f64 = 0.25;
 const LACKING: f64 = 0.02;
 const LATER: f64 = 0.05;
 /// The series in 1/w is not used below this w: its terms fall by s/w and more, to a third each.
 const LEAST_W: f64 = 16.0;
-/// Below this |θ|, 2 − 2cos θ is θ² to within θ²/12, a third of a percent, and a computed cosine leaves little of it.
+/// Below this |θ|, 2 − 2cos θ is θ² to within θ²/12, a third of a percent, and at least this part of it; a computed cosine leaves little of it.
 const SMALL_ANGLE: f64 = 0.2;
 const PART_OF_SQUARE: f64 = 0.99;
 /// Up to this |θ| Taylor's series stand for the rest of the pole: the next term, θ⁹/47900160, is 100 roundings of the 500 that V may be off by.
@@ -79,7 +79,7 @@ pub(super) fn sum(all: &LineCrossings, series: &Series, tolerance: f64, budget: 
         return one_by_one(lines).unwrap_or(trivial_sum);
     }
     if all.rise * lines < all.depth {
-        // Where m does not even double, the waves of the ends do not fall off.
+        // Where m does not even double, the modes of the ends do not fall off.
         let sum = level(all, series, trivial, tolerance, budget);
         let is_better_one_by_one = sum.bound > tolerance && lines <= MOST;
         let other = is_better_one_by_one.then(|| one_by_one(lines));
@@ -102,6 +102,7 @@ pub(super) fn sum(all: &LineCrossings, series: &Series, tolerance: f64, budget: 
     for (end, lines) in ends.iter().enumerate() {
         let Some(lines) = lines else { continue };
         let rest = rest(all, lines, series, share, budget);
+        // Crossing j has the sign (−1)^j; and what lies beyond the last one is subtracted.
         let odd = lines.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
@@ -123,7 +124,7 @@ fn start(all: &LineCrossings, series: &Series, tolerance: f64) -> f64 {
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
     // Where so little is left that it may be neglected, the first term's bound being ½/π of its factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * LEFT_OUT * tolerance)).sqrt() + g;
-    // What is neglected of a mode is w^−5, of the waves A_5 and on m^−5.
+    // What is neglected of a mode is w^−5, of the terms from A_5 on m^−5.
     let steep = g * libm::pow(factor / (g * g * g) / (LACKING * tolerance), 0.2);
     let fourth = match series.terms {
         4.. => libm::pow(
@@ -161,10 +162,10 @@ fn rest(
     }
     let w = depth / g;
     let f = &series.factors;
-    // The amplitudes of the three waves in the mode n = 1, in which w^(−2−k) is still missing.
-    let mut amplitudes = [0.0; WAVES];
+    // The amplitudes of X's first three terms in the mode n = 1, in which w^(−2−k) is still missing.
+    let mut amplitudes = [0.0; MODE_TERMS];
     let mut amplitude = 4.0 / (PI * PI * PI) / (g * g * g);
-    for k in 1..=WAVES.min(series.terms) {
+    for k in 1..=MODE_TERMS.min(series.terms) {
         amplitudes[k - 1] = f[k] * amplitude;
         amplitude /= PI * g;
     }
@@ -172,14 +173,14 @@ fn rest(
     let u = 1.0 / w;
     let u2 = u * u;
     let u3 = u2 * u;
-    // The later waves' share in what is neglected.
-    let waves = if first > 0.0 {
+    // The later terms' share in what is neglected.
+    let all_terms = if first > 0.0 {
         1.0 + (amplitudes[1].abs() * u + amplitudes[2].abs() * u2) / first
     } else {
         1.0
     };
-    // |V_3| ≤ w^−3 + w^−2/2, and Σ n^−3 over the odd n > Q is at most 1/4(Q)², for odd Q + 1 … .
-    let largest = first * waves * (0.5 * u2 + u3);
+    // |V_3| ≤ w^−3 + w^−2/2, and Σ n^−3 over the odd n beyond a whole number Q is at most 1/4Q².
+    let largest = first * all_terms * (0.5 * u2 + u3);
     let last = ((largest / tolerance).sqrt().ceil() + 1.0).clamp(3.0, MOST);
     let beyond = largest / (4.0 * (last - 1.0) * (last - 1.0));
     if beyond.is_nan() || beyond >= everything || !budget.spend(last * MODE_WORK) {
@@ -190,8 +191,8 @@ fn rest(
     }
     // By Abel |V_3| ≤ 2w^−3/|1 − e^iθ|: a late mode n is skipped where this is below an allowance that falls as n^−2.
     let allowance = LEFT_OUT * tolerance * 2.0 * (FIRST_MODES - 1.0);
-    let skipped = allowance / (2.0 * (FIRST_MODES - 1.0));
-    let threshold = 2.0 * first * waves * u3 / allowance;
+    let skipped = LEFT_OUT * tolerance;
+    let threshold = 2.0 * first * all_terms * u3 / allowance;
     let threshold = threshold * threshold;
 
     let turning = all.turning();
@@ -234,7 +235,7 @@ fn rest(
         .map(|k| absolute(series, k, depth, g))
         .sum();
     // The integrals are good to 1e-14, which is 90 units in the last place, and V to 500 for certain, of w^−2; rotation adds n of them, to the n-th mode.
-    let rounding = 1000.0 * UNIT * first * waves * u2;
+    let rounding = 1000.0 * UNIT * first * all_terms * u2;
     Sum {
         value,
         bound: beyond + skipped + curvature + later + rounding,
@@ -273,7 +274,7 @@ fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
     (0.5 * turn[1] * gap - inverse, 0.5 * gap - inverse * inverse)
 }
 
-/// The same over an edge on which m does not double, where |X| adds up to no more than `trivial`; of which as much as `tolerance` may be neglected.
+/// Σ (−1)^j X for an edge on which m does not double. It is at most `trivial`, and as much as `tolerance` of it may be neglected.
 fn level(
     all: &LineCrossings,
     series: &Series,
@@ -288,9 +289,9 @@ fn level(
     let start = if is_steady { middle } else { all.depth };
     let u = 1.0 / start;
     // The amplitudes of the mode n = 1.
-    let mut amplitudes = [0.0; WAVES];
+    let mut amplitudes = [0.0; MODE_TERMS];
     let mut amplitude = 4.0 / (PI * PI * PI) * u * u * u;
-    for k in 1..=WAVES.min(series.terms) {
+    for k in 1..=MODE_TERMS.min(series.terms) {
         amplitudes[k - 1] = amplitude * series.factors[k];
         amplitude *= u / PI;
     }
@@ -331,20 +332,20 @@ fn level(
             skipped += at_most / theta.abs();
         } else {
             let sums = if is_steady {
-                [geometric(theta, lines, places); WAVES]
+                [geometric(theta, lines, places); MODE_TERMS]
             } else {
                 partial(theta, start / all.rise, lines, places)
             };
             // i^−2, i^−3 and i^−4 are −1, i and 1.
             let [first, second, third] = sums;
-            let waves = -amplitudes[0] * first[1]
+            let terms = -amplitudes[0] * first[1]
                 + per_mode * (amplitudes[1] * second[0] + per_mode * amplitudes[2] * third[1]);
-            value += cube * waves;
+            value += cube * terms;
         }
         places = [0, 1].map(|end| times(places[end], steps[end]));
         n += 2.0;
     }
-    let later: f64 = (WAVES + 1..=series.terms).map(size).sum();
+    let later: f64 = (MODE_TERMS + 1..=series.terms).map(size).sum();
     // m^−s is off by s·gN/2m from its value in the middle.
     let unsteady = if is_steady { 4.0 / STEADY } else { 0.0 };
     // To reach the mode n the place of an end is turned n/2 times, by products of four roundings: 4n for two ends, and as many for the steps that they are turned by.
@@ -382,7 +383,7 @@ fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
 }
 
 /// Σ e^(iθj) (1 + j/w)^(−s) over j < N, for s = 3, 4, 5, by the same places.
-fn partial(theta: f64, w: f64, lines: f64, [place, last]: [Complex; 2]) -> [Complex; WAVES] {
+fn partial(theta: f64, w: f64, lines: f64, [place, last]: [Complex; 2]) -> [Complex; MODE_TERMS] {
     let angle = phase(theta);
     let (from, to) = (lerch(theta, angle, w), lerch(theta, angle, w + lines));
     let mut power = w * w;

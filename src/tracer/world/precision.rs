@@ -124,12 +124,11 @@ impl Numbers {
                 Outline::Centered(triangle) => Plane::across(triangle.normal, triangle.centroid),
             },
             Shape::Box(scene::Cuboid { min, max, .. }) => {
-                let corner = if index % 2 == 1 { max } else { min };
-                Plane::across(DVec3::AXES[usize::from(index / 2)], corner)
+                let (axis, corner) = (usize::from(index / 2), [min, max][usize::from(index % 2)]);
+                let at = corner[axis];
+                Plane::Axial { axis, at }
             }
-            Shape::Checkerboard(scene::Checkerboard { y, .. }) => {
-                Plane::across(DVec3::Y, DVec3::Y * y)
-            }
+            Shape::Checkerboard(scene::Checkerboard { y, .. }) => Plane::Axial { axis: 1, at: y },
         })
     }
 

@@ -6,10 +6,8 @@ use glam::{DMat3, DVec2};
 use proptest::prelude::*;
 
 use super::{
-    budget::Budget,
-    checker::{Homography, Sum},
-    clip::PIXEL,
-    conic_segment::Arc,
+    super::{budget::Budget, clip::PIXEL, conic_segment::Arc},
+    Homography, Sum,
 };
 
 /// Nothing is cancelled here.
