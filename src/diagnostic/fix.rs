@@ -84,7 +84,11 @@ impl Fix {
 
 /// A place with the comments that stand beside it on its first and its last line, if there is nothing else on these.
 pub fn with_comments(span: Span, sources: &Sources) -> Span {
-    let text = sources.get(span.source).text();
+    with_comments_in(span, sources.get(span.source).text())
+}
+
+/// The same in a text.
+pub fn with_comments_in(span: Span, text: &str) -> Span {
     let (before, after) = (
         text.get(..span.start).unwrap_or_default(),
         text.get(span.end..).unwrap_or_default(),
@@ -161,8 +165,12 @@ impl Edit {
     /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the blanks on one side too.
     /// What stood on both sides of it stays apart.
     pub fn remove(span: Span, sources: &Sources) -> Self {
+        Self::remove_in(span, sources.get(span.source).text())
+    }
+
+    /// The same in a text.
+    pub fn remove_in(span: Span, text: &str) -> Self {
         let Span { source, start, end } = span;
-        let text = sources.get(source).text();
         let (before, after) = (
             text.get(..start).unwrap_or_default(),
             text.get(end..).unwrap_or_default(),

@@ -24,19 +24,20 @@ use pest::{
 };
 
 use super::{
-    Parsed, Problem,
+    Parsed,
     grammar::{Grammar, PRECEDENCE, Rule},
     recovery::Recovery,
     scan::Scan,
     tokens::{Lexer, TokenKind},
     tree::{
-        Block, Call, Definition, Element, Field, Item, Name, Operator, Tree, Value, ValueKind, bad,
+        Block, Call, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad,
         chain, negation, number,
     },
     words::Words,
 };
 use crate::{
     cancel,
+    diagnostic::Diagnostic,
     source::{Source, SourceId, Span},
     threads,
 };
@@ -58,7 +59,7 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
         let text = source.text();
         let scan = Scan::of(text, source.bom_len(), cancel);
         let words = Words::new(text);
-        let mut recovery = Recovery::new(text, id, &words);
+        let mut recovery = Recovery::new(source, id, &words);
         let mut right = Right::new(text, id, &words);
         let mut at = source.bom_len();
         let mut ends = scan.ends.as_slice();
@@ -112,12 +113,12 @@ fn goes_on(text: &str, end: usize, at: usize) -> bool {
 }
 
 /// Parses the part of a text from an offset on as one value: a `--set` argument's.
-pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Problem>) {
+pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Diagnostic>) {
     with_stack(|| {
         let text = source.text();
         let scan = Scan::of(text, start, &cancel::NEVER);
         let words = Words::new("");
-        let mut recovery = Recovery::new(text, id, &words);
+        let mut recovery = Recovery::new(source, id, &words);
         let value = recovery.whole_value(start);
         (value, recovery.finish(scan).problems)
     })
@@ -152,7 +153,7 @@ pub fn parse_in_parts<'s>(
         while !stopped.load(Ordering::Relaxed) {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(part) = parts.get(index) else { break };
-            let items = part_of(text, id, part, &words, cancel);
+            let items = part_of(source, id, part, &words, cancel);
             if found.send((index, items)).is_err() {
                 break;
             }
@@ -208,13 +209,14 @@ fn parts(source: &Source, bytes: usize, scan: &Scan) -> Vec<Vec<usize>> {
 
 /// The items of a part, if all of it is right.
 fn part_of<'s>(
-    text: &'s str,
+    source: &'s Source,
     id: SourceId,
     ends: &[usize],
     words: &Words<'s>,
     cancel: &AtomicBool,
 ) -> Option<Vec<Item<'s>>> {
-    let mut recovery = Recovery::new(text, id, words);
+    let text = source.text();
+    let mut recovery = Recovery::new(source, id, words);
     let mut right = Right::new(text, id, words);
     for chunk in ends.windows(2) {
         let &[start, end] = chunk else { return None };
@@ -292,15 +294,11 @@ impl<'w, 's> Right<'w, 's> {
                 return (recovery.item(start), false);
             }
             if self.doubtful || self.has_dashes(item.span()) {
-                let before = recovery.mark();
-                let read_to = recovery.item(start);
-                if recovery.is_better(&before) {
-                    if read_to != end {
-                        return (read_to, false);
-                    }
-                    continue;
+                match recovery.item_as_meant(start) {
+                    Some(read_to) if read_to == end => continue,
+                    Some(read_to) => return (read_to, false),
+                    None => {}
                 }
-                recovery.go_back(before);
             }
             recovery.items.push(item);
         }
@@ -328,13 +326,7 @@ impl<'w, 's> Right<'w, 's> {
     fn definition(&mut self, pair: Pair<'_, Rule>) -> Definition<'s> {
         let start = self.span(&pair).start;
         let keyword = Span::new(self.id, start, start + "let".len());
-        let mut definition = Definition {
-            keyword,
-            name: None,
-            equals: None,
-            value: bad(keyword),
-            span: keyword,
-        };
+        let mut definition = Definition::begun(keyword);
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::name => definition.name = Some(self.name(&part)),
@@ -507,27 +499,5 @@ impl<'w, 's> Right<'w, 's> {
 
     fn written(&self, span: Span) -> &'s str {
         self.text.get(span.range()).unwrap_or_default()
-    }
-}
-
-impl<'s> Recovery<'_, 's> {
-    fn finish(self, scan: Scan) -> Parsed<'s> {
-        let Recovery {
-            items,
-            problems,
-            comments,
-            id,
-            text,
-            cut,
-            ..
-        } = self;
-        let mut parsed = Parsed {
-            tree: Tree { items },
-            comments,
-            problems,
-            cut,
-        };
-        scan.report(text, id, &mut parsed);
-        parsed
     }
 }

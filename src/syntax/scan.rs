@@ -5,16 +5,15 @@
 
 use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
 
-use miette::Diagnostic as _;
-
 use super::{
-    NESTING_LIMIT, Parsed, Problem,
-    messages::name_of_space,
-    tokens::{Lexer, TokenKind},
+    NESTING_LIMIT, Parsed,
+    problem::{problem, times},
+    tokens::{Lexer, Token, TokenKind},
 };
 use crate::{
     cancel,
-    source::{SourceId, Span},
+    diagnostic::{Diagnostic, Edit, Fix},
+    source::{Source, SourceId, Span},
 };
 
 /// What the walk finds.
@@ -98,7 +97,8 @@ impl Scan {
     }
 
     /// Adds comments and problems to what was parsed.
-    pub fn report(self, text: &str, id: SourceId, parsed: &mut Parsed<'_>) {
+    pub fn report(self, source: &Source, id: SourceId, parsed: &mut Parsed<'_>) {
+        let text = source.text();
         self.report_odd_spaces(text, id, &mut parsed.problems);
         let lone = self.comments.iter().find_map(|comment| {
             let written = text.get(comment.clone())?;
@@ -109,8 +109,7 @@ impl Scan {
         });
         // Where lines end at carriage returns alone, a comment of one line takes all that follows.
         if let Some((start, at, end)) = lone {
-            let span = Span::new(id, at, at + 1);
-            parsed.problems.push(Problem::LoneReturn { span });
+            parsed.problems.push(lone_return(source, id, at));
             if end == text.len() {
                 parsed.cut = parsed.cut.or(Some(start));
             }
@@ -118,12 +117,11 @@ impl Scan {
         if let Some(start) = self.open_comment {
             // What the comment took is no second mistake.
             parsed.problems.retain(|problem| {
-                !matches!(problem, Problem::UnclosedBlock { .. })
-                    && first_label(problem).is_none_or(|end| end < id.start() + start)
+                let first = problem.labels.first().map_or(0, |label| label.span.end);
+                problem.code != "pinhole::unclosed_block" && first < start
             });
             parsed.cut = Some(start);
-            let span = Span::new(id, start, start + 2);
-            parsed.problems.push(Problem::UnclosedComment { span });
+            parsed.problems.push(unclosed_comment(text, id, start));
         }
         let comments = self.comments.into_iter();
         let comments = comments.map(|comment| Span::new(id, comment.start, comment.end));
@@ -138,7 +136,7 @@ impl Scan {
     }
 
     /// One report for each sort of character, at the first one.
-    fn report_odd_spaces(&self, text: &str, id: SourceId, problems: &mut Vec<Problem>) {
+    fn report_odd_spaces(&self, text: &str, id: SourceId, problems: &mut Vec<Diagnostic>) {
         let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in &self.odd_spaces {
             let sort = text.get(place.clone()).unwrap_or_default();
@@ -146,15 +144,106 @@ impl Scan {
             sorts.entry(sort).or_default().push(span);
         }
         for (sort, places) in sorts {
-            if let Some(&span) = places.first() {
-                problems.push(Problem::OddSpace {
-                    what: name_of_space(sort),
-                    more: places.len() - 1,
-                    span,
-                    places,
-                });
+            let Some(&span) = places.first() else {
+                continue;
+            };
+            let all = |title, text| {
+                let edits = places.iter().map(|place| Edit::new(*place, text));
+                Fix::new(title, edits)
+            };
+            let (what, more) = (name_of_space(sort), times(places.len() - 1));
+            let message = format!("{what} is no white space here{more}");
+            let mut found = problem("odd_space", message, span, "it cannot be seen")
+                .with_help("write a plain space in its place, or take it away");
+            // What has no width, as a rule, is not meant to keep words apart.
+            if !sort.chars().all(char::is_whitespace) {
+                found = found.with_fix(all("take it away", ""));
             }
+            problems.push(found.with_fix(all("write plain spaces", " ")));
         }
+    }
+}
+
+/// What a character that cannot be seen is called.
+fn name_of_space(text: &str) -> String {
+    let character = text.chars().next().unwrap_or_default();
+    let name = match character {
+        '\0' => "a NUL",
+        '\u{A0}' => "a no-break space",
+        '\u{202F}' => "a narrow no-break space",
+        '\u{200B}' => "a zero-width space",
+        '\u{200C}' => "a zero-width non-joiner",
+        '\u{200D}' => "a zero-width joiner",
+        '\u{FEFF}' => "a byte order mark",
+        '\u{3000}' => "an ideographic space",
+        c if c.is_whitespace() => "a space",
+        _ => "a control character",
+    };
+    format!("U+{:04X}, {name},", u32::from(character))
+}
+
+/// A carriage return within a comment of one line; the fix ends all lines that end so.
+fn lone_return(source: &Source, id: SourceId, at: usize) -> Diagnostic {
+    let text = source.text();
+    let returns = text.match_indices('\r');
+    let lone = returns.filter(|(at, _)| text.as_bytes().get(at + 1) != Some(&b'\n'));
+    let edits = lone.map(|(at, _)| Edit::new(Span::new(id, at, at + 1), source.line_end()));
+    problem(
+        "odd_space",
+        "a line of a comment ends at a carriage return alone, which ends no line",
+        Span::new(id, at, at + 1),
+        "here",
+    )
+    .with_help("end the lines at LF or CRLF; the comment takes what follows, up to the next LF")
+    .with_fix(Fix::new("end these lines as text files do", edits))
+}
+
+/// A comment of one line is meant, as a rule. It ends with its line, before what closes something that was opened before it.
+fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
+    let span = Span::new(id, start, start + 2);
+    let found = problem(
+        "unclosed_comment",
+        "a comment is never closed",
+        span,
+        "the comment starts here and takes the rest of the text",
+    )
+    .with_help("write `*/` where it ends, or begin it with `//` if it is one line");
+    let (before, taken) = text.split_at(start);
+    let before = before.rsplit('\n').next().unwrap_or_default();
+    let line = taken.lines().next().unwrap_or_default().trim_end();
+    let after = taken.get(line.len()..).unwrap_or_default();
+    if !is_read_on(after) {
+        let edit = Edit::insert(id, start + taken.trim_end().len(), " */");
+        return found.with_fix(Fix::new("close it at the end", [edit]));
+    }
+    let opened = before.matches(['{', '(']).count();
+    let closed = before.matches(['}', ')']).count();
+    let inner = match opened > closed {
+        true => line.trim_end_matches(['}', ')', ' ']),
+        false => line,
+    };
+    let edit = Edit::insert(id, start + inner.len(), " */");
+    let found = found.with_fix(Fix::new("close it in its line", [edit]));
+    match inner == line {
+        true => found.with_fix(Fix::new("begin it with `//`", [Edit::new(span, "//")])),
+        false => found,
+    }
+}
+
+/// Whether what a comment took from a line on looks like a part of a scene, or is nothing.
+fn is_read_on(after: &str) -> bool {
+    let mut lexer = Lexer::new(after, 0);
+    let [first, second, third] = [lexer.token(), lexer.token(), lexer.token()];
+    let word = |token: Token| after.get(token.start..token.end).unwrap_or_default();
+    match first.kind {
+        TokenKind::End => true,
+        TokenKind::Name => {
+            matches!(word(second), "{" | "(" | "-")
+                || matches!(word(third), "{" | "}")
+                || word(first) == "let"
+                || second.kind == TokenKind::Number
+        }
+        _ => word(first) == "}",
     }
 }
 
@@ -163,10 +252,4 @@ fn is_within(span: Span, places: &[Span]) -> bool {
     places
         .get(next)
         .is_some_and(|place| place.start <= span.start)
-}
-
-/// Where the first label of a problem ends.
-fn first_label(problem: &Problem) -> Option<usize> {
-    let label = problem.labels()?.next()?;
-    Some(label.offset() + label.len())
 }

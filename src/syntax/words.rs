@@ -4,7 +4,7 @@
 //! which of them are known: in `radius color olive` a value is missing. This is the one file of the stage that looks them
 //! up, in the schema and among the names that the text defines.
 
-use std::{collections::HashMap, sync::OnceLock};
+use std::{collections::HashMap, ops::RangeInclusive, sync::OnceLock};
 
 use super::{
     tokens::{Lexer, TokenKind, numeric_part},
@@ -105,12 +105,13 @@ impl<'s> Words<'s> {
         predefined(name) == Some("a function")
     }
 
-    /// Whether a function takes so many arguments.
-    pub fn takes_arguments(&self, name: &str, count: usize) -> bool {
-        schema::function(name).is_some_and(|function| match function.more {
-            true => count >= function.takes.len(),
-            false => count == function.takes.len(),
-        })
+    /// How many arguments a function takes; of one that is not known, none that can be told.
+    pub fn arguments(&self, name: &str) -> RangeInclusive<usize> {
+        match schema::function(name) {
+            Some(function) if function.more => function.takes.len()..=usize::MAX,
+            Some(function) => function.takes.len()..=function.takes.len(),
+            None => 0..=0,
+        }
     }
 
     /// Whether a name is surely that of a number: pi, or one that is defined so.

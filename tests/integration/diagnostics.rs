@@ -160,12 +160,24 @@ fn fixtures_say_what_they_produce() {
 /// The codes that the stages have, without `pinhole::`.
 pub fn codes() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
-    for stage in ["src/syntax/error.rs", "src/scene/error.rs"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(stage);
-        let text = fs::read_to_string(path).expect("the source can be read");
-        for part in text.split("code(pinhole::").skip(1) {
-            let code = part.split(')').next().expect("a code ends");
-            codes.insert(code.to_owned());
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &Path| fs::read_to_string(path).expect("the source can be read");
+    let scene = read(&root.join("src/scene/error.rs"));
+    for part in scene.split("code(pinhole::").skip(1) {
+        let code = part.split(')').next().expect("a code ends");
+        codes.insert(code.to_owned());
+    }
+    // A problem of syntax is made by `problem("code", …)`.
+    for folder in ["src/syntax", "src/syntax/recovery"] {
+        for entry in fs::read_dir(root.join(folder)).expect("the folder is there") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_none_or(|ending| ending != "rs") {
+                continue;
+            }
+            let text = read(&path);
+            let made = text.split("problem(").skip(1);
+            let words = made.filter_map(|call| call.trim_start().strip_prefix('"'));
+            codes.extend(words.filter_map(|word| Some(word.split_once('"')?.0.to_owned())));
         }
     }
     codes

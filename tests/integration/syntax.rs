@@ -9,8 +9,7 @@ use std::{
 };
 
 use pinhole::{
-    diagnostic::Diagnostic,
-    source::{Source, SourceId, Sources, Span},
+    source::{Source, SourceId, Span},
     syntax::{
         self, Parsed,
         tree::{Block, Definition, Element, Field, Item, Value, ValueKind},
@@ -159,9 +158,7 @@ fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     for comment in &parsed.comments {
         printer.line(&format!("comment {}", printer.under(*comment)));
     }
-    let sources = Sources::new(source.clone());
-    for problem in &parsed.problems {
-        let diagnostic = Diagnostic::from_problem(problem, &sources);
+    for diagnostic in &parsed.problems {
         let place = source.place(diagnostic.labels[0].span.start);
         printer.line(&format!(
             "{}:{} {}: {}",

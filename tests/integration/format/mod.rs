@@ -104,7 +104,7 @@ fn mistakes_of_syntax_are_told_and_no_others() {
         ("2.5.5", "bad_number"),
         ("#ff", "bad_color_code"),
         (", color red", "needless_separator"),
-        (")", "stray_closing"),
+        (")", "unexpected"),
     ] {
         let text = format!("sphere {{ center (0, 1, 0)  radus {value} }}");
         assert_eq!(formatted(&text), codes(&[code]), "{text}");
