@@ -10,7 +10,7 @@ mod report;
 #[cfg(feature = "cli")]
 mod visible;
 
-pub use fix::{Edit, Fix, Fixable, apply, with_comments, with_comments_in};
+pub use fix::{Edit, Fix, Fixable, apply, with_comments};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 #[cfg(feature = "cli")]
@@ -104,34 +104,6 @@ impl Diagnostic {
             is_needless: problem.is_needless(),
             is_of_syntax: problem.is_of_syntax(),
             ..Self::from_problem(problem, sources)
-        }
-    }
-
-    /// The same with another place that explains it.
-    pub fn with_label(mut self, span: Span, message: impl Into<String>) -> Self {
-        let message = message.into();
-        self.labels.push(Label { span, message });
-        self
-    }
-
-    /// The same with what to do.
-    pub fn with_help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
-    }
-
-    /// The same with a way out, which is what to do if nothing else is.
-    pub fn with_fix(mut self, fix: Fix) -> Self {
-        self.help.get_or_insert_with(|| fix.title.clone());
-        self.fixes.push(fix);
-        self
-    }
-
-    /// The same with a way out, or, where there is none, with what the author has to do.
-    pub fn with_fix_or(self, fix: Option<Fix>, help: impl Into<String>) -> Self {
-        match fix {
-            Some(fix) => self.with_fix(fix),
-            None => self.with_help(help),
         }
     }
 

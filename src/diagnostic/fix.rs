@@ -84,11 +84,7 @@ impl Fix {
 
 /// A place with the comments that stand beside it on its first and its last line, if there is nothing else on these.
 pub fn with_comments(span: Span, sources: &Sources) -> Span {
-    with_comments_in(span, sources.get(span.source).text())
-}
-
-/// The same in a text.
-pub fn with_comments_in(span: Span, text: &str) -> Span {
+    let text = sources.get(span.source).text();
     let (before, after) = (
         text.get(..span.start).unwrap_or_default(),
         text.get(span.end..).unwrap_or_default(),

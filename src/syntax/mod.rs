@@ -16,6 +16,8 @@
 )]
 
 mod grammar;
+#[rustfmt::skip]
+mod messages;
 mod parser;
 mod problem;
 mod recovery;

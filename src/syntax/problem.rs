@@ -1,77 +1,87 @@
-//! How a problem of syntax is made. Each is written where it arises.
+//! How a problem of syntax is made, of one of `messages`.
 
+use super::messages;
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, Label, Severity},
     source::Span,
 };
 
-/// What is wrong, and the place to jump to.
-pub fn problem(
-    code: &str,
-    message: impl Into<String>,
-    span: Span,
-    label: impl Into<String>,
-) -> Diagnostic {
-    Diagnostic {
-        severity: Severity::Error,
-        code: format!("pinhole::{code}"),
-        message: message.into(),
-        help: None,
-        labels: vec![Label {
-            span,
-            message: label.into(),
-        }],
-        fixes: Vec::new(),
-        is_needless: false,
-        is_of_syntax: true,
+/// What is said of a slip.
+pub struct Message {
+    code: &'static str,
+    message: &'static str,
+    label: &'static str,
+    help: &'static str,
+}
+
+impl Message {
+    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where there is no fix.
+    pub const fn new(
+        code: &'static str,
+        message: &'static str,
+        label: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self {
+            code,
+            message,
+            label,
+            help,
+        }
+    }
+
+    /// The problem at a place; the words go where the message names something. A fix says what to do.
+    pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
+        let filled = |text: &str| {
+            let mut parts = text.split('{');
+            let mut filled = parts.next().unwrap_or_default().to_owned();
+            for part in parts {
+                let word = part.get(..1).and_then(|index| index.parse::<usize>().ok());
+                match (word.and_then(|index| words.get(index)), part.get(2..)) {
+                    (Some(word), Some(rest)) => filled.extend([word, rest]),
+                    _ => filled.extend(["{", part]),
+                }
+            }
+            filled
+        };
+        let fixes: Vec<Fix> = fix.into().into_iter().collect();
+        let title = fixes.first().map(|fix| fix.title.clone());
+        Diagnostic {
+            severity: Severity::Error,
+            code: format!("pinhole::{}", self.code),
+            message: filled(self.message),
+            help: title.or_else(|| Some(filled(self.help))),
+            labels: vec![Label {
+                span,
+                message: filled(self.label),
+            }],
+            fixes,
+            is_needless: false,
+            is_of_syntax: true,
+        }
     }
 }
 
 /// Some bytes are part of no character.
 pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
-    let more = match more {
-        0 => String::new(),
-        1 => ", here and at one more byte".to_owned(),
-        _ => format!(", here and at {more} more bytes"),
-    };
-    problem(
-        "invalid_utf8",
-        format!("this file is not valid UTF-8{more}"),
-        span,
-        "this byte is part of no character",
-    )
-    .with_help("save the file as UTF-8")
+    messages::INVALID_UTF8.at(span, &[&times(more)], None)
 }
 
 /// The text starts with the byte order mark of UTF-16.
 pub fn utf16(span: Span) -> Diagnostic {
-    problem(
-        "invalid_utf8",
-        "this file is UTF-16, not UTF-8",
-        span,
-        "the byte order mark of UTF-16",
-    )
-    .with_help("save the file as UTF-8")
+    messages::UTF16.at(span, &[], None)
 }
 
 /// A field has no value.
 pub fn field_without_value(name: &str, span: Span) -> Diagnostic {
-    problem(
-        "missing_value",
-        format!("`{name}` has no value"),
-        span,
-        "a value should follow this",
-    )
-    .with_help("write a value after it")
+    messages::FIELD_WITHOUT_VALUE.at(span, &[name], None)
 }
 
 /// Writes a text in a place.
 pub fn replace(span: Span, text: impl Into<String>) -> Fix {
     let text = text.into();
-    Fix::new(
-        format!("write `{}`", shorten(&text)),
-        [Edit::new(span, text)],
-    )
+    let title = format!("write `{}`", shorten(&text));
+    Fix::new(title, [Edit::new(span, text)])
 }
 
 /// That a slip was made so many times more.

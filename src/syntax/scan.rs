@@ -6,13 +6,14 @@
 use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
 
 use super::{
-    NESTING_LIMIT, Parsed,
-    problem::{problem, times},
-    tokens::{Lexer, Token, TokenKind},
+    NESTING_LIMIT, Parsed, messages as say,
+    problem::times,
+    tokens::{Lexer, TokenKind},
 };
 use crate::{
     cancel,
     diagnostic::{Diagnostic, Edit, Fix},
+    schema,
     source::{Source, SourceId, Span},
 };
 
@@ -151,15 +152,14 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
-            let (what, more) = (name_of_space(sort), times(places.len() - 1));
-            let message = format!("{what} is no white space here{more}");
-            let mut found = problem("odd_space", message, span, "it cannot be seen")
-                .with_help("write a plain space in its place, or take it away");
+            let words = [name_of_space(sort), times(places.len() - 1)];
+            let spaces = all("write plain spaces", " ");
+            let mut found = say::ODD_SPACE.at(span, &words.each_ref().map(String::as_str), spaces);
             // What has no width, as a rule, is not meant to keep words apart.
             if !sort.chars().all(char::is_whitespace) {
-                found = found.with_fix(all("take it away", ""));
+                found.fixes.insert(0, all("take it away", ""));
             }
-            problems.push(found.with_fix(all("write plain spaces", " ")));
+            problems.push(found);
         }
     }
 }
@@ -168,14 +168,9 @@ impl Scan {
 fn name_of_space(text: &str) -> String {
     let character = text.chars().next().unwrap_or_default();
     let name = match character {
-        '\0' => "a NUL",
         '\u{A0}' => "a no-break space",
-        '\u{202F}' => "a narrow no-break space",
         '\u{200B}' => "a zero-width space",
-        '\u{200C}' => "a zero-width non-joiner",
-        '\u{200D}' => "a zero-width joiner",
         '\u{FEFF}' => "a byte order mark",
-        '\u{3000}' => "an ideographic space",
         c if c.is_whitespace() => "a space",
         _ => "a control character",
     };
@@ -188,34 +183,22 @@ fn lone_return(source: &Source, id: SourceId, at: usize) -> Diagnostic {
     let returns = text.match_indices('\r');
     let lone = returns.filter(|(at, _)| text.as_bytes().get(at + 1) != Some(&b'\n'));
     let edits = lone.map(|(at, _)| Edit::new(Span::new(id, at, at + 1), source.line_end()));
-    problem(
-        "odd_space",
-        "a line of a comment ends at a carriage return alone, which ends no line",
-        Span::new(id, at, at + 1),
-        "here",
-    )
-    .with_help("end the lines at LF or CRLF; the comment takes what follows, up to the next LF")
-    .with_fix(Fix::new("end these lines as text files do", edits))
+    let fix = Fix::new("end these lines as text files do", edits);
+    say::LONE_RETURN.at(Span::new(id, at, at + 1), &[], fix)
 }
 
-/// A comment of one line is meant, as a rule. It ends with its line, before what closes something that was opened before it.
+/// A comment of one line is meant, as a rule, if what it took from the next line on starts as an item does. It ends with its
+/// line, before what closes something that was opened before it.
 fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
     let span = Span::new(id, start, start + 2);
-    let found = problem(
-        "unclosed_comment",
-        "a comment is never closed",
-        span,
-        "the comment starts here and takes the rest of the text",
-    )
-    .with_help("write `*/` where it ends, or begin it with `//` if it is one line");
     let (before, taken) = text.split_at(start);
-    let before = before.rsplit('\n').next().unwrap_or_default();
     let line = taken.lines().next().unwrap_or_default().trim_end();
-    let after = taken.get(line.len()..).unwrap_or_default();
-    if !is_read_on(after) {
-        let edit = Edit::insert(id, start + taken.trim_end().len(), " */");
-        return found.with_fix(Fix::new("close it at the end", [edit]));
+    let next = Lexer::past_comments(text, start + line.len());
+    let word = text.get(next.start..next.end).unwrap_or_default();
+    if !(matches!(word, "" | "let" | "}") || schema::block(word).is_some()) {
+        return say::UNCLOSED_COMMENT.at(span, &[], None);
     }
+    let before = before.rsplit('\n').next().unwrap_or_default();
     let opened = before.matches(['{', '(']).count();
     let closed = before.matches(['}', ')']).count();
     let inner = match opened > closed {
@@ -223,28 +206,13 @@ fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
         false => line,
     };
     let edit = Edit::insert(id, start + inner.len(), " */");
-    let found = found.with_fix(Fix::new("close it in its line", [edit]));
-    match inner == line {
-        true => found.with_fix(Fix::new("begin it with `//`", [Edit::new(span, "//")])),
-        false => found,
+    let fix = Fix::new("close it in its line", [edit]);
+    let mut found = say::UNCLOSED_COMMENT.at(span, &[], fix);
+    if inner == line {
+        let fix = Fix::new("begin it with `//`", [Edit::new(span, "//")]);
+        found.fixes.push(fix);
     }
-}
-
-/// Whether what a comment took from a line on looks like a part of a scene, or is nothing.
-fn is_read_on(after: &str) -> bool {
-    let mut lexer = Lexer::new(after, 0);
-    let [first, second, third] = [lexer.token(), lexer.token(), lexer.token()];
-    let word = |token: Token| after.get(token.start..token.end).unwrap_or_default();
-    match first.kind {
-        TokenKind::End => true,
-        TokenKind::Name => {
-            matches!(word(second), "{" | "(" | "-")
-                || matches!(word(third), "{" | "}")
-                || word(first) == "let"
-                || second.kind == TokenKind::Number
-        }
-        _ => word(first) == "}",
-    }
+    found
 }
 
 fn is_within(span: Span, places: &[Span]) -> bool {

@@ -167,19 +167,9 @@ pub fn codes() -> BTreeSet<String> {
         let code = part.split(')').next().expect("a code ends");
         codes.insert(code.to_owned());
     }
-    // A problem of syntax is made by `problem("code", …)`.
-    for folder in ["src/syntax", "src/syntax/recovery"] {
-        for entry in fs::read_dir(root.join(folder)).expect("the folder is there") {
-            let path = entry.expect("an entry").path();
-            if path.extension().is_none_or(|ending| ending != "rs") {
-                continue;
-            }
-            let text = read(&path);
-            let made = text.split("problem(").skip(1);
-            let words = made.filter_map(|call| call.trim_start().strip_prefix('"'));
-            codes.extend(words.filter_map(|word| Some(word.split_once('"')?.0.to_owned())));
-        }
-    }
+    let syntax = read(&root.join("src/syntax/messages.rs"));
+    let made = syntax.split("Message::new(\"").skip(1);
+    codes.extend(made.filter_map(|made| Some(made.split_once('"')?.0.to_owned())));
     codes
 }
 

@@ -2,17 +2,18 @@
 
 use super::{Recovery, Within, example, foreign::Place};
 use crate::{
-    diagnostic::{Edit, Fix, with_comments_in},
+    diagnostic::{Edit, Fix, Label},
     source::Span,
     syntax::{
-        problem::{problem, replace, shorten},
+        messages as say,
+        problem::{replace, shorten},
         tokens::{TokenKind, numeric_part},
         tree::{Block, Field, Name, Value, ValueKind, bad, number},
     },
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a block from behind its `{` up to its `}`, or to where that is missing.
+    /// Reads a block from behind its `{` up to what closes it, or to where that is missing.
     pub(super) fn body(&mut self, block: &mut Block<'s>, close: &'static str) {
         let within = Within {
             kind: block.kind.map_or("", |kind| kind.text),
@@ -44,15 +45,12 @@ impl<'s> Recovery<'_, 's> {
                     block.span = block.span.to(close);
                     break;
                 }
-                "let" => self.misplaced_let(block),
-                "," | ";" => {
-                    let sign = self.bump();
-                    self.needless(sign);
-                }
+                "let" => self.misplaced_let(),
+                "," | ";" => self.separator(),
                 "{" => {
                     (braces, had_braces) = (braces + 1, true);
                     let span = self.bump();
-                    self.nested_braces("braces within a block", span);
+                    self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
                     // What the outer block lacks may stand in the inner one.
@@ -92,76 +90,42 @@ impl<'s> Recovery<'_, 's> {
             false => " ",
         };
         let kind = shorten(block.kind.map_or("this block", |kind| kind.text));
-        let message = format!("the block of `{kind}` is never closed");
         let edit = Edit::new(end, format!("{apart}}}"));
-        let mut found = problem("unclosed_block", message, open, "opened here")
-            .with_help("write `}` after its last field")
-            .with_fix(Fix::new(format!("close the block of `{kind}`"), [edit]));
+        let fix = Fix::new(format!("close the block of `{kind}`"), [edit]);
+        let mut found = say::UNCLOSED_BLOCK.at(open, &[&kind], fix);
         if self.kind(0) != TokenKind::End {
-            found = found.with_label(self.here(), "it should be closed before this");
+            found.labels.push(Label {
+                span: self.here(),
+                message: "it should be closed before this".to_owned(),
+            });
         }
         self.problems.push(found);
-    }
-
-    pub(super) fn nested_braces(&mut self, what: impl Into<String>, span: Span) {
-        let help = "a block holds fields only; write each block by itself";
-        self.problems.push(
-            problem("nested_braces", what, span, "not in a block, or around one").with_help(help),
-        );
     }
 
     /// A block within a block: an object is read by itself, anything else is passed over.
     fn nested_block(&mut self) {
         let (kind, span) = (self.word(0), self.here());
         let what = format!("the block `{}` stands within another one", shorten(kind));
-        self.nested_braces(what, span);
-        match self.words.is_kind(kind) {
-            true => self.block(),
-            false => {
-                while !self.is(0, "{") {
-                    self.bump();
-                }
-                self.bump();
-                self.skip_block();
-            }
+        self.report(&say::NESTED_BRACES, span, &[&what], None);
+        if self.words.is_kind(kind) {
+            return self.block();
         }
+        while !self.is(0, "{") {
+            self.bump();
+        }
+        self.bump();
+        self.skip_block();
     }
 
     /// Definitions within a block are read as if they stood before it.
-    fn misplaced_let(&mut self, block: &Block<'s>) {
-        let (keyword, told) = (self.here(), self.problems.len());
+    fn misplaced_let(&mut self) {
+        let keyword = self.here();
+        self.report(&say::MISPLACED_LET, keyword, &[], None);
         self.within.is_block = false;
         while self.is(0, "let") {
             self.definition();
         }
         self.within.is_block = true;
-        let definitions = keyword.to(self.behind());
-        let found = problem(
-            "misplaced_let",
-            "a `let` stands within a block",
-            keyword,
-            "only fields stand here",
-        )
-        .with_help("write it before the block");
-        self.problems.push(match self.problems.len() == told {
-            true => found.with_fix(self.moved_before(definitions, block.span)),
-            false => found,
-        });
-    }
-
-    fn moved_before(&self, definitions: Span, block: Span) -> Fix {
-        let before = self.text.get(..block.start).unwrap_or_default();
-        let line = before.rsplit('\n').next().unwrap_or_default();
-        let indent = if line.trim().is_empty() { line } else { "" };
-        let definitions = with_comments_in(definitions, self.text);
-        let (written, end) = (self.written(definitions), self.source.line_end());
-        Fix::new(
-            "move it before the block",
-            [
-                Edit::insert(self.id, block.start, format!("{written}{end}{indent}")),
-                Edit::remove_in(definitions, self.text),
-            ],
-        )
     }
 
     fn field(&mut self, block: &mut Block<'s>) {
@@ -170,29 +134,26 @@ impl<'s> Recovery<'_, 's> {
             return;
         }
         let name = self.field_name();
-        let is_known = self.is_field_name(name.text);
         let equals = matches!(self.word(0), "=" | ":").then(|| self.bump());
         let told = self.problems.len();
         self.within.takes = self.words.takes(self.within.kind, name.text);
         self.within.field = name.text;
         let value = self.value_of_field(name.span);
-        self.within.takes = None;
-        self.within.field = "";
+        let is_known = self.within.takes.take().is_some();
         if let Some(equals) = equals.filter(|_| value.kind != ValueKind::Missing) {
-            self.needless(equals);
+            self.slip(equals);
         }
-        let is_again = |field: &Field<'s>| field.name.text == name.text;
-        match value.kind {
-            ValueKind::Missing if is_known && block.fields.iter().any(is_again) => {
-                let message = format!("expected a field or `}}`, found `{}`", name.text);
-                let help = "take it away: the block has this field already";
-                self.problems
-                    .push(problem("unexpected", message, name.span, "not here").with_help(help));
-                block.bad.push(name.span);
-                return;
-            }
-            ValueKind::Bad => block.bad.push(value.span),
-            _ => {}
+        let is_again = block.fields.iter().any(|f| f.name.text == name.text);
+        if value.kind == ValueKind::Missing && is_known && is_again {
+            let words = ["a field or `}`", name.text];
+            let mut found = say::UNEXPECTED.at(name.span, &words, None);
+            found.help = Some("take it away: the block has this field already".to_owned());
+            self.problems.push(found);
+            block.bad.push(name.span);
+            return;
+        }
+        if value.kind == ValueKind::Bad {
+            block.bad.push(value.span);
         }
         self.settle(told);
         block.fields.push(Field {
@@ -205,21 +166,21 @@ impl<'s> Recovery<'_, 's> {
     /// The name of a field: one word, but people write `look at` and `view height`.
     fn field_name(&mut self) -> Name<'s> {
         let first = self.name();
-        if !self.is_name(0) || self.is_field_name(first.text) {
-            return first;
-        }
         let second = self.word(0);
         let is_both = |name: &&str| {
             let rest = name.strip_prefix(first.text);
             rest.is_some_and(|rest| rest.strip_prefix('_').unwrap_or(rest) == second)
         };
-        let Some(text) = self.words.fields(self.within.kind).find(is_both) else {
+        let found = self.words.fields(self.within.kind).find(is_both);
+        let Some(text) = found.filter(|_| self.is_name(0)) else {
             return first;
         };
         let span = first.span.to(self.bump());
-        let message = format!("`{}` is one word", self.short(span));
-        self.problems.push(
-            problem("bad_name", message, span, "the name of a field").with_fix(replace(span, text)),
+        self.report(
+            &say::TWO_WORDS,
+            span,
+            &[&self.short(span)],
+            replace(span, text),
         );
         Name { text, span }
     }
@@ -234,12 +195,9 @@ impl<'s> Recovery<'_, 's> {
         let names = self.words.fields(self.within.kind);
         let field = names
             .filter(|field| word.starts_with(field))
-            .max_by_key(|field| field.len())?;
-        let end = if is_fraction {
-            self.peek(1).end
-        } else {
-            span.end
-        };
+            .max_by_key(|f| f.len())?;
+        let behind = 1 + usize::from(is_fraction);
+        let end = self.peek(behind - 1).end;
         let at = Span::new(self.id, span.start + field.len(), end);
         let rest = self.written(at);
         let kind = match numeric_part(rest) == rest {
@@ -248,7 +206,6 @@ impl<'s> Recovery<'_, 's> {
             false => return None,
         };
         // Where a value follows, the word is a name.
-        let behind = 1 + usize::from(is_fraction);
         let next = self.word(behind);
         let is_value = self.words.is_value(next) && !self.is_field_name(next);
         if self.starts_value(behind) && (!self.is_name(behind) || is_value) {
@@ -257,17 +214,9 @@ impl<'s> Recovery<'_, 's> {
         for _ in 0..behind {
             self.bump();
         }
-        let message = format!("a space is missing between `{field}` and `{rest}`");
         let edit = Edit::insert(self.id, at.start, " ");
-        self.problems.push(
-            problem(
-                "missing_space",
-                message,
-                span.to(at),
-                "a field and its value",
-            )
-            .with_fix(Fix::new(format!("write `{field} {rest}`"), [edit])),
-        );
+        let fix = Fix::new(format!("write `{field} {rest}`"), [edit]);
+        self.report(&say::MISSING_SPACE, span.to(at), &[field, rest], fix);
         Some(Field {
             name: Name {
                 text: field,
@@ -282,36 +231,28 @@ impl<'s> Recovery<'_, 's> {
         let after = Span::new(self.id, name.end, name.end);
         self.comments(Place::Value);
         let word = self.word(0);
-        let is_field = self.is_name(0)
-            && match self.is_field_name(word) {
-                true => !self.words.is_let(word),
-                false => {
-                    self.starts_block()
+        let is_field = match self.is_name(0) && self.is_field_name(word) {
+            true => !self.words.is_let(word),
+            // The next line has another name and a value.
+            false => {
+                self.is_name(0)
+                    && (self.starts_block()
                         || (self.is_on_new_line(0)
                             && !self.words.is_value(word)
-                            && self.starts_value(1))
-                }
-            };
-        if is_field || matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list() {
+                            && self.starts_value(1)))
+            }
+        };
+        let is_comma = word == "," && (self.is_name(1) || !self.starts_value(1));
+        let is_end = matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list();
+        if is_field || is_comma || is_end {
             return Value {
                 kind: ValueKind::Missing,
                 span: after,
             };
         }
-        if matches!(word, ")" | "]") && word != self.within.close {
-            self.unexpected("a value", self.example());
+        if matches!(word, "," | ")" | "]") && word != self.within.close {
+            self.unexpected("a value", example(self.within.takes));
             self.bump();
-            return bad(after);
-        }
-        let is_value_next = self.starts_value(1) && !self.is_name(1);
-        if word == "," && !is_value_next {
-            return Value {
-                kind: ValueKind::Missing,
-                span: after,
-            };
-        }
-        if word == "," {
-            self.unexpected("a value", "take the comma away, or write a value before it");
             self.resync();
             return bad(after.to(self.behind()));
         }
@@ -322,8 +263,7 @@ impl<'s> Recovery<'_, 's> {
     fn no_field(&mut self, block: &mut Block<'s>) {
         let (start, told) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {
-            self.stray_parenthesis();
-            return;
+            return self.stray_parenthesis();
         }
         let mut values = Vec::new();
         while self.starts_value(0) && !self.is_name(0) && self.kind(0) != TokenKind::Word {
@@ -348,42 +288,25 @@ impl<'s> Recovery<'_, 's> {
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
         let shape: Vec<bool> = values.iter().map(is_vector).collect();
         let names: &[&'static str] = match (self.within.kind, shape.as_slice()) {
+            _ if !block.fields.is_empty() => &[],
             ("sphere", [true, false]) => &["center", "radius"],
             ("sphere", [true]) => &["center"],
             ("box", [true, true]) => &["min", "max"],
             _ => &[],
         };
-        let mut fix = None;
-        if block.fields.is_empty() && !names.is_empty() {
-            let texts = names.iter().zip(&values).map(|(name, value)| {
-                let written = self.written(value.span);
-                let round = written.replace(['<', '['], "(").replace(['>', ']'], ")");
-                format!("{name} {round}")
-            });
-            let texts: Vec<String> = texts.collect();
-            fix = Some(replace(span, texts.join("  ")));
-            let fields = names.iter().zip(values);
-            block.fields.extend(fields.map(|(text, value)| Field {
-                name: Name { text, span },
-                value,
-                span,
-            }));
-        }
-        let message = "a value stands here without the name of its field";
-        let help = "write the name of its field before it, such as `radius 2`";
-        self.problems.push(
-            problem(
-                "missing_field_name",
-                message,
-                span,
-                "which field is this for?",
-            )
-            .with_fix_or(fix, help),
-        );
-    }
-
-    /// What to write for the field that is read.
-    pub(super) fn example(&self) -> &'static str {
-        example(self.within.takes)
+        let named = names.iter().zip(&values).map(|(name, value)| {
+            let written = self.written(value.span);
+            let round = written.replace(['<', '['], "(").replace(['>', ']'], ")");
+            format!("{name} {round}")
+        });
+        let named: Vec<String> = named.collect();
+        let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
+        self.report(&say::MISSING_FIELD_NAME, span, &[&self.short(span)], fix);
+        let fields = names.iter().zip(values);
+        block.fields.extend(fields.map(|(text, value)| Field {
+            name: Name { text, span },
+            value,
+            span,
+        }));
     }
 }

@@ -2,23 +2,14 @@
 
 use super::Recovery;
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::{Edit, Fix, Label},
     source::Span,
     syntax::{
-        problem::{problem, shorten},
+        messages as say,
+        problem::shorten,
         tokens::{Lexer, line_end},
     },
 };
-
-/// A comment of another language.
-pub(super) struct Comment {
-    /// `#` or `--`.
-    sign: Span,
-    /// With its sign.
-    pub(super) whole: Span,
-    /// Whether it is known where it ends.
-    is_sure: bool,
-}
 
 /// What may stand in a place: what starts a comment differs.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -32,61 +23,55 @@ pub(super) enum Place {
 }
 
 /// What other languages say: the words that start it, what it is, and what to do instead.
-const STATEMENTS: &[(&[&str], &str, &str)] = &[
-    (
-        &["if", "else", "switch", "case"],
+const STATEMENTS: &[[&str; 3]] = &[
+    [
+        "if else switch case",
         "conditions",
         "write what holds; `min` and `max` choose between two numbers",
-    ),
-    (
-        &["for", "while", "loop", "repeat", "foreach"],
+    ],
+    [
+        "for while loop repeat foreach",
         "loops",
         "write each object by itself, or write the file by a program",
-    ),
-    (
-        &["import", "include", "require", "use", "#include"],
+    ],
+    [
+        "import include require use #include",
         "including of other files",
         "write all of a scene into one file",
-    ),
-    (
-        &[
-            "#version", "#declare", "#local", "#macro", "#define", "#if", "#end",
-        ],
+    ],
+    [
+        "#version #declare #local #macro #define #if #end",
         "directives",
         "name a value with `let NAME = VALUE`; a comment begins with `//`",
-    ),
-    (
-        &["print", "echo", "printf", "console"],
+    ],
+    [
+        "print echo printf console",
         "output",
         "take it away; `pinhole inspect` shows what a scene's values are",
-    ),
-    (
-        &[
-            "function", "fn", "def", "fun", "lambda", "return", "class", "struct",
-        ],
+    ],
+    [
+        "function fn def fun lambda return class struct",
         "functions of one's own",
         "give each result a name with `let NAME = VALUE`",
-    ),
+    ],
 ];
 
 /// What a statement of another language is, and what to do instead.
-pub(super) fn statement(word: &str) -> Option<(&'static str, &'static str)> {
-    let row = STATEMENTS.iter().find(|(words, ..)| words.contains(&word));
-    row.map(|&(_, what, help)| (what, help))
+pub(super) fn statement(word: &str) -> Option<[&'static str; 2]> {
+    let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
+    STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
+}
+
+/// Whether these are the digits of a colour.
+pub(super) fn is_color_code(digits: &str) -> bool {
+    matches!(digits.len(), 3 | 6) && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
 impl Recovery<'_, '_> {
-    pub(super) fn not_in_language(&mut self, what: &str, help: &str, span: Span) {
-        let message = format!("the language has no {what}");
-        let label = "not a part of the language";
-        self.problems
-            .push(problem("not_in_language", message, span, label).with_help(help));
-    }
-
     /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands in braces behind it.
-    pub(super) fn foreign_statement(&mut self, what: &str, help: &str) {
+    pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
         let span = self.bump();
-        self.not_in_language(what, help, span);
+        self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
@@ -114,21 +99,17 @@ impl Recovery<'_, '_> {
                 Place::Value => digits.is_empty() && !self.is_on_new_line(1) && self.is_remark(),
             };
         }
-        let is_dashed = word == "-" && self.is(1, "-") && self.is_adjacent(1);
-        is_dashed
-            && match place {
-                Place::Start => true,
-                Place::Value => false,
-                // `1 -- big`, but a difference in `1 --b` and `1 -- b`.
-                Place::Operator => {
-                    let name = self.word(2);
-                    self.is_name(2)
-                        && !self.is_adjacent(2)
-                        && !self.is_on_new_line(2)
-                        && !self.is(3, "(")
-                        && !self.words.is_value(name)
-                }
-            }
+        // `1 -- big`, but a difference in `1 --b` and `1 -- b`.
+        let name = self.word(2);
+        let is_remark = self.is_name(2)
+            && !self.is_adjacent(2)
+            && !self.is_on_new_line(2)
+            && !self.is(3, "(")
+            && !self.words.is_value(name);
+        word == "-"
+            && self.is(1, "-")
+            && self.is_adjacent(1)
+            && (place == Place::Start || (place == Place::Operator && is_remark))
     }
 
     /// Whether words follow a `#` that stands in place of a value, rather than the digits or the name of a colour.
@@ -140,76 +121,56 @@ impl Recovery<'_, '_> {
 
     /// It ends with its line, or before the `}` of a block that was opened in its line.
     fn foreign_comment(&mut self) {
-        let token = self.peek(0);
-        let rest = self.text.get(token.start..).unwrap_or_default();
-        let first = rest.chars().next().unwrap_or('#');
-        let length = rest.len() - rest.trim_start_matches(first).len();
-        let end = line_end(self.text, token.start);
-        let line = self.text.get(token.start..end).unwrap_or_default();
-        let before = self.text.get(..token.start).unwrap_or_default();
+        let start = self.here().start;
+        let line = self.text.get(start..line_end(self.text, start));
+        let line = line.unwrap_or_default();
+        let sign = if line.starts_with('#') { "#" } else { "--" };
+        let before = self.text.get(..start).unwrap_or_default();
         let before = before.rsplit('\n').next().unwrap_or_default();
-        let kept = match before.matches('{').count() > before.matches('}').count() {
+        let is_open = before.matches('{').count() > before.matches('}').count();
+        let kept = match is_open {
             true => line.trim_end_matches([' ', '\t', '}']),
             false => line,
         };
-        let end = token.start + kept.len();
-        self.comments.push(Comment {
-            sign: Span::new(self.id, token.start, token.start + length.min(kept.len())),
-            whole: Span::new(self.id, token.start, end),
-            is_sure: kept.len() == line.len() || self.lists == 0,
-        });
+        let end = start + kept.len().max(sign.len());
+        self.comments.push(Span::new(self.id, start, end));
+        let place = Span::new(self.id, start, start + sign.len());
+        // Within a list it may have taken the end of that.
+        match self.lists > 0 && kept.len() < line.len() {
+            true => self.report(&say::COMMENT_SIGN, place, &[sign, ""], None),
+            false => self.slip(place),
+        }
         self.seek(end);
     }
 
     pub(super) fn comment_end(&self) -> usize {
-        self.comments.last().map_or(0, |comment| comment.whole.end)
+        self.comments.last().map_or(0, |comment| comment.end)
     }
 
-    /// One report for comments in lines that follow each other without anything between.
-    pub(super) fn report_comments(&mut self) {
-        let is_next = |a: &Comment, b: &Comment| {
-            let between = self.text.get(a.whole.end..b.whole.start);
-            between.is_some_and(|between| between.trim().is_empty())
-        };
-        let mut found = Vec::new();
-        for group in self.comments.chunk_by(is_next) {
-            let Some(first) = group.first() else { continue };
-            let below = match group.len() - 1 {
-                0 => String::new(),
-                1 => ", here and in the next line".to_owned(),
-                more => format!(", here and in the next {more} lines"),
+    /// Gives comments their sign; those that end before the end of their line get an end.
+    pub(super) fn with_right_signs(&self, signs: &[Span]) -> Fix {
+        let mut edits = Vec::new();
+        let mut first = String::new();
+        for sign in signs {
+            let next = self
+                .comments
+                .partition_point(|comment| comment.start < sign.start);
+            let Some(comment) = self.comments.get(next) else {
+                continue;
             };
-            let sign = self.short(first.sign);
-            let words = self.text.get(first.sign.end..first.whole.end);
-            let words = words.unwrap_or_default().trim_end();
-            let after = self.text.get(first.whole.end..).unwrap_or_default();
-            let fix = match after.is_empty() || after.starts_with(['\n', '\r']) {
-                true => Fix::new(
-                    format!("write `{}`", shorten(&format!("//{words}"))),
-                    group.iter().map(|comment| Edit::new(comment.sign, "//")),
-                ),
-                false => Fix::new(
-                    format!("write `{}`", shorten(&format!("/*{words} */"))),
-                    [
-                        Edit::new(first.sign, "/*"),
-                        Edit::insert(self.id, first.whole.end, " */"),
-                    ],
-                ),
-            };
-            let message = format!("a comment begins with `//`, not with `{sign}`{below}");
-            let new = problem(
-                "comment_sign",
-                message,
-                first.sign,
-                "`//` should stand here",
-            );
-            let fix = Some(fix).filter(|_| first.is_sure);
-            found.push(new.with_fix_or(
-                fix,
-                "write `//`, and the comment takes the rest of the line",
-            ));
+            let written = self.written(*comment).trim_start_matches(['#', '-']);
+            let start = Span::new(self.id, sign.start, comment.end - written.len());
+            let is_to_end = line_end(self.text, comment.end) == comment.end;
+            let (open, close) = if is_to_end { ("//", "") } else { ("/*", " */") };
+            edits.push(Edit::new(start, open));
+            if !is_to_end {
+                edits.push(Edit::insert(self.id, comment.end, close));
+            }
+            if first.is_empty() {
+                first = shorten(&format!("{open}{written}{close}"));
+            }
         }
-        self.problems.extend(found);
+        Fix::new(format!("write `{first}`"), edits)
     }
 
     /// `/* /* */ c */`: the first `*/` ended the comment.
@@ -217,41 +178,31 @@ impl Recovery<'_, '_> {
         const ENOUGH: usize = 64;
         let start = self.here().start;
         let before = self.text.get(..start).unwrap_or_default();
-        let Some(comment) = before.trim_end().strip_suffix("*/") else {
-            return false;
-        };
+        let comment = before.trim_end().strip_suffix("*/").unwrap_or_default();
         let Some(second) = comment.rfind("/*") else {
             return false;
         };
         let outer = comment.get(..second).unwrap_or_default();
-        let is_end = |ahead: &usize| {
-            self.is(*ahead, "*") && self.is(ahead + 1, "/") && self.is_adjacent(ahead + 1)
-        };
+        let is_end = |ahead: &usize| self.is(*ahead, "*") && self.is(ahead + 1, "/");
         let Some(ahead) = (0..ENOUGH).find(is_end).filter(|_| outer.contains("/*")) else {
             return false;
         };
         let close = self.peek(ahead).start;
         let [inner, inner_close, close] =
             [second, comment.len(), close].map(|at| Span::new(self.id, at, at + 2));
-        let message = "comments do not nest: the first `*/` ends this one";
         let edits = [Edit::new(inner, ""), Edit::new(inner_close, "")];
-        self.problems.push(
-            problem(
-                "nested_comment",
-                message,
-                inner,
-                "this opens no other comment",
-            )
-            .with_label(close, "so this closes none")
-            .with_fix(Fix::new("take the inner `/*` and `*/` away", edits)),
-        );
+        let fix = Fix::new("take the inner `/*` and `*/` away", edits);
+        let mut found = say::NESTED_COMMENT.at(inner, &[], fix);
+        found.labels.push(Label {
+            span: close,
+            message: "so this closes none".to_owned(),
+        });
+        self.problems.push(found);
         while self.here().start < close.end {
             self.bump();
         }
         true
     }
-
-    // Files.
 
     /// A whole file of another program is one mistake.
     pub(super) fn foreign_file(&mut self) -> bool {
@@ -259,58 +210,26 @@ impl Recovery<'_, '_> {
             return false;
         };
         let first = Lexer::past_comments(self.text, 0);
-        let message = format!("this looks like {what}, not like a scene of Pinhole");
-        let help = "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`";
         self.items.clear();
-        self.problems.push(
-            problem(
-                "foreign_file",
-                message,
-                self.span_of(first),
-                "no scene starts like this",
-            )
-            .with_help(help),
-        );
+        self.report(&say::FOREIGN_FILE, self.span_of(first), &[what], None);
         self.cut = Some(0);
         true
     }
 }
 
-/// Whether these are the digits of a colour.
-pub(super) fn is_color_code(digits: &str) -> bool {
-    matches!(digits.len(), 3 | 6) && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
-}
-
 /// The kind of file that a text looks like which is no scene at all, by its start.
 fn kind_of_file(text: &str) -> Option<&'static str> {
     const ENOUGH: usize = 1 << 14;
-    const POV: &[&str] = &[
-        "light_source",
-        "#declare",
-        "#version",
-        "#include",
-        "pigment",
-        "global_settings",
-    ];
-    const PBRT: &[&str] = &[
-        "LookAt ",
-        "Camera \"",
-        "WorldBegin",
-        "Shape \"",
-        "Film \"",
-        "Integrator \"",
-        "Sampler \"",
-        "AttributeBegin",
-    ];
+    const POV: &str = "light_source #declare #version #include pigment global_settings";
+    const PBRT: &str = "LookAt Camera WorldBegin Shape Film Integrator Sampler AttributeBegin";
     let text = text.trim_start_matches('\u{feff}').trim_start();
-    let mut end = ENOUGH.min(text.len());
-    while !text.is_char_boundary(end) {
-        end -= 1;
-    }
+    let end = (0..=ENOUGH.min(text.len()))
+        .rev()
+        .find(|&end| text.is_char_boundary(end))?;
     let text = text.get(..end)?;
     let lines = || text.lines().map(str::trim_start).filter(|l| !l.is_empty());
-    let starting = |words: &[&str]| {
-        let starts = |line: &&str| words.iter().any(|word| line.starts_with(word));
+    let starting = |words: &str| {
+        let starts = |line: &&str| words.split(' ').any(|word| line.starts_with(word));
         lines().filter(starts).count()
     };
     let mut ink = text.chars().filter(|c| !c.is_whitespace());
@@ -328,7 +247,7 @@ fn kind_of_file(text: &str) -> Option<&'static str> {
         Some("JSON")
     } else if starting(POV) + angular > 2 {
         Some("a scene of POV-Ray")
-    } else if starting(PBRT) > 1 {
+    } else if starting(PBRT) > 1 && text.contains('"') {
         Some("a scene of pbrt")
     } else if keys > 2 && keys * 3 >= lines().count() * 2 && !text.contains(['{', '=']) {
         Some("YAML")

@@ -2,17 +2,21 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Recovery, foreign::Place, is_plain_number};
+use super::{Recovery, example, foreign::Place, is_plain_number, values::elements};
 use crate::{
     diagnostic::{Edit, Fix},
     schema::Type,
     source::Span,
     syntax::{
-        problem::{problem, replace, shorten},
+        NESTING_LIMIT, messages as say,
+        problem::{replace, shorten},
         tokens::TokenKind,
         tree::{Element, Name, Value, ValueKind, bad},
     },
 };
+
+/// How many values a list may have.
+type Count = RangeInclusive<usize>;
 
 /// A list as it was read.
 struct List<'s> {
@@ -39,83 +43,65 @@ impl<'s> Recovery<'_, 's> {
     pub(super) fn group(&mut self, close: &'static str) -> Value<'s> {
         let takes = self.within.takes;
         let (parts, count) = match takes {
-            Some(Type::Vector) => (Some(Type::Number), 3),
-            Some(Type::Colors) => (Some(Type::Color), 2),
-            Some(Type::Color) => (takes, 3),
-            Some(Type::Method) => (None, 1),
-            Some(Type::Number | Type::Angle) => (takes, 1),
-            None => (None, 3),
+            Some(Type::Vector) => (Some(Type::Number), 3..=3),
+            Some(Type::Colors) => (Some(Type::Color), 2..=2),
+            Some(Type::Number | Type::Angle) => (takes, 1..=1),
+            Some(Type::Color) => (takes, 3..=3),
+            Some(Type::Method) | None => (None, 3..=3),
         };
-        let told = self.problems.len();
-        let (start, takes_all) = (self.here(), self.lists == 0);
-        let Some(list) = self.list(close, parts, &(count..=count)) else {
+        let (start, told) = (self.here(), self.problems.len());
+        let Some(list) = self.list(close, parts, &count) else {
             return bad(start.to(self.behind()));
         };
+        let span = list.span;
         if !list.is_round && self.problems.len() == told {
             return self.brackets(list);
         }
-        let span = list.span;
-        let is_vector = takes == Some(Type::Vector) && takes_all;
-        if is_vector && list.elements.len() == 4 && self.decimal_comma(&list.elements) {
+        if takes == Some(Type::Vector) && self.lists == 0 && self.decimal_comma(&list.elements) {
             return bad(span);
         }
-        match self.checked(list, &(count..=count)) {
-            None => bad(span),
-            Some(elements) => {
-                let kind = match <[Element<'s>; 1]>::try_from(elements) {
-                    Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
-                    Err(elements) => ValueKind::Tuple(elements),
-                };
-                Value { kind, span }
-            }
-        }
+        let Some(elements) = self.checked(list, &count) else {
+            return bad(span);
+        };
+        let kind = match <[Element<'s>; 1]>::try_from(elements) {
+            Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
+            Err(elements) => ValueKind::Tuple(elements),
+        };
+        Value { kind, span }
     }
 
     /// The call of a function whose name was read.
     pub(super) fn call(&mut self, function: Name<'s>) -> Value<'s> {
         let (told, count) = (self.problems.len(), self.words.arguments(function.text));
-        let start = self.here();
-        let list = self.list(")", None, &count);
-        let span = function.span.to(start.to(self.behind()));
-        let Some(list) = list else { return bad(span) };
-        if self.words.is_foreign_function(function.text) && self.problems.len() == told {
-            return self.foreign_function(function, list.elements, span);
-        }
+        let Some(list) = self.list(")", None, &count) else {
+            return bad(function.span.to(self.behind()));
+        };
         let parentheses = list.span;
+        if self.words.is_foreign_function(function.text) && self.problems.len() == told {
+            return self.foreign_function(function, list);
+        }
         match self.checked(list, &count) {
             Some(elements) => self.call_of(function, elements, parentheses),
-            None => bad(span),
+            None => bad(function.span.to(parentheses)),
         }
     }
 
     /// `vec3(1, 2, 3)` and `rgba(255, 0, 0, 1)`
-    fn foreign_function(
-        &mut self,
-        name: Name<'s>,
-        elements: Vec<Element<'s>>,
-        span: Span,
-    ) -> Value<'s> {
-        let values = elements.into_iter().map(|element| element.value);
-        let mut values: Vec<Value<'s>> = values.collect();
-        let is_color = matches!(name.text, "rgba" | "color" | "Color");
-        if is_color && values.len() == 4 {
+    fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
+        let span = name.span.to(list.span);
+        let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
+        let (function, takes) = match name.text {
+            "rgba" | "color" | "Color" => ("rgb", Type::Color),
+            _ => ("", Type::Vector),
+        };
+        if takes == Type::Color && values.len() == 4 {
             values.truncate(3);
         }
-        let (function, takes, help) = match is_color {
-            true => (
-                "rgb",
-                Type::Color,
-                "write a colour as `rgb(255, 165, 0)`, `#ffa500` or `orange`",
-            ),
-            false => ("", Type::Vector, "write a vector as `(1, 2, 3)`"),
-        };
         let fits = values.len() == 3 && self.within.takes.is_none_or(|t| t == takes);
         let right = format!("{function}({})", self.list_of(&values));
         let fix = fits.then(|| replace(span, right));
-        let message = format!("`{}` is a function of another language", name.text);
-        let label = "not a function of this language";
-        self.problems
-            .push(problem("foreign_function", message, name.span, label).with_fix_or(fix, help));
+        let words = [name.text, example(Some(takes))];
+        self.report(&say::FOREIGN_FUNCTION, name.span, &words, fix);
         bad(span)
     }
 
@@ -124,33 +110,33 @@ impl<'s> Recovery<'_, 's> {
         &mut self,
         close: &'static str,
         parts: Option<Type>,
-        count: &RangeInclusive<usize>,
+        count: &Count,
     ) -> Option<List<'s>> {
-        if self.is_too_deep() {
+        if self.depth >= NESTING_LIMIT {
             self.pass_over();
             return None;
         }
-        let open = self.bump();
         let takes = std::mem::replace(&mut self.within.takes, parts);
         self.depth += 1;
         self.lists += 1;
-        let list = self.parts(open, close, count);
+        let list = self.parts(close, count);
         self.lists -= 1;
         self.depth -= 1;
         self.within.takes = takes;
         list.filter(|_| !self.too_deep)
     }
 
-    fn parts(
-        &mut self,
-        open: Span,
-        close: &'static str,
-        count: &RangeInclusive<usize>,
-    ) -> Option<List<'s>> {
-        let mut elements: Vec<Element<'s>> = Vec::new();
-        let (mut gaps, mut needless) = (Vec::new(), None);
+    fn parts(&mut self, close: &'static str, count: &Count) -> Option<List<'s>> {
+        let open = self.bump();
+        let mut list = List {
+            elements: Vec::new(),
+            span: open,
+            is_round: close == ")",
+            gaps: Vec::new(),
+            needless: None,
+        };
         loop {
-            let is_value_next = elements.last().is_none_or(|last| last.comma.is_some());
+            let is_value_next = list.elements.last().is_none_or(|last| last.comma.is_some());
             self.comments(match is_value_next {
                 true => Place::Value,
                 false => Place::Operator,
@@ -160,46 +146,35 @@ impl<'s> Recovery<'_, 's> {
             }
             let word = self.word(0);
             if word == close || (matches!(word, ")" | "]") && close != "}") {
-                let end = self.bump();
-                if let Some(comma) = elements.last().and_then(|last| last.comma) {
-                    needless = needless.or(Some(comma));
-                }
-                return Some(List {
-                    elements,
-                    span: open.to(end),
-                    is_round: close == ")" && word == ")",
-                    gaps,
-                    needless,
-                });
+                list.span = open.to(self.bump());
+                list.is_round &= word == ")";
+                let last = list.elements.last().and_then(|last| last.comma);
+                list.needless = list.needless.or(last);
+                return Some(list);
             }
             if word == "," {
                 let comma = self.bump();
-                match elements.last_mut() {
+                match list.elements.last_mut() {
                     Some(last) if last.comma.is_none() => last.comma = Some(comma),
-                    _ => needless = needless.or(Some(comma)),
+                    _ => list.needless = list.needless.or(Some(comma)),
                 }
             } else if self.ends_list() {
-                let is_plain = gaps.is_empty() && needless.is_none() && !is_value_next;
-                let is_fixed = is_plain && count.contains(&elements.len());
-                self.unclosed(open, close, is_fixed);
-                let span = open.to(self.behind());
-                return is_fixed.then_some(List {
-                    elements,
-                    span,
-                    is_round: true,
-                    gaps,
-                    needless,
-                });
+                let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
+                let fits = is_whole && count.contains(&list.elements.len());
+                self.unclosed(open, close, fits);
+                list.span = open.to(self.behind());
+                list.is_round = true;
+                return fits.then_some(list);
             } else {
                 if !is_value_next {
-                    gaps.push(elements.len());
+                    list.gaps.push(list.elements.len());
                 }
                 let at = self.last_end;
                 let value = self.expression();
                 if self.last_end == at {
                     self.bump();
                 }
-                elements.push(Element { value, comma: None });
+                list.elements.push(Element { value, comma: None });
             }
         }
     }
@@ -220,7 +195,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    fn unclosed(&mut self, open: Span, close: &str, is_fixed: bool) {
+    fn unclosed(&mut self, open: Span, close: &str, fits: bool) {
         let (word, at) = (self.word(0), self.last_end);
         // A field's name behind which no value stands does not end a list, nor does a sign.
         let is_end = matches!(word, "" | "}") || (self.is_name(0) && self.starts_value(1));
@@ -228,96 +203,53 @@ impl<'s> Recovery<'_, 's> {
             "" => "at the end".to_owned(),
             word => format!("before `{}`", shorten(word)),
         };
-        let fix = (is_fixed && is_end).then(|| match close {
-            ")" => Fix::new(
-                format!("write `)` {before}"),
-                [Edit::insert(self.id, at, ")")],
-            ),
-            _ => Fix::new(
-                format!("write `(…)` {before}"),
-                [Edit::new(open, "("), Edit::insert(self.id, at, ")")],
-            ),
+        let end = Edit::insert(self.id, at, ")");
+        let fix = (fits && is_end).then(|| match close {
+            ")" => Fix::new(format!("write `)` {before}"), [end]),
+            _ => Fix::new(format!("write `(…)` {before}"), [Edit::new(open, "("), end]),
         });
-        let message = "a parenthesis is never closed";
-        self.problems.push(
-            problem("unclosed_parenthesis", message, open, "opened here")
-                .with_fix_or(fix, "write `)` where it ends"),
-        );
+        self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }
 
     /// The values of a list, if it is known how many they are.
-    fn checked(
-        &mut self,
-        list: List<'s>,
-        count: &RangeInclusive<usize>,
-    ) -> Option<Vec<Element<'s>>> {
-        let fits = count.contains(&list.elements.len());
+    fn checked(&mut self, list: List<'s>, count: &Count) -> Option<Vec<Element<'s>>> {
+        let elements = list.elements;
+        let fits = count.contains(&elements.len());
         if let Some(comma) = list.needless {
-            self.comma_without_value(comma, fits);
-            return fits.then_some(list.elements);
+            let fix = self.remove("remove this comma", comma);
+            match fits {
+                true => self.report(&say::NEEDLESS_COMMA, comma, &[], fix),
+                false => self.report(&say::MISSING_PART, comma, &[], None),
+            }
+            return fits.then_some(elements);
         }
         let Some(&first) = list.gaps.first() else {
-            return Some(list.elements);
+            return Some(elements);
         };
-        let elements = list.elements;
+        let (left, right) = (&elements.get(first - 1)?.value, &elements.get(first)?.value);
         if elements
             .iter()
             .any(|element| element.value.kind == ValueKind::Bad)
         {
             return None;
         }
-        let (left, right) = (elements.get(first - 1)?, elements.get(first)?);
-        if !fits && is_plain_number(&left.value) && self.is_factor(&right.value) {
-            self.product(left.value.clone(), right.value.clone());
+        if !fits && is_plain_number(left) && self.is_factor(right) {
+            self.missing_between(left.clone(), right.clone());
             return None;
         }
-        let (l, r) = (self.short(left.value.span), self.short(right.value.span));
-        let message = format!("a comma is missing between `{l}` and `{r}`");
-        let span = right.value.span;
+        let (l, r) = (self.short(left.span), self.short(right.span));
         let fix = fits.then(|| {
             let before = list.gaps.iter().filter_map(|&gap| elements.get(gap - 1));
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
-            let texts: Vec<String> = elements.iter().map(|e| self.short(e.value.span)).collect();
-            Fix::new(format!("write `({})`", shorten(&texts.join(", "))), edits)
+            Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        let help = "write a comma or an operator between them, or take one away";
-        self.problems.push(
-            problem(
-                "missing_comma",
-                message,
-                span,
-                "a comma should stand before this",
-            )
-            .with_fix_or(fix, help),
-        );
+        self.report(&say::MISSING_COMMA, right.span, &[&l, &r], fix);
         fits.then_some(elements)
-    }
-
-    fn comma_without_value(&mut self, comma: Span, fits: bool) {
-        let found = match fits {
-            true => {
-                let label = "no value stands on one side of it";
-                let edit = Edit::remove_in(comma, self.text);
-                let mut found =
-                    problem("needless_comma", "this comma is one too many", comma, label)
-                        .with_help("take it away; a comma stands between two values only")
-                        .with_fix(Fix::new("remove this comma", [edit]));
-                found.is_needless = true;
-                found
-            }
-            false => {
-                let message = "a value is missing beside this comma";
-                problem("missing_value", message, comma, "something is missing here")
-                    .with_help("write a value on both sides of it, such as `(1, 0, 3)`")
-            }
-        };
-        self.problems.push(found);
     }
 
     /// A list in other brackets.
     fn brackets(&mut self, list: List<'s>) -> Value<'s> {
-        let span = list.span;
-        let takes = self.within.takes;
+        let (span, takes) = (list.span, self.within.takes);
         let (what, function, count) = match takes {
             Some(Type::Color) => ("a colour", "rgb", 3),
             Some(Type::Colors) => ("a pair of colours", "", 2),
@@ -326,43 +258,38 @@ impl<'s> Recovery<'_, 's> {
         let fits = list.elements.len() == count && list.needless.is_none();
         let values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
         let right = format!("{function}({})", self.list_of(&values));
-        let message = format!("{what} stands in round parentheses");
-        let help = self.example();
-        self.problems.push(
-            problem("brackets", message, span, "not in these")
-                .with_fix_or(fits.then(|| replace(span, right)), help),
-        );
-        match (fits, function) {
-            (false, _) => bad(span),
-            (true, "") => Value {
-                kind: ValueKind::Tuple(super::values::elements(values)),
-                span,
-            },
-            (true, text) => {
-                self.call_of(Name { text, span }, super::values::elements(values), span)
-            }
+        let fix = fits.then(|| replace(span, right));
+        self.report(&say::BRACKETS, span, &[what, example(takes)], fix);
+        let kind = ValueKind::Tuple(elements(values.clone()));
+        match function {
+            _ if !fits => bad(span),
+            "" => Value { kind, span },
+            text => self.call_of(Name { text, span }, elements(values), span),
         }
     }
 
     /// `(3, 3,5, 8)`: a comma right between two digits, where blanks follow the others.
     fn decimal_comma(&mut self, elements: &[Element<'s>]) -> bool {
-        let is_number = |value: &Value<'s>| matches!(value.kind, ValueKind::Number(_));
-        let tight = elements.windows(2).filter_map(|pair| {
-            let [a, b] = pair else { return None };
-            let comma = a.comma?;
-            let gap = b.value.span.start - a.value.span.end;
-            (gap == 1 && is_number(&b.value)).then_some((a.value.span, comma, b.value.span))
-        });
-        let tight: Vec<(Span, Span, Span)> = tight.collect();
-        let &[(left, comma, right)] = tight.as_slice() else {
+        let is_tight = |pair: &[Element<'s>]| match pair {
+            [a, b] => {
+                let (left, right) = (a.value.span, b.value.span);
+                let is_near = a.comma.is_some() && right.start == left.end + 1;
+                let (head, rest) = (self.written(left), self.written(right));
+                let is_fraction = rest.bytes().all(|byte| byte.is_ascii_digit());
+                let is_whole = is_plain_number(&a.value) && !head.contains('.');
+                (is_near && is_fraction && is_whole).then_some((left, right))
+            }
+            _ => None,
+        };
+        let tight: Vec<(Span, Span)> = elements.windows(2).filter_map(is_tight).collect();
+        let (4, &[(left, right)]) = (elements.len(), tight.as_slice()) else {
             return false;
         };
-        let number = format!("{}.{}", self.written(left), self.written(right));
-        let fix = Fix::new(format!("write `{number}`"), [Edit::new(comma, ".")]);
+        let comma = Span::new(self.id, left.end, right.start);
+        let title = format!("write `{}.{}`", self.written(left), self.written(right));
         let message = "a decimal point is written `.`, not `,`";
-        let label = "a comma separates the parts of a vector";
-        self.problems
-            .push(problem("decimal_comma", message, comma, label).with_fix(fix));
+        let fix = Fix::new(title, [Edit::new(comma, ".")]);
+        self.report(&say::DECIMAL_COMMA, comma, &[message], fix);
         true
     }
 }

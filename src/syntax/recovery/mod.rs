@@ -19,8 +19,8 @@ mod values;
 use std::collections::BTreeMap;
 
 use super::{
-    Parsed,
-    problem::{problem, shorten, times},
+    Parsed, messages as say,
+    problem::{Message, shorten, times},
     scan::Scan,
     tokens::{Lexer, Token, TokenKind},
     tree::{Item, Name, Tree, Value, ValueKind, bad},
@@ -50,7 +50,7 @@ pub struct Recovery<'w, 's> {
     /// What was wrong so far.
     pub(super) problems: Vec<Diagnostic>,
     /// Comments of other languages.
-    comments: Vec<foreign::Comment>,
+    comments: Vec<Span>,
     /// Where a mistake took the rest of the text.
     cut: Option<usize>,
     /// Where the item ended that was read here last.
@@ -159,15 +159,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.last_end = start;
         if self.kind(0) == TokenKind::End {
             let span = Span::new(self.id, start.saturating_sub(1), start);
-            self.problems.push(
-                problem(
-                    "missing_value",
-                    "this `--set` gives no value",
-                    span,
-                    "a value should follow",
-                )
-                .with_help("write a value after the `=`"),
-            );
+            self.report(&say::SET_WITHOUT_VALUE, span, &[], None);
             return bad(Span::new(self.id, start, start));
         }
         let told = self.problems.len();
@@ -183,10 +175,9 @@ impl<'w, 's> Recovery<'w, 's> {
     /// All that was read, with what the scan found.
     pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
         self.report_slips(self.problems.len());
-        self.report_comments();
         let mut parsed = Parsed {
             tree: Tree { items: self.items },
-            comments: self.comments.iter().map(|comment| comment.whole).collect(),
+            comments: self.comments,
             problems: self.problems,
             cut: self.cut,
         };
@@ -347,15 +338,31 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    fn unexpected(&mut self, expected: &str, help: impl Into<String>) {
+    // Problems.
+
+    fn report(
+        &mut self,
+        message: &Message,
+        span: Span,
+        words: &[&str],
+        fix: impl Into<Option<Fix>>,
+    ) {
+        self.problems.push(message.at(span, words, fix));
+    }
+
+    fn unexpected(&mut self, expected: &str, help: &str) {
         let span = self.here();
         let written = match self.written(span) {
             "" => "the end of the file".to_owned(),
             written => shorten(written),
         };
-        let message = format!("expected {expected}, found `{written}`");
-        self.problems
-            .push(problem("unexpected", message, span, "not here").with_help(help));
+        let mut found = say::UNEXPECTED.at(span, &[expected, &written], None);
+        found.help = Some(help.to_owned());
+        self.problems.push(found);
+    }
+
+    fn remove(&self, title: impl Into<String>, span: Span) -> Fix {
+        Fix::new(title, [Edit::remove_in(span, self.text)])
     }
 
     /// Where different slips are found since so many, none of their fixes is sure.
@@ -372,15 +379,20 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    // Signs that are not needed.
+    // Signs that are not needed, and those of comments in other languages: one report in a block for all of a kind.
 
-    /// A `,` or `;` between fields or items, a `=` or `:` behind a field's name.
-    fn needless(&mut self, sign: Span) {
+    /// Takes a `,` or `;` between fields or items.
+    fn separator(&mut self) {
+        let sign = self.bump();
+        self.slip(sign);
+    }
+
+    fn slip(&mut self, sign: Span) {
         let word = self.written(sign);
         self.within.slips.entry(word).or_default().push(sign);
     }
 
-    /// One report for all of a kind. Where a problem since so many has no fix, it is doubtful what the signs belong to.
+    /// Where a problem since so many has no fix, it is doubtful what the signs belong to.
     fn report_slips(&mut self, told: usize) {
         let since = self.problems.get(told..).unwrap_or_default();
         let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty());
@@ -393,22 +405,24 @@ impl<'w, 's> Recovery<'w, 's> {
                 continue;
             };
             let it = if places.len() > 1 { "them" } else { "it" };
-            let more = times(places.len() - 1);
-            let edits = places
+            let removed = places
                 .iter()
                 .map(|place| Edit::remove_in(*place, self.text));
-            let mut found = if matches!(sign, "=" | ":") {
-                let message = format!("a field takes its value without `{sign}`{more}");
-                problem("needless_equals", message, first, "not needed")
-                    .with_fix(Fix::new(format!("take {it} away"), edits))
-            } else {
-                let message = format!("no `{sign}` stands between {between}{more}");
-                let title = format!("take {it} away; white space separates {between}");
-                problem("needless_separator", message, first, "not needed")
-                    .with_fix(Fix::new(title, edits))
+            let (message, fix) = match sign {
+                "=" | ":" => (
+                    &say::NEEDLESS_EQUALS,
+                    Fix::new(format!("take {it} away"), removed),
+                ),
+                "," | ";" => {
+                    let title = format!("take {it} away; white space separates {between}");
+                    (&say::NEEDLESS_SEPARATOR, Fix::new(title, removed))
+                }
+                _ => (&say::COMMENT_SIGN, self.with_right_signs(&places)),
             };
-            found.is_needless = true;
-            if is_doubtful {
+            let words = [sign, &times(places.len() - 1), between];
+            let mut found = message.at(first, &words, fix);
+            found.is_needless = matches!(sign, "=" | ":" | "," | ";");
+            if is_doubtful && found.is_needless {
                 found.fixes.clear();
             }
             self.problems.push(found);

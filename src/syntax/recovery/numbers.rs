@@ -2,35 +2,32 @@
 
 use super::Recovery;
 use crate::{
-    diagnostic::Fix,
     schema::Type,
     source::Span,
     syntax::{
-        problem::{problem, replace, shorten},
-        tokens::{TokenKind, numeric_part},
+        messages as say,
+        problem::{replace, shorten},
+        tokens::numeric_part,
         tree::{Unit, Value, ValueKind, bad, number},
     },
 };
 
 /// What people write for a unit, how much of the right one it is, and that one: nothing for a length, which is in metres.
-const UNITS: &[(&[&str], f64, &str)] = &[
-    (&["°", "deg", "degs", "degree", "degrees"], 1.0, "deg"),
-    (&["rad", "rads", "radian", "radians"], 1.0, "rad"),
-    (&["grad", "grads", "gon"], 0.9, "deg"),
-    (&["m", "metre", "metres", "meter", "meters"], 1.0, ""),
-    (&["px", "pixel", "pixels"], 1.0, ""),
-    (&["cm"], 0.01, ""),
-    (&["mm"], 0.001, ""),
-    (&["km"], 1000.0, ""),
-    (&["ft", "feet", "foot"], 0.3048, ""),
-    (&["in", "inch", "inches"], 0.0254, ""),
+const UNITS: &[(&str, f64, &str)] = &[
+    ("° deg degs degree degrees", 1.0, "deg"),
+    ("rad rads radian radians", 1.0, "rad"),
+    ("grad grads gon", 0.9, "deg"),
+    ("m metre metres meter meters px pixel pixels", 1.0, ""),
+    ("cm", 0.01, ""),
+    ("mm", 0.001, ""),
+    ("km", 1000.0, ""),
+    ("ft feet foot", 0.3048, ""),
+    ("in inch inches", 0.0254, ""),
 ];
 
 fn unit_of(written: &str) -> Option<(f64, &'static str)> {
-    let written = written.to_ascii_lowercase();
-    let row = UNITS
-        .iter()
-        .find(|(words, ..)| words.contains(&written.as_str()));
+    let is_it = |word: &str| word.eq_ignore_ascii_case(written);
+    let row = UNITS.iter().find(|(words, ..)| words.split(' ').any(is_it));
     row.map(|&(_, factor, unit)| (factor, unit))
 }
 
@@ -51,27 +48,22 @@ impl<'s> Recovery<'_, 's> {
         let span = self.bump();
         let digits = numeric_part(written);
         let unit = written.get(digits.len()..).unwrap_or_default();
-        if unit.is_empty() {
-            let next = self.word(0);
-            let is_apart = next == "°"
-                || (self.kind(0) == TokenKind::Name
-                    && !self.is_on_new_line(0)
-                    && !self.is_field_name(next)
-                    && !self.words.is_let(next));
-            if is_apart && let Some(right) = unit_of(next) {
-                let behind = self.bump();
-                return self.with_unit(digits, next, right, span.to(behind), behind);
-            }
+        let next = self.word(0);
+        let is_apart = unit.is_empty()
+            && (next == "°" || (self.is_name(0) && !self.is_on_new_line(0)))
+            && !self.is_field_name(next)
+            && !self.words.is_let(next);
+        if is_apart && let Some(right) = unit_of(next) {
+            let behind = self.bump();
+            return self.with_unit(digits, right, span.to(behind), behind);
         }
         if matches!(unit, "" | "deg" | "rad") {
-            return Value {
-                kind: number(written),
-                span,
-            };
+            let kind = number(written);
+            return Value { kind, span };
         }
         let behind = Span::new(self.id, span.start + digits.len(), span.end);
         match unit_of(unit).filter(|_| !self.words.is_let(unit)) {
-            Some(right) => self.with_unit(digits, unit, right, span, behind),
+            Some(right) => self.with_unit(digits, right, span, behind),
             None => self.odd_number(written, digits, span, behind),
         }
     }
@@ -80,93 +72,74 @@ impl<'s> Recovery<'_, 's> {
     fn with_unit(
         &mut self,
         digits: &'s str,
-        unit: &str,
         (factor, right): (f64, &str),
         whole: Span,
         behind: Span,
     ) -> Value<'s> {
-        let takes = self.within.takes;
-        let fits = match right {
-            "" => matches!(takes, None | Some(Type::Number)),
-            _ => matches!(takes, None | Some(Type::Angle)),
-        };
-        let text = scaled(digits, factor).map(|number| format!("{number}{right}"));
-        let fix = text.filter(|_| fits).map(|text| replace(whole, text));
-        let is_spaced =
-            !right.is_empty() && unit != "°" && whole.end - whole.start > digits.len() + unit.len();
-        let found = if is_spaced {
-            let place = if unit == right { whole } else { behind };
-            let message = "a unit stands right behind its number";
-            problem("spaced_unit", message, place, "no space between the two")
-        } else {
-            let message = format!("`{}{}` is no number", shorten(digits), shorten(unit));
-            let label = match right {
-                "" => format!("`{unit}` is no unit; only angles have one"),
-                _ => format!("`{unit}` is no unit"),
-            };
-            problem("bad_number", message, behind, label)
-        };
-        let help = match right {
-            "" if fits => format!("{}; all lengths are in metres", title(fix.as_ref())),
-            "" => "only angles have a unit, such as `30deg`".to_owned(),
-            _ if fits => title(fix.as_ref()),
-            _ => format!("write an angle as `30{right}`"),
-        };
-        let found = found.with_help(help);
-        self.problems.push(match fix {
-            Some(fix) => found.with_fix(fix),
-            None => found,
-        });
-        let kind = match right {
-            _ if !fits || factor != 1.0 => ValueKind::Bad,
-            "" => ValueKind::Number(digits),
-            _ => ValueKind::Angle {
-                number: digits,
-                unit: if right == "deg" {
+        let unit = self.written(behind);
+        let (fits, kind, label) = match (right, self.within.takes) {
+            ("", None | Some(Type::Number)) => {
+                (true, ValueKind::Number(digits), "all lengths are in metres")
+            }
+            (_, None | Some(Type::Angle)) if !right.is_empty() => {
+                let is_degrees = right == "deg";
+                let unit = if is_degrees {
                     Unit::Degrees
                 } else {
                     Unit::Radians
-                },
-            },
+                };
+                (
+                    true,
+                    ValueKind::Angle {
+                        number: digits,
+                        unit,
+                    },
+                    "the units are `deg` and `rad`",
+                )
+            }
+            _ => (
+                false,
+                ValueKind::Bad,
+                "only angles have a unit, such as `30deg`",
+            ),
         };
+        let text = scaled(digits, factor).filter(|_| fits);
+        let fix = text.map(|number| replace(whole, format!("{number}{right}")));
+        if !right.is_empty() && unit != "°" && behind.start > whole.start + digits.len() {
+            let place = if unit == right { whole } else { behind };
+            self.report(&say::SPACED_UNIT, place, &[label], fix);
+        } else {
+            let written = shorten(&format!("{digits}{unit}"));
+            self.report(&say::BAD_NUMBER, behind, &[&written, label], fix);
+        }
+        let kind = if factor == 1.0 { kind } else { ValueKind::Bad };
         Value { kind, span: whole }
     }
 
     /// What starts as a number does and is none.
-    fn odd_number(
-        &mut self,
-        written: &'s str,
-        digits: &str,
-        span: Span,
-        behind: Span,
-    ) -> Value<'s> {
+    fn odd_number(&mut self, written: &str, digits: &str, span: Span, behind: Span) -> Value<'s> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
         let is_hex = hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
         let takes = self.within.takes;
-        let takes_number = matches!(takes, None | Some(Type::Number));
         let tight = written.replace('_', "");
-        let is_tight = numeric_part(&tight) == tight;
-        let (label, fix, place) = if self.words.is_factor(unit) {
-            let product = format!("{digits} * {unit}");
-            let fix = takes_number.then(|| replace(span, product));
-            ("an operator is missing before this", fix, behind)
+        let (label, right, place) = if self.words.is_factor(unit) {
+            let takes_number = matches!(takes, None | Some(Type::Number));
+            let product = takes_number.then(|| format!("{digits} * {unit}"));
+            ("an operator is missing before this", product, behind)
         } else if is_hex && takes == Some(Type::Color) {
-            let fix = replace(span, format!("#{hex}"));
-            ("the digits of a colour stand behind a `#`", Some(fix), span)
+            let label = "the digits of a colour stand behind a `#`";
+            (label, Some(format!("#{hex}")), span)
         } else if let Some(sizes) = self.sizes(written) {
-            ("`x` is no operator", Some(replace(span, sizes)), span)
-        } else if is_tight {
-            let fix = replace(span, tight);
-            ("a `_` stands between two digits only", Some(fix), span)
+            ("`x` is no operator", Some(sizes), span)
+        } else if numeric_part(&tight) == tight {
+            ("a `_` stands between two digits only", Some(tight), span)
         } else {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        let message = format!("`{}` is no number", shorten(written));
-        let help = "write a number such as `2`, `0.5` or `1e-3`";
-        self.problems
-            .push(problem("bad_number", message, place, label).with_fix_or(fix, help));
+        let fix = right.map(|right| replace(span, right));
+        self.report(&say::BAD_NUMBER, place, &[&shorten(written), label], fix);
         bad(span)
     }
 
@@ -185,8 +158,4 @@ impl<'s> Recovery<'_, 's> {
             _ => None,
         }
     }
-}
-
-fn title(fix: Option<&Fix>) -> String {
-    fix.map_or_else(|| "write it without".to_owned(), |fix| fix.title.clone())
 }
