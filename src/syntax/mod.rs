@@ -19,6 +19,7 @@ mod grammar;
 #[rustfmt::skip]
 mod messages;
 mod parser;
+mod parts;
 mod problem;
 mod recovery;
 mod scan;
@@ -26,7 +27,8 @@ pub mod tokens;
 pub mod tree;
 mod words;
 
-pub use parser::{parse, parse_in_parts, parse_unless, parse_value};
+pub use parser::{parse, parse_unless, parse_value};
+pub use parts::parse_in_parts;
 pub use problem::{field_without_value, invalid_utf8, shorten, utf16};
 pub use tree::Tree;
 

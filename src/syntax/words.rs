@@ -13,10 +13,7 @@ use super::{
 use crate::schema::{self, Condition, Type, predefined};
 
 /// Functions of other languages that stand for a vector or a colour.
-const FOREIGN_FUNCTIONS: &[&str] = &[
-    "vec", "vec3", "Vec3", "vector", "Vector", "vector3", "Vector3", "point", "Point", "point3",
-    "Point3", "Point3D", "Vector3D", "rgba", "color", "Color",
-];
+const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vector3D point Point point3 Point3 Point3D rgba color Color";
 
 /// The words of the language and of a text.
 #[derive(Debug)]
@@ -121,7 +118,7 @@ impl<'s> Words<'s> {
 
     /// Whether a function of another language stands for a vector or a colour.
     pub fn is_foreign_function(&self, name: &str) -> bool {
-        FOREIGN_FUNCTIONS.contains(&name) && !self.is_let(name)
+        FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
     /// Whether a field that follows the grammar may have been meant otherwise: its block does not know it, its value is the

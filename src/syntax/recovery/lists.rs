@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Recovery, example, foreign::Place, is_plain_number, values::elements};
+use super::{Recovery, example, foreign::Place, is_plain_number, joined::elements};
 use crate::{
     diagnostic::{Edit, Fix},
     schema::Type,

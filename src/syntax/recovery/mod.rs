@@ -1,7 +1,7 @@
 //! Reads an item that does not follow the grammar.
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for each slip. A reader by
-//! recursive descent over the lexer's tokens: items stand in `items`, fields in `fields`, values in `values` and `lists`,
+//! recursive descent over the lexer's tokens: items stand in `items`, fields in `fields`, values in `values`, `joined` and `lists`,
 //! numbers in `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
 //! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace (`resync`).
@@ -12,6 +12,7 @@
 mod fields;
 mod foreign;
 mod items;
+mod joined;
 mod lists;
 mod numbers;
 mod values;

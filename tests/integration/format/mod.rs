@@ -147,11 +147,11 @@ fn little_texts() {
         ("let a=-// minus\n3", "let a = -  // minus\n  3\n"),
         (
             "let a=max(// c\n1,2/* d */)",
-            "let a = max(  // c\n  1,\n  2  /* d */\n)\n",
+            "let a = max(  // c\n  1, 2 /* d */)\n",
         ),
-        ("let a=f(\n/* c */\n)", "let a = f(\n  /* c */\n)\n"),
+        ("let a=f(\n/* c */\n)", "let a = f(\n  /* c */)\n"),
         ("let a=(1,/* c */\n2,3)", "let a = (1, /* c */ 2, 3)\n"),
-        ("let a=(1 // c\n)", "let a = (\n  1  // c\n)\n"),
+        ("let a=(1 // c\n)", "let a = (1  // c\n  )\n"),
         ("box A{min a max(b)}", "box A { min a  max (b) }\n"),
     ];
     for (text, expected) in cases {
