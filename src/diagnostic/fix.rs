@@ -7,11 +7,6 @@ pub trait Fixable: miette::Diagnostic {
     /// The ways out that are edits, the likeliest first. None of them needs another one.
     fn fixes(&self, sources: &Sources) -> Vec<Fix>;
 
-    /// Whether what stands at the first label could be left out without any change of meaning.
-    fn is_needless(&self) -> bool {
-        false
-    }
-
     /// Whether the text cannot be taken apart, whatever its names mean.
     fn is_of_syntax(&self) -> bool;
 }

@@ -56,7 +56,7 @@ impl Message {
                 message: filled(self.label),
             }],
             fixes,
-            is_needless: false,
+            is_needless: self.code.starts_with("needless") || self.code == "plus_sign",
             is_of_syntax: true,
         }
     }

@@ -307,6 +307,7 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
         }
         let mut fix = None;
+        block.bad.push(open);
         if is_field(self) {
             self.body(&mut block, close);
             // Where nothing closes it, it is not known where it ends.
@@ -317,6 +318,9 @@ impl<'s> Recovery<'_, 's> {
         } else {
             let from = self.here();
             while !self.is_on_new_line(0) && !matches!(self.word(0), "{" | "}" | "let") {
+                self.bump();
+            }
+            if self.is(0, "}") && !self.is_on_new_line(0) {
                 self.bump();
             }
             block.bad.push(from.to(self.behind()));

@@ -152,7 +152,10 @@ impl<'s> Recovery<'_, 's> {
                 list.needless = list.needless.or(last);
                 return Some(list);
             }
-            if word == "," {
+            if word == "," || (word == ";" && !is_value_next) {
+                if word == ";" {
+                    self.unexpected("`,`", "write a comma between the parts of a list");
+                }
                 let comma = self.bump();
                 match list.elements.last_mut() {
                     Some(last) if last.comma.is_none() => last.comma = Some(comma),

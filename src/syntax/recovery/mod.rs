@@ -422,7 +422,6 @@ impl<'w, 's> Recovery<'w, 's> {
             };
             let words = [sign, &times(places.len() - 1), between];
             let mut found = message.at(first, &words, fix);
-            found.is_needless = matches!(sign, "=" | ":" | "," | ";");
             if is_doubtful && found.is_needless {
                 found.fixes.clear();
             }

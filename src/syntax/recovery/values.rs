@@ -81,14 +81,14 @@ impl<'s> Recovery<'_, 's> {
 
     /// Whether what stands behind some values belongs to them.
     fn goes_on(&mut self, values: &[Value<'s>]) -> bool {
-        let (word, is_new) = (self.word(0), self.is_on_new_line(0));
+        let (word, next, is_new) = (self.word(0), self.word(1), self.is_on_new_line(0));
         match self.kind(0) {
             _ if is_new && !self.within.is_block => false,
             TokenKind::Name => {
                 // The words of a colour or a method, written apart.
                 let is_words = matches!(self.within.takes, Some(Type::Color | Type::Method))
                     && are_names(values)
-                    && !self.starts_value(1);
+                    && (!self.starts_value(1) || self.is_field_name(next));
                 !is_new
                     && word != "let"
                     && !self.is_field_name(word)
@@ -150,7 +150,9 @@ impl<'s> Recovery<'_, 's> {
         loop {
             self.comments(Place::Operator);
             let written = self.word(0);
-            if self.too_deep || !signs.contains(&written) {
+            // An operator without a value before it may have been passed over: then its product goes on.
+            let is_rest = left.kind == ValueKind::Bad && PRODUCT.contains(&written);
+            if self.too_deep || !(is_rest || signs.contains(&written)) {
                 return left;
             }
             let sign = self.bump();
