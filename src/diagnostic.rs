@@ -101,7 +101,6 @@ impl Diagnostic {
     pub fn fixable(problem: &impl Fixable, sources: &Sources) -> Self {
         Self {
             fixes: problem.fixes(sources),
-            is_needless: problem.is_needless(),
             is_of_syntax: problem.is_of_syntax(),
             ..Self::from_problem(problem, sources)
         }

@@ -7,11 +7,6 @@ pub trait Fixable: miette::Diagnostic {
     /// The ways out that are edits, the likeliest first. None of them needs another one.
     fn fixes(&self, sources: &Sources) -> Vec<Fix>;
 
-    /// Whether what stands at the first label could be left out without any change of meaning.
-    fn is_needless(&self) -> bool {
-        false
-    }
-
     /// Whether the text cannot be taken apart, whatever its names mean.
     fn is_of_syntax(&self) -> bool;
 }
@@ -161,8 +156,12 @@ impl Edit {
     /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the blanks on one side too.
     /// What stood on both sides of it stays apart.
     pub fn remove(span: Span, sources: &Sources) -> Self {
+        Self::remove_in(span, sources.get(span.source).text())
+    }
+
+    /// The same in a text.
+    pub fn remove_in(span: Span, text: &str) -> Self {
         let Span { source, start, end } = span;
-        let text = sources.get(source).text();
         let (before, after) = (
             text.get(..start).unwrap_or_default(),
             text.get(end..).unwrap_or_default(),

@@ -7,7 +7,7 @@ use super::{
     words::{Before, Gap, Reader, Word, width},
 };
 use crate::{
-    source::Source,
+    source::{Source, Span},
     syntax::{
         Parsed,
         tree::{self, Item},
@@ -89,7 +89,7 @@ impl Entry<'_> {
 pub fn of_file<'s>(source: &'s Source, parsed: &Parsed<'_>) -> Vec<Entry<'s>> {
     let mut reader = Reader::new(source, &parsed.comments);
     let end = source.text().len();
-    let (entries, _) = reader.entries(&parsed.tree.items, In::File, end, Reader::item);
+    let (entries, _) = reader.entries(&parsed.tree.items, In::File, end, Item::span, Reader::item);
     entries
 }
 
@@ -100,36 +100,20 @@ enum In {
     Block,
 }
 
-/// What entries are made of.
-trait Node {
-    fn start(&self) -> usize;
-}
-
-impl Node for Item<'_> {
-    fn start(&self) -> usize {
-        self.span().start
-    }
-}
-
-impl Node for tree::Field<'_> {
-    fn start(&self) -> usize {
-        self.span.start
-    }
-}
-
 impl<'s> Reader<'_, 's> {
     /// The entries up to an offset, and the comments behind the `{` before them.
-    fn entries<N: Node>(
+    fn entries<N>(
         &mut self,
         nodes: &[N],
         place: In,
         end: usize,
+        span: fn(&N) -> Span,
         what: fn(&mut Self, &N) -> Option<What<'s>>,
     ) -> (Vec<Entry<'s>>, Vec<&'s str>) {
         let mut entries = Vec::with_capacity(nodes.len());
         let mut after_open = Vec::new();
         for node in nodes {
-            let gap = self.gap(node.start());
+            let gap = self.gap(span(node).start);
             let breaks = gap.breaks;
             let lines = comments(gap, place, &mut entries, &mut after_open);
             let (blank, leading) = match lines {
@@ -168,7 +152,7 @@ impl<'s> Reader<'_, 's> {
         let equals = definition.equals?;
         let before = self.comments(equals.start, Before::Space, &mut head);
         self.token(equals, before, &mut rest);
-        self.value(&definition.value, Before::Space, &mut rest);
+        self.value(&definition.value, Before::Space, 0, &mut rest);
         Some(What::Definition(head, rest))
     }
 
@@ -185,8 +169,13 @@ impl<'s> Reader<'_, 's> {
         let open_on_new_line = self.comments(open.start, Before::Space, &mut head) == Before::Line;
         self.skip(open);
         let is_on_one_line = !self.has_line_end(open.end, close.start);
-        let (entries, after_open) =
-            self.entries(&block.fields, In::Block, close.start, Self::field);
+        let (entries, after_open) = self.entries(
+            &block.fields,
+            In::Block,
+            close.start,
+            |f| f.span,
+            Self::field,
+        );
         self.skip(close);
         // ` { `, ` }`, and two blanks between two fields.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
@@ -208,7 +197,7 @@ impl<'s> Reader<'_, 's> {
     fn field(&mut self, field: &tree::Field<'_>) -> Option<What<'s>> {
         let (mut name, mut value) = (Vec::new(), Vec::new());
         self.token(field.name.span, Before::Nothing, &mut name);
-        self.value(&field.value, Before::Space, &mut value);
+        self.value(&field.value, Before::Space, 0, &mut value);
         Some(What::Field(name.last()?.text, value))
     }
 }

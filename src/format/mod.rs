@@ -21,7 +21,7 @@ use crate::{
     scene,
     source::{Source, SourceId, Sources},
     syntax::{
-        self, Parsed, Problem,
+        self, Parsed,
         tree::{Item, Name, Tree, ValueKind},
     },
 };
@@ -71,19 +71,17 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| label.span);
         let told: HashSet<_> = mistakes.iter().map(place).collect();
         let problems = survey.parsed.problems.iter();
-        let all = problems.map(|problem| Diagnostic::fixable(problem, &sources));
-        mistakes.extend(all.filter(|diagnostic| !told.contains(&place(diagnostic))));
+        mistakes.extend(
+            problems
+                .filter(|found| !told.contains(&place(found)))
+                .cloned(),
+        );
         diagnostic::sort(&mut mistakes);
     }
     if mistakes.is_empty() {
         // A field that its block does not know is reported for that alone; so is one for a word that belongs to its neighbour.
-        mistakes.extend(without_value(&survey.parsed.tree).map(|name| {
-            let problem = Problem::FieldWithoutValue {
-                name: name.text.to_owned(),
-                span: name.span,
-            };
-            Diagnostic::from_problem(&problem, &sources)
-        }));
+        let missing = without_value(&survey.parsed.tree);
+        mistakes.extend(missing.map(|name| syntax::field_without_value(name.text, name.span)));
     }
     mistakes
 }

@@ -39,22 +39,22 @@ impl Page {
             line.push(' ');
         }
         let start = column_after(0, &line);
-        let mut margins = Margins::new(indent, indent + INDENT);
+        let margin = indent + INDENT;
         match &entry.what {
             What::Comments => {}
             What::Definition(head, rest) => {
-                self.words(&mut line, head, &mut margins);
+                self.words(&mut line, head, margin);
                 if entry.column > 0 {
                     pad(&mut line, start + entry.column - 1);
                 }
-                self.words(&mut line, rest, &mut margins);
+                self.words(&mut line, rest, margin);
             }
             What::Field(name, value) => {
                 line.push_str(name);
                 if entry.column > 0 {
                     pad(&mut line, start + entry.column - 1);
                 }
-                self.words(&mut line, value, &mut margins);
+                self.words(&mut line, value, margin);
             }
             What::Block(block) => {
                 self.head(&mut line, block, entry.column);
@@ -95,8 +95,8 @@ impl Page {
     }
 
     /// Writes words, with new lines where they have to be and where the line would be too long; the last one goes on.
-    fn words(&mut self, line: &mut String, words: &[Word<'_>], margins: &mut Margins) {
-        let last = self.lines(line, words, margins);
+    fn words(&mut self, line: &mut String, words: &[Word<'_>], margin: usize) {
+        let last = self.lines(line, words, margin);
         push_flat(line, last);
     }
 
@@ -105,11 +105,11 @@ impl Page {
         &mut self,
         line: &mut String,
         words: &'w [Word<'s>],
-        margins: &mut Margins,
+        margin: usize,
     ) -> &'w [Word<'s>] {
         let mut rest = words;
         let mut written = 0;
-        for (start, margin) in line_starts(words, column_after(0, line), margins) {
+        for start in line_starts(words, column_after(0, line), margin) {
             let (these, others) = rest.split_at(start - written);
             self.end_line(std::mem::take(line), these);
             line.extend(std::iter::repeat_n(' ', margin));
@@ -146,11 +146,11 @@ impl Page {
                 line.push_str(name);
             }
             _ if block.open_on_new_line => {
-                let last = self.lines(line, &block.head, &mut Margins::new(0, 0));
+                let last = self.lines(line, &block.head, 0);
                 self.end_line(std::mem::take(line), last);
                 return;
             }
-            _ => self.words(line, &block.head, &mut Margins::new(0, 0)),
+            _ => self.words(line, &block.head, 0),
         }
         line.push(' ');
         if column > 0 {
@@ -234,62 +234,18 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
     }
 }
 
-/// Where the lines of an entry start.
-#[derive(Debug)]
-struct Margins {
-    /// The line that was started last.
-    line: usize,
-    /// The other lines of the entry, where no list has an element a line.
-    others: usize,
-    /// The lines on which the lists around begin that have an element a line.
-    lists: Vec<usize>,
-}
-
-impl Margins {
-    fn new(line: usize, others: usize) -> Self {
-        Self {
-            line,
-            others,
-            lists: Vec::new(),
-        }
-    }
-
-    /// Starts a line with a word, and answers where.
-    fn start(&mut self, before: Before) -> usize {
-        self.line = match before {
-            Before::Element(depth) => {
-                if self.lists.len() < depth {
-                    self.lists.push(self.line);
-                }
-                self.of_elements().unwrap_or(self.others)
-            }
-            // A list without elements opens none.
-            Before::Close(depth) if self.lists.len() < depth => self.line,
-            Before::Close(_) => self.lists.pop().unwrap_or(self.line),
-            _ => self
-                .of_elements()
-                .map_or(self.others, |margin| margin + INDENT),
-        };
-        self.line
-    }
-
-    fn of_elements(&self) -> Option<usize> {
-        self.lists.last().map(|opened| opened + INDENT)
-    }
-}
-
-/// The words that start a line, by their indices, with the lines' margins. A line that is too long is broken where it is
-/// least nested, and there as late as may be.
-fn line_starts(words: &[Word<'_>], start: usize, margins: &mut Margins) -> Vec<(usize, usize)> {
+/// The words that start a line, by their indices. A line that is too long is broken where it is least nested, and there as
+/// late as may be.
+fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;
     let mut best: Option<(usize, usize)> = None;
     let mut index = 0;
     while let Some(word) = words.get(index) {
         match word.before {
-            Before::Line | Before::Element(_) | Before::Close(_) => {
-                column = margins.start(word.before);
-                starts.push((index, column));
+            Before::Line => {
+                column = margin;
+                starts.push(index);
                 best = None;
             }
             Before::Fold(depth) if best.is_none_or(|(least, _)| depth <= least) => {
@@ -303,8 +259,7 @@ fn line_starts(words: &[Word<'_>], start: usize, margins: &mut Margins) -> Vec<(
             && !ends_line(word.text)
             && let Some((_, at)) = best.take()
         {
-            let margin = margins.start(Before::Line);
-            starts.push((at, margin));
+            starts.push(at);
             column = margin + width(&words[at..=at]).saturating_sub(1);
             index = at;
         }

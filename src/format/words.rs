@@ -4,7 +4,7 @@
 
 use crate::{
     source::{Source, Span},
-    syntax::tree::{Element, Operator, Value, ValueKind},
+    syntax::tree::{Value, ValueKind},
 };
 
 /// A token or a comment.
@@ -28,18 +28,6 @@ pub enum Before {
     Fold(usize),
     /// The end of a line, which goes on here.
     Line,
-    /// The end of a line; an element of a list, or a comment beside it, starts here. The number counts the lists around that
-    /// have an element a line.
-    Element(usize),
-    /// The end of a line; the `)` of a list that has an element a line stands here. The number counts as for its elements.
-    Close(usize),
-}
-
-impl Before {
-    /// Whether a line has to end before the word.
-    pub fn is_line_end(self) -> bool {
-        matches!(self, Self::Line | Self::Element(_) | Self::Close(_))
-    }
 }
 
 /// A comment before a token or an end.
@@ -74,8 +62,6 @@ pub struct Gap<'s> {
 pub struct Reader<'a, 's> {
     text: &'s str,
     comments: std::slice::Iter<'a, Span>,
-    /// Where the comments start that end a line or start one.
-    breaking: Vec<usize>,
     at: usize,
 }
 
@@ -85,7 +71,6 @@ impl<'a, 's> Reader<'a, 's> {
         Self {
             text: source.text(),
             comments: comments.iter(),
-            breaking: breaking(source.text(), comments),
             at: source.bom_len(),
         }
     }
@@ -138,7 +123,7 @@ impl<'a, 's> Reader<'a, 's> {
         for comment in &gap.comments {
             let opened = words.last().is_some_and(|word| word.text == "(");
             let before = match comment.breaks {
-                0 if opened => Before::Nothing,
+                0 if opened && !ends_line(comment.text) => Before::Nothing,
                 0 => Before::Space,
                 _ => Before::Line,
             };
@@ -168,22 +153,18 @@ impl<'a, 's> Reader<'a, 's> {
         self.skip(span);
     }
 
-    /// Adds a value.
-    pub fn value(&mut self, value: &Value<'_>, before: Before, words: &mut Vec<Word<'s>>) {
-        self.nested(value, before, Depth::default(), words);
-    }
-
-    fn nested(
+    /// Adds a value with so many parentheses around it.
+    pub fn value(
         &mut self,
         value: &Value<'_>,
         before: Before,
-        depth: Depth,
+        depth: usize,
         words: &mut Vec<Word<'s>>,
     ) {
         match &value.kind {
             ValueKind::Call(call) => {
                 self.token(call.function.span, before, words);
-                let elements = call.arguments.iter().map(of_list);
+                let elements = call.arguments.iter().map(|e| (&e.value, e.comma));
                 self.list(call.parentheses, elements, Before::Nothing, depth, words);
             }
             ValueKind::Parentheses(inner) => {
@@ -191,145 +172,46 @@ impl<'a, 's> Reader<'a, 's> {
                 self.list(value.span, element, before, depth, words);
             }
             ValueKind::Tuple(elements) => {
-                let elements = elements.iter().map(of_list);
+                let elements = elements.iter().map(|e| (&e.value, e.comma));
                 self.list(value.span, elements, before, depth, words);
             }
             ValueKind::Negation { sign, operand } => {
                 self.token(*sign, before, words);
-                self.nested(operand, Before::Nothing, depth, words);
+                self.value(operand, Before::Nothing, depth, words);
             }
             ValueKind::Chain { first, rest } => {
-                self.nested(first, before, depth, words);
+                self.value(first, before, depth, words);
                 for step in rest {
-                    let tight = match step.operator {
-                        Operator::Add | Operator::Subtract => 0,
-                        Operator::Multiply | Operator::Divide => 1,
-                    };
-                    self.token(step.sign, Before::Fold(depth.parentheses + tight), words);
-                    self.nested(&step.operand, Before::Space, depth, words);
+                    // A sum is broken before a product.
+                    let tightness = 2 * depth + usize::from(step.operator.is_of_product());
+                    self.token(step.sign, Before::Fold(tightness), words);
+                    self.value(&step.operand, Before::Space, depth, words);
                 }
             }
             _ => self.token(value.span, before, words),
         }
     }
 
-    /// Adds a list in its parentheses, with an element a line if there is a comment in it that ends a line or starts one.
     fn list<'v>(
         &mut self,
         parentheses: Span,
         elements: impl Iterator<Item = (&'v Value<'v>, Option<Span>)>,
         before: Before,
-        mut depth: Depth,
+        depth: usize,
         words: &mut Vec<Word<'s>>,
     ) {
-        let (open, close) = ends(parentheses);
-        self.token(open, before, words);
-        let is_open = self.is_broken(parentheses);
-        depth.parentheses += 2;
-        depth.open += usize::from(is_open);
+        let Span { source, start, end } = parentheses;
+        self.token(Span::new(source, start, start + 1), before, words);
         let mut before = Before::Nothing;
         for (value, comma) in elements {
-            // Behind a comma on a new line its element follows.
-            if is_open && (before != Before::Space || self.has_comment(value.span.start)) {
-                before = self.beside_elements(value.span.start, depth.open, words);
-            }
-            self.nested(value, before, depth, words);
-            before = Before::Fold(depth.parentheses);
+            self.value(value, before, depth + 1, words);
+            before = Before::Fold(2 * (depth + 1));
             if let Some(comma) = comma {
                 self.token(comma, Before::Nothing, words);
             }
-            // A comment to the end of the line put the comma on the next one.
-            if let Some(comma) = words.last_mut()
-                && comma.before == Before::Line
-                && comma.text == ","
-            {
-                comma.before = Before::Element(depth.open);
-                before = Before::Space;
-            }
         }
-        match is_open {
-            true => {
-                self.beside_elements(close.start, depth.open, words);
-                self.token(close, Before::Close(depth.open), words);
-            }
-            false => self.token(close, Before::Nothing, words),
-        }
+        self.token(Span::new(source, end - 1, end), Before::Nothing, words);
     }
-
-    /// Adds the comments between two elements of a list that has an element a line, or beside its parentheses: those on the
-    /// line of what came before to its end, the others on lines of their own. Answers what has to stand before what follows,
-    /// which may be on the line of the last one.
-    fn beside_elements(&mut self, to: usize, open: usize, words: &mut Vec<Word<'s>>) -> Before {
-        let gap = self.gap(to);
-        let closes = self
-            .text
-            .get(to..)
-            .is_some_and(|text| text.starts_with(')'));
-        let is_broken = gap.breaks > 0 || gap.comments.iter().any(|comment| comment.breaks > 0);
-        let mut joins = closes || is_broken;
-        let mut before = Before::Element(open);
-        for comment in &gap.comments {
-            joins &= comment.breaks == 0;
-            if comment.breaks > 0 {
-                before = Before::Element(open);
-            }
-            words.push(Word {
-                text: comment.text,
-                before: if joins { Before::Space } else { before },
-            });
-            if !joins {
-                before = Before::Space;
-            }
-        }
-        match gap.breaks {
-            0 => before,
-            _ => Before::Element(open),
-        }
-    }
-
-    /// Whether the next comment stands before an offset.
-    fn has_comment(&self, to: usize) -> bool {
-        let next = self.comments.as_slice().first();
-        next.is_some_and(|comment| comment.start < to)
-    }
-
-    /// Whether there is a comment between parentheses that ends a line or starts one.
-    fn is_broken(&self, parentheses: Span) -> bool {
-        let next = self.breaking.partition_point(|&at| at < parentheses.start);
-        let next = self.breaking.get(next);
-        next.is_some_and(|&at| at < parentheses.end)
-    }
-}
-
-/// How deep a value lies.
-#[derive(Clone, Copy, Debug, Default)]
-struct Depth {
-    /// Twice the parentheses around it.
-    parentheses: usize,
-    /// The lists around it that have an element a line.
-    open: usize,
-}
-
-fn of_list<'v>(element: &'v Element<'v>) -> (&'v Value<'v>, Option<Span>) {
-    (&element.value, element.comma)
-}
-
-/// Where the comments start that end a line or start one.
-fn breaking(text: &str, comments: &[Span]) -> Vec<usize> {
-    let breaks = |comment: &&Span| {
-        let before = text.get(..comment.start).unwrap_or_default();
-        let gap = before.len() - before.trim_end().len();
-        let starts = before.get(before.len() - gap..).unwrap_or_default();
-        starts.contains('\n') || text.get(comment.range()).is_some_and(ends_line)
-    };
-    comments.iter().filter(breaks).map(|c| c.start).collect()
-}
-
-fn ends(span: Span) -> (Span, Span) {
-    (
-        Span::new(span.source, span.start, span.start + 1),
-        Span::new(span.source, span.end - 1, span.end),
-    )
 }
 
 /// How wide words are on one line; of a comment with several lines, the last one counts.
@@ -350,6 +232,6 @@ pub fn column_after(column: usize, text: &str) -> usize {
 
 /// Whether words take more than one line.
 pub fn has_line_end(words: &[Word<'_>]) -> bool {
-    let ends = |word: &Word<'_>| word.before.is_line_end() || word.text.contains('\n');
+    let ends = |word: &Word<'_>| word.before == Before::Line || word.text.contains('\n');
     words.iter().any(ends)
 }

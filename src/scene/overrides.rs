@@ -38,8 +38,7 @@ pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<
             Err(problem) => diagnostics.push(Found::from(*problem).diagnostic(sources)),
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
-                let read = problems.iter().map(|p| Diagnostic::fixable(p, sources));
-                diagnostics.extend(read);
+                diagnostics.extend(problems);
                 overrides.push(Override {
                     id,
                     block,

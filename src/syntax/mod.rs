@@ -15,23 +15,24 @@
     )
 )]
 
-mod error;
-mod fix;
 mod grammar;
+#[rustfmt::skip]
 mod messages;
 mod parser;
+mod parts;
+mod problem;
 mod recovery;
 mod scan;
 pub mod tokens;
 pub mod tree;
 mod words;
 
-pub use error::Problem;
-pub use messages::shorten;
-pub use parser::{parse, parse_in_parts, parse_unless, parse_value};
+pub use parser::{parse, parse_unless, parse_value};
+pub use parts::parse_in_parts;
+pub use problem::{field_without_value, invalid_utf8, shorten, utf16};
 pub use tree::Tree;
 
-use crate::source::Span;
+use crate::{diagnostic::Diagnostic, source::Span};
 
 /// Parentheses, signs and calls nest at most this deep.
 pub const NESTING_LIMIT: usize = 256;
@@ -44,7 +45,7 @@ pub struct Parsed<'s> {
     /// The comments in their order.
     pub comments: Vec<Span>,
     /// What is wrong with the text.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<Diagnostic>,
     /// Where a mistake took the rest of the text: what is missing after it is not missed.
     pub cut: Option<usize>,
 }

@@ -8,15 +8,7 @@
 //! apart. Spans are taken
 //! from tokens: pest's own span of a rule may end after the white space behind it.
 
-use std::{
-    collections::BTreeMap,
-    ops::Range,
-    sync::{
-        atomic::{AtomicBool, AtomicUsize, Ordering},
-        mpsc,
-    },
-    thread,
-};
+use std::{ops::Range, sync::atomic::AtomicBool, thread};
 
 use pest::{
     Parser as _,
@@ -24,28 +16,28 @@ use pest::{
 };
 
 use super::{
-    Parsed, Problem,
+    Parsed,
     grammar::{Grammar, PRECEDENCE, Rule},
     recovery::Recovery,
     scan::Scan,
     tokens::{Lexer, TokenKind},
     tree::{
-        Block, Call, Definition, Element, Field, Item, Name, Operator, Tree, Value, ValueKind, bad,
+        Block, Call, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad,
         chain, negation, number,
     },
     words::Words,
 };
 use crate::{
     cancel,
+    diagnostic::Diagnostic,
     source::{Source, SourceId, Span},
-    threads,
 };
 
 /// The stack that pest gets: it takes some ten kilobytes for each level of nesting without optimization.
-const STACK: usize = 64 << 20;
+pub const STACK: usize = 64 << 20;
 
 /// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its pairs of a whole file would take much memory.
-const CHUNK: usize = 4096;
+pub const CHUNK: usize = 4096;
 
 /// Parses a file.
 pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
@@ -58,21 +50,17 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
         let text = source.text();
         let scan = Scan::of(text, source.bom_len(), cancel);
         let words = Words::new(text);
-        let mut recovery = Recovery::new(text, id, &words);
+        let mut recovery = Recovery::new(source, id, &words);
         let mut right = Right::new(text, id, &words);
         let mut at = source.bom_len();
         let mut ends = scan.ends.as_slice();
         let mut deep = scan.deep.as_slice();
         while at < text.len() && !cancel::is_set(cancel) {
+            ends = after(ends, at + 1);
+            deep = after(deep, at);
             let far = ends.partition_point(|&end| end < at + CHUNK);
-            let mut end = ends.get(far).copied().unwrap_or(text.len());
-            deep = deep
-                .get(deep.partition_point(|&place| place < at)..)
-                .unwrap_or_default();
-            end = deep.first().map_or(end, |&place| place.min(end));
-            ends = ends
-                .get(ends.partition_point(|&end| end <= at)..)
-                .unwrap_or_default();
+            let end = ends.get(far).copied().unwrap_or(text.len());
+            let end = deep.first().map_or(end, |&place| place.min(end));
             let (next, is_right) = right.items(at..end, &mut recovery);
             if !is_right {
                 at = next;
@@ -104,6 +92,12 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
     })
 }
 
+/// The places from an offset on.
+fn after(places: &[usize], from: usize) -> &[usize] {
+    let first = places.partition_point(|&place| place < from);
+    places.get(first..).unwrap_or_default()
+}
+
 /// Whether what stands at an offset may belong to a definition that ends before it.
 fn goes_on(text: &str, end: usize, at: usize) -> bool {
     let line = text.get(end..at).unwrap_or_default();
@@ -112,121 +106,15 @@ fn goes_on(text: &str, end: usize, at: usize) -> bool {
 }
 
 /// Parses the part of a text from an offset on as one value: a `--set` argument's.
-pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Problem>) {
+pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Diagnostic>) {
     with_stack(|| {
         let text = source.text();
         let scan = Scan::of(text, start, &cancel::NEVER);
         let words = Words::new("");
-        let mut recovery = Recovery::new(text, id, &words);
+        let mut recovery = Recovery::new(source, id, &words);
         let value = recovery.whole_value(start);
         (value, recovery.finish(scan).problems)
     })
-}
-
-/// Parses a file in parts of at least so many bytes, side by side, and hands over the items of each in their order, so that
-/// there is never a tree of the whole. Answers whether all went well; otherwise the file has mistakes, is short, `each`
-/// wanted no more, or it was cancelled, and what was handed over does not count.
-pub fn parse_in_parts<'s>(
-    source: &'s Source,
-    id: SourceId,
-    bytes: usize,
-    cancel: &AtomicBool,
-    mut each: impl FnMut(Vec<Item<'s>>) -> bool,
-) -> bool {
-    /// What is done with the parts is done by one thread: more than these would wait for it.
-    const MOST_THREADS: usize = 8;
-    let text = source.text();
-    if text.len() / 2 < bytes {
-        return false;
-    }
-    let scan = Scan::of(text, source.bom_len(), cancel);
-    if !scan.is_plain() {
-        return false;
-    }
-    let parts = parts(source, bytes, &scan);
-    let threads = threads::available().min(parts.len()).min(MOST_THREADS);
-    let next = AtomicUsize::new(0);
-    let stopped = AtomicBool::new(false);
-    let words = Words::new(text);
-    let work = |found: mpsc::SyncSender<_>| {
-        while !stopped.load(Ordering::Relaxed) {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(part) = parts.get(index) else { break };
-            let items = part_of(text, id, part, &words, cancel);
-            if found.send((index, items)).is_err() {
-                break;
-            }
-        }
-    };
-    thread::scope(|scope| {
-        let (found, results) = mpsc::sync_channel(threads);
-        for _ in 0..threads {
-            let found = found.clone();
-            let builder = thread::Builder::new().stack_size(STACK);
-            // Without any thread there are no results.
-            let _ = builder.spawn_scoped(scope, || work(found));
-        }
-        drop(found);
-        let mut early = BTreeMap::new();
-        let mut done = 0;
-        for (index, items) in results {
-            let Some(items) = items else { break };
-            early.insert(index, items);
-            while let Some(items) = early.remove(&done) {
-                if cancel::is_set(cancel) || !each(items) {
-                    stopped.store(true, Ordering::Relaxed);
-                    return false;
-                }
-                done += 1;
-            }
-        }
-        stopped.store(true, Ordering::Relaxed);
-        done == parts.len()
-    })
-}
-
-/// The parts of a text, each with the ends of its chunks.
-fn parts(source: &Source, bytes: usize, scan: &Scan) -> Vec<Vec<usize>> {
-    let mut parts = Vec::new();
-    let (mut start, mut from) = (source.bom_len(), source.bom_len());
-    let mut ends = vec![from];
-    for &to in &scan.ends {
-        let is_part = to - start >= bytes;
-        if is_part || to - from >= CHUNK {
-            ends.push(to);
-            from = to;
-        }
-        if is_part {
-            parts.push(std::mem::replace(&mut ends, vec![to]));
-            start = to;
-        }
-    }
-    ends.push(source.text().len());
-    parts.push(ends);
-    parts
-}
-
-/// The items of a part, if all of it is right.
-fn part_of<'s>(
-    text: &'s str,
-    id: SourceId,
-    ends: &[usize],
-    words: &Words<'s>,
-    cancel: &AtomicBool,
-) -> Option<Vec<Item<'s>>> {
-    let mut recovery = Recovery::new(text, id, words);
-    let mut right = Right::new(text, id, words);
-    for chunk in ends.windows(2) {
-        let &[start, end] = chunk else { return None };
-        if cancel::is_set(cancel) {
-            return None;
-        }
-        let (next, is_right) = right.items(start..end, &mut recovery);
-        if !is_right || Lexer::past_comments(text, next).start < end {
-            return None;
-        }
-    }
-    recovery.problems.is_empty().then_some(recovery.items)
 }
 
 /// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
@@ -246,7 +134,7 @@ fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
 }
 
 /// Makes nodes of what pest read.
-struct Right<'w, 's> {
+pub struct Right<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Words<'s>,
@@ -257,7 +145,8 @@ struct Right<'w, 's> {
 }
 
 impl<'w, 's> Right<'w, 's> {
-    fn new(text: &'s str, id: SourceId, words: &'w Words<'s>) -> Self {
+    /// For a text.
+    pub fn new(text: &'s str, id: SourceId, words: &'w Words<'s>) -> Self {
         Self {
             text,
             id,
@@ -268,7 +157,7 @@ impl<'w, 's> Right<'w, 's> {
     }
 
     /// Reads items as far as they are right. Answers where they end, and whether that is where pest stopped.
-    fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
+    pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
         let mut end = range.start;
@@ -280,27 +169,22 @@ impl<'w, 's> Right<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            let kind_of_next_line = match (&item, recovery.items.last()) {
-                (Item::Block(block), Some(Item::Definition(before))) => {
-                    self.is_rest_of_value(block, before) && before.span.start >= recovery.read_to
-                }
-                _ => false,
-            };
             end = item.span().end;
-            if kind_of_next_line {
-                let start = recovery.items.pop().map_or(start, |item| item.span().start);
+            if let (Item::Block(block), Some(Item::Definition(before))) =
+                (&item, recovery.items.last())
+                && before.span.start >= recovery.read_to
+                && self.is_rest_of_value(block, before)
+            {
+                let start = before.span.start;
+                recovery.items.pop();
                 return (recovery.item(start), false);
             }
             if self.doubtful || self.has_dashes(item.span()) {
-                let before = recovery.mark();
-                let read_to = recovery.item(start);
-                if recovery.is_better(&before) {
-                    if read_to != end {
-                        return (read_to, false);
-                    }
-                    continue;
+                match recovery.item_as_meant(start) {
+                    Some(read_to) if read_to == end => continue,
+                    Some(read_to) => return (read_to, false),
+                    None => {}
                 }
-                recovery.go_back(before);
             }
             recovery.items.push(item);
         }
@@ -328,13 +212,7 @@ impl<'w, 's> Right<'w, 's> {
     fn definition(&mut self, pair: Pair<'_, Rule>) -> Definition<'s> {
         let start = self.span(&pair).start;
         let keyword = Span::new(self.id, start, start + "let".len());
-        let mut definition = Definition {
-            keyword,
-            name: None,
-            equals: None,
-            value: bad(keyword),
-            span: keyword,
-        };
+        let mut definition = Definition::begun(keyword);
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::name => definition.name = Some(self.name(&part)),
@@ -507,27 +385,5 @@ impl<'w, 's> Right<'w, 's> {
 
     fn written(&self, span: Span) -> &'s str {
         self.text.get(span.range()).unwrap_or_default()
-    }
-}
-
-impl<'s> Recovery<'_, 's> {
-    fn finish(self, scan: Scan) -> Parsed<'s> {
-        let Recovery {
-            items,
-            problems,
-            comments,
-            id,
-            text,
-            cut,
-            ..
-        } = self;
-        let mut parsed = Parsed {
-            tree: Tree { items },
-            comments,
-            problems,
-            cut,
-        };
-        scan.report(text, id, &mut parsed);
-        parsed
     }
 }

@@ -5,16 +5,16 @@
 
 use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
 
-use miette::Diagnostic as _;
-
 use super::{
-    NESTING_LIMIT, Parsed, Problem,
-    messages::name_of_space,
+    NESTING_LIMIT, Parsed, messages as say,
+    problem::times,
     tokens::{Lexer, TokenKind},
 };
 use crate::{
     cancel,
-    source::{SourceId, Span},
+    diagnostic::{Diagnostic, Edit, Fix},
+    schema,
+    source::{Source, SourceId, Span},
 };
 
 /// What the walk finds.
@@ -98,7 +98,8 @@ impl Scan {
     }
 
     /// Adds comments and problems to what was parsed.
-    pub fn report(self, text: &str, id: SourceId, parsed: &mut Parsed<'_>) {
+    pub fn report(self, source: &Source, id: SourceId, parsed: &mut Parsed<'_>) {
+        let text = source.text();
         self.report_odd_spaces(text, id, &mut parsed.problems);
         let lone = self.comments.iter().find_map(|comment| {
             let written = text.get(comment.clone())?;
@@ -109,8 +110,7 @@ impl Scan {
         });
         // Where lines end at carriage returns alone, a comment of one line takes all that follows.
         if let Some((start, at, end)) = lone {
-            let span = Span::new(id, at, at + 1);
-            parsed.problems.push(Problem::LoneReturn { span });
+            parsed.problems.push(lone_return(source, id, at));
             if end == text.len() {
                 parsed.cut = parsed.cut.or(Some(start));
             }
@@ -118,12 +118,11 @@ impl Scan {
         if let Some(start) = self.open_comment {
             // What the comment took is no second mistake.
             parsed.problems.retain(|problem| {
-                !matches!(problem, Problem::UnclosedBlock { .. })
-                    && first_label(problem).is_none_or(|end| end < id.start() + start)
+                let first = problem.labels.first().map_or(0, |label| label.span.end);
+                problem.code != "pinhole::unclosed_block" && first < start
             });
             parsed.cut = Some(start);
-            let span = Span::new(id, start, start + 2);
-            parsed.problems.push(Problem::UnclosedComment { span });
+            parsed.problems.push(unclosed_comment(text, id, start));
         }
         let comments = self.comments.into_iter();
         let comments = comments.map(|comment| Span::new(id, comment.start, comment.end));
@@ -138,7 +137,7 @@ impl Scan {
     }
 
     /// One report for each sort of character, at the first one.
-    fn report_odd_spaces(&self, text: &str, id: SourceId, problems: &mut Vec<Problem>) {
+    fn report_odd_spaces(&self, text: &str, id: SourceId, problems: &mut Vec<Diagnostic>) {
         let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in &self.odd_spaces {
             let sort = text.get(place.clone()).unwrap_or_default();
@@ -146,16 +145,74 @@ impl Scan {
             sorts.entry(sort).or_default().push(span);
         }
         for (sort, places) in sorts {
-            if let Some(&span) = places.first() {
-                problems.push(Problem::OddSpace {
-                    what: name_of_space(sort),
-                    more: places.len() - 1,
-                    span,
-                    places,
-                });
+            let Some(&span) = places.first() else {
+                continue;
+            };
+            let all = |title, text| {
+                let edits = places.iter().map(|place| Edit::new(*place, text));
+                Fix::new(title, edits)
+            };
+            let words = [name_of_space(sort), times(places.len() - 1)];
+            let spaces = all("write plain spaces", " ");
+            let mut found = say::ODD_SPACE.at(span, &words.each_ref().map(String::as_str), spaces);
+            // What has no width, as a rule, is not meant to keep words apart.
+            if !sort.chars().all(char::is_whitespace) {
+                found.fixes.insert(0, all("take it away", ""));
             }
+            problems.push(found);
         }
     }
+}
+
+/// What a character that cannot be seen is called.
+fn name_of_space(text: &str) -> String {
+    let character = text.chars().next().unwrap_or_default();
+    let name = match character {
+        '\u{A0}' => "a no-break space",
+        '\u{200B}' => "a zero-width space",
+        '\u{FEFF}' => "a byte order mark",
+        c if c.is_whitespace() => "a space",
+        _ => "a control character",
+    };
+    format!("U+{:04X}, {name},", u32::from(character))
+}
+
+/// A carriage return within a comment of one line; the fix ends all lines that end so.
+fn lone_return(source: &Source, id: SourceId, at: usize) -> Diagnostic {
+    let text = source.text();
+    let returns = text.match_indices('\r');
+    let lone = returns.filter(|(at, _)| text.as_bytes().get(at + 1) != Some(&b'\n'));
+    let edits = lone.map(|(at, _)| Edit::new(Span::new(id, at, at + 1), source.line_end()));
+    let fix = Fix::new("end these lines as text files do", edits);
+    say::LONE_RETURN.at(Span::new(id, at, at + 1), &[], fix)
+}
+
+/// A comment of one line is meant, as a rule, if what it took from the next line on starts as an item does. It ends with its
+/// line, before what closes something that was opened before it.
+fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
+    let span = Span::new(id, start, start + 2);
+    let (before, taken) = text.split_at(start);
+    let line = taken.lines().next().unwrap_or_default().trim_end();
+    let next = Lexer::past_comments(text, start + line.len());
+    let word = text.get(next.start..next.end).unwrap_or_default();
+    if !(matches!(word, "" | "let" | "}") || schema::block(word).is_some()) {
+        return say::UNCLOSED_COMMENT.at(span, &[], None);
+    }
+    let before = before.rsplit('\n').next().unwrap_or_default();
+    let opened = before.matches(['{', '(']).count();
+    let closed = before.matches(['}', ')']).count();
+    let inner = match opened > closed {
+        true => line.trim_end_matches(['}', ')', ' ']),
+        false => line,
+    };
+    let edit = Edit::insert(id, start + inner.len(), " */");
+    let fix = Fix::new("close it in its line", [edit]);
+    let mut found = say::UNCLOSED_COMMENT.at(span, &[], fix);
+    if inner == line {
+        let fix = Fix::new("begin it with `//`", [Edit::new(span, "//")]);
+        found.fixes.push(fix);
+    }
+    found
 }
 
 fn is_within(span: Span, places: &[Span]) -> bool {
@@ -163,10 +220,4 @@ fn is_within(span: Span, places: &[Span]) -> bool {
     places
         .get(next)
         .is_some_and(|place| place.start <= span.start)
-}
-
-/// Where the first label of a problem ends.
-fn first_label(problem: &Problem) -> Option<usize> {
-    let label = problem.labels()?.next()?;
-    Some(label.offset() + label.len())
 }

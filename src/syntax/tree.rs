@@ -60,6 +60,17 @@ pub struct Definition<'s> {
 }
 
 impl Definition<'_> {
+    /// A definition of which nothing is known yet but its `let`.
+    pub fn begun(keyword: Span) -> Self {
+        Self {
+            keyword,
+            name: None,
+            equals: None,
+            value: bad(keyword),
+            span: keyword,
+        }
+    }
+
     /// Whether it stands for a part of something that cannot be a name: it keeps uses of that from being reported, and nothing else.
     pub fn is_part_of_name(&self) -> bool {
         self.name.is_some_and(|name| name.span == self.span)

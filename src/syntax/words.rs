@@ -4,7 +4,7 @@
 //! which of them are known: in `radius color olive` a value is missing. This is the one file of the stage that looks them
 //! up, in the schema and among the names that the text defines.
 
-use std::{collections::HashMap, sync::OnceLock};
+use std::{collections::HashMap, ops::RangeInclusive, sync::OnceLock};
 
 use super::{
     tokens::{Lexer, TokenKind, numeric_part},
@@ -13,10 +13,7 @@ use super::{
 use crate::schema::{self, Condition, Type, predefined};
 
 /// Functions of other languages that stand for a vector or a colour.
-const FOREIGN_FUNCTIONS: &[&str] = &[
-    "vec", "vec3", "Vec3", "vector", "Vector", "vector3", "Vector3", "point", "Point", "point3",
-    "Point3", "Point3D", "Vector3D", "rgba", "color", "Color",
-];
+const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vector3D point Point point3 Point3 Point3D rgba color Color";
 
 /// The words of the language and of a text.
 #[derive(Debug)]
@@ -105,12 +102,13 @@ impl<'s> Words<'s> {
         predefined(name) == Some("a function")
     }
 
-    /// Whether a function takes so many arguments.
-    pub fn takes_arguments(&self, name: &str, count: usize) -> bool {
-        schema::function(name).is_some_and(|function| match function.more {
-            true => count >= function.takes.len(),
-            false => count == function.takes.len(),
-        })
+    /// How many arguments a function takes; of one that is not known, none that can be told.
+    pub fn arguments(&self, name: &str) -> RangeInclusive<usize> {
+        match schema::function(name) {
+            Some(function) if function.more => function.takes.len()..=usize::MAX,
+            Some(function) => function.takes.len()..=function.takes.len(),
+            None => 0..=0,
+        }
     }
 
     /// Whether a name is surely that of a number: pi, or one that is defined so.
@@ -120,7 +118,7 @@ impl<'s> Words<'s> {
 
     /// Whether a function of another language stands for a vector or a colour.
     pub fn is_foreign_function(&self, name: &str) -> bool {
-        FOREIGN_FUNCTIONS.contains(&name) && !self.is_let(name)
+        FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
     /// Whether a field that follows the grammar may have been meant otherwise: its block does not know it, its value is the

@@ -160,14 +160,16 @@ fn fixtures_say_what_they_produce() {
 /// The codes that the stages have, without `pinhole::`.
 pub fn codes() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
-    for stage in ["src/syntax/error.rs", "src/scene/error.rs"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(stage);
-        let text = fs::read_to_string(path).expect("the source can be read");
-        for part in text.split("code(pinhole::").skip(1) {
-            let code = part.split(')').next().expect("a code ends");
-            codes.insert(code.to_owned());
-        }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &Path| fs::read_to_string(path).expect("the source can be read");
+    let scene = read(&root.join("src/scene/error.rs"));
+    for part in scene.split("code(pinhole::").skip(1) {
+        let code = part.split(')').next().expect("a code ends");
+        codes.insert(code.to_owned());
     }
+    let syntax = read(&root.join("src/syntax/messages.rs"));
+    let made = syntax.split("Message::new(\"").skip(1);
+    codes.extend(made.filter_map(|made| Some(made.split_once('"')?.0.to_owned())));
     codes
 }
 

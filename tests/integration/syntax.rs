@@ -9,10 +9,10 @@ use std::{
 };
 
 use pinhole::{
-    diagnostic::Diagnostic,
-    source::{Source, SourceId, Sources, Span},
+    source::{Source, SourceId, Span},
     syntax::{
         self, Parsed,
+        tokens::{Lexer, TokenKind, numeric_part},
         tree::{Block, Definition, Element, Field, Item, Value, ValueKind},
     },
 };
@@ -159,9 +159,7 @@ fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     for comment in &parsed.comments {
         printer.line(&format!("comment {}", printer.under(*comment)));
     }
-    let sources = Sources::new(source.clone());
-    for problem in &parsed.problems {
-        let diagnostic = Diagnostic::from_problem(problem, &sources);
+    for diagnostic in &parsed.problems {
         let place = source.place(diagnostic.labels[0].span.start);
         printer.line(&format!(
             "{}:{} {}: {}",
@@ -324,4 +322,50 @@ fn spans_of_nodes_hold_their_parts() {
         "radius -a * (2)"
     );
     assert_eq!(source.slice(block.fields[0].value.span.range()), "-a * (2)");
+}
+
+#[test]
+fn tokens_of_any_text() {
+    let text = "a1 .5 1e-3-2 30deg #fa0 “red” größe /* x */ ** '2 // e\r\n/* o";
+    let mut lexer = Lexer::new(text, 0);
+    let tokens = std::iter::from_fn(|| {
+        let token = lexer.token();
+        (token.kind != TokenKind::End).then(|| &text[token.start..token.end])
+    });
+    let tokens: Vec<&str> = tokens.collect();
+    assert_eq!(
+        tokens,
+        [
+            "a1",
+            ".5",
+            "1e-3",
+            "-",
+            "2",
+            "30deg",
+            "#fa0",
+            "“red”",
+            "größe",
+            "/* x */",
+            "**",
+            "'2",
+            "// e",
+            "/* o"
+        ]
+    );
+}
+
+#[test]
+fn numbers_end_before_their_units() {
+    for (written, number) in [
+        ("2", "2"),
+        (".5", ".5"),
+        ("5.", "5."),
+        ("1e-3deg", "1e-3"),
+        ("2e", "2"),
+        ("1_000", "1_000"),
+        ("1__0", "1"),
+        ("0x10", "0"),
+    ] {
+        assert_eq!(numeric_part(written), number, "{written}");
+    }
 }

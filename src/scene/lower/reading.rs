@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::Lowering;
 use crate::{
     cancel::{self, Cancelled},
-    diagnostic::{self, Diagnostic, Fixable},
+    diagnostic::{self, Diagnostic},
     scene::{
         Reading,
         eval::Names,
@@ -94,7 +94,8 @@ fn whole<'s>(
     let tree = &parsed.tree;
     let names = Names::new(definitions(tree), names_of_objects(tree));
     let mut lowering = Lowering::new(sources, overrides, names, cancel);
-    lowering.found = lowering.diagnostics(&parsed.problems).collect();
+    let wanted = parsed.problems.iter().take_while(|_| lowering.is_wanted());
+    lowering.found = wanted.cloned().collect();
     lowering.found.extend(diagnostics);
     lowering.cut = parsed.cut.is_some();
     lowering.keep_last_overrides(&tree.items);
@@ -126,12 +127,6 @@ impl<'s> Lowering<'s> {
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
-    }
-
-    /// What is said of some problems.
-    fn diagnostics<P: Fixable>(&self, problems: &[P]) -> impl Iterator<Item = Diagnostic> {
-        let wanted = problems.iter().take_while(|_| self.is_wanted());
-        wanted.map(|problem| Diagnostic::fixable(problem, self.sources))
     }
 }
 
@@ -176,15 +171,11 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let start = sources.file.text().as_bytes().get(2..4);
     if invalid.starts_with(&[0, 1]) && start.is_some_and(|start| start.contains(&0)) {
         let span = Span::new(SourceId::File, 0, 2);
-        let problem = syntax::Problem::Utf16 { span };
         diagnostics.clear();
-        diagnostics.push(Diagnostic::fixable(&problem, sources));
+        diagnostics.push(syntax::utf16(span));
         return;
     }
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
-    let problem = syntax::Problem::InvalidUtf8 {
-        span: Span::new(SourceId::File, first, first + 1),
-        more: invalid.len() - 1,
-    };
-    diagnostics.push(Diagnostic::fixable(&problem, sources));
+    let span = Span::new(SourceId::File, first, first + 1);
+    diagnostics.push(syntax::invalid_utf8(span, invalid.len() - 1));
 }

@@ -1,31 +1,43 @@
 //! Reads an item that does not follow the grammar.
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for each slip. A reader by
-//! recursive descent over the lexer's tokens: items stand in `items`, fields in `fields`, values in `values`, numbers in
-//! `numbers`. Where something fits nowhere, reading goes on at the next field, line or closing brace. A right item is read
-//! as pest reads it.
+//! recursive descent over the lexer's tokens: items stand in `items`, fields in `fields`, values in `values`, `joined` and `lists`,
+//! numbers in `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it. Three rules:
+//!
+//! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace (`resync`).
+//! - A fix is offered where it is plain, and then the tree holds what the fix would make: what else is wrong is told before as
+//!   after. Where none is offered, the value is bad, and nothing that uses it is reported.
+//! - Where different slips are found in one value, none of their fixes is sure (`settle`).
 
 mod fields;
+mod foreign;
 mod items;
+mod joined;
+mod lists;
 mod numbers;
 mod values;
 
+use std::collections::BTreeMap;
+
 use super::{
-    Problem,
-    messages::{foreign_file, foreign_statement, shorten},
-    tokens::{Lexer, Token, TokenKind, line_end},
-    tree::{Item, Name, Value, bad},
+    Parsed, messages as say,
+    problem::{Message, shorten, times},
+    scan::Scan,
+    tokens::{Lexer, Token, TokenKind},
+    tree::{Item, Name, Tree, Value, ValueKind, bad},
     words::Words,
 };
 use crate::{
+    diagnostic::{Diagnostic, Edit, Fix},
     schema::Type,
-    source::{SourceId, Span},
+    source::{Source, SourceId, Span},
 };
 
 /// The reader.
 pub struct Recovery<'w, 's> {
-    pub(super) text: &'s str,
-    pub(super) id: SourceId,
+    source: &'s Source,
+    text: &'s str,
+    id: SourceId,
     words: &'w Words<'s>,
     lexer: Lexer<'s>,
     /// Tokens that were looked at, without comments and what cannot be seen.
@@ -37,64 +49,46 @@ pub struct Recovery<'w, 's> {
     /// The items so far, those that pest read among them.
     pub(super) items: Vec<Item<'s>>,
     /// What was wrong so far.
-    pub(super) problems: Vec<Problem>,
+    pub(super) problems: Vec<Diagnostic>,
     /// Comments of other languages.
-    pub(super) comments: Vec<Span>,
+    comments: Vec<Span>,
     /// Where a mistake took the rest of the text.
-    pub(super) cut: Option<usize>,
+    cut: Option<usize>,
     /// Where the item ended that was read here last.
     pub(super) read_to: usize,
     /// What the items that are read stand in.
     within: Within<'s>,
-    /// Where the sign stands that was read last in front of a value.
-    prefix: usize,
     /// Parentheses, signs and calls around what is read.
     depth: usize,
     /// Lists around what is read.
-    open: usize,
+    lists: usize,
     /// Blocks around what is read.
     blocks: usize,
     /// Whether the value nests too deep, so that the rest of it was passed over.
     too_deep: bool,
-    /// What separators between items were reported, by their problem.
-    item_separators: Vec<(&'s str, usize)>,
-}
-
-/// How much was read.
-pub struct Mark {
-    items: usize,
-    problems: usize,
-    comments: usize,
-    read_to: usize,
 }
 
 /// The block, if it is one, that is read.
 #[derive(Default)]
 struct Within<'s> {
     kind: &'s str,
-    /// The field whose value is read; none within a list.
-    field: &'s str,
-    takes: Option<Type>,
-    /// What slips of one kind were reported in the block, by their problem: one report stands for all.
-    slips: Vec<(&'s str, usize)>,
     is_block: bool,
-}
-
-/// What may stand in a place: what starts a comment differs.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
-    /// An item or a field.
-    Start,
-    /// A value.
-    Value,
-    /// An operator, or what follows a value.
-    Operator,
+    /// What closes it.
+    close: &'static str,
+    /// The field whose value is read.
+    field: &'s str,
+    /// What the value that is read should be, if that is known.
+    takes: Option<Type>,
+    /// Signs that are not needed, with their places: one report in a block for all of a kind.
+    slips: BTreeMap<&'s str, Vec<Span>>,
 }
 
 impl<'w, 's> Recovery<'w, 's> {
     /// Reads this text.
-    pub fn new(text: &'s str, id: SourceId, words: &'w Words<'s>) -> Self {
+    pub fn new(source: &'s Source, id: SourceId, words: &'w Words<'s>) -> Self {
+        let text = source.text();
         Self {
+            source,
             text,
             id,
             words,
@@ -108,27 +102,16 @@ impl<'w, 's> Recovery<'w, 's> {
             cut: None,
             read_to: 0,
             within: Within::default(),
-            prefix: usize::MAX,
             depth: 0,
+            lists: 0,
             blocks: 0,
-            open: 0,
             too_deep: false,
-            item_separators: Vec::new(),
         }
     }
 
     /// Reads one item, or what stands in the place of one; answers where it ends.
     pub fn item(&mut self, start: usize) -> usize {
-        if self.read_to == 0
-            && let Some(what) = foreign_file(self.text)
-        {
-            let first = Lexer::past_comments(self.text, 0);
-            self.items.clear();
-            self.problems.push(Problem::ForeignFile {
-                what,
-                span: self.span_of(first),
-            });
-            self.cut = Some(0);
+        if self.read_to == 0 && self.foreign_file() {
             self.read_to = self.text.len();
             return self.read_to;
         }
@@ -142,61 +125,65 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// What was read so far.
-    pub fn mark(&self) -> Mark {
-        Mark {
-            items: self.items.len(),
-            problems: self.problems.len(),
-            comments: self.comments.len(),
-            read_to: self.read_to,
-        }
-    }
-
-    /// Forgets what was read since.
-    pub fn go_back(&mut self, mark: Mark) {
-        self.items.truncate(mark.items);
-        self.problems.truncate(mark.problems);
-        self.comments.truncate(mark.comments);
-        self.read_to = mark.read_to;
-    }
-
-    /// Whether what was read since explains a text that follows the grammar better: by fields that the block has, or by a
-    /// comment or a function of another language.
-    pub fn is_better(&self, mark: &Mark) -> bool {
-        let items = self.items.get(mark.items..).unwrap_or_default();
-        let problems = self.problems.get(mark.problems..).unwrap_or_default();
-        let is_foreign = |problem: &Problem| {
-            matches!(
-                problem,
-                Problem::ForeignComment { .. } | Problem::ForeignFunction { .. }
-            )
-        };
-        match items {
-            [Item::Block(block)] => block.fields.iter().all(|field| {
+    /// Reads an item that follows the grammar, but may have been meant otherwise; answers where it ends, if that is a better
+    /// explanation: by fields that the block has, or by a comment or a function of another language.
+    pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
+        let (items, problems) = (self.items.len(), self.problems.len());
+        let (comments, read_to) = (self.comments.len(), self.read_to);
+        let end = self.item(start);
+        let is_better = match self.items.get(items..) {
+            Some([Item::Block(block)]) => {
                 let kind = block.kind.map_or("", |kind| kind.text);
-                let name = field.name.text;
-                self.words.takes(kind, name).is_some() || name.contains(char::is_whitespace)
-            }),
-            [Item::Definition(_)] => !problems.is_empty() && problems.iter().all(is_foreign),
+                let is_known = |name| self.words.takes(kind, name).is_some();
+                block.fields.iter().all(|field| is_known(field.name.text))
+            }
+            Some([Item::Definition(_)]) => {
+                let mut new = self.problems.iter().skip(problems);
+                let is_new = self.comments.len() > comments || self.problems.len() > problems;
+                is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
+            }
             _ => false,
+        };
+        if is_better {
+            return Some(end);
         }
+        self.items.truncate(items);
+        self.problems.truncate(problems);
+        self.comments.truncate(comments);
+        self.read_to = read_to;
+        None
     }
 
     /// Reads the text from an offset on as one value.
     pub fn whole_value(&mut self, start: usize) -> Value<'s> {
         self.seek(start);
         self.last_end = start;
-        if self.peek(0).kind == TokenKind::End {
+        if self.kind(0) == TokenKind::End {
             let span = Span::new(self.id, start.saturating_sub(1), start);
-            self.problems.push(Problem::SetWithoutValue { span });
+            self.report(&say::SET_WITHOUT_VALUE, span, &[], None);
             return bad(Span::new(self.id, start, start));
         }
-        let value = self.value_of_definition();
-        if self.peek(0).kind != TokenKind::End && value.kind != super::tree::ValueKind::Bad {
+        let told = self.problems.len();
+        let value = self.value();
+        if self.kind(0) != TokenKind::End && self.problems.len() == told {
             self.unexpected("the end of the value", "write one value behind the `=`");
             return bad(value.span);
         }
+        self.settle(told);
         value
+    }
+
+    /// All that was read, with what the scan found.
+    pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
+        self.report_slips(self.problems.len());
+        let mut parsed = Parsed {
+            tree: Tree { items: self.items },
+            comments: self.comments,
+            problems: self.problems,
+            cut: self.cut,
+        };
+        scan.report(self.source, self.id, &mut parsed);
+        parsed
     }
 
     // Tokens.
@@ -213,59 +200,51 @@ impl<'w, 's> Recovery<'w, 's> {
                 self.tokens.push(token);
             }
         }
-        self.tokens
-            .get(self.next + ahead)
-            .copied()
-            .unwrap_or(Token {
-                kind: TokenKind::End,
-                start: self.text.len(),
-                end: self.text.len(),
-            })
+        let end = self.text.len();
+        let token = self.tokens.get(self.next + ahead).copied();
+        token.unwrap_or(Token {
+            kind: TokenKind::End,
+            start: end,
+            end,
+        })
     }
 
     fn kind(&mut self, ahead: usize) -> TokenKind {
         self.peek(ahead).kind
     }
 
-    /// The text of a token ahead.
+    /// The text of a token ahead; nothing at the end.
     fn word(&mut self, ahead: usize) -> &'s str {
         let token = self.peek(ahead);
         self.text.get(token.start..token.end).unwrap_or_default()
     }
 
-    /// The same of a token that was looked at already.
-    fn word_seen(&self, ahead: usize) -> &'s str {
-        let token = self.tokens.get(self.next + ahead);
-        let range = token.map_or(0..0, |token| token.start..token.end);
-        self.text.get(range).unwrap_or_default()
-    }
-
     fn is(&mut self, ahead: usize, word: &str) -> bool {
-        self.word(ahead) == word && self.kind(ahead) != TokenKind::End
+        self.word(ahead) == word
     }
 
     fn is_name(&mut self, ahead: usize) -> bool {
         self.kind(ahead) == TokenKind::Name && !self.is(ahead, "let")
     }
 
-    /// Whether a line ends before a token ahead.
-    fn is_on_new_line(&mut self, ahead: usize) -> bool {
-        let token = self.peek(ahead);
-        let before = match ahead {
+    /// Where what stands before a token ahead ends.
+    fn end_before(&mut self, ahead: usize) -> usize {
+        match ahead {
             0 => self.last_end,
             _ => self.peek(ahead - 1).end,
-        };
+        }
+    }
+
+    /// Whether a line ends before a token ahead.
+    fn is_on_new_line(&mut self, ahead: usize) -> bool {
+        let (before, token) = (self.end_before(ahead), self.peek(ahead));
         let between = self.text.get(before..token.start).unwrap_or_default();
         token.kind == TokenKind::End || between.contains('\n')
     }
 
     /// Whether a token ahead stands right behind the one before it.
     fn is_adjacent(&mut self, ahead: usize) -> bool {
-        let before = match ahead {
-            0 => self.last_end,
-            _ => self.peek(ahead - 1).end,
-        };
-        self.peek(ahead).start == before
+        self.end_before(ahead) == self.peek(ahead).start
     }
 
     /// Takes the next token.
@@ -285,6 +264,12 @@ impl<'w, 's> Recovery<'w, 's> {
         self.lexer = Lexer::new(self.text, at);
     }
 
+    fn name(&mut self) -> Name<'s> {
+        let text = self.word(0);
+        let span = self.bump();
+        Name { text, span }
+    }
+
     fn span_of(&self, token: Token) -> Span {
         Span::new(self.id, token.start, token.end)
     }
@@ -292,6 +277,11 @@ impl<'w, 's> Recovery<'w, 's> {
     fn here(&mut self) -> Span {
         let token = self.peek(0);
         self.span_of(token)
+    }
+
+    /// The place behind the token that was taken last.
+    fn behind(&self) -> Span {
+        Span::new(self.id, self.last_end, self.last_end)
     }
 
     fn written(&self, span: Span) -> &'s str {
@@ -302,129 +292,175 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    fn name(&mut self) -> Name<'s> {
-        let text = self.word(0);
-        let span = self.bump();
-        Name { text, span }
-    }
-
-    fn end_of_text(&self) -> Span {
-        Span::new(self.id, self.last_end, self.last_end)
-    }
-
-    /// Passes over the rest of the line, but not over a brace.
-    fn skip_line(&mut self) {
-        loop {
-            if self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}") {
-                return;
-            }
-            self.bump();
-        }
-    }
-
     /// Whether a block starts at a token ahead: `sphere {` or `sphere Ball {`.
     fn is_head(&mut self, ahead: usize) -> bool {
         self.is_name(ahead)
             && (self.is(ahead + 1, "{") || (self.is_name(ahead + 1) && self.is(ahead + 2, "{")))
     }
 
-    fn unexpected(&mut self, expected: &'static str, help: &'static str) {
+    /// Whether a block of a known kind starts here.
+    fn starts_block(&mut self) -> bool {
+        self.is_head(0) && self.words.is_kind(self.word(0))
+    }
+
+    /// Whether a name is that of a field of the block.
+    fn is_field_name(&self, name: &str) -> bool {
+        self.within.is_block && self.words.takes(self.within.kind, name).is_some()
+    }
+
+    // Going on.
+
+    /// Whether what stood before must have ended: at a brace, `let`, the name of a field, or a line.
+    fn is_boundary(&mut self) -> bool {
+        let word = self.word(0);
+        matches!(word, "" | "let" | "{" | "}")
+            || (self.is_on_new_line(0) && (!self.within.is_block || self.is_name(0)))
+            || (self.is_name(0) && self.is_field_name(word))
+            || self.starts_block()
+    }
+
+    /// Passes over what stands before the next field, line, item or closing brace.
+    fn resync(&mut self) {
+        while !self.is_boundary() {
+            self.bump();
+        }
+    }
+
+    /// Passes over what follows a `{`, up to the `}` that closes it.
+    fn skip_block(&mut self) {
+        let mut braces = 1_usize;
+        while braces > 0 && self.kind(0) != TokenKind::End {
+            match self.word(0) {
+                "{" => braces += 1,
+                "}" => braces -= 1,
+                _ => {}
+            }
+            self.bump();
+        }
+    }
+
+    // Problems.
+
+    fn report(
+        &mut self,
+        message: &Message,
+        span: Span,
+        words: &[&str],
+        fix: impl Into<Option<Fix>>,
+    ) {
+        self.problems.push(message.at(span, words, fix));
+    }
+
+    fn unexpected(&mut self, expected: &str, help: &str) {
         let span = self.here();
         let written = match self.written(span) {
             "" => "the end of the file".to_owned(),
             written => shorten(written),
         };
-        self.problems.push(Problem::Unexpected {
-            expected,
-            written,
-            help,
-            span,
+        let mut found = say::UNEXPECTED.at(span, &[expected, &written], None);
+        found.help = Some(help.to_owned());
+        self.problems.push(found);
+    }
+
+    fn remove(&self, title: impl Into<String>, span: Span) -> Fix {
+        Fix::new(title, [Edit::remove_in(span, self.text)])
+    }
+
+    /// Where different slips are found since so many, none of their fixes is sure.
+    fn settle(&mut self, told: usize) {
+        let problems = self.problems.get_mut(told..).unwrap_or_default();
+        let is_same = problems.windows(2).all(|pair| match pair {
+            [first, second] => first.code == second.code,
+            _ => true,
         });
-    }
-
-    // Comments of other languages.
-
-    /// Passes over comments of other languages.
-    fn comments(&mut self, place: Place) {
-        while self.starts_comment(place) {
-            self.foreign_comment();
+        if !is_same {
+            problems
+                .iter_mut()
+                .for_each(|problem| problem.fixes.clear());
         }
     }
 
-    fn starts_comment(&mut self, place: Place) -> bool {
-        let word = self.word(0);
-        let is_blank_behind = !self.is_adjacent(1);
-        if word.starts_with('#') {
-            let digits = word.trim_start_matches('#');
-            let is_color = matches!(digits.len(), 3 | 6)
-                && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
-            return match place {
-                Place::Start => foreign_statement(word).is_none(),
-                Place::Operator => !(is_color && self.open > 0),
-                Place::Value => word == "#" && !self.is_on_new_line(1) && self.is_remark(),
+    // Signs that are not needed, and those of comments in other languages: one report in a block for all of a kind.
+
+    /// Takes a `,` or `;` between fields or items.
+    fn separator(&mut self) {
+        let sign = self.bump();
+        self.slip(sign);
+    }
+
+    fn slip(&mut self, sign: Span) {
+        let word = self.written(sign);
+        self.within.slips.entry(word).or_default().push(sign);
+    }
+
+    /// Where a problem since so many has no fix, it is doubtful what the signs belong to.
+    fn report_slips(&mut self, told: usize) {
+        let since = self.problems.get(told..).unwrap_or_default();
+        let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty());
+        let between = match self.within.is_block {
+            true => "fields",
+            false => "items",
+        };
+        for (sign, places) in std::mem::take(&mut self.within.slips) {
+            let Some(&first) = places.first() else {
+                continue;
             };
-        }
-        let is_dashed = word == "-" && self.is(1, "-") && !is_blank_behind;
-        is_dashed
-            && match place {
-                Place::Start => true,
-                Place::Operator => {
-                    let name = self.word(2);
-                    self.is_name(2)
-                        && !self.is_adjacent(2)
-                        && !self.is_on_new_line(2)
-                        && !self.is(3, "(")
-                        && !self.words.is_value(name)
+            let it = if places.len() > 1 { "them" } else { "it" };
+            let removed = places
+                .iter()
+                .map(|place| Edit::remove_in(*place, self.text));
+            let (message, fix) = match sign {
+                "=" | ":" => (
+                    &say::NEEDLESS_EQUALS,
+                    Fix::new(format!("take {it} away"), removed),
+                ),
+                "," | ";" => {
+                    let title = format!("take {it} away; white space separates {between}");
+                    (&say::NEEDLESS_SEPARATOR, Fix::new(title, removed))
                 }
-                Place::Value => false,
+                _ => (&say::COMMENT_SIGN, self.with_right_signs(&places)),
+            };
+            let words = [sign, &times(places.len() - 1), between];
+            let mut found = message.at(first, &words, fix);
+            if is_doubtful && found.is_needless {
+                found.fixes.clear();
             }
-    }
-
-    /// Whether words follow a `#` that stands in place of a value, rather than the digits or the name of a colour.
-    fn is_remark(&mut self) -> bool {
-        if self.is(1, "#") {
-            return true;
+            self.problems.push(found);
         }
-        let word = self.word(1);
-        let is_digits =
-            matches!(word.len(), 3 | 6) && word.bytes().all(|digit| digit.is_ascii_hexdigit());
-        let is_name = self.is_name(1);
-        let is_lone_color = is_name && self.words.is_color(word) && !self.is_on_new_line(2);
-        is_name && !is_digits && !is_lone_color
     }
+}
 
-    /// One report for comments in lines that follow each other without anything between.
-    fn foreign_comment(&mut self) {
-        let token = self.peek(0);
-        let first = self.word(0).chars().next().unwrap_or('#');
-        let rest = self.text.get(token.start..).unwrap_or_default();
-        let length = rest.len() - rest.trim_start_matches(first).len();
-        let sign = Span::new(self.id, token.start, token.start + length);
-        let end = line_end(self.text, token.start);
-        let before = self.comment_end();
-        let gap = self.text.get(before..token.start).unwrap_or("-");
-        match self.problems.last_mut() {
-            Some(Problem::ForeignComment { places, .. }) if gap.trim().is_empty() => {
-                places.push(sign);
-            }
-            _ => {
-                let words = self.text.get(sign.end..end).unwrap_or_default();
-                // The comment may have taken the block's end.
-                let is_sure = !(self.within.is_block && words.contains('}'));
-                self.problems.push(Problem::ForeignComment {
-                    is_sure,
-                    sign: self.short(sign),
-                    right: shorten(&format!("//{words}")),
-                    span: sign,
-                    places: vec![sign],
-                });
-            }
-        }
-        self.comments.push(Span::new(self.id, token.start, end));
-        self.seek(end);
+/// Whether a text is a name.
+fn is_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && text != "let"
+}
+
+/// What stands between quotation marks.
+fn unquoted(written: &str) -> &str {
+    let marks = ['"', '\'', '“', '”', '„', '‘', '’', '«', '»'];
+    written.trim_matches(marks).trim()
+}
+
+/// A value of some type, for a help.
+fn example(takes: Option<Type>) -> &'static str {
+    match takes {
+        Some(Type::Number) => "write a number, such as `2`",
+        Some(Type::Angle) => "write an angle, such as `30deg`",
+        Some(Type::Vector) => "write three numbers, such as `(0, 1, 0)`",
+        Some(Type::Color) => "write a colour, such as `olive` or `rgb(255, 165, 0)`",
+        Some(Type::Colors) => "write two colours, such as `(gray, white)`",
+        Some(Type::Method) => "write a method, such as `jittered`",
+        None => "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`",
     }
+}
 
-    fn comment_end(&self) -> usize {
-        self.comments.last().map_or(0, |comment| comment.end)
+/// Whether a value is a plain number, perhaps with a sign.
+fn is_plain_number(value: &Value<'_>) -> bool {
+    match &value.kind {
+        ValueKind::Number(_) => true,
+        ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
+        _ => false,
     }
 }

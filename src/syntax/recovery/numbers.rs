@@ -5,13 +5,41 @@ use crate::{
     schema::Type,
     source::Span,
     syntax::{
-        Problem,
-        fix::Way,
-        messages::{angle_unit, metres, scaled, shorten},
-        tokens::{TokenKind, numeric_part},
+        messages as say,
+        problem::{replace, shorten},
+        tokens::numeric_part,
         tree::{Unit, Value, ValueKind, bad, number},
     },
 };
+
+/// What people write for a unit, how much of the right one it is, and that one: nothing for a length, which is in metres.
+const UNITS: &[(&str, f64, &str)] = &[
+    ("° deg degs degree degrees", 1.0, "deg"),
+    ("rad rads radian radians", 1.0, "rad"),
+    ("grad grads gon", 0.9, "deg"),
+    ("m metre metres meter meters px pixel pixels", 1.0, ""),
+    ("cm", 0.01, ""),
+    ("mm", 0.001, ""),
+    ("km", 1000.0, ""),
+    ("ft feet foot", 0.3048, ""),
+    ("in inch inches", 0.0254, ""),
+];
+
+fn unit_of(written: &str) -> Option<(f64, &'static str)> {
+    let is_it = |word: &str| word.eq_ignore_ascii_case(written);
+    let row = UNITS.iter().find(|(words, ..)| words.split(' ').any(is_it));
+    row.map(|&(_, factor, unit)| (factor, unit))
+}
+
+/// A number times a factor, without the last digits, which are those of rounding.
+fn scaled(number: &str, factor: f64) -> Option<String> {
+    if factor == 1.0 {
+        return Some(number.to_owned());
+    }
+    let value = number.replace('_', "").parse::<f64>().ok()? * factor;
+    let rounded: f64 = format!("{value:.11e}").parse().ok()?;
+    Some(format!("{rounded}"))
+}
 
 impl<'s> Recovery<'_, 's> {
     /// A number, with its unit if it has one.
@@ -20,184 +48,112 @@ impl<'s> Recovery<'_, 's> {
         let span = self.bump();
         let digits = numeric_part(written);
         let unit = written.get(digits.len()..).unwrap_or_default();
-        match unit {
-            "deg" | "rad" => {}
-            "" => {
-                if let Some(value) = self.apart_unit(digits, span) {
-                    return value;
-                }
-            }
-            _ => return self.odd_number(written, digits, span),
+        let next = self.word(0);
+        let is_apart = unit.is_empty()
+            && (next == "°" || (self.is_name(0) && !self.is_on_new_line(0)))
+            && !self.is_field_name(next)
+            && !self.words.is_let(next);
+        if is_apart && let Some(right) = unit_of(next) {
+            let behind = self.bump();
+            return self.with_unit(digits, right, span.to(behind), behind);
         }
-        Value {
-            kind: number(written),
-            span,
+        if matches!(unit, "" | "deg" | "rad") {
+            let kind = number(written);
+            return Value { kind, span };
+        }
+        let behind = Span::new(self.id, span.start + digits.len(), span.end);
+        match unit_of(unit).filter(|_| !self.words.is_let(unit)) {
+            Some(right) => self.with_unit(digits, right, span, behind),
+            None => self.odd_number(written, digits, span, behind),
         }
     }
 
-    /// A unit that stands apart from its number, or a sign for one.
-    fn apart_unit(&mut self, digits: &'s str, number: Span) -> Option<Value<'s>> {
-        let unit = self.word(0);
-        let is_apart = self.kind(0) == TokenKind::Name && !self.is_on_new_line(0);
-        let is_taken = self.is_field_name(unit) || self.words.is_let(unit);
-        if unit == "°" || (is_apart && !is_taken && angle_unit(unit).is_some() && unit.len() > 2) {
-            let (factor, right) = angle_unit(unit)?;
-            let span = self.bump();
-            let whole = number.to(span);
-            let way = match self.takes_angle() {
-                true => Way::replace(whole, format!("{}{right}", scaled(digits, factor)?)),
-                false => Way::told(format!("write an angle as `{digits}{right}`")),
-            };
-            let unit = if right == "deg" {
-                Unit::Degrees
-            } else {
-                Unit::Radians
-            };
-            let is_right = matches!(self.written(span), "deg" | "rad");
-            self.problems.push(match self.written(span) {
-                "°" => Problem::BadNumber {
-                    written: format!("{digits}°"),
-                    span,
-                    label: "`°` is no unit".to_owned(),
-                    way,
-                },
-                _ => Problem::SpacedUnit {
-                    span: if is_right { whole } else { span },
-                    way,
-                },
-            });
-            let kind = match factor == 1.0 {
-                true => ValueKind::Angle {
-                    number: digits,
-                    unit,
-                },
-                false => ValueKind::Bad,
-            };
-            return Some(Value { kind, span: whole });
-        }
-        if is_apart && !is_taken && metres(unit).is_some() {
-            let span = self.bump();
-            let written = format!("{digits}{unit}");
-            return Some(self.length(&written, digits, unit, number.to(span), span));
-        }
-        None
-    }
-
-    fn takes_angle(&self) -> bool {
-        matches!(self.within.takes, None | Some(Type::Angle))
-    }
-
-    /// A number with a unit of length: all lengths are in metres.
-    fn length(
+    /// A number with a unit that is none, or stands apart from it.
+    fn with_unit(
         &mut self,
-        written: &str,
-        digits: &str,
-        unit: &str,
+        digits: &'s str,
+        (factor, right): (f64, &str),
         whole: Span,
-        span: Span,
+        behind: Span,
     ) -> Value<'s> {
-        let way = match (metres(unit), self.within.takes) {
-            (Some(factor), None | Some(Type::Number)) => match scaled(digits, factor) {
-                Some(right) => {
-                    let mut way = Way::replace(whole, &right);
-                    if !matches!(unit, "px" | "pixel" | "pixels") {
-                        way.note = "; all lengths are in metres";
-                    }
-                    way
-                }
-                None => Way::told("all lengths are in metres, and written without a unit"),
-            },
-            _ => Way::told("only angles have a unit, such as `30deg`"),
+        let unit = self.written(behind);
+        let (fits, kind, label) = match (right, self.within.takes) {
+            ("", None | Some(Type::Number)) => {
+                (true, ValueKind::Number(digits), "all lengths are in metres")
+            }
+            (_, None | Some(Type::Angle)) if !right.is_empty() => {
+                let is_degrees = right == "deg";
+                let unit = if is_degrees {
+                    Unit::Degrees
+                } else {
+                    Unit::Radians
+                };
+                (
+                    true,
+                    ValueKind::Angle {
+                        number: digits,
+                        unit,
+                    },
+                    "the units are `deg` and `rad`",
+                )
+            }
+            _ => (
+                false,
+                ValueKind::Bad,
+                "only angles have a unit, such as `30deg`",
+            ),
         };
-        self.problems.push(Problem::BadNumber {
-            written: shorten(written),
-            span,
-            label: format!("`{unit}` is no unit; only angles have one"),
-            way,
-        });
-        bad(whole)
+        let text = scaled(digits, factor).filter(|_| fits);
+        let fix = text.map(|number| replace(whole, format!("{number}{right}")));
+        if !right.is_empty() && unit != "°" && behind.start > whole.start + digits.len() {
+            let place = if unit == right { whole } else { behind };
+            self.report(&say::SPACED_UNIT, place, &[label], fix);
+        } else {
+            let written = shorten(&format!("{digits}{unit}"));
+            self.report(&say::BAD_NUMBER, behind, &[&written, label], fix);
+        }
+        let kind = if factor == 1.0 { kind } else { ValueKind::Bad };
+        Value { kind, span: whole }
     }
 
     /// What starts as a number does and is none.
-    fn odd_number(&mut self, written: &'s str, digits: &'s str, span: Span) -> Value<'s> {
-        let unit = written.get(digits.len()..).unwrap_or_default();
-        let unit_span = Span::new(span.source, span.start + digits.len(), span.end);
-        if metres(unit).is_some() && !self.words.is_let(unit) {
-            return self.length(written, digits, unit, span, unit_span);
-        }
-        let takes = self.within.takes;
+    fn odd_number(&mut self, written: &str, digits: &str, span: Span, behind: Span) -> Value<'s> {
+        let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
         let is_hex = hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
-        let (label, way, place) = if let Some((factor, right)) = angle_unit(unit) {
-            let way = match scaled(digits, factor).filter(|_| self.takes_angle()) {
-                Some(number) => Way::replace(span, format!("{number}{right}")),
-                None => Way::told(format!("write an angle as `30{right}`")),
-            };
-            (format!("`{unit}` is no unit"), way, unit_span)
-        } else if self.words.is_factor(unit) {
-            let way = match takes {
-                None | Some(Type::Number) => Way::replace(span, format!("{digits} * {unit}")),
-                _ => Way::told(format!("write an operator, such as `{digits} * {unit}`")),
-            };
-            (
-                "an operator is missing before this".to_owned(),
-                way,
-                unit_span,
-            )
+        let takes = self.within.takes;
+        let tight = written.replace('_', "");
+        let (label, right, place) = if self.words.is_factor(unit) {
+            let takes_number = matches!(takes, None | Some(Type::Number));
+            let product = takes_number.then(|| format!("{digits} * {unit}"));
+            ("an operator is missing before this", product, behind)
         } else if is_hex && takes == Some(Type::Color) {
-            let way = Way::replace(span, format!("#{hex}"));
-            (
-                "the digits of a colour stand behind a `#`".to_owned(),
-                way,
-                span,
-            )
-        } else if let Some(way) = self.sizes(written, span) {
-            ("`x` is no operator".to_owned(), way, span)
-        } else if unit.eq_ignore_ascii_case("e") {
-            let way = Way::told(format!("write the exponent, such as `{digits}e3`"));
-            (
-                "the digits of the exponent are missing".to_owned(),
-                way,
-                unit_span,
-            )
-        } else if unit.starts_with('_') || unit.ends_with('_') {
-            let tight = written.replace('_', "");
-            let way = match numeric_part(&tight) == tight {
-                true => Way::replace(span, tight),
-                false => Way::told("write each `_` between two digits, such as `1_000`"),
-            };
-            ("a `_` stands between two digits only".to_owned(), way, span)
+            let label = "the digits of a colour stand behind a `#`";
+            (label, Some(format!("#{hex}")), span)
+        } else if let Some(sizes) = self.sizes(written) {
+            ("`x` is no operator", Some(sizes), span)
+        } else if numeric_part(&tight) == tight {
+            ("a `_` stands between two digits only", Some(tight), span)
         } else {
-            let way = Way::told("write a number such as `2`, `0.5` or `1e-3`");
-            let place = if unit.starts_with('.') {
-                span
-            } else {
-                unit_span
-            };
-            ("not a part of a number".to_owned(), way, place)
+            let place = if unit.starts_with('.') { span } else { behind };
+            ("not a part of a number", None, place)
         };
-        self.problems.push(Problem::BadNumber {
-            written: shorten(written),
-            span: place,
-            label,
-            way,
-        });
+        let fix = right.map(|right| replace(span, right));
+        self.report(&say::BAD_NUMBER, place, &[&shorten(written), label], fix);
         bad(span)
     }
 
-    /// `0.5x1.5x2` and `4x4`.
-    fn sizes(&self, written: &str, span: Span) -> Option<Way> {
+    /// `0.5x1.5x2` and `4x4`
+    fn sizes(&self, written: &str) -> Option<String> {
         let parts: Vec<&str> = written.split(['x', 'X']).collect();
-        let are_numbers = parts
-            .iter()
-            .all(|part| !part.is_empty() && numeric_part(part) == *part);
+        let is_number = |part: &&str| !part.is_empty() && numeric_part(part) == *part;
+        if !parts.iter().all(is_number) {
+            return None;
+        }
         match (parts.as_slice(), self.within.takes) {
-            ([_, _, _], None | Some(Type::Vector)) if are_numbers => {
-                Some(Way::replace(span, format!("({})", parts.join(", "))))
-            }
-            ([a, b], Some(Type::Number)) if are_numbers => {
-                let product = a.parse::<f64>().ok()? * b.parse::<f64>().ok()?;
-                Some(Way::replace(span, format!("{product}")))
+            ([_, _, _], None | Some(Type::Vector)) => Some(format!("({})", parts.join(", "))),
+            ([a, b], Some(Type::Number)) => {
+                Some((a.parse::<f64>().ok()? * b.parse::<f64>().ok()?).to_string())
             }
             _ => None,
         }

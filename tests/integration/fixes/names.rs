@@ -3,17 +3,6 @@
 use super::{diagnostics, of_scene, offered, offers, sources};
 
 #[test]
-fn a_definition_moves_before_its_block() {
-    offers(
-        "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n  sphere {\n    let r = 2 // why\n    center (0, 1, 0)  radius r\n  }",
-        &[(
-            "move it before the block",
-            "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n  let r = 2 // why\n  sphere {\n    center (0, 1, 0)  radius r\n  }",
-        )],
-    );
-}
-
-#[test]
 fn a_definition_moves_before_its_first_use() {
     let moves = |before: &str, after: &str| {
         let title = "move `let r` before its first use";

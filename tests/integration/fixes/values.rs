@@ -82,22 +82,11 @@ fn operands_that_do_not_go_together_are_made_to() {
     fixed("let a = ", "red + blue", &[]);
     // No comment is lost.
     fixed("let a = ", "v * /* dot */ w", &[]);
-    assert!(offered(&of_scene("let a = 3 /* squared */ ^ 2")).is_empty());
 }
 
 #[test]
-fn powers_parts_and_degrees_are_written_out() {
+fn parts_and_degrees_are_written_out() {
     for (before, after) in [
-        ("let r = 2 let a = r^2", "let r = 2 let a = r * r"),
-        (
-            "let r = 2 let a = 3 - -r ** 3",
-            "let r = 2 let a = 3 - -r * r * r",
-        ),
-        ("let a = 6 / (1 + 2) ^ 2", "let a = 6 / ((1 + 2) * (1 + 2))"),
-        (
-            "let a = 2 * sqrt(3)^2 / 4",
-            "let a = 2 * sqrt(3) * sqrt(3) / 4",
-        ),
         ("sphere { center (1, 2) }", "sphere { center (1, 2, 1) }"),
         (
             "let a = 10deg sphere { center (0, 1, 0)  radius a + 2deg }",
@@ -111,18 +100,6 @@ fn powers_parts_and_degrees_are_written_out() {
         let offered = offered(&of_scene(before));
         let texts: Vec<&str> = offered.iter().map(|(_, text)| text.as_str()).collect();
         assert_eq!(texts, [of_scene(after)]);
-    }
-    for before in [
-        "let a = 2^0.5",
-        "let a = 30deg^2",
-        "let a = 2^3^2",
-        "let a = 2^-1",
-    ] {
-        let offered = offered(&of_scene(before));
-        assert!(
-            offered.iter().all(|(title, _)| title.contains("2 * 2 * 2")),
-            "{before}"
-        );
     }
 }
 

@@ -2,12 +2,9 @@
 
 use std::fs;
 
-use proptest::{prelude::*, sample::select, strategy::ValueTree};
+use proptest::{prelude::*, sample::select};
 
-use super::{
-    all_scenes, formatted,
-    laws::{lists_are_open, the_laws_hold},
-};
+use super::{all_scenes, formatted, laws::the_laws_hold};
 
 /// What may stand between two tokens. A blank comes first where the tokens would be one without it, or the start of a comment.
 fn gap() -> impl Strategy<Value = &'static str> {
@@ -194,21 +191,6 @@ fn text() -> impl Strategy<Value = String> {
         .prop_filter("two minuses and a blank", |text| {
             !text.contains("-- ") && !text.contains("--\t")
         })
-}
-
-/// The generated texts have such lists, also within one another.
-#[test]
-fn lists_with_comments_are_generated() {
-    let mut runner = proptest::test_runner::TestRunner::deterministic();
-    let count = |runner: &mut _| {
-        let text = text().new_tree(runner).unwrap().current();
-        lists_are_open(&formatted(&text).unwrap())
-    };
-    let counts: Vec<usize> = (0..300).map(|_| count(&mut runner)).collect();
-    assert!(
-        counts.iter().filter(|&&count| count > 1).count() > 30,
-        "{counts:?}"
-    );
 }
 
 proptest! {

@@ -104,7 +104,7 @@ fn mistakes_of_syntax_are_told_and_no_others() {
         ("2.5.5", "bad_number"),
         ("#ff", "bad_color_code"),
         (", color red", "needless_separator"),
-        (")", "stray_closing"),
+        (")", "unexpected"),
     ] {
         let text = format!("sphere {{ center (0, 1, 0)  radus {value} }}");
         assert_eq!(formatted(&text), codes(&[code]), "{text}");
@@ -147,11 +147,11 @@ fn little_texts() {
         ("let a=-// minus\n3", "let a = -  // minus\n  3\n"),
         (
             "let a=max(// c\n1,2/* d */)",
-            "let a = max(  // c\n  1,\n  2  /* d */\n)\n",
+            "let a = max(  // c\n  1, 2 /* d */)\n",
         ),
-        ("let a=f(\n/* c */\n)", "let a = f(\n  /* c */\n)\n"),
+        ("let a=f(\n/* c */\n)", "let a = f(\n  /* c */)\n"),
         ("let a=(1,/* c */\n2,3)", "let a = (1, /* c */ 2, 3)\n"),
-        ("let a=(1 // c\n)", "let a = (\n  1  // c\n)\n"),
+        ("let a=(1 // c\n)", "let a = (1  // c\n  )\n"),
         ("box A{min a max(b)}", "box A { min a  max (b) }\n"),
     ];
     for (text, expected) in cases {

@@ -1,0 +1,112 @@
+//! How a problem of syntax is made, of one of `messages`.
+
+use super::messages;
+use crate::{
+    diagnostic::{Diagnostic, Edit, Fix, Label, Severity},
+    source::Span,
+};
+
+/// What is said of a slip.
+pub struct Message {
+    code: &'static str,
+    message: &'static str,
+    label: &'static str,
+    help: &'static str,
+}
+
+impl Message {
+    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where there is no fix.
+    pub const fn new(
+        code: &'static str,
+        message: &'static str,
+        label: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self {
+            code,
+            message,
+            label,
+            help,
+        }
+    }
+
+    /// The problem at a place; the words go where the message names something. A fix says what to do.
+    pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
+        let filled = |text: &str| {
+            let mut parts = text.split('{');
+            let mut filled = parts.next().unwrap_or_default().to_owned();
+            for part in parts {
+                let word = part.get(..1).and_then(|index| index.parse::<usize>().ok());
+                match (word.and_then(|index| words.get(index)), part.get(2..)) {
+                    (Some(word), Some(rest)) => filled.extend([word, rest]),
+                    _ => filled.extend(["{", part]),
+                }
+            }
+            filled
+        };
+        let fixes: Vec<Fix> = fix.into().into_iter().collect();
+        let title = fixes.first().map(|fix| fix.title.clone());
+        Diagnostic {
+            severity: Severity::Error,
+            code: format!("pinhole::{}", self.code),
+            message: filled(self.message),
+            help: title.or_else(|| Some(filled(self.help))),
+            labels: vec![Label {
+                span,
+                message: filled(self.label),
+            }],
+            fixes,
+            is_needless: self.code.starts_with("needless") || self.code == "plus_sign",
+            is_of_syntax: true,
+        }
+    }
+}
+
+/// Some bytes are part of no character.
+pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
+    messages::INVALID_UTF8.at(span, &[&times(more)], None)
+}
+
+/// The text starts with the byte order mark of UTF-16.
+pub fn utf16(span: Span) -> Diagnostic {
+    messages::UTF16.at(span, &[], None)
+}
+
+/// A field has no value.
+pub fn field_without_value(name: &str, span: Span) -> Diagnostic {
+    messages::FIELD_WITHOUT_VALUE.at(span, &[name], None)
+}
+
+/// Writes a text in a place.
+pub fn replace(span: Span, text: impl Into<String>) -> Fix {
+    let text = text.into();
+    let title = format!("write `{}`", shorten(&text));
+    Fix::new(title, [Edit::new(span, text)])
+}
+
+/// That a slip was made so many times more.
+pub fn times(more: usize) -> String {
+    match more {
+        0 => String::new(),
+        1 => ", and at one more place".to_owned(),
+        _ => format!(", and at {more} more places"),
+    }
+}
+
+/// What stands at some place, in a message: on one line, and not too long.
+pub fn shorten(written: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut short = String::new();
+    for (index, word) in written.split_whitespace().enumerate() {
+        if index > 0 {
+            short.push(' ');
+        }
+        short.extend(word.chars().take(LONGEST + 1));
+        if short.chars().count() > LONGEST {
+            let mut cut: String = short.chars().take(LONGEST).collect();
+            cut.push('…');
+            return cut;
+        }
+    }
+    short
+}

@@ -1,0 +1,151 @@
+//! Several values where one should stand: the parts of a list without parentheses, a product without its sign, a number with
+//! commas, or the value of a field without a name.
+
+use super::{Recovery, example, is_plain_number};
+use crate::{
+    diagnostic::{Edit, Fix},
+    schema::Type,
+    source::Span,
+    syntax::{
+        messages as say,
+        problem::replace,
+        tokens::numeric_part,
+        tree::{Element, Name, Operator, Value, ValueKind, bad, chain},
+    },
+};
+
+impl<'s> Recovery<'_, 's> {
+    /// The parts of a list, for a text.
+    pub(super) fn list_of(&self, values: &[Value<'s>]) -> String {
+        let texts: Vec<&str> = values
+            .iter()
+            .map(|value| self.written(value.span))
+            .collect();
+        texts.join(", ")
+    }
+
+    /// One value of several that were written behind each other.
+    pub(super) fn joined(&mut self, mut values: Vec<Value<'s>>, commas: usize) -> Value<'s> {
+        let (first, second, span) = match values.as_slice() {
+            [] => return bad(self.behind()),
+            [_] => return values.swap_remove(0),
+            [first, second, ..] => (first.clone(), second.clone(), first.span.to(self.behind())),
+        };
+        let (takes, whole) = (self.within.takes, self.written(span));
+        let numbers = values.iter().all(is_plain_number);
+        let right = format!("({})", self.list_of(&values));
+        if values.iter().any(|value| value.kind == ValueKind::Bad) {
+            return bad(span);
+        }
+        match (takes, values.len()) {
+            // `dark red` and `multi jittered` are one name, written wrongly.
+            (Some(Type::Color | Type::Method), _)
+                if are_names(&values) && commas == 0 && !whole.contains(['\n', '/']) =>
+            {
+                let kind = ValueKind::Name(whole);
+                Value { kind, span }
+            }
+            (None | Some(Type::Number | Type::Angle), _)
+                if numbers && commas > 0 && self.comma_in_number(span) =>
+            {
+                bad(span)
+            }
+            (Some(Type::Color), 3) if numbers => {
+                self.missing_parentheses(span, Some(replace(span, format!("rgb{right}"))));
+                let (text, span) = ("rgb", first.span);
+                self.call_of(Name { text, span }, elements(values), span)
+            }
+            (Some(Type::Vector) | None, 3) | (Some(Type::Colors), 2) => {
+                self.missing_parentheses(span, Some(replace(span, right)));
+                let kind = ValueKind::Tuple(elements(values));
+                Value { kind, span }
+            }
+            (Some(Type::Vector), _) if !matches!(first.kind, ValueKind::Tuple(_)) => {
+                self.missing_parentheses(span, None);
+                bad(span)
+            }
+            _ => self.missing_between(first, second).unwrap_or(bad(span)),
+        }
+    }
+
+    pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
+        let help = example(self.within.takes);
+        self.report(&say::MISSING_PARENTHESES, span, &[help], fix);
+    }
+
+    /// Two values with nothing between: an operator is missing, or the name of a field.
+    pub(super) fn missing_between(
+        &mut self,
+        left: Value<'s>,
+        right: Value<'s>,
+    ) -> Option<Value<'s>> {
+        let is_whole = match left.kind {
+            ValueKind::Tuple(_) | ValueKind::ColorCode(_) => true,
+            ValueKind::Name(name) => self.words.is_color(name),
+            _ => false,
+        };
+        let (l, r) = (self.short(left.span), self.short(right.span));
+        let is_method = self.within.takes == Some(Type::Method);
+        if self.within.is_block && self.lists == 0 && (is_whole || is_method) {
+            self.report(&say::MISSING_FIELD_NAME, right.span, &[&r], None);
+            return None;
+        }
+        // `2 pi`, if both are surely numbers.
+        let sign = Span::new(self.id, left.span.end, right.span.start);
+        let are_numbers = (is_plain_number(&left) && self.is_factor(&right))
+            || (self.is_factor(&left) && is_plain_number(&right));
+        let is_product = are_numbers && matches!(self.within.takes, None | Some(Type::Number));
+        let title = format!("write `{l} * {r}`");
+        let fix = is_product.then(|| Fix::new(title, [Edit::new(sign, " * ")]));
+        self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
+        is_product.then(|| chain(left, Operator::Multiply, sign, right))
+    }
+
+    /// Whether a value starts with a name that is surely that of a number.
+    pub(super) fn is_factor(&self, value: &Value<'s>) -> bool {
+        match &value.kind {
+            ValueKind::Name(name) => self.words.is_factor(name),
+            ValueKind::Chain { first, rest } => {
+                self.is_factor(first) && rest.iter().all(|step| is_plain_number(&step.operand))
+            }
+            _ => false,
+        }
+    }
+
+    /// `1,5` and `1,000,000`
+    fn comma_in_number(&mut self, span: Span) -> bool {
+        let parts: Vec<&str> = self.written(span).split(',').collect();
+        let is_digits = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
+        let Some((head, rest)) = parts
+            .split_first()
+            .filter(|(_, rest)| rest.iter().all(is_digits))
+        else {
+            return false;
+        };
+        let is_whole = self.words.is_whole(self.within.kind, self.within.field);
+        let are_thousands = rest.iter().all(|part| part.len() == 3);
+        let (message, right) = if are_thousands && (rest.len() > 1 || is_whole) {
+            ("no commas stand in a number", parts.join("_"))
+        } else if rest.len() == 1 && numeric_part(head) == *head && !head.contains('.') {
+            ("a decimal point is written `.`, not `,`", parts.join("."))
+        } else {
+            return false;
+        };
+        let comma = span.start + head.len();
+        let comma = Span::new(self.id, comma, comma + 1);
+        self.report(&say::DECIMAL_COMMA, comma, &[message], replace(span, right));
+        true
+    }
+}
+
+pub(super) fn are_names(values: &[Value<'_>]) -> bool {
+    values
+        .iter()
+        .all(|value| matches!(value.kind, ValueKind::Name(_)))
+}
+
+/// Values as the parts of a list whose commas are not there.
+pub(super) fn elements(values: Vec<Value<'_>>) -> Vec<Element<'_>> {
+    let element = |value| Element { value, comma: None };
+    values.into_iter().map(element).collect()
+}

@@ -1,0 +1,298 @@
+//! Lists: values between parentheses, or between what people write for them.
+
+use std::ops::RangeInclusive;
+
+use super::{Recovery, example, foreign::Place, is_plain_number, joined::elements};
+use crate::{
+    diagnostic::{Edit, Fix},
+    schema::Type,
+    source::Span,
+    syntax::{
+        NESTING_LIMIT, messages as say,
+        problem::{replace, shorten},
+        tokens::TokenKind,
+        tree::{Element, Name, Value, ValueKind, bad},
+    },
+};
+
+/// How many values a list may have.
+type Count = RangeInclusive<usize>;
+
+/// A list as it was read.
+struct List<'s> {
+    elements: Vec<Element<'s>>,
+    /// From its `(` to its `)`.
+    span: Span,
+    /// Whether it stands in round parentheses.
+    is_round: bool,
+    /// The values before which a comma is missing.
+    gaps: Vec<usize>,
+    /// A comma without a value on one side.
+    needless: Option<Span>,
+}
+
+impl<'s> Recovery<'_, 's> {
+    /// Whether braces in place of a value hold a list, rather than fields.
+    pub(super) fn is_flat_list(&mut self) -> bool {
+        let sign = 1 + usize::from(self.is(1, "-"));
+        let is_number = self.kind(sign) == TokenKind::Number;
+        self.is(0, "{") && (is_number || (self.is_name(sign) && self.is(sign + 1, ",")))
+    }
+
+    /// A vector, a pair, or a value in parentheses.
+    pub(super) fn group(&mut self, close: &'static str) -> Value<'s> {
+        let takes = self.within.takes;
+        let (parts, count) = match takes {
+            Some(Type::Vector) => (Some(Type::Number), 3..=3),
+            Some(Type::Colors) => (Some(Type::Color), 2..=2),
+            Some(Type::Number | Type::Angle) => (takes, 1..=1),
+            Some(Type::Color) => (takes, 3..=3),
+            Some(Type::Method) | None => (None, 3..=3),
+        };
+        let (start, told) = (self.here(), self.problems.len());
+        let Some(list) = self.list(close, parts, &count) else {
+            return bad(start.to(self.behind()));
+        };
+        let span = list.span;
+        if !list.is_round && self.problems.len() == told {
+            return self.brackets(list);
+        }
+        if takes == Some(Type::Vector) && self.lists == 0 && self.decimal_comma(&list.elements) {
+            return bad(span);
+        }
+        let Some(elements) = self.checked(list, &count) else {
+            return bad(span);
+        };
+        let kind = match <[Element<'s>; 1]>::try_from(elements) {
+            Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
+            Err(elements) => ValueKind::Tuple(elements),
+        };
+        Value { kind, span }
+    }
+
+    /// The call of a function whose name was read.
+    pub(super) fn call(&mut self, function: Name<'s>) -> Value<'s> {
+        let (told, count) = (self.problems.len(), self.words.arguments(function.text));
+        let Some(list) = self.list(")", None, &count) else {
+            return bad(function.span.to(self.behind()));
+        };
+        let parentheses = list.span;
+        if self.words.is_foreign_function(function.text) && self.problems.len() == told {
+            return self.foreign_function(function, list);
+        }
+        match self.checked(list, &count) {
+            Some(elements) => self.call_of(function, elements, parentheses),
+            None => bad(function.span.to(parentheses)),
+        }
+    }
+
+    /// `vec3(1, 2, 3)` and `rgba(255, 0, 0, 1)`
+    fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
+        let span = name.span.to(list.span);
+        let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
+        let (function, takes) = match name.text {
+            "rgba" | "color" | "Color" => ("rgb", Type::Color),
+            _ => ("", Type::Vector),
+        };
+        if takes == Type::Color && values.len() == 4 {
+            values.truncate(3);
+        }
+        let fits = values.len() == 3 && self.within.takes.is_none_or(|t| t == takes);
+        let right = format!("{function}({})", self.list_of(&values));
+        let fix = fits.then(|| replace(span, right));
+        let words = [name.text, example(Some(takes))];
+        self.report(&say::FOREIGN_FUNCTION, name.span, &words, fix);
+        bad(span)
+    }
+
+    /// What is between parentheses, however it is separated; none if its end is missing.
+    fn list(
+        &mut self,
+        close: &'static str,
+        parts: Option<Type>,
+        count: &Count,
+    ) -> Option<List<'s>> {
+        if self.depth >= NESTING_LIMIT {
+            self.pass_over();
+            return None;
+        }
+        let takes = std::mem::replace(&mut self.within.takes, parts);
+        self.depth += 1;
+        self.lists += 1;
+        let list = self.parts(close, count);
+        self.lists -= 1;
+        self.depth -= 1;
+        self.within.takes = takes;
+        list.filter(|_| !self.too_deep)
+    }
+
+    fn parts(&mut self, close: &'static str, count: &Count) -> Option<List<'s>> {
+        let open = self.bump();
+        let mut list = List {
+            elements: Vec::new(),
+            span: open,
+            is_round: close == ")",
+            gaps: Vec::new(),
+            needless: None,
+        };
+        loop {
+            let is_value_next = list.elements.last().is_none_or(|last| last.comma.is_some());
+            self.comments(match is_value_next {
+                true => Place::Value,
+                false => Place::Operator,
+            });
+            if self.too_deep {
+                return None;
+            }
+            let word = self.word(0);
+            if word == close || (matches!(word, ")" | "]") && close != "}") {
+                list.span = open.to(self.bump());
+                list.is_round &= word == ")";
+                let last = list.elements.last().and_then(|last| last.comma);
+                list.needless = list.needless.or(last);
+                return Some(list);
+            }
+            if word == "," || (word == ";" && !is_value_next) {
+                if word == ";" {
+                    self.unexpected("`,`", "write a comma between the parts of a list");
+                }
+                let comma = self.bump();
+                match list.elements.last_mut() {
+                    Some(last) if last.comma.is_none() => last.comma = Some(comma),
+                    _ => list.needless = list.needless.or(Some(comma)),
+                }
+            } else if self.ends_list() {
+                let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
+                let fits = is_whole && count.contains(&list.elements.len());
+                self.unclosed(open, close, fits);
+                list.span = open.to(self.behind());
+                list.is_round = true;
+                return fits.then_some(list);
+            } else {
+                if !is_value_next {
+                    list.gaps.push(list.elements.len());
+                }
+                let at = self.last_end;
+                let value = self.expression();
+                if self.last_end == at {
+                    self.bump();
+                }
+                list.elements.push(Element { value, comma: None });
+            }
+        }
+    }
+
+    /// Whether a list must have ended before this: a brace, the end, `let`, or the name of a field.
+    fn ends_list(&mut self) -> bool {
+        let word = self.word(0);
+        match self.kind(0) {
+            TokenKind::End => true,
+            TokenKind::Name => {
+                word == "let"
+                    || (self.is_field_name(word) && !self.words.is_value(word))
+                    || (self.is_on_new_line(0) && (self.is_head(0) || !self.within.is_block))
+            }
+            TokenKind::Sign if word == "{" => !self.is_flat_list(),
+            TokenKind::Sign => matches!(word, "}" | ";" | "="),
+            _ => false,
+        }
+    }
+
+    fn unclosed(&mut self, open: Span, close: &str, fits: bool) {
+        let (word, at) = (self.word(0), self.last_end);
+        // A field's name behind which no value stands does not end a list, nor does a sign.
+        let is_end = matches!(word, "" | "}") || (self.is_name(0) && self.starts_value(1));
+        let before = match word {
+            "" => "at the end".to_owned(),
+            word => format!("before `{}`", shorten(word)),
+        };
+        let end = Edit::insert(self.id, at, ")");
+        let fix = (fits && is_end).then(|| match close {
+            ")" => Fix::new(format!("write `)` {before}"), [end]),
+            _ => Fix::new(format!("write `(…)` {before}"), [Edit::new(open, "("), end]),
+        });
+        self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
+    }
+
+    /// The values of a list, if it is known how many they are.
+    fn checked(&mut self, list: List<'s>, count: &Count) -> Option<Vec<Element<'s>>> {
+        let elements = list.elements;
+        let fits = count.contains(&elements.len());
+        if let Some(comma) = list.needless {
+            let fix = self.remove("remove this comma", comma);
+            match fits {
+                true => self.report(&say::NEEDLESS_COMMA, comma, &[], fix),
+                false => self.report(&say::MISSING_PART, comma, &[], None),
+            }
+            return fits.then_some(elements);
+        }
+        let Some(&first) = list.gaps.first() else {
+            return Some(elements);
+        };
+        let (left, right) = (&elements.get(first - 1)?.value, &elements.get(first)?.value);
+        if elements
+            .iter()
+            .any(|element| element.value.kind == ValueKind::Bad)
+        {
+            return None;
+        }
+        if !fits && is_plain_number(left) && self.is_factor(right) {
+            self.missing_between(left.clone(), right.clone());
+            return None;
+        }
+        let (l, r) = (self.short(left.span), self.short(right.span));
+        let fix = fits.then(|| {
+            let before = list.gaps.iter().filter_map(|&gap| elements.get(gap - 1));
+            let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
+            Fix::new(format!("write `{l}, {r}`"), edits)
+        });
+        self.report(&say::MISSING_COMMA, right.span, &[&l, &r], fix);
+        fits.then_some(elements)
+    }
+
+    /// A list in other brackets.
+    fn brackets(&mut self, list: List<'s>) -> Value<'s> {
+        let (span, takes) = (list.span, self.within.takes);
+        let (what, function, count) = match takes {
+            Some(Type::Color) => ("a colour", "rgb", 3),
+            Some(Type::Colors) => ("a pair of colours", "", 2),
+            _ => ("a vector", "", 3),
+        };
+        let fits = list.elements.len() == count && list.needless.is_none();
+        let values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
+        let right = format!("{function}({})", self.list_of(&values));
+        let fix = fits.then(|| replace(span, right));
+        self.report(&say::BRACKETS, span, &[what, example(takes)], fix);
+        let kind = ValueKind::Tuple(elements(values.clone()));
+        match function {
+            _ if !fits => bad(span),
+            "" => Value { kind, span },
+            text => self.call_of(Name { text, span }, elements(values), span),
+        }
+    }
+
+    /// `(3, 3,5, 8)`: a comma right between two digits, where blanks follow the others.
+    fn decimal_comma(&mut self, elements: &[Element<'s>]) -> bool {
+        let is_tight = |pair: &[Element<'s>]| match pair {
+            [a, b] => {
+                let (left, right) = (a.value.span, b.value.span);
+                let is_near = a.comma.is_some() && right.start == left.end + 1;
+                let (head, rest) = (self.written(left), self.written(right));
+                let is_fraction = rest.bytes().all(|byte| byte.is_ascii_digit());
+                let is_whole = is_plain_number(&a.value) && !head.contains('.');
+                (is_near && is_fraction && is_whole).then_some((left, right))
+            }
+            _ => None,
+        };
+        let tight: Vec<(Span, Span)> = elements.windows(2).filter_map(is_tight).collect();
+        let (4, &[(left, right)]) = (elements.len(), tight.as_slice()) else {
+            return false;
+        };
+        let comma = Span::new(self.id, left.end, right.start);
+        let title = format!("write `{}.{}`", self.written(left), self.written(right));
+        let message = "a decimal point is written `.`, not `,`";
+        let fix = Fix::new(title, [Edit::new(comma, ".")]);
+        self.report(&say::DECIMAL_COMMA, comma, &[message], fix);
+        true
+    }
+}
