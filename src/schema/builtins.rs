@@ -154,6 +154,19 @@ pub struct Function {
     pub help: &'static str,
 }
 
+impl Function {
+    /// The type of an argument, by how many stand before it.
+    pub fn parameter(&self, index: usize) -> Option<Type> {
+        let last = self.takes.last().filter(|_| self.more);
+        self.takes.get(index).or(last).copied()
+    }
+
+    /// Whether it takes so many arguments.
+    pub fn accepts(&self, count: usize) -> bool {
+        count == self.takes.len() || (self.more && count > self.takes.len())
+    }
+}
+
 /// The predefined names that are neither colours nor functions, with a line of help.
 pub const CONSTANTS: &[(&str, &str)] = &[
     ("pi", "the number 3.141592653589793"),

@@ -157,18 +157,39 @@ fn fixtures_say_what_they_produce() {
     }
 }
 
-/// The codes that the stages have, without `pinhole::`.
+/// The codes that the stages have, without `pinhole::`: of syntax by its derive, of meaning by where problems are written.
 pub fn codes() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
-    for stage in ["src/syntax/error.rs", "src/scene/error.rs"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(stage);
-        let text = fs::read_to_string(path).expect("the source can be read");
-        for part in text.split("code(pinhole::").skip(1) {
-            let code = part.split(')').next().expect("a code ends");
-            codes.insert(code.to_owned());
+    for (stage, starts) in [
+        ("src/syntax", &["code(pinhole::"][..]),
+        ("src/scene", &["error(", "warning("]),
+    ] {
+        for path in sources_in(&Path::new(env!("CARGO_MANIFEST_DIR")).join(stage)) {
+            let text = fs::read_to_string(path).expect("the source can be read");
+            for part in starts.iter().flat_map(|start| text.split(start).skip(1)) {
+                let is_code = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+                let part = match stage {
+                    "src/scene" => part.trim_start().strip_prefix('"'),
+                    _ => Some(part),
+                };
+                let Some(part) = part else { continue };
+                let end = part.find(|c| !is_code(c)).expect("a code ends");
+                codes.insert(part[..end].to_owned());
+            }
         }
     }
     codes
+}
+
+/// Every file in a folder and in those within.
+fn sources_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("the folder is there");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let paths = paths.flat_map(|path| match path.is_dir() {
+        true => sources_in(&path),
+        false => vec![path],
+    });
+    paths.collect()
 }
 
 #[test]

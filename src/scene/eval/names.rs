@@ -17,7 +17,9 @@ use crate::{
 pub struct Names<'s> {
     /// The `let`s so far.
     pub(super) defined: HashMap<&'s str, Defined>,
-    /// The same names, in order.
+    /// Words in what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
+    pub(super) parts: HashSet<&'s str>,
+    /// The names that are defined, in order.
     order: Vec<&'s str>,
     /// The names of the whole file; none while it is still being read.
     whole: Option<Whole<'s>>,
@@ -46,8 +48,6 @@ pub(super) struct Defined {
     pub place: Span,
     /// The argument that set it, if one did.
     pub set: Option<SourceId>,
-    /// Whether it is only a part of something that cannot be a name.
-    is_part: bool,
 }
 
 impl<'s> Names<'s> {
@@ -75,11 +75,6 @@ impl<'s> Names<'s> {
         self.asked_early.get()
     }
 
-    /// Asks for what stands elsewhere in the file: it has to be read as a whole.
-    pub fn ask_for_all(&self) {
-        self.whole();
-    }
-
     fn whole(&self) -> Option<&Whole<'s>> {
         if self.whole.is_none() {
             self.asked_early.set(true);
@@ -89,44 +84,24 @@ impl<'s> Names<'s> {
 
     /// Defines a name; a second time it keeps its value.
     pub fn define(&mut self, name: Name<'s>, value: Option<Value>, set: Option<SourceId>) {
-        let defined = Defined {
-            value,
-            place: name.span,
-            set,
-            is_part: false,
-        };
-        match self.defined.entry(name.text) {
-            Entry::Vacant(free) => {
-                self.order.push(name.text);
-                free.insert(defined);
-            }
-            Entry::Occupied(mut part) if part.get().is_part => *part.get_mut() = defined,
-            Entry::Occupied(_) => {}
-        }
-    }
-
-    /// Takes a part of something that cannot be a name for one that is known, until it is defined.
-    pub fn guess(&mut self, name: Name<'s>) {
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
             self.order.push(name.text);
             free.insert(Defined {
-                value: None,
+                value,
                 place: name.span,
-                set: None,
-                is_part: true,
+                set,
             });
         }
+    }
+
+    /// Knows a word of what was to be a name and cannot be one.
+    pub fn know_part(&mut self, word: &'s str) {
+        self.parts.insert(word);
     }
 
     /// Where a name was defined, if it was.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.defined.get(name).map(|defined| defined.place)
-    }
-
-    /// Where a name was defined that is not only a part of something that cannot be one.
-    pub fn place_of_whole(&self, name: &str) -> Option<Span> {
-        let defined = self.defined.get(name).filter(|defined| !defined.is_part);
-        defined.map(|defined| defined.place)
     }
 
     /// The value of a name that was defined; none if it failed.

@@ -5,7 +5,7 @@ use super::{
     field_fixes::{examples, quoted},
 };
 use crate::{
-    scene::{error::Problem, schema::Preset},
+    scene::{error::error, schema::Preset},
     suggest,
 };
 
@@ -77,19 +77,19 @@ impl<'s> Lowering<'s> {
             self.add_fields(block, title, &examples(block, names))
         });
         let fixes: Vec<_> = fixes.collect();
-        self.problems.push(
-            Problem::MissingField {
-                message: format!("{} needs {all}", block.row.noun),
-                help: format!("write `{}`", examples(block, &needed).join("  ")),
-                span: block.keyword,
-                label: match missing.len() {
-                    1 if needed.len() == 1 => "it is not given".to_owned(),
-                    _ => "they are not given".to_owned(),
-                },
-                half,
-            }
-            .with(fixes),
-        );
+        let message = format!("{} needs {all}", block.row.noun);
+        let label = match (missing.len(), needed.len()) {
+            (1, 1) => "it is not given",
+            _ => "they are not given",
+        };
+        let mut problem = error("missing_field", message)
+            .at(block.keyword, label)
+            .help(format!("write `{}`", examples(block, &needed).join("  ")))
+            .fixes(fixes);
+        if let Some(half) = half {
+            problem = problem.at(half, "not enough by itself");
+        }
+        self.problems.push(problem);
     }
 }
 

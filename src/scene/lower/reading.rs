@@ -100,7 +100,6 @@ fn whole<'s>(
     lowering.keep_last_overrides(&tree.items);
     lowering.items(&tree.items);
     lowering.override_blocks();
-    lowering.fix_definitions(parsed);
     lowering
 }
 
@@ -121,8 +120,8 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        let found = self.problems.iter().take_while(|_| self.is_wanted());
-        diagnostics.extend(found.map(|found| found.diagnostic(self.sources)));
+        let found = std::mem::take(&mut self.problems).into_iter();
+        diagnostics.extend(found.take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)

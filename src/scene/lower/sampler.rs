@@ -2,9 +2,12 @@
 
 use super::{Block, Lowering, fields::Fields};
 use crate::{
-    diagnostic::Fix,
     numbers,
-    scene::{Count, Image, Method, Sampler, error::Problem, schema::Kind},
+    scene::{
+        Count, Image, Method, Sampler,
+        error::{error, warning},
+        schema::Kind,
+    },
     source::{SourceId, Span},
 };
 
@@ -28,13 +31,16 @@ impl<'s> Lowering<'s> {
                     && !conflict
                     && !is_exact
                 {
+                    let message =
+                        format!("{total} samples leave some of the {pixels} pixels empty");
+                    let help = format!(
+                        "a pixel without a sample shows the background; give a `total` of at least {pixels}"
+                    );
                     self.problems.push(
-                        Problem::FewSamples {
-                            total,
-                            pixels,
-                            span: given.span,
-                        }
-                        .with([Fix::write(given.span, pixels.to_string())]),
+                        warning("few_samples", message)
+                            .at(given.span, "fewer than there are pixels")
+                            .help(help)
+                            .writing(given.span, [pixels.to_string()]),
                     );
                 }
                 total.map(Count::Total)
@@ -48,17 +54,21 @@ impl<'s> Lowering<'s> {
                     // The default is never too many.
                     let given = block.and_then(|block| block.given("per_pixel"));
                     let start = Span::new(SourceId::File, 0, 0);
+                    let span = given.map_or(start, |given| given.span);
+                    let count = match per_pixel < 1e15 {
+                        true => per_pixel.to_string(),
+                        false => numbers::short(per_pixel),
+                    };
+                    let message =
+                        format!("{count} samples in each of {pixels} pixels are too many");
+                    let help = format!(
+                        "at most {most} samples per pixel keep the whole count within 2^53"
+                    );
                     self.problems.push(
-                        Problem::TooManySamples {
-                            per_pixel: match per_pixel < 1e15 {
-                                true => per_pixel.to_string(),
-                                false => numbers::short(per_pixel),
-                            },
-                            pixels,
-                            most,
-                            span: given.map_or(start, |given| given.span),
-                        }
-                        .with(given.map(|given| Fix::write(given.span, most.to_string()))),
+                        error("too_many_samples", message)
+                            .at(span, format!("{count} in each pixel"))
+                            .help(help)
+                            .writing(span, given.map(|_| most.to_string())),
                     );
                 }
                 per_pixel.map(|count| Count::PerPixel(count as u64))

@@ -1,6 +1,6 @@
 //! Fixes of definitions and of what uses them.
 
-use super::{diagnostics, of_scene, offered, offers, sources};
+use super::{diagnostics, of_scene, offers, sources};
 
 #[test]
 fn a_definition_moves_before_its_block() {
@@ -11,73 +11,6 @@ fn a_definition_moves_before_its_block() {
             "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n  let r = 2 // why\n  sphere {\n    center (0, 1, 0)  radius r\n  }",
         )],
     );
-}
-
-#[test]
-fn a_definition_moves_before_its_first_use() {
-    let moves = |before: &str, after: &str| {
-        let title = "move `let r` before its first use";
-        offers(&of_scene(before), &[(title, &of_scene(after))]);
-    };
-    moves(
-        "sphere { center (0, r, 0) }\nlet r = 2",
-        "let r = 2\nsphere { center (0, r, 0) }",
-    );
-    // With its comments, and before those of what uses it.
-    moves(
-        "let a = 1\n\n// A ball,\n// a round one.\n  sphere {\n    center (0, r, 0)\n  }\n\n// How high\n/* it\n lies. */\nlet r = 2 // metres\nlet b = r",
-        "let a = 1\n\n// How high\n/* it\n lies. */\nlet r = 2 // metres\n// A ball,\n// a round one.\n  sphere {\n    center (0, r, 0)\n  }\n\nlet b = r",
-    );
-    moves(
-        "// A picture of a ball.\r\nsphere { center (0, r, 0) }\r\nlet r = 2\r\n",
-        "// A picture of a ball.\r\nlet r = 2\r\nsphere { center (0, r, 0) }\r\n",
-    );
-    moves(
-        "let a = 1 sphere { center (0, r, 0) } let r = max(a, pi) let b = 3",
-        "let a = 1 let r = max(a, pi) sphere { center (0, r, 0) } let b = 3",
-    );
-    // It uses itself, or what would still be below.
-    assert!(offered(&of_scene("let s = s + 1")).is_empty());
-    let late = "sphere { center (0, r, 0) }\nlet a = 1\nlet r = a";
-    assert!(offered(&of_scene(late)).is_empty());
-}
-
-#[test]
-fn a_definition_of_a_taken_name_gets_another() {
-    let renames = |before: &str, new: &str, after: &str| {
-        let title = format!("call it `{new}`");
-        offers(&of_scene(before), &[(&title, &of_scene(after))]);
-    };
-    renames(
-        "let sin = 2\nlet a = sin(30deg) * 3\nsphere { center (0, 1, 0)  radius sin }",
-        "my_sin",
-        "let my_sin = 2\nlet a = sin(30deg) * 3\nsphere { center (0, 1, 0)  radius my_sin }",
-    );
-    // The value is still that of the language.
-    renames(
-        "let pi = pi / 2\nlet a = 2 * pi",
-        "my_pi",
-        "let my_pi = pi / 2\nlet a = 2 * my_pi",
-    );
-    // Where a colour is wanted, that is meant.
-    renames(
-        "let Red = 2\nsphere { center (0, Red, 0)  color Red }",
-        "my_Red",
-        "let my_Red = 2\nsphere { center (0, my_Red, 0)  color Red }",
-    );
-    renames(
-        "let red = #f10\nlet b = red\nsphere { center (0, 1, 0)  color red }",
-        "my_red",
-        "let my_red = #f10\nlet b = my_red\nsphere { center (0, 1, 0)  color my_red }",
-    );
-    for unclear in [
-        "let deg = 3\nlet a = 2 * deg",
-        "let red = 3\nlet a = red",
-        "let sin = 2\nlet my_sin = 3",
-        "let sin = 2\nlet sin = 3",
-    ] {
-        assert!(offered(&of_scene(unclear)).is_empty(), "{unclear}");
-    }
 }
 
 #[test]
