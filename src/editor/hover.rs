@@ -3,7 +3,7 @@
 use super::{
     Analysis,
     analysis::Path,
-    words::{Role, Token},
+    tokens::{Role, Token},
 };
 use crate::{
     color::Color,
@@ -29,8 +29,6 @@ pub struct Hover {
     pub span: Span,
     /// What there is to say, in Markdown.
     pub markdown: String,
-    /// The colours that it is about.
-    pub colors: Vec<Color>,
 }
 
 /// What the word at a place means; and where something is wrong with it, the page on that.
@@ -42,7 +40,6 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let mut hover = meaning.unwrap_or(Hover {
         span,
         markdown: String::new(),
-        colors: Vec::new(),
     });
     if !hover.markdown.is_empty() {
         hover.markdown.push_str("\n\n---\n\n");
@@ -69,7 +66,6 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let plain = |markdown: String| Hover {
         span: token.span,
         markdown,
-        colors: Vec::new(),
     };
     match token.role {
         Role::Let => Some(plain(ABOUT_LET.to_owned())),
@@ -84,15 +80,7 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
             let (_, help) = methods.find(|(method, _)| method.name() == word)?;
             Some(plain(format!("`{word}`: {help}")))
         }
-        Role::Defined => {
-            let definition = path.definition?;
-            let color = analysis.survey.defined(definition);
-            Some(Hover {
-                span: token.span,
-                markdown: about_definition(analysis, definition),
-                colors: colors(color),
-            })
-        }
+        Role::Defined => Some(plain(about_definition(analysis, path.definition?))),
         _ => value(analysis, &path, token),
     }
 }
@@ -132,14 +120,6 @@ fn described(value: Value) -> String {
             format!("{noun}: `{degrees}`, `{}rad`", short(radians))
         }
         Value::Number(_) | Value::Vector(_) | Value::Method(_) => format!("{noun}: `{value}`"),
-    }
-}
-
-fn colors(value: Option<Value>) -> Vec<Color> {
-    match value {
-        Some(Value::Color(color)) => vec![color],
-        Some(Value::Colors(colors)) => colors.to_vec(),
-        _ => Vec::new(),
     }
 }
 
@@ -247,13 +227,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
         0 => analysis.value(value, path),
         _ => analysis.survey.value(value, None),
     };
-    let about = |span, markdown| {
-        Some(Hover {
-            span,
-            markdown,
-            colors: colors(found),
-        })
-    };
+    let about = |span, markdown| Some(Hover { span, markdown });
     match &value.kind {
         ValueKind::Name(name) => {
             let definition = analysis.survey.definition_at(name, value.span.start);

@@ -4,7 +4,7 @@
 
 use super::{
     Analysis,
-    words::{Role, Token},
+    tokens::{Role, Token},
 };
 use crate::{
     scene::{predefined, schema},

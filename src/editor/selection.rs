@@ -1,6 +1,6 @@
 //! What a growing selection takes in: the word, the expressions around it, the field, the block, the file.
 
-use super::{Analysis, words::file};
+use super::{Analysis, tokens::file};
 use crate::source::Span;
 
 /// The spans around a place, each within the next one; the last is the whole file.

@@ -37,7 +37,6 @@ pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Ans
         "textDocument/codeAction" => code_actions(known?, parsed(params)?),
         "textDocument/formatting" => formatting(known?),
         "textDocument/semanticTokens/full" => semantic_tokens(known?),
-        "textDocument/diagnostic" => pulled_diagnostics(known?),
         method => Err(Refusal(
             ErrorCode::MethodNotFound,
             format!("`{method}` is not known here"),
@@ -106,7 +105,9 @@ fn refused(reason: String) -> Refusal {
 }
 
 fn symbols((page, analysis): Known<'_, '_>) -> Answer {
-    written(&page.symbols(editor::symbols(analysis)))
+    let symbols = editor::symbols(analysis).into_iter();
+    let symbols: Vec<_> = symbols.map(|symbol| page.symbol(symbol)).collect();
+    written(&symbols)
 }
 
 fn folds((page, analysis): Known<'_, '_>) -> Answer {
@@ -163,17 +164,12 @@ fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) 
     };
     let mut actions = Vec::new();
     if only.is_none() || is_wanted(&[Kind::QuickFix]) {
-        let fixes = editor::fixes(analysis, page.span(params.range)).into_iter();
-        actions.extend(fixes.map(|(diagnostic, fix)| page.action(diagnostic, &fix)));
+        let fixes = editor::fixes(analysis, page.span(params.range));
+        actions.extend(fixes.map(|(diagnostic, fix)| page.action(diagnostic, fix)));
     }
     // Beside a fix it is offered where there are others.
-    let fixable = || {
-        analysis
-            .diagnostics()
-            .iter()
-            .filter(|it| !it.fixes.is_empty())
-    };
-    let is_more = !actions.is_empty() && fixable().count() > 1 && editor::is_short(analysis);
+    let all = analysis.diagnostics().iter();
+    let is_more = !actions.is_empty() && all.filter(|it| !it.fixes.is_empty()).count() > 1;
     if is_more || is_wanted(&[Kind::Source, Kind::SourceFixAll]) {
         actions.extend(editor::fix_all(analysis).map(|fix| page.action_on_all(&fix)));
     }
@@ -190,10 +186,6 @@ fn formatting((page, analysis): Known<'_, '_>) -> Answer {
 
 fn semantic_tokens((page, analysis): Known<'_, '_>) -> Answer {
     written(&page.semantic_tokens(&editor::semantic_tokens(analysis)))
-}
-
-fn pulled_diagnostics((page, analysis): Known<'_, '_>) -> Answer {
-    written(&json!({ "kind": "full", "items": diagnostics(page, analysis) }))
 }
 
 /// What is wrong with a document.

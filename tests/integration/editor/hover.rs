@@ -144,8 +144,6 @@ fn colors_are_shown_in_every_spelling() {
         markdown("let a = #f$000"),
         "a colour: `#ff0000`, `rgb(255, 0, 0)`; in linear light (1, 0, 0)"
     );
-    let hover = at_cursor("checkerboard { colors $0(gray, white) }", hover).expect("an answer");
-    assert_eq!(hover.colors.len(), 2);
 }
 
 #[test]
@@ -260,10 +258,6 @@ fn calls_say_what_they_take() {
     assert_eq!(
         label("let a = max((1+2$0), 3)"),
         "max(‹number›, number, …) → number"
-    );
-    assert_eq!(
-        label("let a = max(1, min(2, 3)$0, 4)"),
-        "max(number, ‹number›, …) → number"
     );
     assert_eq!(label("let a = sin(1deg)$0"), "");
     assert_eq!(label("let a = sin(1deg /* $0 */)"), "");
