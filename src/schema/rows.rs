@@ -94,6 +94,44 @@ pub struct Field {
 }
 
 impl Field {
+    /// A field that must be given; any value of its type will do.
+    pub(super) const fn new(name: &'static str, takes: Type) -> Self {
+        Self {
+            name,
+            takes,
+            preset: Preset::Required,
+            must: &[],
+            help: "",
+            also_tried: &[],
+            doubled: &[],
+            example: "",
+        }
+    }
+
+    pub(super) const fn help(self, help: &'static str) -> Self {
+        Self { help, ..self }
+    }
+
+    pub(super) const fn preset(self, preset: Preset) -> Self {
+        Self { preset, ..self }
+    }
+
+    pub(super) const fn must(self, must: &'static [Condition]) -> Self {
+        Self { must, ..self }
+    }
+
+    pub(super) const fn tried(self, also_tried: &'static [&'static str]) -> Self {
+        Self { also_tried, ..self }
+    }
+
+    pub(super) const fn doubled(self, doubled: &'static [&'static str]) -> Self {
+        Self { doubled, ..self }
+    }
+
+    pub(super) const fn like(self, example: &'static str) -> Self {
+        Self { example, ..self }
+    }
+
     /// A value that it can have: for messages, and to type over.
     pub fn example(&self) -> String {
         match (self.preset, self.takes) {
