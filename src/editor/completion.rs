@@ -265,7 +265,7 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     Some(Completion {
         kind: CompletionKind::Value,
         detail: match field.preset {
-            Preset::Value(literal) if example == literal.to_string() => "the default".to_owned(),
+            Preset::Value(literal) if example == literal => "the default".to_owned(),
             _ => field.takes.word().to_owned(),
         },
         insert: value_to_type_over(&example),

@@ -180,25 +180,9 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
         .get(index)
         .filter(|object| object.span == block.span);
     Some(match object {
-        Some(object) => {
-            let summary = inspect::summary(&object.shape);
-            format!("{kind} `{name}`: {}", as_written(block, summary))
-        }
+        Some(object) => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
         None => format!("{kind} `{name}`"),
     })
-}
-
-/// A summary with the names of colours where the block has them.
-fn as_written(block: &tree::Block<'_>, mut summary: String) -> String {
-    let values = block.fields.iter().map(|field| &field.value);
-    for value in values.flat_map(|value| std::iter::once(value).chain(value.parts())) {
-        if let ValueKind::Name(name) = value.kind
-            && let Some(color) = css::color(name)
-        {
-            summary = summary.replace(&color.to_string(), name);
-        }
-    }
-    summary
 }
 
 /// Which of the values around a place there is something to say of: the smallest one; or what a number or a vector that says all

@@ -30,7 +30,6 @@ pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Ans
         "textDocument/rename" => rename(known?, parsed(params)?),
         "textDocument/documentSymbol" => symbols(known?),
         "textDocument/foldingRange" => folds(known?),
-        "textDocument/selectionRange" => selections(known?, parsed(params)?),
         "textDocument/inlayHint" => hints(known?, parsed(params)?),
         "textDocument/documentColor" => colors(known?),
         "textDocument/colorPresentation" => presentations(known?, parsed(params)?),
@@ -114,16 +113,6 @@ fn folds((page, analysis): Known<'_, '_>) -> Answer {
     let folds = editor::folds(analysis).into_iter();
     let folds: Vec<_> = folds.map(|fold| page.fold(fold)).collect();
     written(&folds)
-}
-
-fn selections((page, analysis): Known<'_, '_>, params: lsp::SelectionRangeParams) -> Answer {
-    let positions = params.positions.into_iter();
-    let selections = positions.map(|position| {
-        let at = page.offset(position);
-        page.selection(editor::selection(analysis, at))
-    });
-    let selections: Vec<_> = selections.collect();
-    written(&selections)
 }
 
 fn hints((page, analysis): Known<'_, '_>, params: lsp::InlayHintParams) -> Answer {

@@ -27,6 +27,13 @@ pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
+/// An error of a thing that is there twice.
+pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnostic {
+    error(code, message)
+        .at(second, "and again here")
+        .at(first, "first here")
+}
+
 impl Diagnostic {
     /// Adds a label. The first one is the place to jump to.
     pub(super) fn at(mut self, span: Span, label: impl Into<String>) -> Self {

@@ -1,7 +1,7 @@
 //! The table of blocks and their fields.
 
 use super::{
-    rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread},
+    rows::{Block, Choice, Condition, Field, Kind, Preset, Spread},
     types::Type,
 };
 
@@ -19,10 +19,6 @@ const BLOCK: Block = Block {
     also_tried: &[],
 };
 
-const fn number(value: f64) -> Preset {
-    Preset::Value(Literal::Number(value))
-}
-
 /// Every block of the language.
 pub const BLOCKS: &[Block] = &[
     Block {
@@ -33,17 +29,17 @@ pub const BLOCKS: &[Block] = &[
         fields: &[
             Field::new("width", Type::Number)
                 .help("the columns of pixels")
-                .preset(number(800.0))
+                .preset(Preset::Value("800"))
                 .must(PIXELS)
                 .tried(&["columns", "w"]),
             Field::new("height", Type::Number)
                 .help("the rows of pixels")
-                .preset(number(450.0))
+                .preset(Preset::Value("450"))
                 .must(PIXELS)
                 .tried(&["rows", "h"]),
             Field::new("background", Type::Color)
                 .help("the colour where nothing is hit")
-                .preset(Preset::Value(Literal::Color("black")))
+                .preset(Preset::Value("black"))
                 .tried(&["bg", "color", "colour", "sky"]),
         ],
         spreads: &[Spread {
@@ -84,20 +80,20 @@ pub const BLOCKS: &[Block] = &[
                 .like("(0, 0, -1)"),
             Field::new("up", Type::Vector)
                 .help("what is up in the picture")
-                .preset(Preset::Value(Literal::Vector([0.0, 1.0, 0.0])))
+                .preset(Preset::Value("(0, 1, 0)"))
                 .must(&[Condition::NotZero]),
             Field::new("roll", Type::Angle)
                 .help("the turn about the view direction; positive dips the right side")
-                .preset(Preset::Value(Literal::Degrees(0.0)))
+                .preset(Preset::Value("0deg"))
                 .tried(&["tilt", "rotation"]),
             Field::new("d", Type::Number)
                 .help("the distance from the eye to the view plane")
-                .preset(number(2.0))
+                .preset(Preset::Value("2"))
                 .must(&[Condition::MoreThan(0.0)])
                 .tried(&["distance", "focal_length"]),
             Field::new("view_height", Type::Number)
                 .help("the height of the window in the view plane")
-                .preset(number(2.0))
+                .preset(Preset::Value("2"))
                 .must(&[Condition::MoreThan(0.0)])
                 .tried(&["height"]),
             Field::new("fov", Type::Angle)
@@ -114,7 +110,7 @@ pub const BLOCKS: &[Block] = &[
                 .like("60deg"),
             Field::new("near", Type::Number)
                 .help("nothing at this depth or nearer is seen")
-                .preset(number(0.0))
+                .preset(Preset::Value("0"))
                 .must(&[Condition::AtLeast(0.0)]),
             Field::new("far", Type::Number)
                 .help("nothing at this depth or farther is seen")
@@ -142,11 +138,11 @@ pub const BLOCKS: &[Block] = &[
         fields: &[
             Field::new("method", Type::Method)
                 .help("the sampling technique")
-                .preset(Preset::Value(Literal::Method("multi_jittered")))
+                .preset(Preset::Value("multi_jittered"))
                 .tried(&["technique", "type", "kind", "pattern"]),
             Field::new("per_pixel", Type::Number)
                 .help("the samples in each pixel")
-                .preset(number(16.0))
+                .preset(Preset::Value("16"))
                 .must(&[Condition::Whole, Condition::AtLeast(1.0)])
                 .tried(&["samples", "spp", "count", "n"]),
             Field::new("total", Type::Number)
@@ -160,7 +156,7 @@ pub const BLOCKS: &[Block] = &[
                 .like("1_000_000"),
             Field::new("seed", Type::Number)
                 .help("another seed gives other random samples")
-                .preset(number(0.0))
+                .preset(Preset::Value("0"))
                 .must(&[
                     Condition::Whole,
                     Condition::AtLeast(0.0),
@@ -187,7 +183,7 @@ pub const BLOCKS: &[Block] = &[
                 .tried(POSITION),
             Field::new("radius", Type::Number)
                 .help("its radius")
-                .preset(number(1.0))
+                .preset(Preset::Value("1"))
                 .must(&[Condition::MoreThan(0.0)])
                 .tried(&["r", "size"])
                 .doubled(&["diameter"]),
@@ -217,12 +213,12 @@ pub const BLOCKS: &[Block] = &[
                 .like("(0, 0, 1)"),
             Field::new("sides", Type::Vector)
                 .help("the lengths of its left side, its right side and its base")
-                .preset(Preset::Value(Literal::Vector([2.0, 2.0, 1.0])))
+                .preset(Preset::Value("(2, 2, 1)"))
                 .must(&[Condition::EachMoreThanZero])
                 .tried(&["size", "lengths", "edges"]),
             Field::new("spin", Type::Angle)
                 .help("its turn in its plane, counter-clockwise seen from the tip of the normal")
-                .preset(Preset::Value(Literal::Degrees(0.0)))
+                .preset(Preset::Value("0deg"))
                 .tried(&["roll", "rotation", "turn"]),
             vertex("v0", "(-1, 0, 0)", &["a", "p0", "vertex0"]),
             vertex("v1", "(1, 0, 0)", &["b", "p1", "vertex1"]),
@@ -245,7 +241,6 @@ pub const BLOCKS: &[Block] = &[
             "v0, v1 and v2 do not lie on one line",
         ],
         also_tried: &["tri", "sail", "polygon"],
-        ..BLOCK
     },
     Block {
         kind: Kind::Box,
@@ -260,7 +255,7 @@ pub const BLOCKS: &[Block] = &[
                 .tried(POSITION),
             Field::new("size", Type::Vector)
                 .help("its extents along x, y and z")
-                .preset(Preset::Value(Literal::Vector([0.5, 1.5, 2.0])))
+                .preset(Preset::Value("(0.5, 1.5, 2)"))
                 .must(&[Condition::EachMoreThanZero])
                 .tried(&["sides", "dimensions", "extent"]),
             Field::new("min", Type::Vector)
@@ -290,16 +285,16 @@ pub const BLOCKS: &[Block] = &[
         fields: &[
             Field::new("y", Type::Number)
                 .help("the height of its plane")
-                .preset(number(0.0))
+                .preset(Preset::Value("0"))
                 .tried(&["height", "level"]),
             Field::new("square", Type::Number)
                 .help("the side of a square")
-                .preset(number(1.0))
+                .preset(Preset::Value("1"))
                 .must(&[Condition::MoreThan(0.0)])
                 .tried(&["size", "side", "squares"]),
             Field::new("colors", Type::Colors)
                 .help("the colours of the even and of the odd squares")
-                .preset(Preset::Value(Literal::Colors(["gray", "white"])))
+                .preset(Preset::Value("(gray, white)"))
                 .tried(&["color", "colour", "colours"]),
         ],
         also_tried: &["plane", "floor", "ground", "checker", "chessboard", "board"],
@@ -330,6 +325,6 @@ const fn vertex(
 const fn color(preset: &'static str) -> Field {
     Field::new("color", Type::Color)
         .help("its colour")
-        .preset(Preset::Value(Literal::Color(preset)))
+        .preset(Preset::Value(preset))
         .tried(&["fill", "material"])
 }

@@ -1,61 +1,6 @@
-//! The tables of predefined words: methods, functions and constants.
+//! The tables of predefined words: functions and constants.
 
-use super::types::{Method, Type};
-use crate::suggest::{self, is_among};
-
-/// Every sampling technique, with a line of help.
-pub const METHODS: &[(Method, &str)] = &[
-    (Method::Regular, "an even grid, centred"),
-    (Method::Random, "independent and uniform"),
-    (Method::Jittered, "one at random in each cell of a grid"),
-    (Method::NRooks, "one in each row and each column"),
-    (Method::MultiJittered, "jittered and n_rooks at once"),
-    (
-        Method::Hammersley,
-        "the Hammersley points, shifted per pixel",
-    ),
-    (Method::Halton, "the Halton points, shifted per pixel"),
-    (
-        Method::Sobol,
-        "Sobol' points with Owen scrambling, per pixel",
-    ),
-    (Method::Scatter, "points uniform over the whole picture"),
-    (Method::Exact, "no samples: the mean itself, computed"),
-];
-
-/// A method, found by its name.
-pub fn method(name: &str) -> Option<Method> {
-    let mut methods = METHODS.iter().map(|&(method, _)| method);
-    methods.find(|method| method.name() == name)
-}
-
-/// Other words that people try for methods.
-const ALSO_TRIED: &[(Method, &[&str])] = &[
-    (Method::Regular, &["grid", "uniform_grid", "centered"]),
-    (
-        Method::Random,
-        &["monte_carlo", "independent", "white_noise"],
-    ),
-    (Method::Jittered, &["stratified"]),
-    (Method::NRooks, &["latin_hypercube", "lhs", "rooks"]),
-    (Method::MultiJittered, &["cmj", "correlated_multi_jittered"]),
-    (Method::Sobol, &["owen", "low_discrepancy"]),
-    (Method::Exact, &["analytic", "analytical"]),
-];
-
-/// The method that was probably meant, if any is near.
-pub fn nearest_method(written: &str) -> Option<&'static str> {
-    let tried = ALSO_TRIED
-        .iter()
-        .find(|(_, words)| is_among(written, words));
-    let tried = tried.map(|(method, _)| method.name());
-    tried.or_else(|| suggest::nearest(written, method_names()))
-}
-
-/// The names of the methods.
-pub fn method_names() -> impl Iterator<Item = &'static str> {
-    METHODS.iter().map(|(method, _)| method.name())
-}
+use super::types::Type;
 
 /// A function's row, found by its name.
 pub fn function(name: &str) -> Option<&'static Function> {

@@ -162,7 +162,7 @@ pub fn codes() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
     for (stage, starts) in [
         ("src/syntax", &["code(pinhole::"][..]),
-        ("src/scene", &["error(", "warning("]),
+        ("src/scene", &["error(", "warning(", "twice("]),
     ] {
         for path in sources_in(&Path::new(env!("CARGO_MANIFEST_DIR")).join(stage)) {
             let text = fs::read_to_string(path).expect("the source can be read");

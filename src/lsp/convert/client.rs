@@ -88,7 +88,6 @@ pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
             ..Default::default()
         })),
         folding_range_provider: Some(lsp::FoldingRangeProvider::Bool(true)),
-        selection_range_provider: Some(lsp::SelectionRangeProvider::Bool(true)),
         inlay_hint_provider: Some(lsp::InlayHintProvider::Bool(true)),
         semantic_tokens_provider: Some(lsp::SemanticTokensProvider::SemanticTokensOptions(
             lsp::SemanticTokensOptions {

@@ -244,17 +244,6 @@ impl Page<'_> {
         }
     }
 
-    /// Spans, each within the next one, as a chain that starts with the innermost.
-    pub fn selection(&self, spans: Vec<Span>) -> lsp::SelectionRange {
-        let chain = spans.into_iter().rev().fold(None, |parent, span| {
-            Some(Box::new(lsp::SelectionRange {
-                range: self.range(span),
-                parent,
-            }))
-        });
-        chain.map(|innermost| *innermost).unwrap_or_default()
-    }
-
     pub fn hint(&self, hint: Hint) -> lsp::InlayHint {
         lsp::InlayHint {
             position: self.position(hint.at),

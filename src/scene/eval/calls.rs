@@ -1,6 +1,6 @@
 //! Functions and their arguments.
 
-use super::{Evaluator, LARGEST, in_words};
+use super::{Evaluator, LARGEST};
 use crate::{
     color::Color,
     numbers,
@@ -103,17 +103,13 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
-        let values = |count: usize| match count {
-            1 => "one value".to_owned(),
-            count => format!("{} values", in_words(count)),
-        };
         let more = if row.more { " or more" } else { "" };
-        let are = match arguments.len() {
-            0 | 1 => "there is",
-            _ => "there are",
-        };
-        let takes = format!("{}{more}", values(row.takes.len()));
-        let found = in_words(arguments.len());
+        let (takes, found) = (row.takes.len(), arguments.len());
+        let plural = if takes == 1 && !row.more { "" } else { "s" };
+        let message = format!(
+            "`{}` takes {takes}{more} value{plural}, and here it has {found}",
+            row.name
+        );
         let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
         // What a vector is made of stands in parentheses of its own, and what numbers are does not.
         let meant = match (row.takes, arguments) {
@@ -128,16 +124,9 @@ impl<'s> Evaluator<'_, 's> {
             _ => None,
         };
         let shown = meant.clone().unwrap_or_else(|| example(row));
-        let message = format!("`{}` takes {takes}, and here {are} {found}", row.name);
         self.problems.push(
             error("argument_count", message)
-                .at(
-                    span,
-                    match arguments.len() {
-                        0 => "no value".to_owned(),
-                        count => values(count),
-                    },
-                )
+                .at(span, format!("{found} given"))
                 .help(format!("write `{}`", shorten(&shown)))
                 .writing(span, meant),
         );

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Evaluator, in_words};
+use super::Evaluator;
 use crate::{
     scene::{error::error, schema::Type, value::Value},
     source::Span,
@@ -93,12 +93,12 @@ impl<'s> Evaluator<'_, 's> {
         let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
         let (whole, parts, example) = match is_pair {
             true => (
-                "a pair of colours has two parts",
+                "a pair of colours has 2 parts",
                 "colours",
                 "two colours, such as `(gray, white)`",
             ),
             false => (
-                "a vector has three parts",
+                "a vector has 3 parts",
                 "numbers",
                 "three numbers, such as `(0, 1, 0)`",
             ),
@@ -111,7 +111,7 @@ impl<'s> Evaluator<'_, 's> {
             [_, _, _, _] => with_decimal_comma(elements, &texts),
             _ => None,
         };
-        let count = in_words(elements.len());
+        let count = elements.len();
         self.problems.push(
             error("part_count", format!("{whole}, and this has {count}"))
                 .at(span, format!("{count} {parts}"))

@@ -97,7 +97,7 @@ impl<'s> Evaluator<'_, 's> {
         }
         let problem = error("unknown_name", format!("there is nothing named `{name}`"));
         let problem = problem.at(span, "not defined");
-        if self.names.is_object(name) {
+        if self.names.objects.contains(name) {
             return problem
                 .help("an object is no value: define its place with `let`, and use that in both");
         }

@@ -157,13 +157,6 @@ impl<'s> Evaluator<'_, 's> {
 
 const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
-/// A small number as a word.
-fn in_words(count: usize) -> String {
-    let words = ["none", "one", "two", "three", "four", "five"];
-    let word = words.get(count).map(|word| (*word).to_owned());
-    word.unwrap_or_else(|| count.to_string())
-}
-
 /// A colour from its code; the parser checked the number of digits.
 fn color_code(written: &str) -> Option<Color> {
     let digits = written.strip_prefix('#')?;

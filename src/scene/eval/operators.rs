@@ -121,6 +121,31 @@ impl<'s> Evaluator<'_, 's> {
         let [a, b] = [left_text, right_text].map(shorten);
         let sign = step.operator.sign();
         let is_sum = !step.operator.is_of_product();
+        let (left, right) = (left.kind(), right.kind());
+        let help = match (left, right, step.operator) {
+            (Color | Colors, _, _) | (_, Color | Colors, _) => {
+                "colours are not computed with; `rgb(r, g, b)` takes computed numbers".to_owned()
+            }
+            (Vector, Number, _) if is_sum => format!(
+                "add a vector, such as `{a} {sign} ({b}, {b}, {b})`, or scale it: `{a} * {b}`"
+            ),
+            (Number, Vector, _) if is_sum => format!(
+                "write a vector, such as `({a}, {a}, {a}) {sign} {b}`, or scale it: `{a} * {b}`"
+            ),
+            (Vector, Vector, Operator::Multiply) => {
+                format!("write `dot({a}, {b})` for a number, or `cross({a}, {b})` for a vector")
+            }
+            (_, Vector, Operator::Divide) => {
+                format!("divide by a number, such as `length({b})`")
+            }
+            (Angle, Number, _) | (Number, Angle, _) if is_sum => {
+                "give the number a unit, such as `30deg`".to_owned()
+            }
+            (Angle | Number, Angle, _) => {
+                format!("an angle divided by `1deg` is a number: `{a} {sign} ({b} / 1deg)`")
+            }
+            _ => "only numbers, angles and vectors of one kind go together".to_owned(),
+        };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
         let with_unit = |number: &tree::Value<'s>| {
             let units = self.units(number).into_iter();
@@ -128,75 +153,25 @@ impl<'s> Evaluator<'_, 's> {
                 .map(|(_, text)| Fix::write(number.span, text))
                 .collect()
         };
-        let (help, gives, fixes) = match (left.kind(), right.kind(), step.operator) {
-            (Color | Colors, _, _) | (_, Color | Colors, _) => (
-                "colours are not computed with; `rgb(r, g, b)` takes computed numbers".to_owned(),
-                Color,
-                Vec::new(),
-            ),
-            (Vector, Number, _) if is_sum => (
-                format!(
-                    "add a vector, such as `{a} {sign} ({b}, {b}, {b})`, or scale it: `{a} * {b}`"
-                ),
-                Vector,
-                vector(right_span, right_text),
-            ),
-            (Number, Vector, _) if is_sum => (
-                format!(
-                    "write a vector, such as `({a}, {a}, {a}) {sign} {b}`, or scale it: `{a} * {b}`"
-                ),
-                Vector,
-                vector(left_span, left_text),
-            ),
-            (Vector, Vector, Operator::Multiply) => (
-                format!("write `dot({a}, {b})` for a number, or `cross({a}, {b})` for a vector"),
-                Vector,
-                Vec::new(),
-            ),
-            (_, Vector, Operator::Divide) => (
-                format!("divide by a number, such as `length({b})`"),
-                Vector,
-                Vec::new(),
-            ),
-            (Angle, Number, _) if is_sum => {
-                let [first, second] = self.units(&step.operand).map(|(_, text)| shorten(&text));
-                (
-                    format!("give it a unit: `{a} {sign} {first}` (or `{second}`)"),
-                    Angle,
-                    with_unit(&step.operand),
-                )
-            }
-            (Number, Angle, _) if is_sum => (
-                format!("give {a} a unit: `{a}deg {sign} {b}` (or `{a}rad`)"),
-                Angle,
-                left_tree.map(with_unit).unwrap_or_default(),
-            ),
-            (Angle | Number, Angle, _) => (
-                format!("an angle divided by `1deg` is a number: `{a} {sign} ({b} / 1deg)`"),
-                Angle,
-                Vec::new(),
-            ),
-            _ => (
-                "only numbers, angles and vectors of one kind go together".to_owned(),
-                Number,
-                Vec::new(),
-            ),
+        let fits = |gives| is_sum && wanted.is_none_or(|wanted| wanted == gives);
+        let fixes = match (left, right) {
+            (Vector, Number) if fits(Vector) => vector(right_span, right_text),
+            (Number, Vector) if fits(Vector) => vector(left_span, left_text),
+            (Angle, Number) if fits(Angle) => with_unit(&step.operand),
+            (Number, Angle) if fits(Angle) => left_tree.map(with_unit).unwrap_or_default(),
+            _ => Vec::new(),
         };
         let left_label = match left_tree {
-            Some(tree) => self.described(tree, left.kind()),
-            None => left.kind().noun().to_owned(),
+            Some(tree) => self.described(tree, left),
+            None => left.noun().to_owned(),
         };
-        let fits = wanted.is_none_or(|wanted| wanted == gives);
         self.problems.push(
-            error(
-                "operand_types",
-                cannot(step.operator, left.kind(), right.kind()),
-            )
-            .at(step.sign, "here")
-            .at(left_span, left_label)
-            .at(right_span, self.described(&step.operand, right.kind()))
-            .help(help)
-            .fixes(fixes.into_iter().filter(|_| fits)),
+            error("operand_types", cannot(step.operator, left, right))
+                .at(step.sign, "here")
+                .at(left_span, left_label)
+                .at(right_span, self.described(&step.operand, right))
+                .help(help)
+                .fixes(fixes),
         );
     }
 }

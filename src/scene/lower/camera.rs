@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Block, Given, Lowering, field_fixes::examples, fields::Fields};
+use super::{Block, Given, Lowering, fields::Fields};
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::Fix,
     math::predicates,
     numbers,
     scene::{
@@ -14,7 +14,6 @@ use crate::{
         schema::Kind,
         unseen::{self, LEAST_SINE, Unseen, why_unseen},
     },
-    source::{SourceId, Span},
 };
 
 impl<'s> Lowering<'s> {
@@ -39,8 +38,7 @@ impl<'s> Lowering<'s> {
                         error("view_undefined", message)
                             .at(seen.span, "the same point as the eye")
                             .at(eye, "the eye")
-                            .help(help)
-                            .fixes(direction_for(block, seen.field())),
+                            .help(help),
                     );
                     // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
                     view_is_defined = false;
@@ -102,9 +100,7 @@ impl<'s> Lowering<'s> {
         let across = level * up.dot(up) - up * level.dot(up);
         let along = predicates::dot_sign(up, from, to).is_gt();
         let top = if along { -across } else { across };
-        let vector = numbers::short_vector(top / top.abs().max_element());
-        let shown = axis_name(top).unwrap_or_else(|| format!("towards {vector}"));
-        let suggested = axis_vector(top).unwrap_or(vector);
+        let top = numbers::short_vector(top / top.abs().max_element());
         let given = block.given("up");
         let label = match given {
             _ if !is_parallel => {
@@ -117,24 +113,23 @@ impl<'s> Lowering<'s> {
             ),
         };
         let fix = match given {
-            Some(given) => Some(Fix::write(given.span, &suggested)),
+            Some(given) => Some(Fix::write(given.span, &top)),
             None => {
-                let field = format!("up {suggested}");
+                let field = format!("up {top}");
                 self.add_fields(block, format!("add `{field}`"), &[field])
             }
         };
         let (message, why) = match is_parallel {
             true => (
                 "the camera looks straight along its up vector",
-                format!("the top of the picture is {shown} here"),
+                format!("the top of the picture is towards {top} here"),
             ),
             false => (
                 "the camera looks all but straight along its up vector",
                 "which way is up hangs on the last digits of these numbers".to_owned(),
             ),
         };
-        let help =
-            format!("{why}; give another `up`, such as `up {suggested}`, to say so yourself");
+        let help = format!("{why}; write `up {top}` to say so yourself");
         self.problems.push(
             warning("up_parallel", message)
                 .at(given.map_or(seen.span, |given| given.span), label)
@@ -234,42 +229,4 @@ fn towards(camera: &Camera, middle: DVec3) -> Option<String> {
     };
     let is_one = to.is_finite() && !predicates::cross_is_zero(camera.up, from, to);
     is_one.then(|| numbers::short_vector(to))
-}
-
-/// Where the camera looks, as a direction in the place of the point.
-fn direction_for(block: &Block<'_>, lookat: Span) -> Vec<Fix> {
-    let fields = examples(block, &["direction"]);
-    let is_in_file = lookat.source == SourceId::File;
-    let fields = fields.into_iter().filter(|_| is_in_file);
-    let title = "give a `direction` instead of `lookat`";
-    fields
-        .map(|field| Fix::new(title, [Edit::new(lookat, field)]))
-        .collect()
-}
-
-/// A vector along an axis, such as `−z`.
-fn axis_name(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let sign = if part < 0.0 { '−' } else { '+' };
-    Some(format!("{sign}{axis}"))
-}
-
-/// The unit vector along an axis as it is written.
-fn axis_vector(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let one = if part < 0.0 { "-1" } else { "1" };
-    Some(match axis {
-        'x' => format!("({one}, 0, 0)"),
-        'y' => format!("(0, {one}, 0)"),
-        _ => format!("(0, 0, {one})"),
-    })
-}
-
-fn axis(v: DVec3) -> Option<(char, f64)> {
-    match v.to_array() {
-        [x, 0.0, 0.0] if x != 0.0 => Some(('x', x)),
-        [0.0, y, 0.0] if y != 0.0 => Some(('y', y)),
-        [0.0, 0.0, z] if z != 0.0 => Some(('z', z)),
-        _ => None,
-    }
 }

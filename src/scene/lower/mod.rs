@@ -22,7 +22,13 @@ pub use reading::{analyze, read, read_in_parts, read_unless};
 use std::{collections::HashMap, sync::atomic::AtomicBool};
 
 use super::{
-    Object, error::error, eval::Names, fix, overrides::Override, predefined, schema, value::Value,
+    Object,
+    error::{error, twice},
+    eval::Names,
+    fix,
+    overrides::Override,
+    predefined, schema,
+    value::Value,
 };
 use crate::{
     cancel,
@@ -42,7 +48,7 @@ struct Lowering<'s> {
     overrides: Vec<Override<'s>>,
     /// Whether one of them sets a `let`, or a field of an object.
     sets_by_name: bool,
-    /// The overrides by the block and the field or `let` that they set.
+    /// The overrides by the block and the field or `let` that they set; of several the last one.
     targets: HashMap<(Option<&'s str>, &'s str), usize>,
     /// The blocks that are not built yet: those that are no objects, and objects if an argument may set a field of one.
     blocks: Vec<Block<'s>>,
@@ -63,8 +69,6 @@ struct Lowering<'s> {
     problems: Vec<Diagnostic>,
     /// The values of unknown fields, in the order of the text.
     unknown: Vec<Span>,
-    /// Whether the last block was only begun.
-    in_begun_blocks: bool,
 }
 
 /// A block with what it was given.
@@ -100,14 +104,19 @@ impl<'s> Lowering<'s> {
         names: Names<'s>,
         cancel: &'s AtomicBool,
     ) -> Self {
+        let targets = overrides.iter().enumerate();
+        let targets = targets.map(|(index, set)| {
+            let block = set.block.map(|block| block.text);
+            ((block, set.name.text), index)
+        });
         Self {
             sources,
             cancel,
             cut: false,
             names,
             sets_by_name: overrides.iter().any(overriding::is_by_name),
+            targets: targets.collect(),
             overrides,
-            targets: HashMap::new(),
             blocks: Vec::new(),
             first_blocks: HashMap::new(),
             objects: Vec::new(),
@@ -118,7 +127,6 @@ impl<'s> Lowering<'s> {
             found: Vec::new(),
             problems: Vec::new(),
             unknown: Vec::new(),
-            in_begun_blocks: false,
         }
     }
 
@@ -176,12 +184,11 @@ impl<'s> Lowering<'s> {
         } else if reported && self.names.place(name.text).is_some() {
             // It stays what it is.
         } else if let Some(first) = self.names.place(name.text) {
+            let message = format!("`{}` is defined twice", name.text);
             let title = format!("remove this `let {}`", name.text);
             let help = "remove one of them, or give it another name; a name keeps its value";
             self.problems.push(
-                error("duplicate_let", format!("`{}` is defined twice", name.text))
-                    .at(name.span, "and again here")
-                    .at(first, "first here")
+                twice("duplicate_let", message, [first, name.span])
                     .help(help)
                     .fixes([Fix::remove_whole(title, [definition.span], self.sources)]),
             );
@@ -223,13 +230,13 @@ impl<'s> Lowering<'s> {
         let duplicate = earlier.is_some();
         if let Some(earlier) = earlier {
             let spans = [earlier.span, block.span];
+            let message = format!("there are two `{}` blocks", row.name);
             self.problems.push(
-                error(
+                twice(
                     "duplicate_block",
-                    format!("there are two `{}` blocks", row.name),
+                    message,
+                    [earlier.keyword, block.keyword()],
                 )
-                .at(block.keyword(), "and again here")
-                .at(earlier.keyword, "first here")
                 .help("keep one, with the fields of both")
                 .fixes(fix::one_of_two(row.name, spans, self.sources)),
             );
@@ -279,12 +286,9 @@ impl<'s> Lowering<'s> {
             return row;
         }
         let near = schema::nearest_block(kind.text);
-        // Of blocks that are only begun, one after the other, the first is enough; so says the parser, too.
-        let begun = block.close.is_none() && block.fields.is_empty();
-        let again = self.in_begun_blocks && begun;
-        self.in_begun_blocks = begun;
-        if again || (begun && near.is_none()) {
-            return near;
+        // Of a block that is only begun, the parser says all.
+        if near.is_none() && block.close.is_none() && block.fields.is_empty() {
+            return None;
         }
         let kinds = suggest::list(schema::block_names());
         let help = match near {
@@ -319,10 +323,9 @@ impl<'s> Lowering<'s> {
         match block.given.get_mut(index) {
             Some(Some(first)) => {
                 let spans = [first.field(), given.field()];
+                let message = format!("`{}` is given twice", row.name);
                 self.problems.push(
-                    error("duplicate_field", format!("`{}` is given twice", row.name))
-                        .at(field.name.span, "and again here")
-                        .at(first.name, "first here")
+                    twice("duplicate_field", message, [first.name, field.name.span])
                         .help("remove one of them")
                         .fixes(fix::one_of_two(row.name, spans, self.sources)),
                 );
@@ -395,9 +398,8 @@ impl<'s> Lowering<'s> {
                 .at(name.span, "this is the name of a block")
                 .help(help)
         } else if let Some(&first) = self.first_names.get(text) {
-            error("duplicate_name", format!("two objects are named `{text}`"))
-                .at(name.span, "and again here")
-                .at(first, "first here")
+            let message = format!("two objects are named `{text}`");
+            twice("duplicate_name", message, [first, name.span])
                 .help("give one of them another name")
         } else {
             self.first_names.insert(text, name.span);

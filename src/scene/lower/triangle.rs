@@ -28,26 +28,18 @@ impl<'s> Lowering<'s> {
         if !predicates::are_on_one_line(vertices) {
             return Some(Outline::Vertices(vertices));
         }
-        let [a, b, c] = vertices;
-        let pairs = [
-            ("v1", "v0", a == b),
-            ("v2", "v0", a == c),
-            ("v2", "v1", b == c),
-        ];
-        let equal = pairs.into_iter().find(|(.., are_equal)| *are_equal);
-        let message = match equal {
-            Some((one, other, _)) => format!("`{one}` and `{other}` are the same point"),
-            None => "the vertices lie on one line, and form no triangle".to_owned(),
-        };
         let help = "move one of them, so that the three points are the corners of a triangle";
         let [first, second, third] =
             VERTICES.map(|name| block.given(name).map_or(block.keyword, |given| given.span));
         self.problems.push(
-            error("on_one_line", message)
-                .at(third, "the third vertex")
-                .at(second, "the second")
-                .at(first, "the first")
-                .help(help),
+            error(
+                "on_one_line",
+                "the vertices lie on one line, and form no triangle",
+            )
+            .at(third, "the third vertex")
+            .at(second, "the second")
+            .at(first, "the first")
+            .help(help),
         );
         None
     }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::Lowering;
 use crate::{
     diagnostic::Diagnostic,
+    math::Angle,
     numbers,
     scene::{
         error::error,
@@ -50,19 +51,20 @@ impl<'s> Lowering<'s> {
             (ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. }, value) => {
                 match value {
                     Value::Number(number) => numbers::beside(number, &[number.round()]),
+                    Value::Angle(Angle {
+                        degrees,
+                        radians: 0.0,
+                    }) => format!("{}deg", numbers::beside(degrees, &[degrees.round()])),
                     _ => value.to_string(),
                 }
             }
             _ => written,
         };
-        let message = match condition {
-            Condition::NotZero => format!("`{}` must not be zero", row.name),
-            _ => format!("`{}` must be {condition}, and it is {found}", row.name),
-        };
+        let message = format!("`{}` must be {condition}, and it is {found}", row.name);
         let allowed = allowed(row, condition, value);
         self.problems.push(
             error("out_of_range", message)
-                .at(tree.span, label(condition))
+                .at(tree.span, "out of range")
                 .help(format!("write, for example, `{} {allowed}`", row.name))
                 .writing(tree.span, [allowed]),
         );
@@ -173,17 +175,6 @@ impl<'s> Lowering<'s> {
             names: &self.names,
             problems: &mut self.problems,
         }
-    }
-}
-
-fn label(condition: Condition) -> &'static str {
-    match condition {
-        Condition::Whole => "not whole",
-        Condition::MoreThan(_) | Condition::AtLeast(_) => "too small",
-        Condition::AtMostTwoTo(_) | Condition::LessThanTwoTo(_) => "too large",
-        Condition::LessThanHalfTurn => "no field of view",
-        Condition::NotZero => "zero has no direction",
-        Condition::EachMoreThanZero => "not all of these are above 0",
     }
 }
 

@@ -32,14 +32,6 @@ enum Meant {
     Value(&'static Field),
 }
 
-/// What a value gave.
-#[derive(Clone, Copy)]
-struct Outcome {
-    value: Option<Value>,
-    /// Whether it failed, and all that is wrong with it is reported.
-    is_reported: bool,
-}
-
 impl<'s> Lowering<'s> {
     /// Reports a field that the block does not have.
     pub(super) fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
@@ -92,36 +84,29 @@ impl<'s> Lowering<'s> {
         let (shown, fix) = match meant {
             None => (None, None),
             Some(Meant::Field(row)) => {
-                let fix = match self.fitting(block, row, value, &found) {
+                let fix = match self.fitting(block, row, value, found) {
                     Some(written) if written == text => Some(Fix::write(name.span, row.name)),
                     Some(written) => Some(Fix::write(whole, format!("{} {written}", row.name))),
                     None => None,
                 };
                 (Some(format!("`{}`", row.name)), fix)
             }
-            Some(Meant::Half(row)) => {
-                let written = match (found.value, &value.kind) {
-                    (Some(Value::Number(number)), ValueKind::Number(_)) => {
-                        format!("{} {}", row.name, number / 2.0)
-                    }
-                    (Some(Value::Number(_)), ValueKind::Chain { .. }) => {
-                        format!("{} ({text}) / 2", row.name)
-                    }
-                    (Some(Value::Number(_)), _) => format!("{} {text} / 2", row.name),
-                    _ => row.name.to_owned(),
-                };
-                let is_number = |value: Value| value.kind() == row.takes && row.allows(value);
-                let fits = has_place(block, row) && found.value.is_some_and(is_number);
-                let fix = fits.then(|| Fix::write(whole, &written));
-                (Some(format!("`{written}`")), fix)
-            }
+            Some(Meant::Half(row)) => match (found, &value.kind) {
+                (Some(Value::Number(number)), ValueKind::Number(_)) => {
+                    let written = format!("{} {}", row.name, number / 2.0);
+                    let fits = has_place(block, row) && row.allows(Value::Number(number));
+                    let fix = fits.then(|| Fix::write(whole, &written));
+                    (Some(format!("`{written}`")), fix)
+                }
+                _ => (Some(format!("`{}` with half of it", row.name)), None),
+            },
             Some(Meant::Spread(spread)) => {
                 let written = self.spread(block, spread, value);
                 let fix = written.map(|written| Fix::write(whole, written));
                 (Some(quoted(spread.fields)), fix)
             }
             Some(Meant::Value(row)) => {
-                let (shown, written) = match (&value.kind, found.value) {
+                let (shown, written) = match (&value.kind, found) {
                     (ValueKind::Missing, _) => (name.text.to_owned(), Some(name.text.to_owned())),
                     (_, Some(Value::Vector(parts))) => {
                         (format!("{}(…)", name.text), rgb(parts, value, text))
@@ -151,26 +136,21 @@ impl<'s> Lowering<'s> {
         .fixes(fix)
     }
 
-    /// What a value is, and what is wrong with it. Of that only names are reported.
-    fn tried(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Outcome {
+    /// What a value is. Of what is wrong with it only names are reported.
+    fn tried(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
             // It may be a word that only the unknown field knows.
             let is_known = self.names.place(name).is_some() || css::color(name).is_some();
             if !is_known && matches!(wanted, None | Some(Type::Method)) {
-                return Outcome {
-                    value: schema::method(name).map(Value::Method),
-                    is_reported: false,
-                };
+                return schema::method(name).map(Value::Method);
             }
         }
         let before = self.problems.len();
-        let value = self.evaluate(value, wanted);
-        let mut problems = self.problems.split_off(before);
-        let count = problems.len();
-        problems.retain(Diagnostic::is_of_name);
-        let is_reported = value.is_none() && problems.len() == count;
-        self.problems.extend(problems);
-        Outcome { value, is_reported }
+        let found = self.evaluate(value, wanted);
+        let problems = self.problems.split_off(before).into_iter();
+        self.problems
+            .extend(problems.filter(Diagnostic::is_of_name));
+        found
     }
 
     /// How a value has to be written for a field, if it will do or can be made to.
@@ -179,18 +159,17 @@ impl<'s> Lowering<'s> {
         block: &Block<'s>,
         row: &Field,
         value: &tree::Value<'s>,
-        found: &Outcome,
+        found: Option<Value>,
     ) -> Option<String> {
         if !has_place(block, row) {
             return None;
         }
         let text = self.sources.text(value.span);
-        match (found.value, &value.kind) {
+        match (found, &value.kind) {
             (None, ValueKind::Missing) => {
                 let example = || example_beside(row, &|other| block.given(other)?.value);
                 (value.span.source == SourceId::File).then(example)
             }
-            (None, _) => found.is_reported.then(|| text.to_owned()),
             (Some(value), _) if value.kind() == row.takes => {
                 row.allows(value).then(|| text.to_owned())
             }
@@ -218,7 +197,7 @@ impl<'s> Lowering<'s> {
         let mut written = Vec::new();
         for (name, element) in spread.fields.iter().zip(elements) {
             let row = block.row.field(name).filter(|row| has_place(block, row))?;
-            let value = self.tried(&element.value, Some(row.takes)).value?;
+            let value = self.tried(&element.value, Some(row.takes))?;
             if value.kind() != row.takes || !row.allows(value) {
                 return None;
             }

@@ -176,15 +176,6 @@ fn objects_say_what_they_are() {
         )
     );
     assert_eq!(markdown("sphere Ba$0ll { radius 0 }"), "sphere `Ball`");
-    // A colour in the spelling of the file.
-    assert_eq!(
-        markdown("sphere Ba$0ll { center (0, 1, 0) color olive }"),
-        "sphere `Ball`: center (0, 1, 0), radius 1, olive"
-    );
-    assert_eq!(
-        markdown("checkerboard Bo$0ard { colors (Teal, #fff) }"),
-        "checkerboard `Board`: y 0, squares of 1, Teal and #ffffff"
-    );
 }
 
 #[test]

@@ -1,12 +1,12 @@
-//! Answers about a whole text: its outline, its folds, its colours, its remarks, and what a selection grows to.
+//! Answers about a whole text: its outline, its folds, its colours, and its remarks.
 
 use std::time::{Duration, Instant};
 
 use pinhole::{
     color::Color,
     editor::{
-        Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, selection,
-        swatches, symbols,
+        Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, swatches,
+        symbols,
     },
     source::{SourceId, Span},
 };
@@ -64,37 +64,6 @@ fn blocks_and_runs_of_comments_fold() {
         ];
         assert_eq!(folds, expected);
     })
-}
-
-#[test]
-fn a_selection_grows_from_the_word_to_the_file() {
-    at_cursor(
-        "let a = 1\nsphere { center 2 * (0, $0a + 1, 0)  radius 1 }\n",
-        |analysis, at| {
-            let grown: Vec<&str> = selection(analysis, at)
-                .into_iter()
-                .map(|span| under(analysis, span))
-                .collect();
-            let expected = [
-                "a",
-                "a + 1",
-                "(0, a + 1, 0)",
-                "2 * (0, a + 1, 0)",
-                "center 2 * (0, a + 1, 0)",
-                "center 2 * (0, a + 1, 0)  radius 1",
-                "sphere { center 2 * (0, a + 1, 0)  radius 1 }",
-                "let a = 1\nsphere { center 2 * (0, a + 1, 0)  radius 1 }\n",
-            ];
-            assert_eq!(grown, expected);
-        },
-    );
-    for text in ["$0", "/* a $0*/", "let a = $0", "sphere { } $0 "] {
-        for pair in at_cursor(text, selection).windows(2) {
-            assert!(
-                pair[1].start <= pair[0].start && pair[0].end <= pair[1].end && pair[0] != pair[1]
-            );
-        }
-    }
 }
 
 #[test]

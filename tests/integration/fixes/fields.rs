@@ -72,14 +72,3 @@ fn of_two_alternatives_one_that_is_whole_may_be_kept() {
         )],
     );
 }
-
-#[test]
-fn a_camera_on_its_aim_gets_a_direction() {
-    offers(
-        "camera { eye (0, 1, 5)  lookat (0, 1, 5) }\ncheckerboard {}",
-        &[(
-            "give a `direction` instead of `lookat`",
-            "camera { eye (0, 1, 5)  direction (0, 0, -1) }\ncheckerboard {}",
-        )],
-    );
-}

@@ -114,7 +114,7 @@ fn ways_out_are_true() {
     for (text, help) in [
         (
             camera("direction (3, 3, 3) up (1, 1, 1)"),
-            "the top of the picture is towards (-0.5, -0.5, 1) here; give another `up`, such as `up (-0.5, -0.5, 1)`, to say so yourself",
+            "the top of the picture is towards (-0.5, -0.5, 1) here; write `up (-0.5, -0.5, 1)` to say so yourself",
         ),
         (
             camera("direction (0, 0, 0)"),
@@ -148,6 +148,10 @@ fn ways_out_are_true() {
     let text = format!("{CAMERA} sphere {{ center (0, 0, 0) }} sampler {{ per_pixel 16 total 9 }}");
     assert_eq!(codes(&text), ["conflicting_fields"]);
     let text = camera("up (1e200, 0, 0) direction (1e200, 0, 0)");
-    assert!(first(&text)[3].contains("+z here"), "{:?}", first(&text));
+    assert!(
+        first(&text)[3].contains("towards (0, 0, 1) here"),
+        "{:?}",
+        first(&text)
+    );
     assert_eq!(number("(atan2(sin(180deg), -1) / 1deg)"), 180.0);
 }

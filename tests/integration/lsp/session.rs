@@ -90,12 +90,6 @@ fn a_scene_is_written_with_every_answer() {
     assert_eq!(symbols[2]["children"][1]["name"], "color");
     let folds = client.about("foldingRange", json!({}));
     assert_eq!(folds, json!([]));
-    let selection = client.about(
-        "selectionRange",
-        json!({ "positions": [{ "line": 1, "character": 33 }] }),
-    );
-    assert_eq!(selection[0]["range"], range(1, 31, 35));
-    assert_eq!(selection[0]["parent"]["range"], range(1, 24, 35));
     let hints = client.about("inlayHint", json!({ "range": range(1, 0, 99) }));
     let hints: Vec<&Value> = hints
         .as_array()
