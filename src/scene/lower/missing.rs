@@ -46,7 +46,11 @@ impl<'s> Lowering<'s> {
             return;
         };
         let all: Vec<String> = ways.iter().map(|way| quoted(way)).collect();
-        let message = format!("{} needs {}", row.noun, all.join(", or "));
+        let or = match ways.iter().all(|way| way.len() == 1) {
+            true => " or ",
+            false => ", or ",
+        };
+        let message = format!("{} needs {}", row.noun, all.join(or));
         let fixes = ways.iter().filter_map(|names| {
             let title = format!("add {}", quoted(names));
             self.add_fields(block, title, &examples(block, names))
