@@ -10,7 +10,7 @@ use super::{
 use crate::{
     color::Color,
     scene::{
-        Value, css, describe, example_beside, example_call,
+        Value, css, describe, example_beside,
         schema::{self, Field, Function, Kind, Preset, Type},
     },
     source::Span,
@@ -156,12 +156,16 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
 /// The parts of a vector are typed over one by one.
 fn value_to_type_over(example: &str) -> Vec<Piece> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
-    let Some(inner) = inner else {
-        return vec![hole(example)];
-    };
-    let mut pieces = vec![text("(")];
-    for (index, part) in inner.split(", ").enumerate() {
-        if index > 0 {
+    match inner {
+        Some(inner) => list_to_type_over("(", inner.split(", ")),
+        None => vec![hole(example)],
+    }
+}
+
+fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<Piece> {
+    let mut pieces = vec![text(open)];
+    for part in parts {
+        if pieces.len() > 1 {
             pieces.push(text(", "));
         }
         pieces.push(hole(part));
@@ -334,37 +338,15 @@ fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
         help: describe::about_function(function),
         insert: match situation.goes_on {
             true => vec![text(function.name)],
-            false => call_to_type_over(function),
+            false => {
+                let open = format!("{}(", function.name);
+                list_to_type_over(&open, function.example().iter().copied())
+            }
         },
         replaces: situation.word,
         rank: rank(situation, Some(function.gives)) + 2,
     });
     functions.collect()
-}
-
-fn call_to_type_over(function: &Function) -> Vec<Piece> {
-    let example = example_call(function);
-    let arguments = example.strip_prefix(function.name).unwrap_or_default();
-    let arguments = arguments
-        .strip_prefix('(')
-        .and_then(|a| a.strip_suffix(')'));
-    let arguments = arguments.unwrap_or_default();
-    let is_vector = function.takes.contains(&Type::Vector);
-    let mut pieces = vec![text(format!("{}(", function.name))];
-    // Vectors have commas of their own.
-    let separator = if is_vector { "), " } else { ", " };
-    for (index, argument) in arguments.split(separator).enumerate() {
-        if index > 0 {
-            pieces.push(text(", "));
-        }
-        let is_cut = is_vector && !argument.ends_with(')');
-        pieces.push(hole(match is_cut {
-            true => format!("{argument})"),
-            false => argument.to_owned(),
-        }));
-    }
-    pieces.push(text(")"));
-    pieces
 }
 
 fn constants(situation: &Situation) -> Vec<Completion> {

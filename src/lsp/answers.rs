@@ -154,13 +154,13 @@ fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) 
     let mut actions = Vec::new();
     if only.is_none() || is_wanted(&[Kind::QuickFix]) {
         let fixes = editor::fixes(analysis, page.span(params.range));
-        actions.extend(fixes.map(|(diagnostic, fix)| page.action(diagnostic, fix)));
+        actions.extend(fixes.map(|(diagnostic, fix)| page.action(fix, Some(diagnostic))));
     }
     // Beside a fix it is offered where there are others.
     let all = analysis.diagnostics().iter();
     let is_more = !actions.is_empty() && all.filter(|it| !it.fixes.is_empty()).count() > 1;
     if is_more || is_wanted(&[Kind::Source, Kind::SourceFixAll]) {
-        actions.extend(editor::fix_all(analysis).map(|fix| page.action_on_all(&fix)));
+        actions.extend(editor::fix_all(analysis).map(|fix| page.action(&fix, None)));
     }
     written(&actions)
 }

@@ -106,6 +106,21 @@ impl Function {
         self.takes.get(index).or(last).copied()
     }
 
+    /// Arguments that it can have, as they are written.
+    pub fn example(&self) -> &'static [&'static str] {
+        use Type::{Angle, Number, Vector};
+        match self.takes {
+            // Of those of the cross product it is 0, which few fields take.
+            [Vector, Vector] if self.gives == Number => &["(1, 2, 3)", "(0, 1, 0)"],
+            [Vector, Vector] => &["(1, 0, 0)", "(0, 1, 0)"],
+            [Vector] => &["(1, 2, 3)"],
+            [Angle] => &["30deg"],
+            [Number] => &["0.5"],
+            [Number, Number] => &["1", "2"],
+            _ => &["255", "165", "0"],
+        }
+    }
+
     /// Whether it takes so many arguments.
     pub fn accepts(&self, count: usize) -> bool {
         count == self.takes.len() || (self.more && count > self.takes.len())

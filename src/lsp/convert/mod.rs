@@ -187,26 +187,18 @@ impl Page<'_> {
         }
     }
 
-    /// A way out of a diagnostic.
-    pub fn action(&self, diagnostic: &Diagnostic, fix: &Fix) -> lsp::CodeAction {
+    /// A way out of a diagnostic, or of all of them.
+    pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> lsp::CodeAction {
         let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
         lsp::CodeAction {
             title: fix.title.clone(),
-            kind: Some(lsp::CodeActionKind::QuickFix),
-            diagnostics: Some(vec![self.diagnostic(diagnostic)]),
+            kind: Some(match of {
+                Some(_) => lsp::CodeActionKind::QuickFix,
+                None => lsp::CodeActionKind::SourceFixAll,
+            }),
+            diagnostics: of.map(|diagnostic| vec![self.diagnostic(diagnostic)]),
             // The only way out is the one to take without asking.
-            is_preferred: Some(diagnostic.fixes.len() == 1),
-            edit: Some(self.edit(edits)),
-            ..Default::default()
-        }
-    }
-
-    /// What puts all mistakes right that can be.
-    pub fn action_on_all(&self, fix: &Fix) -> lsp::CodeAction {
-        let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
-        lsp::CodeAction {
-            title: fix.title.clone(),
-            kind: Some(lsp::CodeActionKind::SourceFixAll),
+            is_preferred: of.map(|diagnostic| diagnostic.fixes.len() == 1),
             edit: Some(self.edit(edits)),
             ..Default::default()
         }

@@ -257,15 +257,5 @@ pub fn in_bytes(part: f64) -> String {
 
 /// How a function is called.
 pub fn example(function: &Function) -> String {
-    let arguments = match function.takes {
-        // Of those of the cross product it is 0, which few fields take.
-        [Type::Vector, Type::Vector] if function.gives == Type::Number => "(1, 2, 3), (0, 1, 0)",
-        [Type::Angle] => "30deg",
-        [Type::Vector] => "(1, 2, 3)",
-        [Type::Vector, Type::Vector] => "(1, 0, 0), (0, 1, 0)",
-        [Type::Number] => "0.5",
-        [Type::Number, Type::Number] => "1, 2",
-        _ => "255, 165, 0",
-    };
-    format!("{}({arguments})", function.name)
+    format!("{}({})", function.name, function.example().join(", "))
 }
