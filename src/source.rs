@@ -201,11 +201,6 @@ impl Source {
         }
     }
 
-    /// How many lines the text has; the end of the last line need not be written.
-    pub fn line_count(&self) -> usize {
-        self.line(self.text.len())
-    }
-
     /// The bytes of a line, counted from 1, without the LF or CRLF at its end.
     pub fn line_range(&self, line: usize) -> Range<usize> {
         let index = u32::try_from(line.saturating_sub(1)).ok();

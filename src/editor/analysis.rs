@@ -1,6 +1,6 @@
 //! A text with everything that the answers are made from.
 
-use super::words::{self, Situation, Token};
+use super::tokens::{self, Token};
 use crate::{
     diagnostic::Diagnostic,
     scene::{self, SemanticModel, Value, schema},
@@ -36,7 +36,7 @@ impl<'s> Analysis<'s> {
     pub fn new(sources: &'s Sources) -> Self {
         let survey = scene::analyze(sources);
         Self {
-            tokens: words::tokens(&survey),
+            tokens: tokens::tokens(&survey),
             survey,
         }
     }
@@ -97,22 +97,27 @@ impl<'s> Analysis<'s> {
         text.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '#' | '.'))
     }
 
-    /// What could stand at a place.
-    pub(super) fn situation(&self, at: usize) -> Option<Situation> {
-        let at = self.source().floor_char_boundary(at);
-        words::situation(self.text(), &self.tokens, self.comments(), at)
-    }
-
-    /// The innermost call around a place, by the place of the function's name, and how many commas stand before.
-    pub(super) fn call(&self, at: usize) -> Option<(Span, usize)> {
-        let at = self.source().floor_char_boundary(at);
-        words::call(self.text(), &self.tokens, self.comments(), at)
-    }
-
     /// What stands at a place of the tree.
     pub(super) fn path(&self, at: usize) -> Path<'_, 's> {
-        let mut path = Path::default();
-        let items = self.items();
+        Path::new(self.items(), at)
+    }
+
+    /// What a value of a definition or a field is.
+    pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
+        let takes = path.row().and_then(|row| row.field(path.field?.name.text));
+        self.survey.value(value, takes.map(|field| field.takes))
+    }
+
+    /// The line of a span, counted from 1.
+    pub(super) fn line(&self, span: Span) -> usize {
+        self.source().line(span.start)
+    }
+}
+
+impl<'a, 's> Path<'a, 's> {
+    /// What stands at a place of a tree.
+    pub fn new(items: &'a [Item<'s>], at: usize) -> Self {
+        let mut path = Self::default();
         let first = items.partition_point(|item| item.span().end < at);
         for item in items.iter().skip(first) {
             let span = item.span();
@@ -130,19 +135,6 @@ impl<'s> Analysis<'s> {
         path
     }
 
-    /// What a value of a definition or a field is.
-    pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
-        let takes = path.row().and_then(|row| row.field(path.field?.name.text));
-        self.survey.value(value, takes.map(|field| field.takes))
-    }
-
-    /// The line of a span, counted from 1.
-    pub(super) fn line(&self, span: Span) -> usize {
-        self.source().line(span.start)
-    }
-}
-
-impl Path<'_, '_> {
     /// The row of the block's kind.
     pub fn row(&self) -> Option<&'static schema::Block> {
         schema::block(self.block?.kind?.text)

@@ -1,10 +1,9 @@
 //! The colours that stand in a text, and how another one is written in their place.
 //!
-//! A colour is written back in the spelling that was there: a name as a name if the new colour has one, a code with as many digits if
-//! they can say it, `rgb(…)` as numbers; capital letters stay. A call that is more than three numbers is left alone: another colour
-//! would take the expressions and the comments in it away.
+//! A colour is written back as what was there: a name as a name if the new colour has one, a code as a code, `rgb(…)` as numbers. A call
+//! that is more than three numbers is left alone: another colour would take the expressions and the comments in it away.
 
-use super::{Analysis, words::Role};
+use super::{Analysis, tokens::Role};
 use crate::{
     color::Color,
     numbers,
@@ -81,16 +80,14 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
 /// How a colour could be written in the place of another, the spelling of that first; nothing in the place of a call that is no
 /// swatch.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
-    let written = analysis.slice(span);
     let own = match analysis.token_at(span.start).map(|token| token.role) {
-        Some(Role::ColorCode) => like_code(written, color),
         Some(Role::Function) => {
             if swatches(analysis).iter().all(|swatch| swatch.span != span) {
                 return Vec::new();
             }
             rgb(color)
         }
-        Some(Role::Name) => like_name(written, color).unwrap_or_else(|| color.to_string()),
+        Some(Role::Name) => name(color).map_or_else(|| color.to_string(), str::to_owned),
         _ => color.to_string(),
     };
     let mut presentations = vec![own];
@@ -100,37 +97,11 @@ pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<S
         Some(rgb(color)),
     ];
     for other in others.into_iter().flatten() {
-        let is_new = |written: &String| !written.eq_ignore_ascii_case(&other);
-        if presentations.iter().all(is_new) {
+        if !presentations.contains(&other) {
             presentations.push(other);
         }
     }
     presentations
-}
-
-/// A code with as many digits, if they can say it, in the letters that were there.
-fn like_code(written: &str, color: Color) -> String {
-    let code = color.to_string();
-    let digits: Vec<char> = code.chars().skip(1).collect();
-    let is_short = written.len() == 4;
-    let pairs = digits.chunks(2);
-    let can_be_short = pairs.clone().all(|pair| pair.first() == pair.last());
-    let code: String = match is_short && can_be_short {
-        true => pairs.filter_map(|pair| pair.first()).collect(),
-        false => digits.iter().collect(),
-    };
-    match is_upper(written) {
-        true => format!("#{}", code.to_ascii_uppercase()),
-        false => format!("#{code}"),
-    }
-}
-
-fn like_name(written: &str, color: Color) -> Option<String> {
-    let name = name(color)?;
-    Some(match is_upper(written) {
-        true => name.to_ascii_uppercase(),
-        false => name.to_owned(),
-    })
 }
 
 /// The name of a colour, if it has one; of several the first in the alphabet, and American `gray`.
@@ -143,10 +114,4 @@ fn name(color: Color) -> Option<&'static str> {
 fn rgb(color: Color) -> String {
     let [r, g, b] = color.srgb.map(numbers::short);
     format!("rgb({r}, {g}, {b})")
-}
-
-/// Whether the letters of a word are capitals, those that there are.
-fn is_upper(written: &str) -> bool {
-    let has_letters = written.contains(|c: char| c.is_ascii_alphabetic());
-    has_letters && !written.contains(|c: char| c.is_ascii_lowercase())
 }

@@ -1,16 +1,16 @@
 //! What could be typed at a place.
 //!
-//! What is offered follows from what stands before the place, not from a tree: the text around a place where somebody types is
-//! seldom right. A field or a block comes with a value that it can have, to type over.
+//! A field or a block comes with a value that it can have, to type over.
 
 use super::{
-    Analysis, hover,
-    words::{Expected, Role, Situation},
+    Analysis,
+    cursor::{Expected, Situation, situation},
+    hover,
 };
 use crate::{
     color::Color,
     scene::{
-        Value, css, describe, example_beside, example_call,
+        Value, css, describe, example_beside,
         schema::{self, Field, Function, Kind, Preset, Type},
     },
     source::Span,
@@ -69,14 +69,14 @@ pub enum Piece {
 
 /// Everything that could be typed at a place, what fits best first.
 pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
-    let Some(situation) = analysis.situation(at) else {
+    let at = analysis.source().floor_char_boundary(at);
+    let Some(situation) = situation(analysis, at) else {
         return Vec::new();
     };
     let mut completions = match situation.expected {
         Expected::Item => items(analysis, &situation),
         Expected::Field => fields(analysis, &situation),
         Expected::Value => values(analysis, &situation),
-        Expected::Definition | Expected::Head => Vec::new(),
     };
     completions.sort_by(|a, b| (a.rank, &a.label).cmp(&(b.rank, &b.label)));
     completions
@@ -93,13 +93,11 @@ fn hole(value: impl Into<String>) -> Piece {
 /// `let`, and the blocks that there may still be.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_there = |row: &schema::Block| {
-        let kinds = analysis.tokens.iter();
-        let mut kinds = kinds.filter(|token| token.role == Role::Kind);
-        kinds.any(|kind| kind.span != situation.word && analysis.slice(kind.span) == row.name)
+        // Of a block behind a word that is being typed, the kind is read as its name.
+        let words = analysis.blocks().flat_map(|block| [block.kind, block.name]);
+        let mut words = words.flatten();
+        words.any(|word| word.span != situation.word && word.text == row.name)
     };
-    // Where the rest is there already, the word is all that is wanted.
-    let next = situation.next.map(|next| next.role);
-    let goes_on = matches!(next, Some(Role::Open | Role::ObjectName));
     let rows = schema::BLOCKS.iter();
     let rows = rows.filter(|row| row.is_object || !is_there(row));
     let mut completions: Vec<Completion> = rows
@@ -108,7 +106,8 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
             kind: CompletionKind::Block,
             detail: row.help.to_owned(),
             help: describe::about_block(row),
-            insert: match goes_on {
+            // Where the rest is there already, the word is all that is wanted.
+            insert: match situation.goes_on {
                 true => vec![text(row.name)],
                 false => block_with_fields(row),
             },
@@ -157,12 +156,16 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
 /// The parts of a vector are typed over one by one.
 fn value_to_type_over(example: &str) -> Vec<Piece> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
-    let Some(inner) = inner else {
-        return vec![hole(example)];
-    };
-    let mut pieces = vec![text("(")];
-    for (index, part) in inner.split(", ").enumerate() {
-        if index > 0 {
+    match inner {
+        Some(inner) => list_to_type_over("(", inner.split(", ")),
+        None => vec![hole(example)],
+    }
+}
+
+fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<Piece> {
+    let mut pieces = vec![text(open)];
+    for part in parts {
+        if pieces.len() > 1 {
             pieces.push(text(", "));
         }
         pieces.push(hole(part));
@@ -194,22 +197,10 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         let given = &situation.given;
         !given.contains(&field.name) && !row.excludes(field.name).any(|name| given.contains(&name))
     };
-    let value_follows = situation.next.is_some_and(|next| {
-        let starts_value = matches!(
-            next.role,
-            Role::Number
-                | Role::ColorCode
-                | Role::OpenList
-                | Role::Name
-                | Role::Function
-                | Role::Method
-        );
-        starts_value && !situation.word.range().is_empty()
-    });
     let fields = row.fields.iter().filter(is_open);
     let fields = fields.map(|field| {
         let mut insert = vec![text(field.name)];
-        if !value_follows {
+        if !situation.goes_on {
             insert = vec![text(format!("{} ", field.name))];
             insert.extend(value_to_type_over(&example(analysis, situation, field)));
         }
@@ -273,15 +264,12 @@ fn methods(situation: &Situation) -> Vec<Completion> {
 
 /// A value such as the field can have, to type over; only where the whole value is still to come.
 fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Completion> {
-    let field = situation.field.filter(|_| situation.is_start)?;
-    if !situation.word.range().is_empty() {
-        return None;
-    }
+    let field = situation.field.filter(|_| situation.is_whole_value)?;
     let example = example(analysis, situation, field);
     Some(Completion {
         kind: CompletionKind::Value,
         detail: match field.preset {
-            Preset::Value(literal) if example == literal.to_string() => "the default".to_owned(),
+            Preset::Value(literal) if example == literal => "the default".to_owned(),
             _ => field.takes.word().to_owned(),
         },
         insert: value_to_type_over(&example),
@@ -343,47 +331,22 @@ fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
         Some(is_color) => gives_color(function) == is_color,
         None => true,
     });
-    let is_called = situation
-        .next
-        .is_some_and(|next| next.role == Role::OpenList && next.span.start == situation.word.end);
     let functions = functions.map(|function| Completion {
         label: function.name.to_owned(),
         kind: CompletionKind::Function,
         detail: describe::signature(function).0,
         help: describe::about_function(function),
-        insert: match is_called {
+        insert: match situation.goes_on {
             true => vec![text(function.name)],
-            false => call_to_type_over(function),
+            false => {
+                let open = format!("{}(", function.name);
+                list_to_type_over(&open, function.example().iter().copied())
+            }
         },
         replaces: situation.word,
         rank: rank(situation, Some(function.gives)) + 2,
     });
     functions.collect()
-}
-
-fn call_to_type_over(function: &Function) -> Vec<Piece> {
-    let example = example_call(function);
-    let arguments = example.strip_prefix(function.name).unwrap_or_default();
-    let arguments = arguments
-        .strip_prefix('(')
-        .and_then(|a| a.strip_suffix(')'));
-    let arguments = arguments.unwrap_or_default();
-    let is_vector = function.takes.contains(&Type::Vector);
-    let mut pieces = vec![text(format!("{}(", function.name))];
-    // Vectors have commas of their own.
-    let separator = if is_vector { "), " } else { ", " };
-    for (index, argument) in arguments.split(separator).enumerate() {
-        if index > 0 {
-            pieces.push(text(", "));
-        }
-        let is_cut = is_vector && !argument.ends_with(')');
-        pieces.push(hole(match is_cut {
-            true => format!("{argument})"),
-            false => argument.to_owned(),
-        }));
-    }
-    pieces.push(text(")"));
-    pieces
 }
 
 fn constants(situation: &Situation) -> Vec<Completion> {

@@ -3,7 +3,7 @@
 //! Only white space changes, so that a change is a run of it that takes the place of another. Whatever an editor remembers of
 //! the text (the cursor, marks, folds) stays where it was.
 
-use super::{Analysis, words::file};
+use super::{Analysis, tokens::file};
 use crate::{format::format_parsed, source::Span};
 
 /// What takes the place of what; nothing if the text has mistakes of syntax.

@@ -3,7 +3,7 @@
 use super::{
     Analysis,
     analysis::Path,
-    words::{Role, Token},
+    tokens::{Role, Token},
 };
 use crate::{
     color::Color,
@@ -29,8 +29,6 @@ pub struct Hover {
     pub span: Span,
     /// What there is to say, in Markdown.
     pub markdown: String,
-    /// The colours that it is about.
-    pub colors: Vec<Color>,
 }
 
 /// What the word at a place means; and where something is wrong with it, the page on that.
@@ -42,7 +40,6 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let mut hover = meaning.unwrap_or(Hover {
         span,
         markdown: String::new(),
-        colors: Vec::new(),
     });
     if !hover.markdown.is_empty() {
         hover.markdown.push_str("\n\n---\n\n");
@@ -69,7 +66,6 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let plain = |markdown: String| Hover {
         span: token.span,
         markdown,
-        colors: Vec::new(),
     };
     match token.role {
         Role::Let => Some(plain(ABOUT_LET.to_owned())),
@@ -84,15 +80,7 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
             let (_, help) = methods.find(|(method, _)| method.name() == word)?;
             Some(plain(format!("`{word}`: {help}")))
         }
-        Role::Defined => {
-            let definition = path.definition?;
-            let color = analysis.survey.defined(definition);
-            Some(Hover {
-                span: token.span,
-                markdown: about_definition(analysis, definition),
-                colors: colors(color),
-            })
-        }
+        Role::Defined => Some(plain(about_definition(analysis, path.definition?))),
         _ => value(analysis, &path, token),
     }
 }
@@ -132,14 +120,6 @@ fn described(value: Value) -> String {
             format!("{noun}: `{degrees}`, `{}rad`", short(radians))
         }
         Value::Number(_) | Value::Vector(_) | Value::Method(_) => format!("{noun}: `{value}`"),
-    }
-}
-
-fn colors(value: Option<Value>) -> Vec<Color> {
-    match value {
-        Some(Value::Color(color)) => vec![color],
-        Some(Value::Colors(colors)) => colors.to_vec(),
-        _ => Vec::new(),
     }
 }
 
@@ -200,25 +180,9 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
         .get(index)
         .filter(|object| object.span == block.span);
     Some(match object {
-        Some(object) => {
-            let summary = inspect::summary(&object.shape);
-            format!("{kind} `{name}`: {}", as_written(block, summary))
-        }
+        Some(object) => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
         None => format!("{kind} `{name}`"),
     })
-}
-
-/// A summary with the names of colours where the block has them.
-fn as_written(block: &tree::Block<'_>, mut summary: String) -> String {
-    let values = block.fields.iter().map(|field| &field.value);
-    for value in values.flat_map(|value| std::iter::once(value).chain(value.parts())) {
-        if let ValueKind::Name(name) = value.kind
-            && let Some(color) = css::color(name)
-        {
-            summary = summary.replace(&color.to_string(), name);
-        }
-    }
-    summary
 }
 
 /// Which of the values around a place there is something to say of: the smallest one; or what a number or a vector that says all
@@ -247,13 +211,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
         0 => analysis.value(value, path),
         _ => analysis.survey.value(value, None),
     };
-    let about = |span, markdown| {
-        Some(Hover {
-            span,
-            markdown,
-            colors: colors(found),
-        })
-    };
+    let about = |span, markdown| Some(Hover { span, markdown });
     match &value.kind {
         ValueKind::Name(name) => {
             let definition = analysis.survey.definition_at(name, value.span.start);

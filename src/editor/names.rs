@@ -4,7 +4,7 @@
 
 use super::{
     Analysis,
-    words::{Role, Token},
+    tokens::{Role, Token},
 };
 use crate::{
     scene::{predefined, schema},
@@ -101,27 +101,16 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         }
         _ => {}
     }
-    let is_same = analysis.slice(name.span) == new;
-    let taken = analysis.tokens.iter().find(|token| {
-        let defines = matches!(token.role, Role::Defined | Role::ObjectName);
-        defines && space_of(token.role) == Some(space) && analysis.slice(token.span) == new
-    });
+    let is_taken =
+        |token: &&Token| space_of(token.role) == Some(space) && analysis.slice(token.span) == new;
     // One that nothing defines would be this one from then on.
-    let meant = analysis.tokens.iter().find(|token| {
-        let is_use = space == Space::Lets && token.role == Role::Name;
-        is_use && analysis.slice(token.span) == new
-    });
-    match (taken, meant) {
-        _ if is_same => Ok(occurrences.into_iter().map(|found| found.span).collect()),
-        (Some(taken), _) => Err(format!(
-            "`{new}` is taken: it is defined in line {}",
+    let taken = analysis.tokens.iter().find(is_taken);
+    match taken.filter(|_| analysis.slice(name.span) != new) {
+        Some(taken) => Err(format!(
+            "`{new}` is taken: it stands in line {}",
             analysis.line(taken.span)
         )),
-        (None, Some(meant)) => Err(format!(
-            "`{new}` is taken: line {} uses it, though nothing defines it",
-            analysis.line(meant.span)
-        )),
-        _ => Ok(occurrences.into_iter().map(|found| found.span).collect()),
+        None => Ok(occurrences.into_iter().map(|found| found.span).collect()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     Analysis,
-    words::{Role, Token},
+    tokens::{Role, Token},
 };
 use crate::{
     scene::{css, schema},
@@ -85,10 +85,8 @@ fn classified(analysis: &Analysis<'_>, token: &Token) -> Option<SemanticToken> {
         Role::Name if schema::function(word).is_some() => SemanticKind::Function,
         Role::Name => SemanticKind::Variable,
         Role::Number | Role::ColorCode => SemanticKind::Number,
-        Role::Operator | Role::Equals => SemanticKind::Operator,
-        Role::Open | Role::Close | Role::OpenList | Role::CloseList | Role::Comma | Role::Other => {
-            return None;
-        }
+        Role::Operator => SemanticKind::Operator,
+        Role::Other => return None,
     };
     Some(SemanticToken {
         span: token.span,

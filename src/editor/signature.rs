@@ -1,6 +1,6 @@
 //! The function that is being called, and which of its arguments is being written.
 
-use super::Analysis;
+use super::{Analysis, cursor};
 use crate::{
     scene::{describe, schema},
     source::Span,
@@ -24,7 +24,8 @@ pub struct Signature {
 
 /// The innermost call around a place.
 pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
-    let (span, commas) = analysis.call(at)?;
+    let at = analysis.source().floor_char_boundary(at);
+    let (span, index) = cursor::call(analysis, at)?;
     let function = schema::function(analysis.slice(span))?;
     let (label, parameters) = describe::signature(function);
     let last = parameters.len().saturating_sub(1);
@@ -32,8 +33,8 @@ pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
         label,
         help: function.help,
         active: match function.more {
-            true => commas.min(last),
-            false => commas,
+            true => index.min(last),
+            false => index,
         },
         parameters,
         span,

@@ -30,14 +30,12 @@ pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Ans
         "textDocument/rename" => rename(known?, parsed(params)?),
         "textDocument/documentSymbol" => symbols(known?),
         "textDocument/foldingRange" => folds(known?),
-        "textDocument/selectionRange" => selections(known?, parsed(params)?),
         "textDocument/inlayHint" => hints(known?, parsed(params)?),
         "textDocument/documentColor" => colors(known?),
         "textDocument/colorPresentation" => presentations(known?, parsed(params)?),
         "textDocument/codeAction" => code_actions(known?, parsed(params)?),
         "textDocument/formatting" => formatting(known?),
         "textDocument/semanticTokens/full" => semantic_tokens(known?),
-        "textDocument/diagnostic" => pulled_diagnostics(known?),
         method => Err(Refusal(
             ErrorCode::MethodNotFound,
             format!("`{method}` is not known here"),
@@ -106,23 +104,15 @@ fn refused(reason: String) -> Refusal {
 }
 
 fn symbols((page, analysis): Known<'_, '_>) -> Answer {
-    written(&page.symbols(editor::symbols(analysis)))
+    let symbols = editor::symbols(analysis).into_iter();
+    let symbols: Vec<_> = symbols.map(|symbol| page.symbol(symbol)).collect();
+    written(&symbols)
 }
 
 fn folds((page, analysis): Known<'_, '_>) -> Answer {
     let folds = editor::folds(analysis).into_iter();
     let folds: Vec<_> = folds.map(|fold| page.fold(fold)).collect();
     written(&folds)
-}
-
-fn selections((page, analysis): Known<'_, '_>, params: lsp::SelectionRangeParams) -> Answer {
-    let positions = params.positions.into_iter();
-    let selections = positions.map(|position| {
-        let at = page.offset(position);
-        page.selection(editor::selection(analysis, at))
-    });
-    let selections: Vec<_> = selections.collect();
-    written(&selections)
 }
 
 fn hints((page, analysis): Known<'_, '_>, params: lsp::InlayHintParams) -> Answer {
@@ -163,19 +153,14 @@ fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) 
     };
     let mut actions = Vec::new();
     if only.is_none() || is_wanted(&[Kind::QuickFix]) {
-        let fixes = editor::fixes(analysis, page.span(params.range)).into_iter();
-        actions.extend(fixes.map(|(diagnostic, fix)| page.action(diagnostic, &fix)));
+        let fixes = editor::fixes(analysis, page.span(params.range));
+        actions.extend(fixes.map(|(diagnostic, fix)| page.action(fix, Some(diagnostic))));
     }
     // Beside a fix it is offered where there are others.
-    let fixable = || {
-        analysis
-            .diagnostics()
-            .iter()
-            .filter(|it| !it.fixes.is_empty())
-    };
-    let is_more = !actions.is_empty() && fixable().count() > 1 && editor::is_short(analysis);
+    let all = analysis.diagnostics().iter();
+    let is_more = !actions.is_empty() && all.filter(|it| !it.fixes.is_empty()).count() > 1;
     if is_more || is_wanted(&[Kind::Source, Kind::SourceFixAll]) {
-        actions.extend(editor::fix_all(analysis).map(|fix| page.action_on_all(&fix)));
+        actions.extend(editor::fix_all(analysis).map(|fix| page.action(&fix, None)));
     }
     written(&actions)
 }
@@ -190,10 +175,6 @@ fn formatting((page, analysis): Known<'_, '_>) -> Answer {
 
 fn semantic_tokens((page, analysis): Known<'_, '_>) -> Answer {
     written(&page.semantic_tokens(&editor::semantic_tokens(analysis)))
-}
-
-fn pulled_diagnostics((page, analysis): Known<'_, '_>) -> Answer {
-    written(&json!({ "kind": "full", "items": diagnostics(page, analysis) }))
 }
 
 /// What is wrong with a document.

@@ -1,16 +1,13 @@
 //! The language server: the editor's answers, spoken in the Language Server Protocol.
 //!
 //! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`) and knows neither threads nor streams, so that any host can carry
-//! it; [`stdio`] does over standard input and output. [`crate::editor`] has the answers, `answers` asks it, `convert` makes the protocol's types of them, and
-//! `pages` keeps what codes link to.
+//! it; [`stdio`] does over standard input and output. [`crate::editor`] has the answers, `answers` asks it, and `convert` makes the protocol's types of them.
 
 mod answers;
 mod convert;
 mod documents;
-mod pages;
 mod params;
 mod server;
 pub mod stdio;
-mod uri;
 
 pub use server::Server;

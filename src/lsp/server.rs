@@ -7,7 +7,6 @@
 use std::{
     collections::{BTreeSet, HashMap, VecDeque},
     panic::{self, AssertUnwindSafe},
-    path::PathBuf,
 };
 
 use gen_lsp_types as lsp;
@@ -18,7 +17,6 @@ use super::{
     answers::{answer, diagnostics},
     convert::{self, Client, Page},
     documents::Document,
-    pages::Pages,
     params::{Refusal, parsed, written},
 };
 use crate::editor::Analysis;
@@ -45,20 +43,17 @@ pub struct Server {
     waiting: VecDeque<Request>,
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
-    pages: Pages,
     log: fn(&str),
 }
 
 impl Server {
-    /// A server that nobody has spoken to. What cannot be understood is said to `log`. The pages of [`crate::explain`] that diagnostics link to are written to the
-    /// folder `pages`, an absolute path, as they are needed; without it, or where that fails, nothing is linked.
-    pub fn new(pages: Option<PathBuf>, log: fn(&str)) -> Self {
+    /// A server that nobody has spoken to. What cannot be understood is said to `log`.
+    pub fn new(log: fn(&str)) -> Self {
         Self {
             phase: Phase::Silent,
             documents: HashMap::new(),
             waiting: VecDeque::new(),
             changed: BTreeSet::new(),
-            pages: Pages::new(pages),
             log,
         }
     }
@@ -133,7 +128,6 @@ impl Server {
                 client,
                 uri,
                 document: self.documents.get(uri)?,
-                pages: &self.pages,
             })
         });
         let analysis = page.map(|page| Analysis::new(&page.document.sources));
@@ -143,8 +137,7 @@ impl Server {
             response(id, unharmed(|| answer(request, known)))
         });
         let mut said: Vec<Message> = answers.collect();
-        // Others ask for it themselves.
-        if is_changed && !client.pulls_diagnostics {
+        if is_changed {
             let mut params = json!({ "uri": wanted, "diagnostics": [] });
             // Nothing is wrong with a text that was closed.
             if let Some((page, analysis)) = known {

@@ -3,10 +3,7 @@
 //! In: the arguments as they were typed. Out: what each names, and the tree of its value. Whether there is such a target,
 //! and what the value is there, is for lowering to find out.
 
-use super::{
-    error::{Found, Problem},
-    fix, schema,
-};
+use super::{error::error, schema};
 use crate::{
     diagnostic::Diagnostic,
     source::{SourceId, Sources, Span},
@@ -35,7 +32,7 @@ pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<
     let mut overrides: Vec<Override<'s>> = Vec::new();
     for (id, source) in sources.sets() {
         match one(source.text(), id) {
-            Err(problem) => diagnostics.push(Found::from(*problem).diagnostic(sources)),
+            Err(problem) => diagnostics.push(*problem),
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
                 diagnostics.extend(problems);
@@ -52,24 +49,30 @@ pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<
 }
 
 /// The block, the field or `let`, and where the value starts.
-fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), Box<Problem>> {
-    let whole = Span::new(id, 0, text.len());
+fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), Box<Diagnostic>> {
     let Some((target, value)) = text.split_once('=') else {
-        return Err(Box::new(Problem::SetWithoutEquals { span: whole }));
+        let help = "write TARGET=VALUE, such as `--set camera.roll=30deg` or `--set h=1.5`";
+        return Err(Box::new(
+            error("bad_set", "this `--set` has no `=`")
+                .at(
+                    Span::new(id, 0, text.len()),
+                    "a target, `=` and a value should stand here",
+                )
+                .help(help),
+        ));
     };
     let bad = || {
-        let start = target.len() - target.trim_start().len();
-        let end = target.trim_end().len().max(start);
-        let written = shorten(target);
-        let span = match written.is_empty() {
-            true => Span::new(id, 0, target.len() + 1),
-            false => Span::new(id, start, end),
+        let message = match shorten(target).as_str() {
+            "" => "nothing is named before this `=`".to_owned(),
+            written => format!("`{written}` cannot be set"),
         };
-        let message = match written.is_empty() {
-            true => "nothing is named before this `=`".to_owned(),
-            false => format!("`{written}` cannot be set"),
-        };
-        Box::new(Problem::BadTarget { message, span })
+        let help = "a target is `BLOCK.FIELD`, such as `camera.roll`, or the name of a `let`";
+        let span = Span::new(id, 0, target.len().max(1));
+        Box::new(
+            error("bad_target", message)
+                .at(span, "not a target")
+                .help(help),
+        )
     };
     let (block, name) = match target.split_once('.') {
         Some((block, field)) => {
@@ -81,7 +84,11 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
     };
     if value.trim().is_empty() {
         let span = Span::new(id, target.len(), target.len() + 1);
-        return Err(Box::new(Problem::SetWithoutValue { span }));
+        return Err(Box::new(
+            error("missing_value", "this `--set` gives no value")
+                .at(span, "a value should follow")
+                .help("write a value after the `=`"),
+        ));
     }
     Ok((block, name, target.len() + 1))
 }
@@ -99,71 +106,47 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
 }
 
 /// What is wrong with a target whose block is neither in the file nor one that can be added.
-pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Found {
-    let listed = |names: &[&str]| match names.len() {
+pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Diagnostic {
+    let blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
+    let names = objects
+        .iter()
+        .copied()
+        .chain(blocks.map(|block| block.name));
+    let near = budget.spend(objects.len() + schema::BLOCKS.len());
+    let near = near.then(|| suggest::nearest(block.text, names)).flatten();
+    let known = match objects.len() {
         0 => "The scene's objects have no names.".to_owned(),
-        1..=8 => format!("The scene has {}.", suggest::list(names.iter().copied())),
+        1..=8 => format!("The scene has {}.", suggest::list(objects.iter().copied())),
         count => format!("The scene has {count} named objects."),
     };
-    let blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
-    let blocks = blocks.map(|block| block.name);
-    let near = match budget.spend(objects.len() + schema::BLOCKS.len()) {
-        true => suggest::nearest(block.text, objects.iter().copied().chain(blocks)),
-        false => None,
-    };
-    let kind = schema::block(block.text).filter(|kind| kind.is_object);
-    let help = match (kind, near) {
-        (Some(kind), _) => format!(
-            "an object is set by its own name, such as `{} Big {{ … }}` by `Big.FIELD`. {}",
-            kind.name,
-            listed(objects)
-        ),
-        (None, Some(near)) if objects == [near] => format!("did you mean `{near}`?"),
-        (None, Some(near)) => format!("did you mean `{near}`? {}", listed(objects)),
-        (None, None) => format!(
-            "{} image, camera and sampler can be set too",
-            listed(objects)
-        ),
-    };
-    Problem::NoSuchTarget {
-        message: format!("there is no object named `{}`", block.text),
-        help,
-        span: block.span,
-        label: "no object, and not image, camera or sampler",
-    }
-    .with(fix::written(block.span, near.filter(|_| kind.is_none())))
+    let message = format!("there is no object named `{}`", block.text);
+    error("no_such_target", message)
+        .at(block.span, "no object, and not image, camera or sampler")
+        .help(match near {
+            Some(near) if objects == [near] => format!("did you mean `{near}`?"),
+            Some(near) => format!("did you mean `{near}`? {known}"),
+            None => format!("{known} image, camera and sampler can be set too"),
+        })
+        .writing(block.span, near)
 }
 
 /// What is wrong with a target that is no `let` of the file, but may be a block.
-pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budget) -> Found {
-    let fields = schema::BLOCKS.iter().filter(|block| !block.is_object);
-    let of_block = fields
-        .filter(|block| block.field(name.text).is_some())
-        .map(|block| block.name)
-        .next();
-    let near = match budget.spend(lets.len()) {
-        true => suggest::nearest(name.text, lets.iter().copied()),
-        false => None,
-    };
+pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budget) -> Diagnostic {
+    let mut blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
+    let of_block = blocks.find(|block| block.field(name.text).is_some());
+    let near = || suggest::nearest(name.text, lets.iter().copied()).map(str::to_owned);
     let meant = match of_block {
-        Some(block) => Some(format!("{block}.{}", name.text)),
-        None => near.map(str::to_owned),
+        _ if is_block => None,
+        Some(block) => Some(format!("{}.{}", block.name, name.text)),
+        None => budget.spend(lets.len()).then(near).flatten(),
     };
-    let help = match (near, of_block) {
-        _ if is_block => format!("name a field of it as well: `{}.FIELD=…`", name.text),
-        (_, Some(block)) => format!("did you mean `{block}.{}`?", name.text),
-        (Some(near), None) => format!("did you mean `{near}`?"),
-        (None, None) => match lets.len() {
-            0 => "the scene defines no names; a field is set by `BLOCK.FIELD=…`".to_owned(),
-            1..=8 => format!("the scene defines {}", suggest::list(lets.iter().copied())),
-            _ => "a field is set by `BLOCK.FIELD=…`".to_owned(),
-        },
-    };
-    Problem::NoSuchTarget {
-        message: format!("the scene defines no `{}`", name.text),
-        help,
-        span: name.span,
-        label: "no `let` of this name",
-    }
-    .with(fix::written(name.span, meant.filter(|_| !is_block)))
+    let message = format!("the scene defines no `{}`", name.text);
+    error("no_such_target", message)
+        .at(name.span, "no `let` of this name")
+        .help(match &meant {
+            _ if is_block => format!("name a field of it as well: `{}.FIELD=…`", name.text),
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None => "name a `let` of the scene, or a field by `BLOCK.FIELD=…`".to_owned(),
+        })
+        .writing(name.span, meant)
 }

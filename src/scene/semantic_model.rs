@@ -4,7 +4,6 @@
 
 use super::{
     Camera, Image, Object, Sampler, Scene, Value,
-    error::Problems,
     eval::{Evaluator, Names},
     schema::Type,
 };
@@ -95,7 +94,7 @@ impl<'s> SemanticModel<'s> {
         if !self.is_defined(value) {
             return None;
         }
-        let mut problems = Problems::default();
+        let mut problems = Vec::new();
         let mut evaluator = Evaluator {
             sources: self.sources,
             names: &self.names,

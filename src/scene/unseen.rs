@@ -23,12 +23,8 @@ pub enum Unseen {
     Behind,
     /// All of it is beside the window, or behind.
     Outside,
-    /// Without `near` something would be seen.
-    Near,
-    /// Without `far` something would be seen.
-    Far,
-    /// Without both something would be seen.
-    NearAndFar,
+    /// Without `near` and `far` something would be seen.
+    Clipped,
 }
 
 /// Why the camera sees none of the objects; none if it may see one.
@@ -38,18 +34,11 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
         let mut shapes = objects.iter().map(|object| &object.shape);
         shapes.any(|shape| frustum.may_see(shape, near, far))
     };
-    let (near, far) = (camera.near, camera.far.unwrap_or(f64::INFINITY));
-    if sees(near, far) {
+    if sees(camera.near, camera.far.unwrap_or(f64::INFINITY)) {
         return None;
     }
-    if sees(0.0, far) {
-        return Some(Unseen::Near);
-    }
-    if sees(near, f64::INFINITY) {
-        return Some(Unseen::Far);
-    }
     if sees(0.0, f64::INFINITY) {
-        return Some(Unseen::NearAndFar);
+        return Some(Unseen::Clipped);
     }
     let is_before = |object: &Object| match object.shape {
         Shape::Checkerboard(_) => true,

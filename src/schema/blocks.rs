@@ -1,25 +1,23 @@
 //! The table of blocks and their fields.
 
 use super::{
-    rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread},
+    rows::{Block, Choice, Condition, Field, Kind, Preset, Spread},
     types::Type,
 };
 
-/// A field without conditions or alternatives; rows start from it.
-const FIELD: Field = Field {
+/// A block without alternatives; rows start from it.
+const BLOCK: Block = Block {
+    kind: Kind::Image,
     name: "",
-    takes: Type::Number,
-    preset: Preset::Required,
-    must: &[],
+    noun: "",
+    is_object: false,
     help: "",
+    fields: &[],
+    choices: &[],
+    together: &[],
+    spreads: &[],
     also_tried: &[],
-    doubled: &[],
-    example: "",
 };
-
-const fn number(value: f64) -> Preset {
-    Preset::Value(Literal::Number(value))
-}
 
 /// Every block of the language.
 pub const BLOCKS: &[Block] = &[
@@ -27,54 +25,39 @@ pub const BLOCKS: &[Block] = &[
         kind: Kind::Image,
         name: "image",
         noun: "an image",
-        is_object: false,
         help: "the picture's size, and what is seen where nothing is hit",
         fields: &[
-            Field {
-                name: "width",
-                preset: number(800.0),
-                must: PIXELS,
-                help: "the columns of pixels",
-                also_tried: &["columns", "w"],
-                ..FIELD
-            },
-            Field {
-                name: "height",
-                preset: number(450.0),
-                must: PIXELS,
-                help: "the rows of pixels",
-                also_tried: &["rows", "h"],
-                ..FIELD
-            },
-            Field {
-                name: "background",
-                takes: Type::Color,
-                preset: Preset::Value(Literal::Color("black")),
-                help: "the colour where nothing is hit",
-                also_tried: &["bg", "color", "colour", "sky"],
-                ..FIELD
-            },
+            Field::new("width", Type::Number)
+                .help("the columns of pixels")
+                .preset(Preset::Value("800"))
+                .must(PIXELS)
+                .tried(&["columns", "w"]),
+            Field::new("height", Type::Number)
+                .help("the rows of pixels")
+                .preset(Preset::Value("450"))
+                .must(PIXELS)
+                .tried(&["rows", "h"]),
+            Field::new("background", Type::Color)
+                .help("the colour where nothing is hit")
+                .preset(Preset::Value("black"))
+                .tried(&["bg", "color", "colour", "sky"]),
         ],
-        choices: &[],
-        together: &[],
         spreads: &[Spread {
             words: &["resolution", "size", "dimensions"],
             fields: &["width", "height"],
         }],
         also_tried: &["picture", "window", "film", "output"],
+        ..BLOCK
     },
     Block {
         kind: Kind::Camera,
         name: "camera",
         noun: "a camera",
-        is_object: false,
         help: "the pinhole camera: where it stands, where it looks, how much it sees",
         fields: &[
-            Field {
-                name: "eye",
-                takes: Type::Vector,
-                help: "the point that all rays pass through",
-                also_tried: &[
+            Field::new("eye", Type::Vector)
+                .help("the point that all rays pass through")
+                .tried(&[
                     "position",
                     "pos",
                     "from",
@@ -83,93 +66,55 @@ pub const BLOCKS: &[Block] = &[
                     "origin",
                     "location",
                     "look_from",
-                ],
-                example: "(0, 2, 8)",
-                ..FIELD
-            },
-            Field {
-                name: "lookat",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                help: "the point that it looks at",
-                also_tried: &["look_at", "target", "at", "to"],
-                ..FIELD
-            },
-            Field {
-                name: "direction",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                must: &[Condition::NotZero],
-                help: "the direction that it looks in, of any length",
-                also_tried: &["dir", "forward"],
-                example: "(0, 0, -1)",
-                ..FIELD
-            },
-            Field {
-                name: "up",
-                takes: Type::Vector,
-                preset: Preset::Value(Literal::Vector([0.0, 1.0, 0.0])),
-                must: &[Condition::NotZero],
-                help: "what is up in the picture",
-                ..FIELD
-            },
-            Field {
-                name: "roll",
-                takes: Type::Angle,
-                preset: Preset::Value(Literal::Degrees(0.0)),
-                help: "the turn about the view direction; positive dips the right side",
-                also_tried: &["tilt", "rotation"],
-                ..FIELD
-            },
-            Field {
-                name: "d",
-                preset: number(2.0),
-                must: &[Condition::MoreThan(0.0)],
-                help: "the distance from the eye to the view plane",
-                also_tried: &["distance", "focal_length"],
-                ..FIELD
-            },
-            Field {
-                name: "view_height",
-                preset: number(2.0),
-                must: &[Condition::MoreThan(0.0)],
-                help: "the height of the window in the view plane",
-                also_tried: &["height"],
-                ..FIELD
-            },
-            Field {
-                name: "fov",
-                takes: Type::Angle,
-                preset: Preset::Nothing,
-                must: &[Condition::LessThanHalfTurn],
-                help: "the angle that the window's height takes up, instead of d",
-                also_tried: &["field_of_view", "vfov", "yfov"],
-                example: "40deg",
-                ..FIELD
-            },
-            Field {
-                name: "hfov",
-                takes: Type::Angle,
-                preset: Preset::Nothing,
-                must: &[Condition::LessThanHalfTurn],
-                help: "the angle that the window's width takes up, instead of d or fov",
-                also_tried: &["angle", "xfov", "horizontal_fov"],
-                example: "60deg",
-                ..FIELD
-            },
-            Field {
-                name: "near",
-                preset: number(0.0),
-                must: &[Condition::AtLeast(0.0)],
-                help: "nothing at this depth or nearer is seen",
-                ..FIELD
-            },
-            Field {
-                name: "far",
-                preset: Preset::Nothing,
-                help: "nothing at this depth or farther is seen",
-                ..FIELD
-            },
+                ])
+                .like("(0, 2, 8)"),
+            Field::new("lookat", Type::Vector)
+                .help("the point that it looks at")
+                .preset(Preset::Alternative)
+                .tried(&["look_at", "target", "at", "to"]),
+            Field::new("direction", Type::Vector)
+                .help("the direction that it looks in, of any length")
+                .preset(Preset::Alternative)
+                .must(&[Condition::NotZero])
+                .tried(&["dir", "forward"])
+                .like("(0, 0, -1)"),
+            Field::new("up", Type::Vector)
+                .help("what is up in the picture")
+                .preset(Preset::Value("(0, 1, 0)"))
+                .must(&[Condition::NotZero]),
+            Field::new("roll", Type::Angle)
+                .help("the turn about the view direction; positive dips the right side")
+                .preset(Preset::Value("0deg"))
+                .tried(&["tilt", "rotation"]),
+            Field::new("d", Type::Number)
+                .help("the distance from the eye to the view plane")
+                .preset(Preset::Value("2"))
+                .must(&[Condition::MoreThan(0.0)])
+                .tried(&["distance", "focal_length"]),
+            Field::new("view_height", Type::Number)
+                .help("the height of the window in the view plane")
+                .preset(Preset::Value("2"))
+                .must(&[Condition::MoreThan(0.0)])
+                .tried(&["height"]),
+            Field::new("fov", Type::Angle)
+                .help("the angle that the window's height takes up, instead of d")
+                .preset(Preset::Nothing)
+                .must(&[Condition::LessThanHalfTurn])
+                .tried(&["field_of_view", "vfov", "yfov"])
+                .like("40deg"),
+            Field::new("hfov", Type::Angle)
+                .help("the angle that the window's width takes up, instead of d or fov")
+                .preset(Preset::Nothing)
+                .must(&[Condition::LessThanHalfTurn])
+                .tried(&["angle", "xfov", "horizontal_fov"])
+                .like("60deg"),
+            Field::new("near", Type::Number)
+                .help("nothing at this depth or nearer is seen")
+                .preset(Preset::Value("0"))
+                .must(&[Condition::AtLeast(0.0)]),
+            Field::new("far", Type::Number)
+                .help("nothing at this depth or farther is seen")
+                .preset(Preset::Nothing),
         ],
         choices: &[
             Choice {
@@ -182,63 +127,49 @@ pub const BLOCKS: &[Block] = &[
             },
         ],
         together: &["lookat ≠ eye", "near < far"],
-        spreads: &[],
         also_tried: &["cam", "view", "viewer", "eye"],
+        ..BLOCK
     },
     Block {
         kind: Kind::Sampler,
         name: "sampler",
         noun: "a sampler",
-        is_object: false,
         help: "where in a pixel samples are taken, and how many",
         fields: &[
-            Field {
-                name: "method",
-                takes: Type::Method,
-                preset: Preset::Value(Literal::Method("multi_jittered")),
-                help: "the sampling technique",
-                also_tried: &["technique", "type", "kind", "pattern"],
-                ..FIELD
-            },
-            Field {
-                name: "per_pixel",
-                preset: number(16.0),
-                must: &[Condition::Whole, Condition::AtLeast(1.0)],
-                help: "the samples in each pixel",
-                also_tried: &["samples", "spp", "count", "n"],
-                ..FIELD
-            },
-            Field {
-                name: "total",
-                preset: Preset::Nothing,
-                must: &[
+            Field::new("method", Type::Method)
+                .help("the sampling technique")
+                .preset(Preset::Value("multi_jittered"))
+                .tried(&["technique", "type", "kind", "pattern"]),
+            Field::new("per_pixel", Type::Number)
+                .help("the samples in each pixel")
+                .preset(Preset::Value("16"))
+                .must(&[Condition::Whole, Condition::AtLeast(1.0)])
+                .tried(&["samples", "spp", "count", "n"]),
+            Field::new("total", Type::Number)
+                .help("the samples in the whole picture, instead of per_pixel")
+                .preset(Preset::Nothing)
+                .must(&[
                     Condition::Whole,
                     Condition::AtLeast(1.0),
                     Condition::AtMostTwoTo(53),
-                ],
-                help: "the samples in the whole picture, instead of per_pixel",
-                example: "1_000_000",
-                ..FIELD
-            },
-            Field {
-                name: "seed",
-                preset: number(0.0),
-                must: &[
+                ])
+                .like("1_000_000"),
+            Field::new("seed", Type::Number)
+                .help("another seed gives other random samples")
+                .preset(Preset::Value("0"))
+                .must(&[
                     Condition::Whole,
                     Condition::AtLeast(0.0),
                     Condition::LessThanTwoTo(53),
-                ],
-                help: "another seed gives other random samples",
-                ..FIELD
-            },
+                ]),
         ],
         choices: &[Choice {
             ways: &[&["per_pixel"], &["total"]],
             why: "either one says how many samples there are",
         }],
-        spreads: &[],
         together: &["per_pixel times the number of pixels is at most 2^53"],
         also_tried: &["sampling", "samples", "antialiasing"],
+        ..BLOCK
     },
     Block {
         kind: Kind::Sphere,
@@ -247,28 +178,19 @@ pub const BLOCKS: &[Block] = &[
         is_object: true,
         help: "a sphere",
         fields: &[
-            Field {
-                name: "center",
-                takes: Type::Vector,
-                help: "its centre",
-                also_tried: POSITION,
-                ..FIELD
-            },
-            Field {
-                name: "radius",
-                preset: number(1.0),
-                must: &[Condition::MoreThan(0.0)],
-                help: "its radius",
-                also_tried: &["r", "size"],
-                doubled: &["diameter"],
-                ..FIELD
-            },
+            Field::new("center", Type::Vector)
+                .help("its centre")
+                .tried(POSITION),
+            Field::new("radius", Type::Number)
+                .help("its radius")
+                .preset(Preset::Value("1"))
+                .must(&[Condition::MoreThan(0.0)])
+                .tried(&["r", "size"])
+                .doubled(&["diameter"]),
             color("olive"),
         ],
-        choices: &[],
-        together: &[],
-        spreads: &[],
         also_tried: &["ball", "circle", "globe"],
+        ..BLOCK
     },
     Block {
         kind: Kind::Triangle,
@@ -277,43 +199,27 @@ pub const BLOCKS: &[Block] = &[
         is_object: true,
         help: "a triangle, by centroid, normal and the lengths of its sides or by its vertices",
         fields: &[
-            Field {
-                name: "centroid",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                help: "the mean of its vertices",
-                also_tried: &[
+            Field::new("centroid", Type::Vector)
+                .help("the mean of its vertices")
+                .preset(Preset::Alternative)
+                .tried(&[
                     "center", "centre", "position", "pos", "at", "middle", "location",
-                ],
-                ..FIELD
-            },
-            Field {
-                name: "normal",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                must: &[Condition::NotZero],
-                help: "what its plane is perpendicular to, of any length",
-                also_tried: &["direction", "facing"],
-                example: "(0, 0, 1)",
-                ..FIELD
-            },
-            Field {
-                name: "sides",
-                takes: Type::Vector,
-                preset: Preset::Value(Literal::Vector([2.0, 2.0, 1.0])),
-                must: &[Condition::EachMoreThanZero],
-                help: "the lengths of its left side, its right side and its base",
-                also_tried: &["size", "lengths", "edges"],
-                ..FIELD
-            },
-            Field {
-                name: "spin",
-                takes: Type::Angle,
-                preset: Preset::Value(Literal::Degrees(0.0)),
-                help: "its turn in its plane, counter-clockwise seen from the tip of the normal",
-                also_tried: &["roll", "rotation", "turn"],
-                ..FIELD
-            },
+                ]),
+            Field::new("normal", Type::Vector)
+                .help("what its plane is perpendicular to, of any length")
+                .preset(Preset::Alternative)
+                .must(&[Condition::NotZero])
+                .tried(&["direction", "facing"])
+                .like("(0, 0, 1)"),
+            Field::new("sides", Type::Vector)
+                .help("the lengths of its left side, its right side and its base")
+                .preset(Preset::Value("(2, 2, 1)"))
+                .must(&[Condition::EachMoreThanZero])
+                .tried(&["size", "lengths", "edges"]),
+            Field::new("spin", Type::Angle)
+                .help("its turn in its plane, counter-clockwise seen from the tip of the normal")
+                .preset(Preset::Value("0deg"))
+                .tried(&["roll", "rotation", "turn"]),
             vertex("v0", "(-1, 0, 0)", &["a", "p0", "vertex0"]),
             vertex("v1", "(1, 0, 0)", &["b", "p1", "vertex1"]),
             vertex("v2", "(0, 1, 0)", &["c", "p2", "vertex2"]),
@@ -343,48 +249,32 @@ pub const BLOCKS: &[Block] = &[
         is_object: true,
         help: "a box along the axes, by centre and size or by two corners",
         fields: &[
-            Field {
-                name: "center",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                help: "its centre",
-                also_tried: POSITION,
-                ..FIELD
-            },
-            Field {
-                name: "size",
-                takes: Type::Vector,
-                preset: Preset::Value(Literal::Vector([0.5, 1.5, 2.0])),
-                must: &[Condition::EachMoreThanZero],
-                help: "its extents along x, y and z",
-                also_tried: &["sides", "dimensions", "extent"],
-                ..FIELD
-            },
-            Field {
-                name: "min",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                help: "its corner of least coordinates, together with max",
-                example: "(-1, 0, -1)",
-                ..FIELD
-            },
-            Field {
-                name: "max",
-                takes: Type::Vector,
-                preset: Preset::Alternative,
-                help: "its corner of greatest coordinates, together with min",
-                example: "(1, 1, 1)",
-                ..FIELD
-            },
+            Field::new("center", Type::Vector)
+                .help("its centre")
+                .preset(Preset::Alternative)
+                .tried(POSITION),
+            Field::new("size", Type::Vector)
+                .help("its extents along x, y and z")
+                .preset(Preset::Value("(0.5, 1.5, 2)"))
+                .must(&[Condition::EachMoreThanZero])
+                .tried(&["sides", "dimensions", "extent"]),
+            Field::new("min", Type::Vector)
+                .help("its corner of least coordinates, together with max")
+                .preset(Preset::Alternative)
+                .like("(-1, 0, -1)"),
+            Field::new("max", Type::Vector)
+                .help("its corner of greatest coordinates, together with min")
+                .preset(Preset::Alternative)
+                .like("(1, 1, 1)"),
             color("orange"),
         ],
         choices: &[Choice {
             ways: &[&["center", "size"], &["min", "max"]],
             why: "a box is given by center and size, or by min and max",
         }],
-        spreads: &[],
         together: &["min < max on every axis"],
         also_tried: &["cube", "cuboid", "block", "crate", "brick"],
+        ..BLOCK
     },
     Block {
         kind: Kind::Checkerboard,
@@ -393,34 +283,22 @@ pub const BLOCKS: &[Block] = &[
         is_object: true,
         help: "the infinite checkered floor in a horizontal plane",
         fields: &[
-            Field {
-                name: "y",
-                preset: number(0.0),
-                help: "the height of its plane",
-                also_tried: &["height", "level"],
-                ..FIELD
-            },
-            Field {
-                name: "square",
-                preset: number(1.0),
-                must: &[Condition::MoreThan(0.0)],
-                help: "the side of a square",
-                also_tried: &["size", "side", "squares"],
-                ..FIELD
-            },
-            Field {
-                name: "colors",
-                takes: Type::Colors,
-                preset: Preset::Value(Literal::Colors(["gray", "white"])),
-                help: "the colours of the even and of the odd squares",
-                also_tried: &["color", "colour", "colours"],
-                ..FIELD
-            },
+            Field::new("y", Type::Number)
+                .help("the height of its plane")
+                .preset(Preset::Value("0"))
+                .tried(&["height", "level"]),
+            Field::new("square", Type::Number)
+                .help("the side of a square")
+                .preset(Preset::Value("1"))
+                .must(&[Condition::MoreThan(0.0)])
+                .tried(&["size", "side", "squares"]),
+            Field::new("colors", Type::Colors)
+                .help("the colours of the even and of the odd squares")
+                .preset(Preset::Value("(gray, white)"))
+                .tried(&["color", "colour", "colours"]),
         ],
-        choices: &[],
-        together: &[],
-        spreads: &[],
         also_tried: &["plane", "floor", "ground", "checker", "chessboard", "board"],
+        ..BLOCK
     },
 ];
 
@@ -437,24 +315,16 @@ const fn vertex(
     example: &'static str,
     also_tried: &'static [&'static str],
 ) -> Field {
-    Field {
-        name,
-        takes: Type::Vector,
-        preset: Preset::Alternative,
-        help: "one of its vertices, together with the two others",
-        also_tried,
-        example,
-        ..FIELD
-    }
+    Field::new(name, Type::Vector)
+        .help("one of its vertices, together with the two others")
+        .preset(Preset::Alternative)
+        .tried(also_tried)
+        .like(example)
 }
 
 const fn color(preset: &'static str) -> Field {
-    Field {
-        name: "color",
-        takes: Type::Color,
-        preset: Preset::Value(Literal::Color(preset)),
-        help: "its colour",
-        also_tried: &["fill", "material"],
-        ..FIELD
-    }
+    Field::new("color", Type::Color)
+        .help("its colour")
+        .preset(Preset::Value(preset))
+        .tried(&["fill", "material"])
 }

@@ -1,61 +1,6 @@
-//! The tables of predefined words: methods, functions and constants.
+//! The tables of predefined words: functions and constants.
 
-use super::types::{Method, Type};
-use crate::suggest::{self, is_among};
-
-/// Every sampling technique, with a line of help.
-pub const METHODS: &[(Method, &str)] = &[
-    (Method::Regular, "an even grid, centred"),
-    (Method::Random, "independent and uniform"),
-    (Method::Jittered, "one at random in each cell of a grid"),
-    (Method::NRooks, "one in each row and each column"),
-    (Method::MultiJittered, "jittered and n_rooks at once"),
-    (
-        Method::Hammersley,
-        "the Hammersley points, shifted per pixel",
-    ),
-    (Method::Halton, "the Halton points, shifted per pixel"),
-    (
-        Method::Sobol,
-        "Sobol' points with Owen scrambling, per pixel",
-    ),
-    (Method::Scatter, "points uniform over the whole picture"),
-    (Method::Exact, "no samples: the mean itself, computed"),
-];
-
-/// A method, found by its name.
-pub fn method(name: &str) -> Option<Method> {
-    let mut methods = METHODS.iter().map(|&(method, _)| method);
-    methods.find(|method| method.name() == name)
-}
-
-/// Other words that people try for methods.
-const ALSO_TRIED: &[(Method, &[&str])] = &[
-    (Method::Regular, &["grid", "uniform_grid", "centered"]),
-    (
-        Method::Random,
-        &["monte_carlo", "independent", "white_noise"],
-    ),
-    (Method::Jittered, &["stratified"]),
-    (Method::NRooks, &["latin_hypercube", "lhs", "rooks"]),
-    (Method::MultiJittered, &["cmj", "correlated_multi_jittered"]),
-    (Method::Sobol, &["owen", "low_discrepancy"]),
-    (Method::Exact, &["analytic", "analytical"]),
-];
-
-/// The method that was probably meant, if any is near.
-pub fn nearest_method(written: &str) -> Option<&'static str> {
-    let tried = ALSO_TRIED
-        .iter()
-        .find(|(_, words)| is_among(written, words));
-    let tried = tried.map(|(method, _)| method.name());
-    tried.or_else(|| suggest::nearest(written, method_names()))
-}
-
-/// The names of the methods.
-pub fn method_names() -> impl Iterator<Item = &'static str> {
-    METHODS.iter().map(|(method, _)| method.name())
-}
+use super::types::Type;
 
 /// A function's row, found by its name.
 pub fn function(name: &str) -> Option<&'static Function> {
@@ -152,6 +97,34 @@ pub struct Function {
     pub gives: Type,
     /// What it is, in a line.
     pub help: &'static str,
+}
+
+impl Function {
+    /// The type of an argument, by how many stand before it.
+    pub fn parameter(&self, index: usize) -> Option<Type> {
+        let last = self.takes.last().filter(|_| self.more);
+        self.takes.get(index).or(last).copied()
+    }
+
+    /// Arguments that it can have, as they are written.
+    pub fn example(&self) -> &'static [&'static str] {
+        use Type::{Angle, Number, Vector};
+        match self.takes {
+            // Of those of the cross product it is 0, which few fields take.
+            [Vector, Vector] if self.gives == Number => &["(1, 2, 3)", "(0, 1, 0)"],
+            [Vector, Vector] => &["(1, 0, 0)", "(0, 1, 0)"],
+            [Vector] => &["(1, 2, 3)"],
+            [Angle] => &["30deg"],
+            [Number] => &["0.5"],
+            [Number, Number] => &["1", "2"],
+            _ => &["255", "165", "0"],
+        }
+    }
+
+    /// Whether it takes so many arguments.
+    pub fn accepts(&self, count: usize) -> bool {
+        count == self.takes.len() || (self.more && count > self.takes.len())
+    }
 }
 
 /// The predefined names that are neither colours nor functions, with a line of help.

@@ -3,22 +3,21 @@
 //! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought among them, and the
 //! language's reference is tested against them.
 //!
-//! `types` has what a value can be, `rows` what a row says; the rows stand in `blocks` and `builtins`, the colours' names in `css`, and here they are looked up.
+//! `types` has what a value can be, `rows` what a row says; the rows stand in `blocks`, `methods` and `builtins`, the colours' names in `css`, and here they are looked up.
 
 mod blocks;
 mod builtins;
 pub mod css;
+mod methods;
 mod rows;
 mod types;
 
 pub use blocks::BLOCKS;
-pub use builtins::{
-    CONSTANTS, FUNCTIONS, Function, METHODS, function, method, method_names, nearest_method,
-};
+pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
+pub use methods::{METHODS, Method, method, method_names, nearest_method};
+pub use rows::{Block, Choice, Condition, Field, Kind, Preset, Spread};
 
-pub use rows::{Block, Choice, Condition, Field, Kind, Literal, Preset, Spread};
-
-pub use types::{Method, Type, Value};
+pub use types::{Type, Value};
 
 use crate::suggest::{self, is_among};
 

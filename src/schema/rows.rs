@@ -94,18 +94,57 @@ pub struct Field {
 }
 
 impl Field {
+    /// A field that must be given; any value of its type will do.
+    pub(super) const fn new(name: &'static str, takes: Type) -> Self {
+        Self {
+            name,
+            takes,
+            preset: Preset::Required,
+            must: &[],
+            help: "",
+            also_tried: &[],
+            doubled: &[],
+            example: "",
+        }
+    }
+
+    pub(super) const fn help(self, help: &'static str) -> Self {
+        Self { help, ..self }
+    }
+
+    pub(super) const fn preset(self, preset: Preset) -> Self {
+        Self { preset, ..self }
+    }
+
+    pub(super) const fn must(self, must: &'static [Condition]) -> Self {
+        Self { must, ..self }
+    }
+
+    pub(super) const fn tried(self, also_tried: &'static [&'static str]) -> Self {
+        Self { also_tried, ..self }
+    }
+
+    pub(super) const fn doubled(self, doubled: &'static [&'static str]) -> Self {
+        Self { doubled, ..self }
+    }
+
+    pub(super) const fn like(self, example: &'static str) -> Self {
+        Self { example, ..self }
+    }
+
     /// A value that it can have: for messages, and to type over.
     pub fn example(&self) -> String {
-        match (self.preset, self.takes) {
-            _ if !self.example.is_empty() => self.example.to_owned(),
-            (Preset::Value(literal), _) if literal != Literal::Degrees(0.0) => literal.to_string(),
-            (_, Type::Number) => "100".to_owned(),
-            (_, Type::Angle) => "30deg".to_owned(),
-            (_, Type::Vector) => "(0, 1, 0)".to_owned(),
-            (_, Type::Color) => "olive".to_owned(),
-            (_, Type::Colors) => "(gray, white)".to_owned(),
-            (_, Type::Method) => "jittered".to_owned(),
-        }
+        let example = match (self.preset, self.takes) {
+            _ if !self.example.is_empty() => self.example,
+            (Preset::Value(written), _) if written != "0deg" => written,
+            (_, Type::Number) => "100",
+            (_, Type::Angle) => "30deg",
+            (_, Type::Vector) => "(0, 1, 0)",
+            (_, Type::Color) => "olive",
+            (_, Type::Colors) => "(gray, white)",
+            (_, Type::Method) => "jittered",
+        };
+        example.to_owned()
     }
 }
 
@@ -118,38 +157,8 @@ pub enum Preset {
     Alternative,
     /// Nothing.
     Nothing,
-    /// This.
-    Value(Literal),
-}
-
-/// A value as the table writes it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Literal {
-    /// A number.
-    Number(f64),
-    /// An angle in degrees.
-    Degrees(f64),
-    /// A vector.
-    Vector([f64; 3]),
-    /// A colour's name.
-    Color(&'static str),
-    /// Two colours' names.
-    Colors([&'static str; 2]),
-    /// A method's name.
-    Method(&'static str),
-}
-
-/// As it is written in a scene.
-impl fmt::Display for Literal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Degrees(degrees) => write!(f, "{degrees}deg"),
-            Self::Vector([x, y, z]) => write!(f, "({x}, {y}, {z})"),
-            Self::Color(name) | Self::Method(name) => f.write_str(name),
-            Self::Colors([first, second]) => write!(f, "({first}, {second})"),
-        }
-    }
+    /// This, as it is written.
+    Value(&'static str),
 }
 
 /// What a field's value must be, beyond its type.

@@ -4,6 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 
+use super::methods::Method;
 use crate::{color::Color, math::Angle, numbers};
 
 /// What a value can be.
@@ -113,62 +114,6 @@ impl fmt::Display for Value {
             Self::Color(color) => write!(f, "{color}"),
             Self::Colors([first, second]) => write!(f, "({first}, {second})"),
             Self::Method(method) => f.write_str(method.name()),
-        }
-    }
-}
-
-/// A sampling technique.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Method {
-    /// An even grid, centred.
-    Regular,
-    /// Independent and uniform.
-    Random,
-    /// One at random in each cell of a grid.
-    Jittered,
-    /// One in each row and each column (Latin hypercube).
-    NRooks,
-    /// Both at once (Kensler's correlated multi-jittering).
-    MultiJittered,
-    /// The Hammersley points, shifted per pixel.
-    Hammersley,
-    /// The Halton points in bases 2 and 3, shifted per pixel.
-    Halton,
-    /// Sobol' points with Owen scrambling, per pixel.
-    Sobol,
-    /// Points uniform over the whole picture.
-    Scatter,
-    /// No samples: the mean itself.
-    Exact,
-}
-
-impl Method {
-    /// All that take samples, in the order of the language's table.
-    pub const SAMPLED: [Self; 9] = [
-        Self::Regular,
-        Self::Random,
-        Self::Jittered,
-        Self::NRooks,
-        Self::MultiJittered,
-        Self::Hammersley,
-        Self::Halton,
-        Self::Sobol,
-        Self::Scatter,
-    ];
-
-    /// Its word in the language.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Regular => "regular",
-            Self::Random => "random",
-            Self::Jittered => "jittered",
-            Self::NRooks => "n_rooks",
-            Self::MultiJittered => "multi_jittered",
-            Self::Hammersley => "hammersley",
-            Self::Halton => "halton",
-            Self::Sobol => "sobol",
-            Self::Scatter => "scatter",
-            Self::Exact => "exact",
         }
     }
 }

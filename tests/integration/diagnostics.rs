@@ -157,20 +157,42 @@ fn fixtures_say_what_they_produce() {
     }
 }
 
-/// The codes that the stages have, without `pinhole::`.
+/// The codes that the stages have, without `pinhole::`: where they are written.
 pub fn codes() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let read = |path: &Path| fs::read_to_string(path).expect("the source can be read");
-    let scene = read(&root.join("src/scene/error.rs"));
-    for part in scene.split("code(pinhole::").skip(1) {
-        let code = part.split(')').next().expect("a code ends");
-        codes.insert(code.to_owned());
+    for path in sources_in(&root.join("src/scene")) {
+        let text = fs::read_to_string(path).expect("the source can be read");
+        for start in ["error(", "warning(", "twice("] {
+            let made = text.split(start).skip(1);
+            let code = |made: &str| {
+                Some(
+                    made.trim_start()
+                        .strip_prefix('"')?
+                        .split_once('"')?
+                        .0
+                        .to_owned(),
+                )
+            };
+            codes.extend(made.filter_map(code));
+        }
     }
-    let syntax = read(&root.join("src/syntax/messages.rs"));
+    let messages = root.join("src/syntax/messages.rs");
+    let syntax = fs::read_to_string(messages).expect("the source can be read");
     let made = syntax.split("Message::new(\"").skip(1);
     codes.extend(made.filter_map(|made| Some(made.split_once('"')?.0.to_owned())));
     codes
+}
+
+/// Every file in a folder and in those within.
+fn sources_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("the folder is there");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let paths = paths.flat_map(|path| match path.is_dir() {
+        true => sources_in(&path),
+        false => vec![path],
+    });
+    paths.collect()
 }
 
 #[test]

@@ -13,20 +13,8 @@ pub struct Client {
     pub encoding: Encoding,
     /// Whether a completion may have values to type over.
     pub snippets: bool,
-    /// Whether it shows Markdown.
-    pub markdown: bool,
-    /// Whether it shows the pictures in Markdown.
-    pub pictures: bool,
-    /// Whether it asks for diagnostics itself.
-    pub pulls_diagnostics: bool,
-    /// Whether it shows the other places of a diagnostic.
-    pub related: bool,
-    /// Whether the code of a diagnostic may be a link.
-    pub linked_codes: bool,
     /// Whether changes may name the version that they are for.
     pub versioned_edits: bool,
-    /// Whether an outline may have levels.
-    pub nested_symbols: bool,
 }
 
 impl Client {
@@ -39,35 +27,12 @@ impl Client {
             let words = field(path).and_then(Value::as_array).into_iter().flatten();
             words.filter_map(Value::as_str)
         };
-        let name = field("/clientInfo/name").and_then(Value::as_str);
-        let markdown = words("/capabilities/textDocument/hover/contentFormat")
-            .any(|format| format == "markdown");
-        let published = |what: &str| {
-            can(&format!(
-                "/capabilities/textDocument/publishDiagnostics/{what}"
-            ))
-        };
         Self {
             encoding: encoding(words("/capabilities/general/positionEncodings")),
             snippets: can("/capabilities/textDocument/completion/completionItem/snippetSupport"),
-            markdown,
-            pictures: markdown && !name.is_some_and(is_in_terminal),
-            pulls_diagnostics: field("/capabilities/textDocument/diagnostic")
-                .is_some_and(Value::is_object),
-            related: published("relatedInformation"),
-            linked_codes: published("codeDescriptionSupport"),
             versioned_edits: can("/capabilities/workspace/workspaceEdit/documentChanges"),
-            nested_symbols: can(
-                "/capabilities/textDocument/documentSymbol/hierarchicalDocumentSymbolSupport",
-            ),
         }
     }
-}
-
-/// Whether an editor of this name runs in a terminal: it takes Markdown, but would show the picture's address in its place.
-fn is_in_terminal(name: &str) -> bool {
-    const TERMINAL: [&str; 5] = ["neovim", "vim", "helix", "kakoune", "kak-lsp"];
-    TERMINAL.contains(&name.to_ascii_lowercase().as_str())
 }
 
 /// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it says nothing.
@@ -123,7 +88,6 @@ pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
             ..Default::default()
         })),
         folding_range_provider: Some(lsp::FoldingRangeProvider::Bool(true)),
-        selection_range_provider: Some(lsp::SelectionRangeProvider::Bool(true)),
         inlay_hint_provider: Some(lsp::InlayHintProvider::Bool(true)),
         semantic_tokens_provider: Some(lsp::SemanticTokensProvider::SemanticTokensOptions(
             lsp::SemanticTokensOptions {
@@ -135,9 +99,6 @@ pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
                 ..Default::default()
             },
         )),
-        diagnostic_provider: client
-            .pulls_diagnostics
-            .then(|| lsp::DiagnosticProvider::DiagnosticOptions(lsp::DiagnosticOptions::default())),
         ..Default::default()
     }
 }

@@ -2,7 +2,7 @@
 
 use gen_lsp_types as lsp;
 
-use super::Page;
+use super::{Page, markup};
 use crate::editor::{Completion, CompletionKind, Piece};
 
 impl Page<'_> {
@@ -22,7 +22,7 @@ impl Page<'_> {
                 (lsp::CompletionItemKind::Color, Some(code))
             }
         };
-        let markup = || lsp::Documentation::MarkupContent(self.markup(completion.help));
+        let markup = || lsp::Documentation::MarkupContent(markup(completion.help));
         let has_holes = completion
             .insert
             .iter()

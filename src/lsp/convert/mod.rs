@@ -12,9 +12,7 @@ use serde_json::Value;
 
 use super::{
     documents::{Change, Document, Place},
-    pages::Pages,
     params::{Refusal, parsed},
-    uri,
 };
 use crate::{
     color::Color,
@@ -32,8 +30,6 @@ pub struct Page<'d> {
     pub uri: &'d lsp::Uri,
     /// The text.
     pub document: &'d Document,
-    /// What explains the codes of diagnostics.
-    pub pages: &'d Pages,
 }
 
 fn count(number: usize) -> u32 {
@@ -75,18 +71,6 @@ impl Page<'_> {
         count(self.client.encoding.columns(text))
     }
 
-    fn markup(&self, markdown: String) -> lsp::MarkupContent {
-        let kind = match self.client.markdown {
-            true => lsp::MarkupKind::Markdown,
-            false => lsp::MarkupKind::PlainText,
-        };
-        let value = match self.client.markdown {
-            true => markdown,
-            false => plain(&markdown),
-        };
-        lsp::MarkupContent { kind, value }
-    }
-
     /// A diagnostic: the help stands below the message, the labels but the first are its other places.
     pub fn diagnostic(&self, diagnostic: &Diagnostic) -> lsp::Diagnostic {
         let mut labels = diagnostic.labels.iter();
@@ -95,13 +79,11 @@ impl Page<'_> {
             location: self.location(label.span),
             message: label.message.clone(),
         });
-        let related: Vec<_> = related.filter(|_| self.client.related).collect();
+        let related: Vec<_> = related.collect();
         let message = match &diagnostic.help {
             Some(help) => format!("{}\nhelp: {help}", diagnostic.message),
             None => diagnostic.message.clone(),
         };
-        let explained = Some(self.pages).filter(|_| self.client.linked_codes);
-        let explained = explained.and_then(|pages| pages.uri(&diagnostic.code));
         // The source says whose code it is.
         let code = diagnostic.code.trim_start_matches("pinhole::");
         lsp::Diagnostic {
@@ -111,7 +93,7 @@ impl Page<'_> {
                 Severity::Warning => lsp::DiagnosticSeverity::Warning,
             }),
             code: Some(lsp::Code::String(code.to_owned())),
-            code_description: explained.map(|href| lsp::CodeDescription { href }),
+            code_description: None,
             source: Some("pinhole".to_owned()),
             message: lsp::Message::String(message),
             // An editor shows it in grey.
@@ -124,14 +106,8 @@ impl Page<'_> {
     }
 
     pub fn hover(&self, hover: Hover) -> lsp::Hover {
-        let mut markdown = hover.markdown;
-        if self.client.pictures {
-            for color in hover.colors {
-                markdown = format!("{}\n\n{markdown}", picture(color));
-            }
-        }
         lsp::Hover {
-            contents: lsp::Contents::MarkupContent(self.markup(markdown)),
+            contents: lsp::Contents::MarkupContent(markup(hover.markdown)),
             range: Some(self.range(hover.span)),
         }
     }
@@ -211,57 +187,26 @@ impl Page<'_> {
         }
     }
 
-    /// A way out of a diagnostic.
-    pub fn action(&self, diagnostic: &Diagnostic, fix: &Fix) -> lsp::CodeAction {
+    /// A way out of a diagnostic, or of all of them.
+    pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> lsp::CodeAction {
         let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
         lsp::CodeAction {
             title: fix.title.clone(),
-            kind: Some(lsp::CodeActionKind::QuickFix),
-            diagnostics: Some(vec![self.diagnostic(diagnostic)]),
+            kind: Some(match of {
+                Some(_) => lsp::CodeActionKind::QuickFix,
+                None => lsp::CodeActionKind::SourceFixAll,
+            }),
+            diagnostics: of.map(|diagnostic| vec![self.diagnostic(diagnostic)]),
             // The only way out is the one to take without asking.
-            is_preferred: Some(diagnostic.fixes.len() == 1),
+            is_preferred: of.map(|diagnostic| diagnostic.fixes.len() == 1),
             edit: Some(self.edit(edits)),
             ..Default::default()
         }
     }
 
-    /// What puts all mistakes right that can be.
-    pub fn action_on_all(&self, fix: &Fix) -> lsp::CodeAction {
-        let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
-        lsp::CodeAction {
-            title: fix.title.clone(),
-            kind: Some(lsp::CodeActionKind::SourceFixAll),
-            edit: Some(self.edit(edits)),
-            ..Default::default()
-        }
-    }
-
-    /// An outline in levels, or one of all entries for a client that knows no levels.
+    /// An entry of the outline.
     #[allow(deprecated, reason = "a struct must be given all its fields")]
-    pub fn symbols(&self, symbols: Vec<Symbol>) -> lsp::DocumentSymbolResponse {
-        if self.client.nested_symbols {
-            let symbols = symbols.into_iter().map(|symbol| self.symbol(symbol));
-            return lsp::DocumentSymbolResponse::DocumentSymbolList(symbols.collect());
-        }
-        let symbols = symbols.into_iter().map(|symbol| {
-            let location = self.location(symbol.span);
-            let base = lsp::BaseSymbolInformation {
-                name: symbol.name,
-                kind: symbol_kind(symbol.kind),
-                tags: None,
-                container_name: None,
-            };
-            lsp::SymbolInformation {
-                location,
-                base_symbol_information: base,
-                deprecated: None,
-            }
-        });
-        lsp::DocumentSymbolResponse::SymbolInformationList(symbols.collect())
-    }
-
-    #[allow(deprecated, reason = "a struct must be given all its fields")]
-    fn symbol(&self, symbol: Symbol) -> lsp::DocumentSymbol {
+    pub fn symbol(&self, symbol: Symbol) -> lsp::DocumentSymbol {
         let children = symbol.children.into_iter().map(|child| self.symbol(child));
         let children: Vec<_> = children.collect();
         lsp::DocumentSymbol {
@@ -289,17 +234,6 @@ impl Page<'_> {
             },
             collapsed_text: None,
         }
-    }
-
-    /// Spans, each within the next one, as a chain that starts with the innermost.
-    pub fn selection(&self, spans: Vec<Span>) -> lsp::SelectionRange {
-        let chain = spans.into_iter().rev().fold(None, |parent, span| {
-            Some(Box::new(lsp::SelectionRange {
-                range: self.range(span),
-                parent,
-            }))
-        });
-        chain.map(|innermost| *innermost).unwrap_or_default()
     }
 
     pub fn hint(&self, hint: Hint) -> lsp::InlayHint {
@@ -362,27 +296,9 @@ fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
     }
 }
 
-/// Markdown without its signs.
-fn plain(markdown: &str) -> String {
-    let mut is_fenced = false;
-    let lines = markdown.lines().filter_map(|line| {
-        if line.starts_with("```") {
-            is_fenced = !is_fenced;
-            return None;
-        }
-        let heading = line.trim_start_matches('#').trim_start();
-        let is_heading = !is_fenced && line.starts_with('#');
-        Some(if is_heading { heading } else { line })
-    });
-    let lines: Vec<&str> = lines.collect();
-    lines.join("\n").replace('`', "")
-}
-
-/// A patch of a colour: an SVG picture within the text itself.
-fn picture(color: Color) -> String {
-    let svg = format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='16'><rect width='48' height='16' fill='{color}'/></svg>"
-    );
-    let svg = uri::escaped(svg.as_bytes());
-    format!("![{color}](data:image/svg+xml,{svg})")
+fn markup(markdown: String) -> lsp::MarkupContent {
+    lsp::MarkupContent {
+        kind: lsp::MarkupKind::Markdown,
+        value: markdown,
+    }
 }

@@ -39,7 +39,7 @@ fn hover(id: i32) -> Message {
 
 /// What is said when all messages have come before the first piece of work is done.
 fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
-    let mut server = Server::new(None, |_| {});
+    let mut server = Server::new(|_| {});
     let hello = request(0, "initialize", json!({ "capabilities": capabilities }));
     assert_eq!(server.handle(hello).len(), 1);
     let mut said: Vec<Message> = messages
@@ -97,17 +97,6 @@ fn of_several_states_the_last_is_judged_and_each_request_is_about_its_own() {
         .map(|diagnostic| &diagnostic["code"])
         .collect();
     assert_eq!(codes, ["missing_camera", "no_objects"]);
-}
-
-#[test]
-fn a_client_that_asks_for_diagnostics_is_not_told() {
-    let capabilities = json!({ "textDocument": { "diagnostic": {} } });
-    let params = json!({ "textDocument": { "uri": "file:///a.scn" } });
-    let ask = request(1, "textDocument/diagnostic", params);
-    let found = answers(capabilities, vec![open("let a = oops"), ask]);
-    assert_eq!(found.len(), 1);
-    assert_eq!(found[0]["result"]["kind"], "full");
-    assert_eq!(found[0]["result"]["items"][2]["code"], "unknown_name");
 }
 
 #[test]

@@ -1,14 +1,12 @@
 //! Functions and their arguments.
 
-use super::Evaluator;
+use super::{Evaluator, LARGEST};
 use crate::{
     color::Color,
-    diagnostic::{Edit, Fix},
     numbers,
     scene::{
-        css,
-        error::Problem,
-        fix, predefined,
+        error::{error, warning},
+        predefined,
         schema::{self, Function, Type},
         value::{self, Value},
     },
@@ -21,35 +19,36 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
-    pub(super) fn call(&mut self, call: &Call<'s>, wanted: Option<Type>) -> Option<Value> {
+    pub(super) fn call(&mut self, call: &Call<'s>) -> Option<Value> {
         let Call {
             function,
             arguments,
             parentheses,
         } = call;
-        let Some(row) = schema::function(function.text) else {
-            self.unknown_function(function, arguments);
-            return None;
-        };
+        let row = schema::function(function.text);
         let mut values = Vec::with_capacity(arguments.len());
         for (index, argument) in arguments.iter().enumerate() {
-            let takes = row.takes.get(index).or(row.takes.last()).copied();
-            values.push(self.value(&argument.value, takes.or(wanted)));
+            let takes = row.and_then(|row| row.parameter(index));
+            values.push((&argument.value, takes, self.value(&argument.value, takes)));
         }
-        let least = row.takes.len();
-        if values.len() < least || (values.len() > least && !row.more) {
-            self.argument_count(row, function.span.to(*parentheses), arguments);
+        let Some(row) = row else {
+            let kinds = values.iter().map(|(_, _, value)| value.map(|it| it.kind()));
+            let kinds: Vec<Option<Type>> = kinds.collect();
+            self.unknown_function(function, &kinds);
+            return None;
+        };
+        let span = function.span.to(*parentheses);
+        if !row.accepts(arguments.len()) {
+            self.argument_count(row, span, arguments);
             return None;
         }
         let mut known = Vec::with_capacity(values.len());
-        for (index, (argument, value)) in arguments.iter().zip(values).enumerate() {
-            let Some(value) = value else { continue };
-            let takes = row.takes.get(index).or(row.takes.last()).copied();
-            match takes {
-                Some(takes) if takes != value.kind() => {
-                    self.argument_type(row, takes, &argument.value, value);
+        for (argument, takes, value) in values {
+            match (takes, value) {
+                (Some(takes), Some(value)) if takes != value.kind() => {
+                    self.argument_type(row, takes, argument, value);
                 }
-                _ => known.push(value),
+                _ => known.extend(value),
             }
         }
         if known.len() < arguments.len() {
@@ -60,167 +59,77 @@ impl<'s> Evaluator<'_, 's> {
             if !self.in_range(color, arguments) {
                 return None;
             }
-            if has_unit_parts(color) {
-                self.unit_parts(function.span.to(*parentheses), color, arguments);
-            }
+            self.unit_parts(span, color, arguments);
         }
-        self.finite_call(row, arguments, function.span, &known, result)
+        if !result.is_finite() {
+            self.not_finite(row, arguments, function.span, &known);
+            return None;
+        }
+        Some(result)
     }
 
-    fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Element<'s>]) {
-        let values = arguments
-            .iter()
-            .map(|argument| self.value(&argument.value, None));
-        let values: Vec<Option<Value>> = values.collect();
-        // Of equally near ones, one that takes these arguments.
+    fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
+        let name = function.text;
+        let is_value = self.names.place(name).is_some() || predefined(name).is_some();
         let fits = |row: &&Function| {
-            let takes = |at: usize| row.takes.get(at).or(row.takes.last()).copied();
-            let mut kinds = values.iter().enumerate();
-            let is_count =
-                values.len() == row.takes.len() || row.more && values.len() > row.takes.len();
-            is_count
-                && kinds
-                    .all(|(at, value)| value.is_none_or(|value| takes(at) == Some(value.kind())))
+            let mut kinds = arguments.iter().enumerate();
+            let mut are_right =
+                kinds.all(|(at, kind)| kind.is_none() || *kind == row.parameter(at));
+            are_right &= row.accepts(arguments.len());
+            are_right && !is_value
         };
-        let named = |rows: &mut dyn Iterator<Item = &'static Function>| {
-            suggest::nearest(function.text, rows.map(|row| row.name))
-        };
-        let fitting = named(&mut schema::FUNCTIONS.iter().filter(fits));
-        let near = fitting.or_else(|| named(&mut schema::FUNCTIONS.iter()));
-        let is_let = self.names.place(function.text).is_some();
-        let is_value = is_let || predefined(function.text).is_some();
-        let (help, label) = match near {
+        let rows = schema::FUNCTIONS.iter().filter(fits);
+        let near = suggest::nearest(name, rows.map(|row| row.name));
+        let (label, help) = match near {
             _ if is_value => (
-                format!(
-                    "write an operator between, such as `{} * (…)`",
-                    function.text
-                ),
-                "a value, not a function".to_owned(),
+                "a value, not a function",
+                format!("write an operator between, such as `{name} * (…)`"),
             ),
-            Some(near) => (
-                format!("did you mean `{near}`?"),
-                "not a function".to_owned(),
-            ),
+            Some(near) => ("not a function", format!("did you mean `{near}`?")),
             None => (
+                "not a function",
                 format!(
                     "the functions are {}",
-                    suggest::list(schema::FUNCTIONS.iter().map(|function| function.name))
+                    suggest::list(schema::FUNCTIONS.iter().map(|row| row.name))
                 ),
-                "not a function".to_owned(),
             ),
         };
-        let place = match arguments.len() {
-            1 | 3 if is_let => self.before_parenthesis(function.span),
-            _ => None,
-        };
         self.problems.push(
-            Problem::UnknownFunction {
-                name: function.text.to_owned(),
-                help,
-                span: function.span,
-                label,
-            }
-            .with(match place {
-                Some(place) => Some(Fix::new(
-                    format!("write `{} * (…)`", function.text),
-                    [Edit::new(place, " * ")],
-                )),
-                None => fix::written(function.span, fitting.filter(|_| !is_value)),
-            }),
+            error("unknown_function", format!("there is no function `{name}`"))
+                .at(function.span, label)
+                .help(help)
+                .writing(function.span, near),
         );
-    }
-
-    /// What stands between a name and the `(` behind it, if that is nothing but white space.
-    fn before_parenthesis(&self, name: Span) -> Option<Span> {
-        let after = self.sources.get(name.source).text().get(name.end..)?;
-        let blank = after.len() - after.trim_start().len();
-        let is_next = after.get(blank..)?.starts_with('(');
-        is_next.then(|| Span::new(name.source, name.end, name.end + blank))
     }
 
     fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
-        let found = arguments.len();
-        let values = |count: usize| match count {
-            1 => "one value".to_owned(),
-            2 => "two values".to_owned(),
-            3 => "three values".to_owned(),
-            count => format!("{count} values"),
-        };
-        let takes = match row.more {
-            true => format!("{} or more", values(row.takes.len())),
-            false => values(row.takes.len()),
-        };
-        let are = match found {
-            0 => "there is none".to_owned(),
-            1 => "there is one".to_owned(),
-            2 => "there are two".to_owned(),
-            count => format!("there are {count}"),
-        };
-        let written = self.argument_example(row, arguments);
-        // What is written is not to be lost, but for the alpha of a colour.
-        let keeps_all = found <= 1
-            || found < row.takes.len()
-            || row.takes == [Type::Vector]
-            || row.gives == Type::Color;
-        let is_example = written == example(row) && self.filled_up(row, arguments).is_none();
-        let keeps_all = keeps_all && (found == 0 || !is_example);
-        let instead = (is_whole(&written) && keeps_all).then(|| written.clone());
-        self.problems.push(
-            Problem::ArgumentCount {
-                name: row.name.to_owned(),
-                takes,
-                are,
-                example: written,
-                span,
-                label: match found {
-                    0 => "no value".to_owned(),
-                    count => values(count),
-                },
-            }
-            .with(fix::written(span, instead)),
+        let more = if row.more { " or more" } else { "" };
+        let (takes, found) = (row.takes.len(), arguments.len());
+        let plural = if takes == 1 && !row.more { "" } else { "s" };
+        let message = format!(
+            "`{}` takes {takes}{more} value{plural}, and here it has {found}",
+            row.name
         );
-    }
-
-    /// The call with as many of its values as it takes; what a vector is made of stands in parentheses of its own, and what
-    /// numbers are does not.
-    fn argument_example(&self, row: &Function, arguments: &[Element<'s>]) -> String {
-        let text = |e: &Element<'_>| shorten(self.sources.text(e.value.span));
-        let texts: Vec<String> = arguments.iter().map(text).collect();
-        match (row.takes, arguments) {
-            ([Type::Vector], [_, _, _]) => format!("{}(({}))", row.name, texts.join(", ")),
-            (takes, [only]) if matches!(&only.value.kind, ValueKind::Tuple(parts) if parts.len() == takes.len()) =>
-            {
-                format!("{}{}", row.name, texts.join(", "))
+        let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
+        // What a vector is made of stands in parentheses of its own, and what numbers are does not.
+        let meant = match (row.takes, arguments) {
+            ([Type::Vector], [x, y, z]) => {
+                let parts = [x, y, z].map(text).join(", ");
+                Some(format!("{}(({parts}))", row.name))
             }
-            (takes, _) => match texts.get(..takes.len()) {
-                Some(kept) => format!("{}({})", row.name, kept.join(", ")),
-                None => self
-                    .filled_up(row, arguments)
-                    .unwrap_or_else(|| example(row)),
-            },
-        }
-    }
-
-    /// The call of numbers with those that are given, and examples of those that are not.
-    fn filled_up(&self, row: &Function, arguments: &[Element<'s>]) -> Option<String> {
-        let is_number = |argument: &Element<'_>| match argument.value.kind {
-            ValueKind::Number(_) | ValueKind::Negation { .. } | ValueKind::Chain { .. } => true,
-            ValueKind::Call(_) => true,
-            ValueKind::Name(name) => css::color(name).is_none(),
-            _ => false,
+            (takes, [only]) if takes.len() == only.value.parts().len() => {
+                let is_list = matches!(only.value.kind, ValueKind::Tuple(_));
+                is_list.then(|| format!("{}{}", row.name, text(only)))
+            }
+            _ => None,
         };
-        let takes_numbers = row.takes.iter().all(|takes| *takes == Type::Number);
-        if arguments.is_empty() || !takes_numbers || !arguments.iter().all(is_number) {
-            return None;
-        }
-        let example = example(row);
-        let examples = example.split_once('(')?.1.strip_suffix(')')?.split(", ");
-        let given = arguments.iter();
-        let given = given.map(|argument| shorten(self.sources.text(argument.value.span)));
-        let all: Vec<String> = given
-            .chain(examples.skip(arguments.len()).map(str::to_owned))
-            .collect();
-        Some(format!("{}({})", row.name, all.join(", ")))
+        let shown = meant.clone().unwrap_or_else(|| example(row));
+        self.problems.push(
+            error("argument_count", message)
+                .at(span, format!("{found} given"))
+                .help(format!("write `{}`", shorten(&shown)))
+                .writing(span, meant),
+        );
     }
 
     fn argument_type(
@@ -230,38 +139,26 @@ impl<'s> Evaluator<'_, 's> {
         argument: &tree::Value<'s>,
         found: Value,
     ) {
-        let label = self.described(argument, found.kind());
-        let written = self.quoted(argument.span);
-        if takes == Type::Angle && found.kind() == Type::Number {
-            let [first, second] = self.units(argument);
-            self.problems.push(
-                Problem::BareAngle {
-                    what: format!("the argument of `{}`", row.name),
-                    written,
-                    help: format!(
-                        "write `{0}({1})` (or `{0}({2})`)",
-                        row.name, first.shown, second.shown
-                    ),
-                    span: argument.span,
-                    label,
-                }
-                .with(fix::instead(argument.span, [first.text, second.text])),
-            );
-            return;
-        }
-        self.problems.push(Problem::ArgumentType {
-            name: row.name.to_owned(),
-            takes: match row.takes {
-                [_, _] => takes.two(),
-                [_, _, _] => "three numbers",
-                _ => takes.noun(),
-            },
-            written,
-            found: found.kind().noun(),
-            help: format!("call it with {}, such as `{}`", takes.noun(), example(row)),
-            span: argument.span,
-            label,
-        });
+        let name = row.name;
+        let problem = match (takes, found) {
+            (Type::Angle, Value::Number(_)) => {
+                self.bare_angle(&format!("the argument of `{name}`"), argument, |_| true)
+            }
+            _ => {
+                let all = match row.takes {
+                    [_, _] => takes.two(),
+                    [_, _, _] => "three numbers",
+                    _ => takes.noun(),
+                };
+                let (written, found) = (self.quoted(argument.span), found.kind());
+                let message = format!("`{name}` takes {all}, and {written} is {}", found.noun());
+                let help = format!("call it with {}, such as `{}`", takes.noun(), example(row));
+                error("argument_type", message)
+                    .at(argument.span, self.described(argument, found))
+                    .help(help)
+            }
+        };
+        self.problems.push(problem);
     }
 
     /// Whether the channels of a colour lie from 0 to 255; what does not is reported.
@@ -277,116 +174,80 @@ impl<'s> Evaluator<'_, 's> {
                 true => ("255", "too much"),
                 false => ("0", "too little"),
             };
+            let found = numbers::beside(channel, &[0.0, 255.0]);
+            let message = format!("the {name} of a colour is from 0 to 255, and this is {found}");
             self.problems.push(
-                Problem::ColorRange {
-                    channel: name,
-                    found: numbers::beside(channel, &[0.0, 255.0]),
-                    help: format!("write `{bound}`, or a number that lies between"),
-                    span: argument.value.span,
-                    label,
-                }
-                .with(fix::instead(argument.value.span, [bound])),
+                error("color_range", message)
+                    .at(argument.value.span, label)
+                    .help(format!("write `{bound}`, or a number that lies between"))
+                    .writing(argument.value.span, [bound]),
             );
         }
         fits
     }
 
-    /// Warns of a colour whose parts seem to go from 0 to 1.
+    /// Warns of a colour whose parts seem to go from 0 to 1: all are at most 1, and one is a fraction.
     fn unit_parts(&mut self, span: Span, color: Color, arguments: &[Element<'s>]) {
-        let parts = color.srgb.into_iter().zip(arguments);
-        let parts = parts.map(|(channel, argument)| match &argument.value.kind {
-            ValueKind::Number(_) => in_bytes(channel),
-            ValueKind::Chain { .. } => {
-                format!("255 * ({})", self.sources.text(argument.value.span))
-            }
-            _ => format!("255 * {}", self.sources.text(argument.value.span)),
-        });
-        let parts: Vec<String> = parts.collect();
-        let instead = format!("rgb({})", parts.join(", "));
+        let parts = color.srgb;
+        if parts.iter().any(|part| *part > 1.0) || parts.iter().all(|part| part.fract() == 0.0) {
+            return;
+        }
+        let is_number = |it: &Element<'_>| matches!(it.value.kind, ValueKind::Number(_));
+        let meant = format!("rgb({})", parts.map(in_bytes).join(", "));
+        let meant = arguments.iter().all(is_number).then_some(meant);
+        let message = "the parts of a colour go from 0 to 255, and none of these is more than 1";
         self.problems.push(
-            Problem::UnitColor {
-                help: format!("write `{}`, if 1 is to be full light", shorten(&instead)),
-                span,
-            }
-            .with(fix::instead(span, is_whole(&instead).then_some(instead))),
+            warning("unit_color", message)
+                .at(span, "almost black")
+                .help(match &meant {
+                    Some(meant) => format!("write `{meant}`, if 1 is to be full light"),
+                    None => "multiply each by 255, if 1 is to be full light".to_owned(),
+                })
+                .writing(span, meant),
         );
     }
 
-    fn finite_call(
+    fn not_finite(
         &mut self,
         row: &Function,
         arguments: &[Element<'s>],
         span: Span,
         known: &[Value],
-        result: Value,
-    ) -> Option<Value> {
-        if result.is_finite() {
-            return Some(result);
-        }
+    ) {
+        let name = row.name;
         let written = match arguments {
             [only] => shorten(self.sources.text(only.value.span)),
             _ => "…".to_owned(),
         };
-        let (message, help, label) = match (row.name, known) {
-            ("sqrt", _) => (
+        let (message, help) = match name {
+            "sqrt" => (
                 "a negative number has no square root".to_owned(),
                 format!("write `sqrt(abs({written}))` if its size is meant"),
-                computed(known.first()),
             ),
-            ("tan", _) => (
+            "tan" => (
                 format!("`tan({written})` is infinite"),
                 "a tangent has a value only away from 90deg, 270deg and so on".to_owned(),
-                "infinite here".to_owned(),
             ),
-            ("asin" | "acos", _) => (
-                format!("`{}` takes a number from -1 to 1", row.name),
-                format!(
-                    "write `{}(max(-1, min(1, {written})))` to keep it in range",
-                    row.name
-                ),
-                computed(known.first()),
+            "asin" | "acos" => (
+                format!("`{name}` takes a number from -1 to 1"),
+                format!("write `{name}(max(-1, min(1, {written})))` to keep it in range"),
             ),
-            ("normalize", _) => (
+            "normalize" => (
                 "the zero vector has no direction".to_owned(),
                 "normalize a vector other than (0, 0, 0)".to_owned(),
-                "its argument is (0, 0, 0)".to_owned(),
             ),
             _ => (
-                format!("`{}` gives a number that is too large", row.name),
-                "numbers go up to 1.7976931348623157e308".to_owned(),
-                "too large".to_owned(),
+                format!("`{name}` gives a number that is too large"),
+                LARGEST.to_owned(),
             ),
         };
-        let kept = match (row.name, arguments) {
-            ("sqrt", [only]) => Some(("abs(", ")", only.value.span)),
-            ("asin" | "acos", [only]) => Some(("max(-1, min(1, ", "))", only.value.span)),
-            _ => None,
+        let label = match known {
+            [only] => format!("its argument is {only}"),
+            _ => "too large".to_owned(),
         };
-        let fix = kept.map(|(before, after, place)| {
-            Fix::new(
-                format!("write `{}({before}{written}{after})`", row.name),
-                [
-                    Edit::insert(place.source, place.start, before),
-                    Edit::insert(place.source, place.end, after),
-                ],
-            )
-        });
-        self.problems.push(
-            Problem::NotFinite {
-                message,
-                help,
-                span,
-                label,
-            }
-            .with(fix),
-        );
-        None
+        self.problems
+            .push(error("not_finite", message).at(span, label).help(help));
     }
-}
-
-/// Whether the parts of a colour seem to go from 0 to 1: all are at most 1, and one is a fraction.
-fn has_unit_parts(color: Color) -> bool {
-    color.srgb.iter().all(|part| *part <= 1.0) && color.srgb.iter().any(|part| part.fract() != 0.0)
 }
 
 /// The part from 0 to 255 that stands for one from 0 to 1.
@@ -394,29 +255,7 @@ pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 
-/// Whether a text that was made for a message can be written as it is.
-pub(super) fn is_whole(shortened: &str) -> bool {
-    !shortened.contains('…') && !shortened.contains("//")
-}
-
 /// How a function is called.
 pub fn example(function: &Function) -> String {
-    let arguments = match function.takes {
-        // Of those of the cross product it is 0, which few fields take.
-        [Type::Vector, Type::Vector] if function.gives == Type::Number => "(1, 2, 3), (0, 1, 0)",
-        [Type::Angle] => "30deg",
-        [Type::Vector] => "(1, 2, 3)",
-        [Type::Vector, Type::Vector] => "(1, 0, 0), (0, 1, 0)",
-        [Type::Number] => "0.5",
-        [Type::Number, Type::Number] => "1, 2",
-        _ => "255, 165, 0",
-    };
-    format!("{}({arguments})", function.name)
-}
-
-fn computed(value: Option<&Value>) -> String {
-    match value {
-        Some(Value::Number(number)) => format!("its argument is {}", numbers::short(*number)),
-        _ => "not finite".to_owned(),
-    }
+    format!("{}({})", function.name, function.example().join(", "))
 }

@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 
-use super::{Evaluator, calls::is_whole};
+use super::Evaluator;
 use crate::{
-    scene::{error::Problem, fix, schema::Type, value::Value},
+    scene::{error::error, schema::Type, value::Value},
     source::Span,
-    syntax::{shorten, tree::Element},
+    syntax::{
+        shorten,
+        tree::{self, Element},
+    },
 };
 
 impl<'s> Evaluator<'_, 's> {
@@ -37,153 +40,122 @@ impl<'s> Evaluator<'_, 's> {
         if let &[Some(Value::Color(first)), Some(Value::Color(second))] = values.as_slice() {
             return Some(Value::Colors([first, second]));
         }
-        let colors = values.iter().flatten().any(|v| v.kind() == Type::Color);
-        let pair = match elements.len() {
-            2 => colors || wanted == Some(Type::Colors),
-            _ => wanted == Some(Type::Colors),
-        };
-        self.wrong_part(elements, &values, pair);
-        let fits = elements.len() == if pair { 2 } else { 3 };
-        if !fits && values.iter().all(Option::is_some) {
-            let kinds = if pair { Type::Color } else { Type::Number };
-            if values.iter().flatten().all(|value| value.kind() == kinds) {
-                self.tuple_size(elements, span, wanted, pair);
-            }
+        let is_color = |value: &Value| value.kind() == Type::Color;
+        let is_pair = wanted == Some(Type::Colors)
+            || (elements.len() == 2 && values.iter().flatten().any(is_color));
+        let takes = if is_pair { Type::Color } else { Type::Number };
+        let mut wrong = values.iter().zip(elements);
+        let wrong = wrong.find_map(|(value, element)| {
+            let value = value.filter(|value| value.kind() != takes)?;
+            Some((&element.value, value.kind()))
+        });
+        if let Some((part, found)) = wrong {
+            self.wrong_part(part, found, is_pair);
+        } else if values.iter().all(Option::is_some) {
+            self.part_count(elements, span, wanted, is_pair);
         }
         None
     }
 
-    /// Reports the first part of a vector that is no number, or of a pair that is no colour.
-    fn wrong_part(&mut self, elements: &[Element<'s>], values: &[Option<Value>], pair: bool) {
-        let (whole, parts, takes) = match pair {
-            true => ("a pair of colours", "colours", Type::Color),
-            false => ("a vector", "numbers", Type::Number),
+    /// Reports a part of a vector that is no number, or of a pair that is no colour.
+    fn wrong_part(&mut self, part: &tree::Value<'s>, found: Type, is_pair: bool) {
+        let (parts, help) = match (is_pair, found) {
+            (true, _) => (
+                "a pair of colours are colours",
+                "write two colours, such as `(gray, white)`",
+            ),
+            (false, Type::Angle) => (
+                "a vector are numbers",
+                "an angle divided by `1deg` is a number",
+            ),
+            (false, _) => (
+                "a vector are numbers",
+                "write three numbers, such as `(0, 1, 0)`",
+            ),
         };
-        let wrong = |value: &Option<Value>| value.is_some_and(|v| v.kind() != takes);
-        let found = values.iter().zip(elements).find(|(value, _)| wrong(value));
-        let Some((&Some(value), element)) = found else {
-            return;
-        };
-        let help = match (pair, value.kind()) {
-            (true, _) => "write two colours, such as `(gray, white)`",
-            (false, Type::Vector) => "write `v + w` to add vectors; a vector has no parts to name",
-            (false, Type::Angle) => "an angle divided by `1deg` is a number",
-            _ => "write three numbers, such as `(0, 1, 0)`",
-        };
-        let label = self.described(&element.value, value.kind());
-        let written = self.quoted(element.value.span);
-        self.problems.push(Problem::PartType {
-            whole,
-            parts,
-            written,
-            found: value.kind().noun(),
-            help: help.to_owned(),
-            span: element.value.span,
-            label,
-        });
+        let written = self.quoted(part.span);
+        let message = format!("the parts of {parts}, and {written} is {}", found.noun());
+        self.problems.push(
+            error("part_type", message)
+                .at(part.span, self.described(part, found))
+                .help(help),
+        );
     }
 
-    /// The vector of four numbers, if one of the commas stands for a decimal point: the only one without a blank behind it.
-    fn with_decimal_comma(&self, elements: &[Element<'s>]) -> Option<String> {
-        let text = |element: &Element<'s>| self.sources.text(element.value.span);
-        let is_tight = |pair: &[Element<'s>]| match pair {
-            [one, other] => one.value.span.end + 1 == other.value.span.start,
-            _ => false,
-        };
-        let mut tight = elements
-            .windows(2)
-            .enumerate()
-            .filter(|(_, pair)| is_tight(pair));
-        let (Some((at, _)), None) = (tight.next(), tight.next()) else {
-            return None;
-        };
-        let mut parts: Vec<String> = elements
-            .iter()
-            .map(|element| text(element).to_owned())
-            .collect();
-        let fraction = parts.remove(at + 1);
-        let whole = parts.get_mut(at)?;
-        let is_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-        if !is_digits(whole.trim_start_matches('-')) || !is_digits(&fraction) {
-            return None;
-        }
-        *whole += &format!(".{fraction}");
-        Some(format!("({})", parts.join(", ")))
-    }
-
-    fn tuple_size(
+    fn part_count(
         &mut self,
         elements: &[Element<'s>],
         span: Span,
-        takes: Option<Type>,
-        pair: bool,
+        wanted: Option<Type>,
+        is_pair: bool,
     ) {
-        let parts = |count: usize| match count {
-            0 => "none".to_owned(),
-            1 => "one".to_owned(),
-            2 => "two".to_owned(),
-            3 => "three".to_owned(),
-            4 => "four".to_owned(),
-            5 => "five".to_owned(),
-            count => count.to_string(),
+        let texts = elements.iter();
+        let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
+        let (whole, parts, example) = match is_pair {
+            true => (
+                "a pair of colours has 2 parts",
+                "colours",
+                "two colours, such as `(gray, white)`",
+            ),
+            false => (
+                "a vector has 3 parts",
+                "numbers",
+                "three numbers, such as `(0, 1, 0)`",
+            ),
         };
-        let texts: Vec<String> = elements
-            .iter()
-            .map(|element| shorten(self.sources.text(element.value.span)))
-            .collect();
-        let wanted = if pair { 2 } else { 3 };
-        let joined = match texts.len() {
-            4 if !pair => self.with_decimal_comma(elements),
+        let meant = match texts.as_slice() {
+            _ if is_pair => None,
+            &[x, y] if wanted == Some(Type::Vector) => {
+                third(x, y).map(|z| format!("({x}, {y}, {z})"))
+            }
+            [_, _, _, _] => with_decimal_comma(elements, &texts),
             _ => None,
         };
-        let instead = match (texts.get(..wanted), texts.as_slice()) {
-            _ if !texts.iter().all(|text| is_whole(text)) => Vec::new(),
-            _ if joined.is_some() => joined.iter().cloned().collect(),
-            // Whether it is to be a vector at all is not known.
-            _ if !pair && takes != Some(Type::Vector) => Vec::new(),
-            (Some(kept), _) => vec![format!("({})", kept.join(", "))],
-            (None, []) if pair => vec!["(gray, white)".to_owned()],
-            (None, []) => vec!["(0, 1, 0)".to_owned()],
-            (None, [x, y]) => vec![format!("({x}, {y}, 1)")],
-            (None, _) => Vec::new(),
-        };
-        if pair {
-            self.problems.push(
-                Problem::PartCount {
-                    whole: "a pair of colours has two parts",
-                    count: parts(elements.len()),
-                    help: match texts.as_slice() {
-                        [first, second, ..] => format!("write `({first}, {second})`"),
-                        _ => "write two colours, such as `(gray, white)`".to_owned(),
-                    },
-                    span,
-                    label: format!("{} colours", parts(elements.len())),
-                }
-                .with(fix::instead(span, instead)),
-            );
-            return;
-        }
-        let help = match texts.as_slice() {
-            [] => "write three numbers, such as `(0, 1, 0)`".to_owned(),
-            [x, y] => format!("write a third number, such as `({x}, {y}, 1)`"),
-            [x, y, z, ..] => match &joined {
-                Some(vector) => format!("write `{vector}`: a decimal point is a point"),
-                None => format!("write `({x}, {y}, {z})`"),
-            },
-            [x] => format!("write `({x}, {x}, {x})`"),
-        };
+        let count = elements.len();
         self.problems.push(
-            Problem::PartCount {
-                whole: "a vector has three parts",
-                count: parts(elements.len()),
-                help,
-                span,
-                label: match elements.len() {
-                    0 => "nothing".to_owned(),
-                    count => format!("{} numbers", parts(count)),
-                },
-            }
-            .with(fix::instead(span, instead)),
+            error("part_count", format!("{whole}, and this has {count}"))
+                .at(span, format!("{count} {parts}"))
+                .help(match &meant {
+                    Some(meant) if elements.len() == 4 => {
+                        format!("write `{}`: a decimal point is a point", shorten(meant))
+                    }
+                    Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
+                    None => format!("write {example}"),
+                })
+                .writing(span, meant),
         );
     }
+}
+
+/// A third number behind two that are written out: the greater one of them, with which sides form a triangle, but not 0, with which there
+/// might be no direction.
+fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
+    let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
+    Some(match (a > b, a == 0.0 && b == 0.0) {
+        (_, true) => "1",
+        (true, _) => x,
+        (false, _) => y,
+    })
+}
+
+/// The vector of four numbers, if one of the commas stands for a decimal point: the only one without a blank behind it.
+fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
+    let is_tight = |pair: &[Element<'_>]| match pair {
+        [one, other] => one.value.span.end + 1 == other.value.span.start,
+        _ => false,
+    };
+    let pairs = elements.windows(2).enumerate();
+    let mut tight = pairs.filter(|(_, pair)| is_tight(pair));
+    let (Some((at, _)), None) = (tight.next(), tight.next()) else {
+        return None;
+    };
+    let mut parts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
+    let fraction = parts.remove(at + 1);
+    let whole = parts.get_mut(at)?;
+    let is_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    if !is_digits(whole.trim_start_matches('-')) || !is_digits(&fraction) {
+        return None;
+    }
+    *whole += &format!(".{fraction}");
+    Some(format!("({})", parts.join(", ")))
 }

@@ -2,12 +2,11 @@
 
 use super::{Evaluator, calls::example, names::Defined};
 use crate::{
-    diagnostic::Fix,
+    diagnostic::{Diagnostic, Edit, Label},
     math::Angle,
     scene::{
         css,
-        error::{Found, Problem},
-        fix,
+        error::error,
         schema::{self, Type},
         value::Value,
     },
@@ -36,20 +35,22 @@ impl<'s> Evaluator<'_, 's> {
             _ => {}
         }
         if let Some(function) = schema::function(name) {
+            let message = format!("`{name}` is a function, and stands here without its arguments");
             self.problems.push(
-                Problem::FunctionWithoutArguments {
-                    name: name.to_owned(),
-                    example: example(function),
-                    span,
-                }
-                .with([Fix::write(span, example(function))]),
+                error("function_without_arguments", message)
+                    .at(span, "a function")
+                    .help(format!("write `{}`", example(function)))
+                    .writing(span, [example(function)]),
             );
+            return None;
+        }
+        if self.names.parts.contains(name) {
             return None;
         }
         let mut reported = self.names.reported.borrow_mut();
         if let Some(&index) = reported.get(name) {
             if let Some(problem) = self.problems.get_mut(index) {
-                problem.and_here(span);
+                and_here(problem, span);
             }
             return None;
         }
@@ -63,88 +64,88 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    fn used_before(&self, name: &str, span: Span, definition: Span) -> Found {
-        let own = span.source == SourceId::File
-            && self.sources.file.line(span.start) == self.sources.file.line(definition.start)
-            && definition.start < span.start;
-        let help = match span.source {
-            SourceId::Set(_) => format!("move `let {name}` before what is set"),
-            SourceId::File if own => {
-                "a `let` cannot use itself: write a value, or the name of an earlier `let`"
-                    .to_owned()
-            }
-            SourceId::File => {
-                let line = self.sources.file.line(span.start);
-                format!("move `let {name}` up, before line {line}")
-            }
-        };
-        Problem::UsedBeforeDefinition {
-            name: name.to_owned(),
-            help,
-            line: self.sources.get(definition.source).line(definition.start),
-            span,
-            definition,
-            more: Vec::new(),
-        }
-        .into()
+    fn used_before(&self, name: &str, span: Span, definition: Span) -> Diagnostic {
+        let line = self.sources.get(definition.source).line(definition.start);
+        let used = self.sources.get(span.source).line(span.start);
+        let is_own = span.source == SourceId::File && used == line && definition.start < span.start;
+        let message = format!("`{name}` is used before it is defined");
+        error("used_before_definition", message)
+            .at(span, "used here")
+            .at(definition, format!("defined here, in line {line}"))
+            .help(match span.source {
+                SourceId::Set(_) => format!("move `let {name}` before what is set"),
+                SourceId::File if is_own => {
+                    "a `let` cannot use itself: write a value, or the name of an earlier `let`"
+                        .to_owned()
+                }
+                SourceId::File => format!("move `let {name}` up, before line {used}"),
+            })
     }
 
-    fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Found {
-        let colors = matches!(wanted, Some(Type::Color | Type::Colors));
-        let lets = self.names.to_compare();
-        let near = lets.and_then(|lets| nearest(name, lets, wanted));
-        // `olive green`: of two colours the first one.
-        let first = name
-            .split_whitespace()
-            .next()
-            .filter(|first| first.len() < name.len());
-        let near = first.filter(|first| css::color(first).is_some()).or(near);
+    fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Diagnostic {
+        let near = self.nearest(name, wanted);
+        let did_you_mean = near.as_ref().map(|near| format!("did you mean `{near}`?"));
+        if matches!(wanted, Some(Type::Color | Type::Colors)) {
+            let help = "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned();
+            return error(
+                "unknown_color",
+                format!("there is no colour named `{name}`"),
+            )
+            .at(span, "not a colour, and not defined")
+            .help(did_you_mean.unwrap_or(help))
+            .writing(span, near);
+        }
+        let problem = error("unknown_name", format!("there is nothing named `{name}`"));
+        let problem = problem.at(span, "not defined");
+        if self.names.objects.contains(name) {
+            return problem
+                .help("an object is no value: define its place with `let`, and use that in both");
+        }
+        let help = format!("define it before it is used: `let {name} = …`");
+        let help = did_you_mean.unwrap_or(help);
+        problem.help(help).writing(span, near)
+    }
+
+    /// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
+    fn nearest(&self, name: &str, wanted: Option<Type>) -> Option<String> {
+        let is_color = matches!(wanted, Some(Type::Color | Type::Colors));
         // `ff0000`, the code of a colour without its sign.
-        let code = format!("#{name}");
-        let is_code = matches!(name.len(), 3 | 6) && name.bytes().all(|c| c.is_ascii_hexdigit());
-        let near = match is_code && colors {
-            true => Some(code.as_str()),
-            false => near,
-        };
-        let name = name.to_owned();
-        if colors {
-            let help = match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
-            };
-            return Problem::UnknownColor {
-                name,
-                help,
-                span,
-                more: Vec::new(),
-            }
-            .with(fix::written(span, near));
+        if is_color
+            && matches!(name.len(), 3 | 6)
+            && name.bytes().all(|byte| byte.is_ascii_hexdigit())
+        {
+            return Some(format!("#{name}"));
         }
-        let is_object = self.names.is_object(&name);
-        let help = match near {
-            _ if is_object => {
-                "an object is no value: define its place with `let`, and use that in both"
-                    .to_owned()
-            }
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("define it before it is used: `let {name} = …`"),
-        };
-        Problem::UnknownName {
-            name,
-            help,
-            span,
-            more: Vec::new(),
+        // `olive green`: of two colours the first one.
+        if let Some((first, _)) = name.split_once(char::is_whitespace)
+            && css::color(first).is_some()
+        {
+            return Some(first.to_owned());
         }
-        .with(fix::written(span, near.filter(|_| !is_object)))
+        let lets = self.names.to_compare()?.iter().copied();
+        let colors = css::names().map(|name| name as &str);
+        let near = match is_color {
+            true => suggest::nearest(name, lets.chain(colors)),
+            false => {
+                let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
+                let near = suggest::nearest(name, lets.chain(constants));
+                near.or_else(|| match wanted {
+                    None => suggest::nearest(name, colors),
+                    Some(_) => None,
+                })
+            }
+        };
+        near.map(str::to_owned)
     }
 
     /// What a value is, and where its name was defined if it is one.
     pub fn described(&self, value: &tree::Value<'s>, kind: Type) -> String {
         let noun = kind.noun();
-        let ValueKind::Name(name) = value.kind else {
-            return noun.to_owned();
+        let defined = match value.kind {
+            ValueKind::Name(name) => self.names.defined.get(name),
+            _ => None,
         };
-        match self.names.defined.get(name) {
+        match defined {
             Some(Defined { set: Some(set), .. }) => {
                 format!("{noun} (from {})", self.sources.get(*set).name())
             }
@@ -157,17 +158,18 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
-fn nearest<'n>(name: &str, lets: &[&'n str], wanted: Option<Type>) -> Option<&'n str> {
-    let lets = lets.iter().copied();
-    let colors = css::names().map(|name| name as &str);
-    if matches!(wanted, Some(Type::Color | Type::Colors)) {
-        return suggest::nearest(name, lets.chain(colors));
+/// Adds another place where the same name is used.
+fn and_here(problem: &mut Diagnostic, span: Span) {
+    // More places than these would hide the first.
+    const MOST: usize = 20;
+    if problem.labels.len() > MOST {
+        return;
     }
-    let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
-    let near = suggest::nearest(name, lets.chain(constants));
-    near.or_else(|| match wanted {
-        None => suggest::nearest(name, colors),
-        Some(_) => None,
-    })
+    let message = "and here".to_owned();
+    problem.labels.push(Label { span, message });
+    for fix in &mut problem.fixes {
+        let text = fix.edits.first().map(|edit| edit.text.clone());
+        fix.edits.extend(text.map(|text| Edit::new(span, text)));
+        fix.edits.sort_by_key(|edit| edit.span);
+    }
 }

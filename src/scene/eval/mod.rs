@@ -15,30 +15,19 @@ pub use calls::{example as example_call, in_bytes};
 pub use names::Names;
 
 use super::{
-    error::{Problem, Problems},
+    error::{error, warning},
     schema::Type,
     value::Value,
 };
 use crate::{
     color::Color,
-    diagnostic::Fix,
+    diagnostic::Diagnostic,
     source::{Sources, Span},
     syntax::{
         shorten,
         tree::{self, Unit, ValueKind},
     },
 };
-
-/// A number's spelling as an angle.
-#[derive(Clone, Debug)]
-pub struct WithUnit {
-    /// The unit.
-    pub unit: Unit,
-    /// For a message.
-    pub shown: String,
-    /// For an edit, which keeps all that is written.
-    pub text: String,
-}
 
 /// Evaluates values, and collects what is wrong with them.
 #[derive(Debug)]
@@ -48,7 +37,7 @@ pub struct Evaluator<'a, 's> {
     /// The names that can be used.
     pub names: &'a Names<'s>,
     /// What is wrong.
-    pub problems: &'a mut Problems,
+    pub problems: &'a mut Vec<Diagnostic>,
 }
 
 impl<'s> Evaluator<'_, 's> {
@@ -62,7 +51,7 @@ impl<'s> Evaluator<'_, 's> {
             }
             ValueKind::ColorCode(written) => color_code(written).map(Value::Color),
             ValueKind::Name(name) => self.name(name, value.span, wanted),
-            ValueKind::Call(call) => self.call(call, wanted),
+            ValueKind::Call(call) => self.call(call),
             ValueKind::Parentheses(inner) => self.value(inner, wanted),
             ValueKind::Tuple(elements) => self.tuple(elements, value.span, wanted),
             ValueKind::Negation { sign, operand } => self.negation(*sign, operand),
@@ -78,22 +67,56 @@ impl<'s> Evaluator<'_, 's> {
             written.parse().ok()?
         };
         if number.is_infinite() {
-            let written = shorten(written);
-            self.problems
-                .push(Problem::NumberTooLarge { written, span });
+            let message = format!("the number {} is too large", shorten(written));
+            self.problems.push(
+                error("number_too_large", message)
+                    .at(span, "too large")
+                    .help(LARGEST),
+            );
             return None;
         }
         let mantissa = written.split(['e', 'E']).next().unwrap_or_default();
         if number == 0.0 && mantissa.contains(|digit| matches!(digit, '1'..='9')) {
-            let written = shorten(written);
-            self.problems
-                .push(Problem::NumberUnderflow { written, span }.with([Fix::write(span, "0")]));
+            let message = format!(
+                "the number {} is too small, and becomes 0",
+                shorten(written)
+            );
+            self.problems.push(
+                warning("number_underflow", message)
+                    .at(span, "becomes 0")
+                    .help("write 0 if that is meant; the least number above 0 is 5e-324")
+                    .writing(span, ["0"]),
+            );
         }
         Some(number)
     }
 
+    /// What is wrong with a number in the place of an angle. Only units with which it fits are offered.
+    pub fn bare_angle(
+        &self,
+        what: &str,
+        tree: &tree::Value<'s>,
+        fits: impl Fn(Unit) -> bool,
+    ) -> Diagnostic {
+        let units = self.units(tree);
+        let fitting = units.iter().filter(|(unit, _)| fits(*unit));
+        let fitting: Vec<&String> = fitting.map(|(_, text)| text).collect();
+        let message = format!(
+            "{what} is an angle, and {} has no unit",
+            self.quoted(tree.span)
+        );
+        let [(_, first), (_, second)] = &units;
+        error("bare_angle", message)
+            .at(tree.span, self.described(tree, Type::Number))
+            .help(match fitting.as_slice() {
+                [only] => format!("write `{}`", shorten(only)),
+                _ => format!("write `{}` (or `{}`)", shorten(first), shorten(second)),
+            })
+            .writing(tree.span, fitting)
+    }
+
     /// A number's spelling as an angle, in both units: what holds `pi` is more likely in radians, anything else in degrees.
-    pub fn units(&self, value: &tree::Value<'s>) -> [WithUnit; 2] {
+    fn units(&self, value: &tree::Value<'s>) -> [(Unit, String); 2] {
         let text = self.sources.text(value.span);
         let literal = match &value.kind {
             ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
@@ -109,16 +132,13 @@ impl<'s> Evaluator<'_, 's> {
             units.reverse();
         }
         units.map(|unit| {
-            let behind = |text: &str| match (literal, is_sum) {
-                (true, _) => format!("{text}{}", unit.name()),
-                (false, true) => format!("({text}) * 1{}", unit.name()),
-                (false, false) => format!("{text} * 1{}", unit.name()),
+            let name = unit.name();
+            let text = match (literal, is_sum) {
+                (true, _) => format!("{text}{name}"),
+                (false, true) => format!("({text}) * 1{name}"),
+                (false, false) => format!("{text} * 1{name}"),
             };
-            WithUnit {
-                unit,
-                shown: behind(&shorten(text)),
-                text: behind(text),
-            }
+            (unit, text)
         })
     }
 
@@ -134,6 +154,8 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 }
+
+const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
 /// A colour from its code; the parser checked the number of digits.
 fn color_code(written: &str) -> Option<Color> {

@@ -1,7 +1,7 @@
 //! The names that are defined at some place.
 
 use std::{
-    cell::{Cell, RefCell},
+    cell::RefCell,
     collections::{HashMap, HashSet, hash_map::Entry},
 };
 
@@ -9,7 +9,10 @@ use crate::{
     scene::value::Value,
     source::{SourceId, Span},
     suggest::Budget,
-    syntax::tree::Name,
+    syntax::{
+        Tree,
+        tree::{Item, Name},
+    },
 };
 
 /// The names that are defined at some place.
@@ -19,23 +22,16 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The same names, in order.
     order: Vec<&'s str>,
-    /// The names of the whole file; none while it is still being read.
-    whole: Option<Whole<'s>>,
-    /// Whether something was asked about the whole file before it was read.
-    asked_early: Cell<bool>,
+    /// Words in what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
+    pub(super) parts: HashSet<&'s str>,
+    /// Every `let` of the file, wherever.
+    definitions: HashMap<&'s str, Span>,
+    /// The names of the file's objects, which are no values.
+    pub(super) objects: HashSet<&'s str>,
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
     pub(super) reported: RefCell<HashMap<&'s str, usize>>,
-}
-
-/// The names that stand in a file, wherever.
-#[derive(Debug, Default)]
-struct Whole<'s> {
-    /// Every `let`.
-    definitions: HashMap<&'s str, Span>,
-    /// The names of objects, which are no values.
-    objects: HashSet<&'s str>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -46,87 +42,46 @@ pub(super) struct Defined {
     pub place: Span,
     /// The argument that set it, if one did.
     pub set: Option<SourceId>,
-    /// Whether it is only a part of something that cannot be a name.
-    is_part: bool,
 }
 
 impl<'s> Names<'s> {
-    /// No name is defined yet; these will be.
-    pub fn new(
-        everywhere: impl IntoIterator<Item = Name<'s>>,
-        objects: impl IntoIterator<Item = &'s str>,
-    ) -> Self {
-        let mut whole = Whole {
-            objects: objects.into_iter().collect(),
-            definitions: HashMap::new(),
-        };
-        for name in everywhere {
-            whole.definitions.entry(name.text).or_insert(name.span);
+    /// The names of a file, none of which is defined yet.
+    pub fn of(tree: &Tree<'s>) -> Self {
+        let mut names = Self::default();
+        for item in &tree.items {
+            match item {
+                Item::Definition(definition) => {
+                    if let Some(name) = definition.name {
+                        names.definitions.entry(name.text).or_insert(name.span);
+                    }
+                }
+                Item::Block(block) => names.objects.extend(block.name.map(|name| name.text)),
+                Item::Bad(_) => {}
+            }
         }
-        Self {
-            whole: Some(whole),
-            ..Self::default()
-        }
-    }
-
-    /// Whether something was asked about the names of the whole file, which are not known: what was made of the answers
-    /// does not count.
-    pub fn were_asked_early(&self) -> bool {
-        self.asked_early.get()
-    }
-
-    /// Asks for what stands elsewhere in the file: it has to be read as a whole.
-    pub fn ask_for_all(&self) {
-        self.whole();
-    }
-
-    fn whole(&self) -> Option<&Whole<'s>> {
-        if self.whole.is_none() {
-            self.asked_early.set(true);
-        }
-        self.whole.as_ref()
+        names
     }
 
     /// Defines a name; a second time it keeps its value.
     pub fn define(&mut self, name: Name<'s>, value: Option<Value>, set: Option<SourceId>) {
-        let defined = Defined {
-            value,
-            place: name.span,
-            set,
-            is_part: false,
-        };
-        match self.defined.entry(name.text) {
-            Entry::Vacant(free) => {
-                self.order.push(name.text);
-                free.insert(defined);
-            }
-            Entry::Occupied(mut part) if part.get().is_part => *part.get_mut() = defined,
-            Entry::Occupied(_) => {}
-        }
-    }
-
-    /// Takes a part of something that cannot be a name for one that is known, until it is defined.
-    pub fn guess(&mut self, name: Name<'s>) {
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
             self.order.push(name.text);
             free.insert(Defined {
-                value: None,
+                value,
                 place: name.span,
-                set: None,
-                is_part: true,
+                set,
             });
         }
+    }
+
+    /// Knows a word of what was to be a name and cannot be one.
+    pub fn know_part(&mut self, word: &'s str) {
+        self.parts.insert(word);
     }
 
     /// Where a name was defined, if it was.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.defined.get(name).map(|defined| defined.place)
-    }
-
-    /// Where a name was defined that is not only a part of something that cannot be one.
-    pub fn place_of_whole(&self, name: &str) -> Option<Span> {
-        let defined = self.defined.get(name).filter(|defined| !defined.is_part);
-        defined.map(|defined| defined.place)
     }
 
     /// The value of a name that was defined; none if it failed.
@@ -135,19 +90,8 @@ impl<'s> Names<'s> {
     }
 
     /// The first `let` of the file that defines it.
-    pub(super) fn definition(&self, name: &str) -> Option<Span> {
-        self.whole()?.definitions.get(name).copied()
-    }
-
-    /// Whether it is the name of an object.
-    pub(super) fn is_object(&self, name: &str) -> bool {
-        self.whole()
-            .is_some_and(|whole| whole.objects.contains(name))
-    }
-
-    /// Whether any `let` of the file defines it.
-    pub fn knows(&self, name: &str) -> bool {
-        self.definition(name).is_some()
+    pub fn definition(&self, name: &str) -> Option<Span> {
+        self.definitions.get(name).copied()
     }
 
     /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
@@ -164,7 +108,6 @@ impl<'s> Names<'s> {
 
     /// Every name that the file defines.
     pub fn all(&self) -> impl Iterator<Item = &'s str> {
-        let whole = self.whole().into_iter();
-        whole.flat_map(|whole| whole.definitions.keys().copied())
+        self.definitions.keys().copied()
     }
 }

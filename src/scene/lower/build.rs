@@ -1,15 +1,13 @@
 //! Blocks → scene: what each part is, once all fields have their values.
 
-use miette::{Diagnostic as _, Severity};
-
-use super::{Block, Lowering, fields::Fields, words::mentions};
+use super::{Block, Lowering, fields::Fields, mentions};
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Fix},
     scene::{
         self, Image, Object, Shape,
-        error::{Found, Problem},
+        error::{error, warning},
         fix,
-        schema::Kind,
+        schema::{self, Kind},
         semantic_model::Parts,
     },
     source::{SourceId, Span},
@@ -34,13 +32,16 @@ impl<'s> Lowering<'s> {
             Some(block) => self.camera(block),
             None => {
                 if !unknown("camera") {
-                    self.problems
-                        .push(
-                            Problem::MissingCamera { span: start }.with(match self.has_items {
-                                true => fix::add_block("camera", &["eye", "lookat"], self.sources),
-                                false => fix::smallest_scene(self.sources),
+                    let help = "add one, such as `camera { eye (0, 2, 8)  lookat (0, 1, 0) }`";
+                    self.problems.push(
+                        error("missing_camera", "the scene has no camera")
+                            .at(start, "no `camera` in this text")
+                            .help(help)
+                            .fixes(match self.has_items {
+                                true => self.new_block("camera"),
+                                false => Some(fix::smallest_scene(self.sources)),
                             }),
-                        );
+                    );
                 }
                 None
             }
@@ -53,12 +54,16 @@ impl<'s> Lowering<'s> {
             objects.extend(self.object(block));
         }
         if !self.has_objects && self.bad.is_empty() && !self.cut {
-            self.problems
-                .push(Problem::NoObjects { span: start }.with(fix::add_block(
-                    "sphere",
-                    &["center"],
-                    self.sources,
-                )));
+            let help = "the picture shows the background only; add one, such as `sphere { center (0, 1, 0) }`";
+            self.problems.push(
+                warning("no_objects", "the scene has no objects")
+                    .at(
+                        start,
+                        "no sphere, triangle, box or checkerboard in this text",
+                    )
+                    .help(help)
+                    .fixes(self.new_block("sphere")),
+            );
         }
         if let (Some(image), Some(camera)) = (&image, &camera)
             && let Some(block) = one(Kind::Camera)
@@ -76,10 +81,14 @@ impl<'s> Lowering<'s> {
     }
 
     fn has_errors(&self) -> bool {
-        let is_error = |found: &Found| found.problem.severity() != Some(Severity::Warning);
-        self.problems.iter().any(is_error)
-            || self.found.iter().any(Diagnostic::is_error)
-            || !self.sources.file.invalid_utf8().is_empty()
+        let mut all = self.problems.iter().chain(&self.found);
+        all.any(Diagnostic::is_error) || !self.sources.file.invalid_utf8().is_empty()
+    }
+
+    /// Adds a block with the fields that it needs.
+    fn new_block(&self, name: &str) -> Option<Fix> {
+        let row = schema::block(name)?;
+        Some(fix::add_block(row, &row.least_fields(), self.sources))
     }
 
     /// Builds an object at once.

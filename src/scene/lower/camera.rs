@@ -2,23 +2,18 @@
 
 use glam::DVec3;
 
-use super::{
-    Block, Given, Lowering,
-    field_fixes::{examples, quoted},
-    fields::Fields,
-};
+use super::{Block, Given, Lowering, fields::Fields};
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::Fix,
     math::predicates,
     numbers,
     scene::{
         Camera, Image, Lens, Object, View,
-        error::Problem,
+        error::{error, warning},
         level_direction,
         schema::Kind,
         unseen::{self, LEAST_SINE, Unseen, why_unseen},
     },
-    source::{SourceId, Span},
 };
 
 impl<'s> Lowering<'s> {
@@ -36,12 +31,14 @@ impl<'s> Lowering<'s> {
         if let (Some(eye), Some(view), Some(seen)) = (eye, view, seen) {
             match view {
                 View::Lookat(point) if point == eye => {
+                    let eye = block.given("eye").map_or(block.keyword, |given| given.span);
+                    let message = "the camera stands on the point that it looks at";
+                    let help = "move one of them, or give a `direction` instead of `lookat`";
                     self.problems.push(
-                        Problem::ViewUndefined {
-                            lookat: seen.span,
-                            eye: block.given("eye").map_or(block.keyword, |given| given.span),
-                        }
-                        .with(direction_for(block, seen.field())),
+                        error("view_undefined", message)
+                            .at(seen.span, "the same point as the eye")
+                            .at(eye, "the eye")
+                            .help(help),
                     );
                     // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
                     view_is_defined = false;
@@ -103,84 +100,64 @@ impl<'s> Lowering<'s> {
         let across = level * up.dot(up) - up * level.dot(up);
         let along = predicates::dot_sign(up, from, to).is_gt();
         let top = if along { -across } else { across };
-        let vector = numbers::short_vector(top / top.abs().max_element());
-        let shown = axis_name(top).unwrap_or_else(|| format!("towards {vector}"));
-        let suggested = axis_vector(top).unwrap_or(vector);
+        let top = numbers::short_vector(top / top.abs().max_element());
         let given = block.given("up");
-        let looks = match view {
+        let label = match given {
             _ if !is_parallel => {
                 "less than a millionth of a radian off the view direction".to_owned()
             }
-            View::Lookat(_) if given.is_some() => "parallel to the view direction".to_owned(),
-            View::Lookat(_) => format!(
-                "straight along up, which is {} if not given",
-                numbers::short_vector(up)
-            ),
-            View::Direction(_) if given.is_some() => "parallel to the view direction".to_owned(),
-            View::Direction(_) => format!(
+            Some(_) => "parallel to the view direction".to_owned(),
+            None => format!(
                 "parallel to up, which is {} if not given",
                 numbers::short_vector(up)
             ),
         };
-        let up = match given {
-            Some(given) => Some(Fix::write(given.span, &suggested)),
-            None => self.add_fields(
-                block,
-                format!("add `up {suggested}`"),
-                &[format!("up {suggested}")],
+        let fix = match given {
+            Some(given) => Some(Fix::write(given.span, &top)),
+            None => {
+                let field = format!("up {top}");
+                self.add_fields(block, format!("add `{field}`"), &[field])
+            }
+        };
+        let (message, why) = match is_parallel {
+            true => (
+                "the camera looks straight along its up vector",
+                format!("the top of the picture is towards {top} here"),
+            ),
+            false => (
+                "the camera looks all but straight along its up vector",
+                "which way is up hangs on the last digits of these numbers".to_owned(),
             ),
         };
-        self.problems.push(Problem::UpParallel {
-            message: match is_parallel {
-                true => "the camera looks straight along its up vector",
-                false => "the camera looks all but straight along its up vector",
-            },
-            help: match is_parallel {
-                true => format!(
-                    "the top of the picture is {shown} here; give another `up`, such as `up {suggested}`, to say so yourself"
-                ),
-                false => format!(
-                    "which way is up hangs on the last digits of these numbers; give another `up`, such as `up {suggested}`"
-                ),
-            },
-            span: given.map_or(seen.span, |given| given.span),
-            label: looks,
-        }.with(up));
+        let help = format!("{why}; write `up {top}` to say so yourself");
+        self.problems.push(
+            warning("up_parallel", message)
+                .at(given.map_or(seen.span, |given| given.span), label)
+                .help(help)
+                .fixes(fix),
+        );
     }
 
-    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, given: Given) {
-        let near_given = block.given("near");
-        let (shown_near, shown_far) =
-            (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
-        let text = |given: Given| self.sources.text(given.span);
-        let fix = match near_given {
-            Some(near_given) if far > 0.0 && near > far => Fix::new(
-                "exchange `near` and `far`",
-                [
-                    Edit::new(near_given.span, text(given)),
-                    Edit::new(given.span, text(near_given)),
-                ],
-            ),
-            _ => Fix::remove_whole("leave `far` out", [given.field()], self.sources),
-        };
-        self.problems.push(
-            Problem::EmptyDepth {
-                help: match near_given {
-                    Some(_) if far > 0.0 && near > far => {
-                        format!("exchange them: `near {shown_far}  far {shown_near}`")
-                    }
-                    _ => format!("write a number above {shown_near} after `far`, or leave it out"),
-                },
-                far: given.span,
-                far_label: match near_given {
-                    Some(_) => format!("{shown_far} is not more"),
-                    None => format!("not more than `near`, which is {shown_near} if not given"),
-                },
-                near: near_given.map(|given| given.span),
-                near_label: format!("than {shown_near}"),
+    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, far_given: Given) {
+        let (near, far) = (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
+        let problem = error("empty_depth", "`far` must be more than `near`")
+            .help(format!(
+                "write a number above {near} after `far`, or leave it out"
+            ))
+            .fixes([Fix::remove_whole(
+                "leave `far` out",
+                [far_given.field()],
+                self.sources,
+            )]);
+        self.problems.push(match block.given("near") {
+            Some(near_given) => problem
+                .at(far_given.span, format!("{far} is not more"))
+                .at(near_given.span, format!("than {near}")),
+            None => {
+                let label = format!("not more than `near`, which is {near} if not given");
+                problem.at(far_given.span, label)
             }
-            .with([fix]),
-        );
+        });
     }
 
     /// Warns where the camera sees nothing of the scene.
@@ -194,76 +171,53 @@ impl<'s> Lowering<'s> {
         let Some(why) = why_unseen(camera, image, objects) else {
             return;
         };
-        let span = |name| block.given(name).map(|given| given.span);
-        let view = span("lookat")
-            .or(span("direction"))
-            .unwrap_or(block.keyword);
-        let cut = |names: &[&str]| {
-            let given: Vec<Given> = names.iter().filter_map(|name| block.given(name)).collect();
-            let fix = Fix::remove_whole(
-                format!("leave {} out", quoted(names)),
-                given.iter().map(|given| given.field()),
-                self.sources,
-            );
-            (given.first().map_or(view, |given| given.span), fix)
+        let given = |names: [&str; 2]| names.into_iter().find_map(|name| block.given(name));
+        let (message, label, place) = match why {
+            Unseen::Behind => (
+                "everything is behind the camera",
+                "away from everything",
+                given(["lookat", "direction"]),
+            ),
+            Unseen::Outside => (
+                "the camera sees nothing of the scene",
+                "past everything",
+                given(["lookat", "direction"]),
+            ),
+            Unseen::Clipped => (
+                "nothing of the scene is between `near` and `far`",
+                "depths count along the view direction",
+                given(["near", "far"]),
+            ),
         };
-        let (message, label, help, (span, fix)) = match why {
-            Unseen::Behind | Unseen::Outside => {
-                let middle = objects
-                    .iter()
-                    .find_map(|object| unseen::middle(&object.shape));
-                let towards = middle.and_then(|middle| towards(camera, middle));
-                let fix = towards.as_ref().map(|towards| Fix::write(view, towards));
-                let help = match (camera.view, &towards) {
-                    (View::Lookat(_), Some(point)) => {
-                        format!("look at an object, such as `lookat {point}`")
-                    }
-                    (View::Direction(_), Some(way)) => {
-                        format!("look at an object, such as by `direction {way}`")
-                    }
-                    (_, None) => "turn the camera, or move it".to_owned(),
-                };
-                let (message, label) = match why {
-                    Unseen::Behind => ("everything is behind the camera", "away from everything"),
-                    _ => ("the camera sees nothing of the scene", "past everything"),
-                };
-                (message, label, help, (view, fix))
+        let span = place.map_or(block.keyword, |given| given.span);
+        let problem = warning("nothing_seen", message).at(span, label);
+        let middle = objects
+            .iter()
+            .find_map(|object| unseen::middle(&object.shape));
+        let towards = middle.and_then(|middle| towards(camera, middle));
+        self.problems.push(match (why, towards) {
+            (Unseen::Clipped, _) => {
+                let both = ["near", "far"].into_iter();
+                let both = both.filter_map(|name| block.given(name));
+                problem
+                    .help("change `near` or `far`, or leave them out")
+                    .fixes([Fix::remove_whole(
+                        "leave `near` and `far` out",
+                        both.map(|given| given.field()),
+                        self.sources,
+                    )])
             }
-            Unseen::Near | Unseen::Far | Unseen::NearAndFar => {
-                let (message, label, names): (_, _, &[&str]) = match why {
-                    Unseen::Near => (
-                        "everything is nearer than `near`",
-                        "beyond everything",
-                        &["near"],
-                    ),
-                    Unseen::Far => (
-                        "everything is farther than `far`",
-                        "before everything",
-                        &["far"],
-                    ),
-                    _ => (
-                        "nothing of the scene is between `near` and `far`",
-                        "beyond all that is not too far",
-                        &["near", "far"],
-                    ),
+            (_, Some(towards)) => {
+                let field = match camera.view {
+                    View::Lookat(_) => "lookat",
+                    View::Direction(_) => "direction",
                 };
-                let (span, fix) = cut(names);
-                let help = format!(
-                    "depths count along the view direction: change {0}, or leave {0} out",
-                    quoted(names)
-                );
-                (message, label, help, (span, Some(fix)))
+                problem
+                    .help(format!("look at an object, such as `{field} {towards}`"))
+                    .writing(span, [towards])
             }
-        };
-        self.problems.push(
-            Problem::NothingSeen {
-                message,
-                help,
-                span,
-                label,
-            }
-            .with(fix),
-        );
+            (_, None) => problem.help("turn the camera, or move it"),
+        });
     }
 }
 
@@ -275,42 +229,4 @@ fn towards(camera: &Camera, middle: DVec3) -> Option<String> {
     };
     let is_one = to.is_finite() && !predicates::cross_is_zero(camera.up, from, to);
     is_one.then(|| numbers::short_vector(to))
-}
-
-/// Where the camera looks, as a direction in the place of the point.
-fn direction_for(block: &Block<'_>, lookat: Span) -> Vec<Fix> {
-    let fields = examples(block, &["direction"]);
-    let is_in_file = lookat.source == SourceId::File;
-    let fields = fields.into_iter().filter(|_| is_in_file);
-    let title = "give a `direction` instead of `lookat`";
-    fields
-        .map(|field| Fix::new(title, [Edit::new(lookat, field)]))
-        .collect()
-}
-
-/// A vector along an axis, such as `−z`.
-fn axis_name(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let sign = if part < 0.0 { '−' } else { '+' };
-    Some(format!("{sign}{axis}"))
-}
-
-/// The unit vector along an axis as it is written.
-fn axis_vector(v: DVec3) -> Option<String> {
-    let (axis, part) = axis(v)?;
-    let one = if part < 0.0 { "-1" } else { "1" };
-    Some(match axis {
-        'x' => format!("({one}, 0, 0)"),
-        'y' => format!("(0, {one}, 0)"),
-        _ => format!("(0, 0, {one})"),
-    })
-}
-
-fn axis(v: DVec3) -> Option<(char, f64)> {
-    match v.to_array() {
-        [x, 0.0, 0.0] if x != 0.0 => Some(('x', x)),
-        [0.0, y, 0.0] if y != 0.0 => Some(('y', y)),
-        [0.0, 0.0, z] if z != 0.0 => Some(('z', z)),
-        _ => None,
-    }
 }

@@ -4,7 +4,7 @@ use super::{Block, Given, Lowering, fields::Fields};
 use crate::{
     math::predicates,
     numbers,
-    scene::{self, Shape, error::Problem},
+    scene::{self, Shape, error::error},
 };
 
 impl<'s> Lowering<'s> {
@@ -29,47 +29,30 @@ impl<'s> Lowering<'s> {
         ];
         let span = |name| block.given(name).map_or(block.keyword, |g: Given| g.span);
         if !min.is_finite() || !max.is_finite() {
-            let span = span("center");
-            self.problems.push(Problem::BoxTooLarge { span });
+            self.problems.push(
+                error("box_too_large", "the box reaches beyond the largest number")
+                    .at(span("center"), "center ± size/2 is not finite")
+                    .help("make it smaller, or move it nearer"),
+            );
             return None;
         }
         if let Some(&(axis, low, high)) = axes.iter().find(|(_, low, high)| low >= high) {
             let (low, high) = (numbers::beside(low, &[high]), numbers::beside(high, &[low]));
-            let given = (block.given("min"), block.given("max"));
-            self.problems.push(match given {
-                (Some(low_given), Some(high_given)) => {
-                    let is_greater = axes.map(|(_, low, high)| low > high);
-                    let (one, other) = (min.min(max), min.max(max));
-                    let can_be_swapped = axes.iter().all(|(_, low, high)| low != high)
-                        && (low_given.parts.and(high_given.parts).is_some() || is_greater == [true; 3]);
-                    Problem::EmptyBox {
-                        axis,
-                        help: match can_be_swapped {
-                            true => format!(
-                                "write the corners in order: `min {}  max {}`",
-                                numbers::short_vector(one),
-                                numbers::short_vector(other)
-                            ),
-                            false => format!("make `max` greater than `min` on every axis; along {axis} they are {high} and {low}"),
-                        },
-                        span: high_given.span,
-                        label: format!("{high} along {axis}"),
-                        other: Some(low_given.span),
-                        other_label: format!("{low} along {axis}"),
-                    }.with(match can_be_swapped {
-                            true => vec![self.in_order([low_given, high_given], is_greater)],
-                            false => Vec::new(),
-                        })
-                }
-                _ => Problem::EmptyBox {
-                    axis,
-                    help: "make it larger: so far from the origin, a number has no digits left for its size".to_owned(),
-                    span: block.given("size").map_or(span("center"), |g| g.span),
-                    label: format!("lost in rounding beside {low}"),
-                    other: None,
-                    other_label: String::new(),
-                }.into(),
-            });
+            let problem = error("empty_box", format!("the box has no extent along {axis}"));
+            let problem = match (block.given("min"), block.given("max")) {
+                (Some(low_given), Some(high_given)) => problem
+                    .at(high_given.span, format!("{high} along {axis}"))
+                    .at(low_given.span, format!("{low} along {axis}"))
+                    .help("make `max` greater than `min` on every axis")
+                    .fixes(self.in_order([low_given, high_given], [min, max])),
+                _ => problem
+                    .at(
+                        block.given("size").map_or(span("center"), |g| g.span),
+                        format!("lost in rounding beside {low}"),
+                    )
+                    .help("make it larger: so far from the origin, a number has no digits left for its size"),
+            };
+            self.problems.push(problem);
             return None;
         }
         Some(Shape::Box(scene::Cuboid {

@@ -1,11 +1,13 @@
 //! Edits of whole fields, for problems of a block.
 
+use glam::DVec3;
+
 use super::{Block, Given, Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
     scene::{
         example_beside,
-        schema::{Choice, Field, Preset},
+        schema::{Choice, Preset},
     },
     source::{SourceId, Span},
     suggest,
@@ -47,66 +49,59 @@ impl Lowering<'_> {
         Some(Fix::new(title, [Edit::new(span, added)]))
     }
 
-    /// Puts two corners in order: where `min` is greater than `max` on some axes, and nowhere equal, each number takes the other's place.
-    pub(super) fn in_order(&self, [min, max]: [Given; 2], is_greater: [bool; 3]) -> Fix {
-        let swapped: Vec<[Span; 2]> = match (min.parts, max.parts) {
-            (Some(low), Some(high)) => {
-                let parts = low.into_iter().zip(high).zip(is_greater);
-                let swapped = parts.filter(|(_, is_greater)| *is_greater);
-                swapped.map(|((low, high), _)| [low, high]).collect()
-            }
-            _ => vec![[min.span, max.span]],
-        };
-        let edits = swapped.into_iter().flat_map(|[one, other]| {
+    /// Puts two corners in order: where `min` is greater than `max`, each number takes the other's place. None where they are equal
+    /// on an axis, or their numbers do not stand apart.
+    pub(super) fn in_order(&self, [min, max]: [Given; 2], [low, high]: [DVec3; 2]) -> Option<Fix> {
+        if low.cmpeq(high).any() {
+            return None;
+        }
+        let is_greater = low.cmpgt(high).into();
+        let parts = min
+            .parts?
+            .into_iter()
+            .zip(max.parts?)
+            .zip::<[bool; 3]>(is_greater);
+        let swapped = parts.filter(|(_, is_greater)| *is_greater);
+        let edits = swapped.flat_map(|((one, other), _)| {
             [(one, other), (other, one)].map(|(to, from)| Edit::new(to, self.sources.text(from)))
         });
-        Fix::new("put the corners in order", edits)
+        Some(Fix::new("put the corners in order", edits))
     }
 
-    /// Of two fields that exclude each other, keeps either one with what belongs to it: the fields of the other ways are removed. What
-    /// it needs beside itself takes the place of these.
+    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs: the fields of the other
+    /// ways are removed.
     pub(super) fn one_of(
         &self,
         block: &Block<'_>,
         choice: &Choice,
-        [earlier, later]: [&Field; 2],
+        [earlier, later]: [&str; 2],
     ) -> Vec<Fix> {
-        let ways = [earlier, later].into_iter().map(|field| {
+        let ways = [earlier, later].into_iter().filter_map(|field| {
             let given = |name: &&str| block.given(name).is_some();
-            let (kept, removed): (Vec<&[&str]>, Vec<&[&str]>) = choice
-                .ways
-                .iter()
-                .partition(|way| way.contains(&field.name));
-            let (kept, removed) = (kept.concat(), removed.concat());
-            let removed: Vec<&str> = removed.into_iter().filter(given).collect();
-            let needed = |name: &&str| {
+            let ways = choice.ways.iter().copied();
+            let (kept, removed): (Vec<&[&str]>, Vec<&[&str]>) =
+                ways.partition(|way| way.contains(&field));
+            let is_missing = |name: &&str| {
                 let row = block.row.field(name);
                 row.is_some_and(|row| row.preset == Preset::Alternative) && !given(name)
             };
-            let missing: Vec<&str> = kept.iter().copied().filter(needed).collect();
-            let kept: Vec<&str> = kept.into_iter().filter(given).collect();
-            let spans = removed.iter().filter_map(|name| block.given(name));
-            let spans = self.joined(spans.map(|given| given.field()).collect());
-            let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
-            match missing.is_empty() {
-                true => Fix::remove_whole(title, spans, self.sources),
-                false => self.in_place(
-                    format!("{title}, add {}", quoted(&missing)),
-                    &spans,
-                    &examples(block, &missing),
-                ),
+            if kept.concat().iter().any(is_missing) {
+                return None;
             }
+            let [kept, removed] = [kept, removed].map(|ways| {
+                ways.concat()
+                    .into_iter()
+                    .filter(given)
+                    .collect::<Vec<&str>>()
+            });
+            let spans = removed.iter().filter_map(|name| block.given(name));
+            Some(Fix::remove_whole(
+                format!("keep {}, remove {}", quoted(&kept), quoted(&removed)),
+                self.joined(spans.map(|given| given.field()).collect()),
+                self.sources,
+            ))
         });
         ways.collect()
-    }
-
-    /// Writes fields in the place of the first one of those that are removed.
-    fn in_place(&self, title: String, removed: &[Span], fields: &[String]) -> Fix {
-        let edits = removed.iter().enumerate().map(|(index, span)| match index {
-            0 => Edit::new(*span, fields.join("  ")),
-            _ => Edit::remove(*span, self.sources),
-        });
-        Fix::new(title, edits)
     }
 
     /// Places in their order; those with nothing but white space between are one.
@@ -114,11 +109,11 @@ impl Lowering<'_> {
         places.sort();
         let mut joined: Vec<Span> = Vec::with_capacity(places.len());
         for place in places {
+            let gap = |last: &Span| Span::new(place.source, last.end, place.start);
             match joined.last_mut() {
                 Some(last)
                     if last.source == place.source
-                        && last.end <= place.start
-                        && self.is_blank(last.end, place) =>
+                        && self.sources.text(gap(last)).trim().is_empty() =>
                 {
                     last.end = place.end;
                 }
@@ -126,11 +121,6 @@ impl Lowering<'_> {
             }
         }
         joined
-    }
-
-    fn is_blank(&self, from: usize, place: Span) -> bool {
-        let between = Span::new(place.source, from, place.start);
-        self.sources.text(between).trim().is_empty()
     }
 }
 

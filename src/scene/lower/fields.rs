@@ -1,5 +1,7 @@
 //! The values of a block's fields.
 
+use std::{collections::HashMap, sync::LazyLock};
+
 use glam::DVec3;
 
 use super::Block;
@@ -7,10 +9,13 @@ use crate::{
     color::Color,
     math::Angle,
     scene::{
-        Method, css,
-        schema::{self, Kind, Literal, Preset},
+        Method,
+        eval::{Evaluator, Names},
+        schema::{self, Kind, Preset, Type},
         value::Value,
     },
+    source::{Source, SourceId, Sources},
+    syntax,
 };
 
 /// The values of a block's fields, defaults included. None where a value is missing or failed.
@@ -24,69 +29,61 @@ impl<'b, 's> Fields<'b, 's> {
         Self { block, kind }
     }
 
-    fn value(&self, name: &str) -> Option<Value> {
-        if let Some(given) = self.block.and_then(|block| block.given(name)) {
-            return given.value;
-        }
-        let row = schema::BLOCKS.iter().find(|row| row.kind == self.kind)?;
-        match row.field(name)?.preset {
-            Preset::Value(literal) => preset(literal),
-            Preset::Required | Preset::Alternative | Preset::Nothing => None,
-        }
-    }
-
-    pub(super) fn number(&self, name: &str) -> Option<f64> {
-        match self.value(name)? {
-            Value::Number(number) => Some(number),
-            _ => None,
-        }
-    }
-
-    pub(super) fn angle(&self, name: &str) -> Option<Angle> {
-        match self.value(name)? {
-            Value::Angle(angle) => Some(angle),
-            _ => None,
-        }
-    }
-
-    pub(super) fn vector(&self, name: &str) -> Option<DVec3> {
-        match self.value(name)? {
-            Value::Vector(vector) => Some(vector),
-            _ => None,
-        }
-    }
-
-    pub(super) fn color(&self, name: &str) -> Option<Color> {
-        match self.value(name)? {
-            Value::Color(color) => Some(color),
-            _ => None,
-        }
-    }
-
-    pub(super) fn colors(&self, name: &str) -> Option<[Color; 2]> {
-        match self.value(name)? {
-            Value::Colors(colors) => Some(colors),
-            _ => None,
-        }
-    }
-
-    pub(super) fn method(&self, name: &str) -> Option<Method> {
-        match self.value(name)? {
-            Value::Method(method) => Some(method),
-            _ => None,
+    fn value(&self, name: &'static str) -> Option<Value> {
+        match self.block.and_then(|block| block.given(name)) {
+            Some(given) => given.value,
+            None => DEFAULTS.get(&(self.kind, name)).copied(),
         }
     }
 }
 
-fn preset(literal: Literal) -> Option<Value> {
-    Some(match literal {
-        Literal::Number(number) => Value::Number(number),
-        Literal::Degrees(degrees) => Value::Angle(Angle::from_degrees(degrees)),
-        Literal::Vector(vector) => Value::Vector(DVec3::from_array(vector)),
-        Literal::Color(name) => Value::Color(css::color(name)?),
-        Literal::Colors([first, second]) => {
-            Value::Colors([css::color(first)?, css::color(second)?])
+/// For each type of a field the method that gives its value.
+macro_rules! accessors {
+    ($($name:ident $variant:ident $gives:ty;)*) => {
+        impl Fields<'_, '_> {
+            $(pub(super) fn $name(&self, name: &'static str) -> Option<$gives> {
+                match self.value(name)? {
+                    Value::$variant(value) => Some(value),
+                    _ => None,
+                }
+            })*
         }
-        Literal::Method(name) => Value::Method(schema::method(name)?),
-    })
+    };
+}
+
+accessors! {
+    number Number f64;
+    angle Angle Angle;
+    vector Vector DVec3;
+    color Color Color;
+    colors Colors [Color; 2];
+    method Method Method;
+}
+
+/// The values of the defaults, which the table has as they are written.
+static DEFAULTS: LazyLock<HashMap<(Kind, &str), Value>> = LazyLock::new(|| {
+    let rows = schema::BLOCKS.iter();
+    let fields = rows.flat_map(|row| row.fields.iter().map(|field| (row.kind, field)));
+    let defaults = fields.filter_map(|(kind, field)| {
+        let Preset::Value(written) = field.preset else {
+            return None;
+        };
+        let value = match field.takes {
+            Type::Method => schema::method(written).map(Value::Method),
+            takes => default(written, takes),
+        };
+        Some(((kind, field.name), value?))
+    });
+    defaults.collect()
+});
+
+fn default(written: &str, takes: Type) -> Option<Value> {
+    let sources = Sources::new(Source::from_text("", written));
+    let (tree, _) = syntax::parse_value(&sources.file, SourceId::File, 0);
+    let mut evaluator = Evaluator {
+        sources: &sources,
+        names: &Names::default(),
+        problems: &mut Vec::new(),
+    };
+    evaluator.value(&tree, Some(takes))
 }

@@ -7,7 +7,6 @@
 mod build;
 mod camera;
 mod cuboid;
-mod definition_fixes;
 mod field_fixes;
 mod fields;
 mod missing;
@@ -17,19 +16,14 @@ mod sampler;
 mod triangle;
 mod typing;
 mod unknown;
-mod words;
 
 pub use reading::{analyze, read, read_in_parts, read_unless};
 
-use std::{
-    collections::{HashMap, hash_map::Entry},
-    sync::atomic::AtomicBool,
-};
+use std::{collections::HashMap, sync::atomic::AtomicBool};
 
-use self::words::mentions;
 use super::{
     Object,
-    error::{Problem, Problems},
+    error::{error, twice},
     eval::Names,
     fix,
     overrides::Override,
@@ -54,7 +48,7 @@ struct Lowering<'s> {
     overrides: Vec<Override<'s>>,
     /// Whether one of them sets a `let`, or a field of an object.
     sets_by_name: bool,
-    /// The overrides by the block and the field or `let` that they set.
+    /// The overrides by the block and the field or `let` that they set; of several the last one.
     targets: HashMap<(Option<&'s str>, &'s str), usize>,
     /// The blocks that are not built yet: those that are no objects, and objects if an argument may set a field of one.
     blocks: Vec<Block<'s>>,
@@ -72,11 +66,9 @@ struct Lowering<'s> {
     bad: Vec<&'s str>,
     /// What is wrong with the syntax.
     found: Vec<Diagnostic>,
-    problems: Problems,
+    problems: Vec<Diagnostic>,
     /// The values of unknown fields, in the order of the text.
     unknown: Vec<Span>,
-    /// Whether the last block was only begun.
-    in_begun_blocks: bool,
 }
 
 /// A block with what it was given.
@@ -112,14 +104,19 @@ impl<'s> Lowering<'s> {
         names: Names<'s>,
         cancel: &'s AtomicBool,
     ) -> Self {
+        let targets = overrides.iter().enumerate();
+        let targets = targets.map(|(index, set)| {
+            let block = set.block.map(|block| block.text);
+            ((block, set.name.text), index)
+        });
         Self {
             sources,
             cancel,
             cut: false,
             names,
             sets_by_name: overrides.iter().any(overriding::is_by_name),
+            targets: targets.collect(),
             overrides,
-            targets: HashMap::new(),
             blocks: Vec::new(),
             first_blocks: HashMap::new(),
             objects: Vec::new(),
@@ -128,9 +125,8 @@ impl<'s> Lowering<'s> {
             first_names: HashMap::new(),
             bad: Vec::new(),
             found: Vec::new(),
-            problems: Problems::default(),
+            problems: Vec::new(),
             unknown: Vec::new(),
-            in_begun_blocks: false,
         }
     }
 
@@ -160,7 +156,7 @@ impl<'s> Lowering<'s> {
         });
         let first = definition
             .name
-            .is_some_and(|name| self.names.place_of_whole(name.text).is_none());
+            .is_some_and(|name| self.names.place(name.text).is_none());
         let value = match &set {
             Some(set) if first => self.evaluate(&set.value, None),
             Some(_) => None,
@@ -173,33 +169,28 @@ impl<'s> Lowering<'s> {
         let reported = definition.keyword.range().is_empty();
         if let Some(what) = predefined(name.text) {
             if !reported {
-                // Its other uses tell whether it can be renamed.
-                self.names.ask_for_all();
-                self.problems.push(Problem::PredefinedName {
-                    name: name.text.to_owned(),
-                    what,
-                    span: name.span,
-                    found: value.map(|value| value.kind()),
-                });
+                let message = format!("`{}` is {what} already", name.text);
+                let help = format!("choose another name, such as `my_{}`", name.text);
+                self.problems.push(
+                    error("predefined_name", message)
+                        .at(name.span, "this name is taken")
+                        .help(help),
+                );
             }
             // What uses it below is silent: what it means there, nobody can tell.
             self.names.define(name, None, None);
+        } else if definition.is_part_of_name() {
+            self.names.know_part(name.text);
         } else if reported && self.names.place(name.text).is_some() {
             // It stays what it is.
-        } else if definition.is_part_of_name() {
-            self.names.guess(name);
-        } else if let Some(first) = self.names.place_of_whole(name.text) {
+        } else if let Some(first) = self.names.place(name.text) {
+            let message = format!("`{}` is defined twice", name.text);
+            let title = format!("remove this `let {}`", name.text);
+            let help = "remove one of them, or give it another name; a name keeps its value";
             self.problems.push(
-                Problem::DuplicateLet {
-                    name: name.text.to_owned(),
-                    second: name.span,
-                    first,
-                }
-                .with([Fix::remove_whole(
-                    format!("remove this `let {}`", name.text),
-                    [definition.span],
-                    self.sources,
-                )]),
+                twice("duplicate_let", message, [first, name.span])
+                    .help(help)
+                    .fixes([Fix::remove_whole(title, [definition.span], self.sources)]),
             );
         } else {
             self.names.define(name, value, set.map(|set| set.id));
@@ -220,14 +211,15 @@ impl<'s> Lowering<'s> {
             && !row.is_object
             && block.bad.is_empty()
         {
+            let help = format!(
+                "take `{}` away; only objects have names, for a scene has one `{}`",
+                name.text, row.name
+            );
             self.problems.push(
-                Problem::UnexpectedName {
-                    noun: row.noun,
-                    kind: row.name,
-                    name: name.text.to_owned(),
-                    span: name.span,
-                }
-                .with([self.without_name(&name)]),
+                error("unexpected_name", format!("{} takes no name", row.noun))
+                    .at(name.span, "not here")
+                    .help(help)
+                    .fixes([self.without_name(&name)]),
             );
         }
         let earlier = match row.is_object {
@@ -237,18 +229,16 @@ impl<'s> Lowering<'s> {
         let earlier = earlier.and_then(|&index| self.blocks.get(index));
         let duplicate = earlier.is_some();
         if let Some(earlier) = earlier {
+            let spans = [earlier.span, block.span];
+            let message = format!("there are two `{}` blocks", row.name);
             self.problems.push(
-                Problem::DuplicateBlock {
-                    name: row.name,
-                    second: block.keyword(),
-                    first: earlier.keyword,
-                }
-                .with(fix::one_of_two(
-                    row.name,
-                    " block",
-                    [earlier.span, block.span],
-                    self.sources,
-                )),
+                twice(
+                    "duplicate_block",
+                    message,
+                    [earlier.keyword, block.keyword()],
+                )
+                .help("keep one, with the fields of both")
+                .fixes(fix::one_of_two(row.name, spans, self.sources)),
             );
         }
         let mut lowered = Block {
@@ -296,25 +286,21 @@ impl<'s> Lowering<'s> {
             return row;
         }
         let near = schema::nearest_block(kind.text);
-        // Of blocks that are only begun, one after the other, the first is enough; so says the parser, too.
-        let begun = block.close.is_none() && block.fields.is_empty();
-        let again = self.in_begun_blocks && begun;
-        self.in_begun_blocks = begun;
-        if again || (begun && near.is_none()) {
-            return near;
+        // Of a block that is only begun, the parser says all.
+        if near.is_none() && block.close.is_none() && block.fields.is_empty() {
+            return None;
         }
         let kinds = suggest::list(schema::block_names());
         let help = match near {
             Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
             None => format!("the kinds are {kinds}"),
         };
+        let message = format!("there is no kind of block `{}`", kind.text);
         self.problems.push(
-            Problem::UnknownKind {
-                written: kind.text.to_owned(),
-                help,
-                span: kind.span,
-            }
-            .with(fix::written(kind.span, near.map(|near| near.name))),
+            error("unknown_kind", message)
+                .at(kind.span, "not a kind of block")
+                .help(help)
+                .writing(kind.span, near.map(|near| near.name)),
         );
         near
     }
@@ -335,19 +321,15 @@ impl<'s> Lowering<'s> {
         let value = self.typed(row, &field.value);
         let given = Given::new(field.name.span, &field.value, value);
         match block.given.get_mut(index) {
-            Some(Some(first)) => self.problems.push(
-                Problem::DuplicateField {
-                    name: row.name.to_owned(),
-                    second: field.name.span,
-                    first: first.name,
-                }
-                .with(fix::one_of_two(
-                    row.name,
-                    "",
-                    [first.field(), given.field()],
-                    self.sources,
-                )),
-            ),
+            Some(Some(first)) => {
+                let spans = [first.field(), given.field()];
+                let message = format!("`{}` is given twice", row.name);
+                self.problems.push(
+                    twice("duplicate_field", message, [first.name, field.name.span])
+                        .help("remove one of them")
+                        .fixes(fix::one_of_two(row.name, spans, self.sources)),
+                );
+            }
             Some(free) => *free = Some(given),
             None => {}
         }
@@ -371,15 +353,13 @@ impl<'s> Lowering<'s> {
             else {
                 continue;
             };
+            let message = format!("`{}` and `{}` exclude each other", second.name, first.name);
             self.problems.push(
-                Problem::ConflictingFields {
-                    later: second.name.to_owned(),
-                    earlier: first.name.to_owned(),
-                    why: choice.why,
-                    second: later.name,
-                    first: earlier.name,
-                }
-                .with(self.one_of(block, choice, [first, second])),
+                error("conflicting_fields", message)
+                    .at(later.name, "this says it again, in another way")
+                    .at(earlier.name, "this says it already")
+                    .help(format!("remove one of them: {}", choice.why))
+                    .fixes(self.one_of(block, choice, [first.name, second.name])),
             );
         }
     }
@@ -389,16 +369,17 @@ impl<'s> Lowering<'s> {
         let example = row.example();
         let edit = Edit::new(fix::behind(name.span, self.sources), format!(" {example}"));
         let fix = Fix::new(format!("write `{} {example}`", name.text), [edit]);
-        let problem = Problem::MissingValue {
-            name: name.text.to_owned(),
-            help: format!(
-                "write {} after it, such as `{} {example}`",
-                row.takes.noun(),
-                row.name
-            ),
-            span: name.span,
-        };
-        self.problems.push(problem.with([fix]));
+        let (noun, field) = (row.takes.noun(), row.name);
+        self.problems.push(Diagnostic {
+            // Only reading the scene tells what a field without a value is called.
+            is_of_syntax: true,
+            ..error("missing_value", format!("`{}` has no value", name.text))
+                .at(name.span, "a value should follow this")
+                .help(format!(
+                    "write {noun} after it, such as `{field} {example}`"
+                ))
+                .fixes([fix])
+        });
     }
 
     /// Takes the name of a block away.
@@ -409,30 +390,23 @@ impl<'s> Lowering<'s> {
 
     fn name_of_object(&mut self, block: &Block<'s>) {
         let Some(name) = block.name else { return };
-        let reserved = schema::block(name.text).is_some_and(|row| !row.is_object);
-        if reserved {
-            self.problems.push(
-                Problem::ReservedName {
-                    name: name.text.to_owned(),
-                    span: name.span,
-                }
-                .with([self.without_name(&name)]),
-            );
+        let text = name.text;
+        let problem = if schema::block(text).is_some_and(|row| !row.is_object) {
+            let help =
+                format!("choose another name: `--set {text}.…` is to reach the block `{text}`");
+            error("reserved_name", format!("no object can be named `{text}`"))
+                .at(name.span, "this is the name of a block")
+                .help(help)
+        } else if let Some(&first) = self.first_names.get(text) {
+            let message = format!("two objects are named `{text}`");
+            twice("duplicate_name", message, [first, name.span])
+                .help("give one of them another name")
+        } else {
+            self.first_names.insert(text, name.span);
             return;
-        }
-        match self.first_names.entry(name.text) {
-            Entry::Occupied(first) => self.problems.push(
-                Problem::DuplicateName {
-                    name: name.text.to_owned(),
-                    second: name.span,
-                    first: *first.get(),
-                }
-                .with([self.without_name(&name)]),
-            ),
-            Entry::Vacant(free) => {
-                free.insert(name.span);
-            }
-        }
+        };
+        let problem = problem.fixes([self.without_name(&name)]);
+        self.problems.push(problem);
     }
 }
 
@@ -467,4 +441,10 @@ impl Block<'_> {
         let index = self.row.fields.iter().position(|row| row.name == name)?;
         self.given.get(index).copied().flatten()
     }
+}
+
+/// Whether a word stands in a text.
+fn mentions(text: &str, word: &str) -> bool {
+    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+    text.split(other).any(|found| found == word)
 }

@@ -1,44 +1,14 @@
 //! What `--set` arguments change in the blocks.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use super::{Block, Given, Lowering};
-use crate::{
-    scene::{
-        overrides::{self, Override},
-        schema,
-    },
-    syntax::tree::{self, Item},
+use crate::scene::{
+    overrides::{self, Override},
+    schema,
 };
 
 impl<'s> Lowering<'s> {
-    /// Of several overrides of one target, or of fields that exclude each other, only the last counts.
-    pub(super) fn keep_last_overrides(&mut self, items: &[Item<'s>]) {
-        if self.overrides.is_empty() {
-            return;
-        }
-        let rows = rows_of_objects(items);
-        let mut later = HashSet::new();
-        let mut kept = Vec::with_capacity(self.overrides.len());
-        for set in std::mem::take(&mut self.overrides).into_iter().rev() {
-            let block = set.block.map(|block| block.text);
-            let row = block.and_then(|block| schema::block(block).or(rows.get(block).copied()));
-            let excluded = row.is_some_and(|row| {
-                let mut others = row.excludes(set.name.text);
-                others.any(|other| later.contains(&(block, other)))
-            });
-            if later.insert((block, set.name.text)) && !excluded {
-                kept.push(set);
-            }
-        }
-        kept.reverse();
-        for (index, set) in kept.iter().enumerate() {
-            let block = set.block.map(|block| block.text);
-            self.targets.insert((block, set.name.text), index);
-        }
-        self.overrides = kept;
-    }
-
     /// The fields of a block that an override replaces, alternatives included. Of several blocks of one name it is the first
     /// that is meant.
     pub(super) fn replaced_fields(&self, block: &Block<'s>) -> Vec<&'static str> {
@@ -76,9 +46,11 @@ impl<'s> Lowering<'s> {
         self.override_targets();
     }
 
+    /// Of several overrides of one field, or of fields that exclude each other, only the last counts.
     fn override_fields(&mut self) {
         let overrides = std::mem::take(&mut self.overrides);
-        for set in &overrides {
+        let mut later = HashSet::new();
+        for set in overrides.iter().rev() {
             let Some(target) = set.block else { continue };
             let addable = schema::block(target.text).filter(|row| !row.is_object);
             if !self.first_blocks.contains_key(target.text)
@@ -98,11 +70,13 @@ impl<'s> Lowering<'s> {
             let Some(row) = index.and_then(|i| self.blocks.get(i)).map(|b| b.row) else {
                 continue;
             };
-            let at = row
-                .fields
-                .iter()
-                .position(|field| field.name == set.name.text);
-            let Some((at, field)) = at.and_then(|at| Some((at, row.fields.get(at)?))) else {
+            if !later.insert((target.text, set.name.text)) {
+                continue;
+            }
+            let others = row.excludes(set.name.text);
+            later.extend(others.map(|other| (target.text, other)));
+            let mut fields = row.fields.iter().enumerate();
+            let Some((at, field)) = fields.find(|(_, field)| field.name == set.name.text) else {
                 let blocks = std::mem::take(&mut self.blocks);
                 if let Some(block) = index.and_then(|index| blocks.get(index)) {
                     self.unknown_target(block, &set.name, &set.value);
@@ -144,7 +118,7 @@ impl<'s> Lowering<'s> {
                     let name = &set.name;
                     let is_block = self.first_blocks.contains_key(name.text)
                         || schema::block(name.text).is_some();
-                    let found = self.names.knows(name.text);
+                    let found = self.names.definition(name.text).is_some();
                     (!found).then(|| overrides::no_such_let(name, &lets, is_block, budget))
                 }
             };
@@ -157,24 +131,6 @@ impl<'s> Lowering<'s> {
 pub(super) fn is_by_name(set: &Override<'_>) -> bool {
     set.block
         .is_none_or(|block| schema::block(block.text).is_none_or(|row| row.is_object))
-}
-
-/// What kind of object each name is; of a name that stands twice, the first.
-fn rows_of_objects<'s>(items: &[Item<'s>]) -> HashMap<&'s str, &'static schema::Block> {
-    let mut rows = HashMap::new();
-    for item in items {
-        if let Item::Block(tree::Block {
-            kind: Some(kind),
-            name: Some(name),
-            ..
-        }) = item
-            && let Some(row) = schema::block(kind.text)
-            && row.is_object
-        {
-            rows.entry(name.text).or_insert(row);
-        }
-    }
-    rows
 }
 
 /// The name by which `--set` names a block.

@@ -13,10 +13,7 @@ use crate::{
         semantic_model::{Parts, SemanticModel},
     },
     source::{SourceId, Sources, Span},
-    syntax::{
-        self,
-        tree::{Item, Name},
-    },
+    syntax,
 };
 
 /// Reads a scene: parses the file and the overrides, and makes of them what they mean.
@@ -39,8 +36,8 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
 const PART: usize = 1 << 16;
 
 /// The same as [`read`] with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
-/// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes of
-/// syntax, or with one whose report tells of the whole file, is read again as a whole.
+/// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
+/// whole, for a report may tell of what stands elsewhere.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
 }
@@ -51,14 +48,13 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
     let overrides = overrides::read(sources, &mut diagnostics);
     let mut lowering = Lowering::new(sources, overrides.clone(), Names::default(), cancel);
     if !lowering.sets_by_name {
-        lowering.keep_last_overrides(&[]);
         let file = &sources.file;
         let all = syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |items| {
             lowering.items(&items);
-            !lowering.names.were_asked_early()
+            lowering.problems.is_empty()
         });
         lowering.override_blocks();
-        if all && !lowering.names.were_asked_early() {
+        if all && lowering.problems.is_empty() {
             lowering.found = diagnostics;
             return lowering.reading();
         }
@@ -92,16 +88,14 @@ fn whole<'s>(
     cancel: &'s AtomicBool,
 ) -> Lowering<'s> {
     let tree = &parsed.tree;
-    let names = Names::new(definitions(tree), names_of_objects(tree));
+    let names = Names::of(tree);
     let mut lowering = Lowering::new(sources, overrides, names, cancel);
     let wanted = parsed.problems.iter().take_while(|_| lowering.is_wanted());
     lowering.found = wanted.cloned().collect();
     lowering.found.extend(diagnostics);
     lowering.cut = parsed.cut.is_some();
-    lowering.keep_last_overrides(&tree.items);
     lowering.items(&tree.items);
     lowering.override_blocks();
-    lowering.fix_definitions(parsed);
     lowering
 }
 
@@ -122,8 +116,8 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        let found = self.problems.iter().take_while(|_| self.is_wanted());
-        diagnostics.extend(found.map(|found| found.diagnostic(self.sources)));
+        let found = std::mem::take(&mut self.problems).into_iter();
+        diagnostics.extend(found.take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
@@ -140,22 +134,6 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
     label.span.source == SourceId::File
         && label.span.start < label.span.end
         && place.is_some_and(|place| place.start <= label.span.start)
-}
-
-/// The names that a file defines, those that it may define.
-fn definitions<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = Name<'s>> + 't {
-    tree.items.iter().filter_map(|item| match item {
-        Item::Definition(definition) => definition.name,
-        Item::Block(_) | Item::Bad(_) => None,
-    })
-}
-
-/// The names of a file's objects.
-fn names_of_objects<'t, 's>(tree: &'t syntax::Tree<'s>) -> impl Iterator<Item = &'s str> + 't {
-    tree.items.iter().filter_map(|item| match item {
-        Item::Block(block) => block.name.map(|name| name.text),
-        Item::Definition(_) | Item::Bad(_) => None,
-    })
 }
 
 /// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they are in.

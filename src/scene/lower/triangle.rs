@@ -4,7 +4,7 @@ use super::{Block, Lowering, fields::Fields};
 use crate::{
     math::predicates,
     numbers,
-    scene::{self, CenteredTriangle, Outline, Shape, error::Problem},
+    scene::{self, CenteredTriangle, Outline, Shape, error::error},
 };
 
 const VERTICES: [&str; 3] = ["v0", "v1", "v2"];
@@ -28,24 +28,19 @@ impl<'s> Lowering<'s> {
         if !predicates::are_on_one_line(vertices) {
             return Some(Outline::Vertices(vertices));
         }
-        let [a, b, c] = vertices;
-        let equal = [
-            ("v1", "v0", a == b),
-            ("v2", "v0", a == c),
-            ("v2", "v1", b == c),
-        ];
-        let equal = equal.into_iter().find(|(.., are_equal)| *are_equal);
+        let help = "move one of them, so that the three points are the corners of a triangle";
         let [first, second, third] =
             VERTICES.map(|name| block.given(name).map_or(block.keyword, |given| given.span));
-        self.problems.push(Problem::OnOneLine {
-            message: match equal {
-                Some((one, other, _)) => format!("`{one}` and `{other}` are the same point"),
-                None => "the vertices lie on one line, and form no triangle".to_owned(),
-            },
-            span: third,
-            second,
-            first,
-        });
+        self.problems.push(
+            error(
+                "on_one_line",
+                "the vertices lie on one line, and form no triangle",
+            )
+            .at(third, "the third vertex")
+            .at(second, "the second")
+            .at(first, "the first")
+            .help(help),
+        );
         None
     }
 
@@ -53,31 +48,28 @@ impl<'s> Lowering<'s> {
         let sides = fields.vector("sides")?;
         if !predicates::forms_triangle(sides.to_array()) {
             let [a, b, c] = sides.to_array();
-            let (longest, [one, other], place) = if a >= b && a >= c {
-                (a, [b, c], "first")
+            let (place, longest, one, other) = if a >= b && a >= c {
+                ("first", a, b, c)
             } else if b >= c {
-                (b, [a, c], "second")
+                ("second", b, a, c)
             } else {
-                (c, [a, b], "third")
+                ("third", c, a, b)
             };
-            let long = numbers::beside(longest, &[one + other, one, other]);
-            let [one, other] = [(one, other), (other, one)]
-                .map(|(x, y)| (x, numbers::beside(x, &[longest - y, longest])));
-            let shown = |x: f64| match x {
-                x if x == longest => long.clone(),
-                x if x == one.0 => one.1.clone(),
-                _ => other.1.clone(),
-            };
-            self.problems.push(Problem::NotATriangle {
-                a: shown(a),
-                b: shown(b),
-                c: shown(c),
-                help: format!(
-                    "make the {place} side shorter than the two others together, or each of them longer"
-                ),
-                span: block.given("sides").map_or(block.keyword, |given| given.span),
-                label: format!("{long} is not less than {} + {}", one.1, other.1),
-            });
+            let [a, b, c] = [a, b, c].map(numbers::short);
+            let longest = numbers::beside(longest, &[one + other]);
+            let [one, other] = [one, other].map(numbers::short);
+            let span = block
+                .given("sides")
+                .map_or(block.keyword, |given| given.span);
+            let message = format!("sides of {a}, {b} and {c} do not form a triangle");
+            let help = format!(
+                "make the {place} side shorter than the two others together, or each of them longer"
+            );
+            self.problems.push(
+                error("not_a_triangle", message)
+                    .at(span, format!("{longest} is not less than {one} + {other}"))
+                    .help(help),
+            );
             return None;
         }
         Some(Outline::Centered(CenteredTriangle {

@@ -1,22 +1,22 @@
 //! The value of a field: of the type that the field takes, and within its range.
 
-use super::{
-    Lowering,
-    words::{list_for, range_words, right_type, shown},
-};
+use glam::DVec3;
+
+use super::Lowering;
 use crate::{
+    diagnostic::Diagnostic,
+    math::Angle,
+    numbers,
     scene::{
-        error::{Found, Problem},
-        eval::{Evaluator, WithUnit},
-        fix,
-        schema::{self, Condition, Field, Type},
+        error::error,
+        eval::{Evaluator, in_bytes},
+        schema::{self, Condition, Field, Preset, Type},
         value::Value,
     },
-    source::Span,
     suggest,
     syntax::{
         shorten,
-        tree::{self, ValueKind},
+        tree::{self, Element, ValueKind},
     },
 };
 
@@ -24,207 +24,141 @@ impl<'s> Lowering<'s> {
     /// The value of a field, if it is of the field's type and keeps its conditions.
     pub(super) fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
         let before = self.problems.len();
-        let value = match row.takes {
-            Type::Method => return self.method(row, tree),
-            takes => match self.evaluate(tree, Some(takes)) {
-                Some(value) => value,
-                None => {
-                    self.parts_of_list(row, tree);
-                    return None;
-                }
-            },
+        let value = match (row.takes, &tree.kind) {
+            (Type::Method, ValueKind::Name(written)) => return self.method(written, tree),
+            (Type::Vector | Type::Colors, _) => self.evaluate(tree, Some(row.takes))?,
+            (_, ValueKind::Tuple(elements)) if elements.len() != 3 => {
+                self.list(row, tree, elements);
+                return None;
+            }
+            _ => self.evaluate(tree, Some(row.takes))?,
         };
         if value.kind() != row.takes {
-            self.wrong_type(row, tree, value);
+            let problem = self.wrong_type(row, tree, value);
+            self.problems.push(problem);
             return None;
         }
         let broken = row.must.iter().find(|condition| !condition.holds(value));
-        if let Some(&condition) = broken {
-            let rounded_to_zero = matches!(
-                (&tree.kind, self.problems.last()),
-                (
-                    ValueKind::Number(_),
-                    Some(Found {
-                        problem: Problem::NumberUnderflow { .. },
-                        ..
-                    })
-                )
-            ) && self.problems.len() > before;
-            if rounded_to_zero {
-                self.problems.truncate(before);
-            }
-            let found = match (&tree.kind, value) {
-                (ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. }, value) => {
-                    shown(value, condition)
-                }
-                _ if rounded_to_zero => {
-                    format!(
-                        "{}, which rounds to 0",
-                        shorten(self.sources.text(tree.span))
-                    )
-                }
-                _ => shorten(self.sources.text(tree.span)),
-            };
-            self.out_of_range(row, condition, tree, value, &found);
-            return None;
-        }
-        Some(value)
-    }
-
-    /// A list of numbers that is no vector: says what the field takes in place of it.
-    fn parts_of_list(&mut self, row: &'static Field, tree: &tree::Value<'s>) {
-        let last = self.problems.last().map(|found| &found.problem);
-        let (Some(Problem::PartCount { span, .. }), ValueKind::Tuple(elements)) =
-            (last, &tree.kind)
-        else {
-            return;
+        let Some(&condition) = broken else {
+            return Some(value);
         };
-        if *span != tree.span || row.takes == Type::Colors {
-            return;
-        }
-        let texts = elements
-            .iter()
-            .map(|element| self.sources.text(element.value.span));
-        let texts: Vec<&str> = texts.collect();
-        let (help, instead) = list_for(row, &texts);
-        match (row.takes, self.problems.last_mut()) {
-            (
-                Type::Vector,
-                Some(Found {
-                    problem: Problem::PartCount { help: said, .. },
-                    fixes,
-                }),
-            ) => {
-                if let Some(help) = help {
-                    *said = help;
-                }
-                if let Some(instead) = instead {
-                    *fixes = fix::instead(tree.span, instead);
+        // That a number rounds to 0 is why it does not hold.
+        let is_rounded = self.problems.len() > before;
+        self.problems.truncate(before);
+        let written = shorten(self.sources.text(tree.span));
+        let found = match (&tree.kind, value) {
+            _ if is_rounded => format!("{written}, which rounds to 0"),
+            (ValueKind::Name(_) | ValueKind::Call(_) | ValueKind::Chain { .. }, value) => {
+                match value {
+                    Value::Number(number) => numbers::beside(number, &[number.round()]),
+                    Value::Angle(Angle {
+                        degrees,
+                        radians: 0.0,
+                    }) => format!("{}deg", numbers::beside(degrees, &[degrees.round()])),
+                    _ => value.to_string(),
                 }
             }
-            _ => {
-                self.problems.pop();
-                let problem = Problem::WrongType {
-                    name: row.name.to_owned(),
-                    takes: row.takes.noun(),
-                    written: self.evaluator().quoted(tree.span),
-                    found: "a list of numbers".to_owned(),
-                    help: help.unwrap_or_else(|| {
-                        format!("write {}, such as `{}`", row.takes.noun(), row.example())
-                    }),
-                    span: tree.span,
-                    label: "a list of numbers".to_owned(),
-                }
-                .with(fix::instead(tree.span, instead.unwrap_or_default()));
-                self.problems.push(problem);
-            }
-        }
-    }
-
-    fn method(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
-        let list = suggest::list(schema::method_names());
-        let ValueKind::Name(written) = tree.kind else {
-            if !matches!(tree.kind, ValueKind::Bad | ValueKind::Missing) {
-                let found = self.evaluate(tree, None)?.kind();
-                let problem = Problem::WrongType {
-                    name: row.name.to_owned(),
-                    takes: row.takes.noun(),
-                    written: self.evaluator().quoted(tree.span),
-                    found: found.noun().to_owned(),
-                    help: format!("the methods are {list}"),
-                    span: tree.span,
-                    label: found.noun().to_owned(),
-                };
-                self.problems.push(problem);
-            }
-            return None;
+            _ => written,
         };
-        if let Some(method) = schema::method(written) {
-            return Some(Value::Method(method));
-        }
-        let near = schema::nearest_method(written);
-        let help = match near {
-            Some(near) => format!("did you mean `{near}`? The methods are {list}."),
-            None => format!("the methods are {list}"),
-        };
+        let message = format!("`{}` must be {condition}, and it is {found}", row.name);
+        let allowed = allowed(row, condition, value);
         self.problems.push(
-            Problem::UnknownMethod {
-                written: written.to_owned(),
-                help,
-                span: tree.span,
-            }
-            .with(fix::written(tree.span, near)),
+            error("out_of_range", message)
+                .at(tree.span, "out of range")
+                .help(format!("write, for example, `{} {allowed}`", row.name))
+                .writing(tree.span, [allowed]),
         );
         None
     }
 
-    fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) {
-        let evaluator = self.evaluator();
-        let label = evaluator.described(tree, value.kind());
-        let written = evaluator.quoted(tree.span);
-        let whole = evaluator.sources.text(tree.span);
-        let problem = if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
-            let units = evaluator.units(tree);
-            // A unit that cannot be meant is not offered: `fov 45rad` would be the next mistake.
-            let fits = |unit: &&WithUnit| row.allows(Value::Angle(unit.unit.of(number)));
-            let fitting: Vec<&WithUnit> = units.iter().filter(fits).collect();
-            let [first, second] = &units;
-            Problem::BareAngle {
-                what: format!("`{}`", row.name),
-                written,
-                help: match fitting.as_slice() {
-                    [only] => format!("write `{}`", only.shown),
-                    _ => format!("write `{}` (or `{}`)", first.shown, second.shown),
-                },
-                span: tree.span,
-                label,
+    /// Reports a list in the place of something that is none.
+    fn list(&mut self, row: &'static Field, tree: &tree::Value<'s>, elements: &[Element<'s>]) {
+        for element in elements {
+            if self.evaluate(&element.value, None).is_none() {
+                return;
             }
-            .with(fix::instead(
-                tree.span,
-                fitting.iter().map(|unit| unit.text.clone()),
-            ))
-        } else {
-            let (help, instead) = right_type(row, tree, value, whole);
-            Problem::WrongType {
-                name: row.name.to_owned(),
-                takes: row.takes.noun(),
-                written,
-                found: value.kind().noun().to_owned(),
-                help,
-                span: tree.span,
-                label,
+        }
+        let texts = elements.iter();
+        let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
+        let meant = match (row.takes, texts.as_slice()) {
+            (Type::Color, [r, g, b, _]) => Some(format!("rgb({r}, {g}, {b})")),
+            // A field without a default, such as `far`, has conditions of its own.
+            (Type::Number, [first, second])
+                if first == second && matches!(row.preset, Preset::Value(_)) =>
+            {
+                Some((*first).to_owned())
             }
-            .with(fix::instead(tree.span, instead))
+            _ => None,
         };
+        let problem = self
+            .of_type(row, tree, "a list", meant)
+            .at(tree.span, "a list");
         self.problems.push(problem);
     }
 
-    fn out_of_range(
+    fn method(&mut self, written: &str, tree: &tree::Value<'s>) -> Option<Value> {
+        if let Some(method) = schema::method(written) {
+            return Some(Value::Method(method));
+        }
+        let list = suggest::list(schema::method_names());
+        let near = schema::nearest_method(written);
+        self.problems.push(
+            error("unknown_method", format!("there is no method `{written}`"))
+                .at(tree.span, "not a method")
+                .help(match near {
+                    Some(near) => format!("did you mean `{near}`? The methods are {list}."),
+                    None => format!("the methods are {list}"),
+                })
+                .writing(tree.span, near),
+        );
+        None
+    }
+
+    fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) -> Diagnostic {
+        let text = self.sources.text(tree.span);
+        let meant = match (row.takes, value, &tree.kind) {
+            (Type::Angle, Value::Number(number), _) => {
+                let what = format!("`{}`", row.name);
+                // `fov 45rad` would be the next mistake.
+                return self.evaluator().bare_angle(&what, tree, |unit| {
+                    row.allows(Value::Angle(unit.of(number)))
+                });
+            }
+            (Type::Number, Value::Angle(_), ValueKind::Angle { number, .. }) => {
+                Some((*number).to_owned())
+            }
+            (Type::Vector, Value::Number(_), ValueKind::Number(_))
+                if row.must.contains(&Condition::EachMoreThanZero) =>
+            {
+                Some(format!("({text}, {text}, {text})"))
+            }
+            (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
+            _ => None,
+        };
+        let label = self.evaluator().described(tree, value.kind());
+        self.of_type(row, tree, value.kind().noun(), meant)
+            .at(tree.span, label)
+    }
+
+    /// What is wrong with a value that is not of the field's type, and what was probably meant.
+    fn of_type(
         &mut self,
         row: &Field,
-        condition: Condition,
         tree: &tree::Value<'s>,
-        value: Value,
         found: &str,
-    ) {
-        let (label, help, instead) = range_words(row, condition, value);
-        let message = match condition {
-            Condition::NotZero => format!("`{}` must not be zero", row.name),
-            _ => format!("`{}` must be {condition}, and it is {found}", row.name),
-        };
-        let (span, label) = match part_not_above_zero(condition, tree, value) {
-            Some(part) => (part, "not above 0"),
-            None => (tree.span, label),
-        };
-        self.problems.push(
-            Problem::OutOfRange {
-                message,
-                help,
-                span,
-                label: label.to_owned(),
-            }
-            .with(fix::instead(tree.span, instead)),
-        );
+        meant: Option<String>,
+    ) -> Diagnostic {
+        let (name, takes) = (row.name, row.takes.noun());
+        let written = self.evaluator().quoted(tree.span);
+        error(
+            "wrong_type",
+            format!("`{name}` is {takes}, and {written} is {found}"),
+        )
+        .help(match &meant {
+            Some(meant) => format!("write `{}`", shorten(meant)),
+            None => format!("write {takes}, such as `{}`", row.example()),
+        })
+        .writing(tree.span, meant)
     }
 
     pub(super) fn evaluate(
@@ -244,13 +178,35 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// The first part of a written vector that is not above 0, if all were to be.
-fn part_not_above_zero(condition: Condition, tree: &tree::Value<'_>, value: Value) -> Option<Span> {
-    let (Condition::EachMoreThanZero, ValueKind::Tuple(parts), Value::Vector(v)) =
-        (condition, &tree.kind, value)
-    else {
+/// A value that keeps a condition, in the place of one that does not.
+fn allowed(row: &Field, condition: Condition, value: Value) -> String {
+    match (condition, value) {
+        (Condition::Whole, Value::Number(number)) if number.abs() < 1e15 => {
+            number.round().max(1.0).to_string()
+        }
+        (Condition::MoreThan(bound), Value::Number(number)) if number < bound => {
+            numbers::short(-number)
+        }
+        (Condition::AtLeast(bound), _) => bound.to_string(),
+        (Condition::AtMostTwoTo(power), _) => (1_u64 << power).to_string(),
+        (Condition::LessThanTwoTo(power), _) => ((1_u64 << power) - 1).to_string(),
+        _ => row.example(),
+    }
+}
+
+/// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to 255.
+pub(super) fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<String> {
+    let ValueKind::Tuple(elements) = &tree.kind else {
         return None;
     };
-    let mut parts = parts.iter().zip(v.to_array());
-    parts.find_map(|(part, x)| (x <= 0.0).then_some(part.value.span))
+    let is_literal = |element: &Element<'_>| matches!(element.value.kind, ValueKind::Number(_));
+    if parts.min_element() < 0.0 || parts.max_element() > 255.0 {
+        return None;
+    }
+    if parts.max_element() > 1.0 {
+        return Some(format!("rgb{text}"));
+    }
+    let bytes = parts.to_array().map(in_bytes).join(", ");
+    let are_literals = elements.iter().all(is_literal);
+    are_literals.then(|| format!("rgb({bytes})"))
 }

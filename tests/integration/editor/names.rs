@@ -91,12 +91,12 @@ fn names_that_will_not_do_are_refused_with_the_reason() {
     let refused = |text, new| renamed(text, new).expect_err("it will not do");
     assert_eq!(
         refused("let a = 1\nlet b = $0a", "b"),
-        "`b` is taken: it is defined in line 2"
+        "`b` is taken: it stands in line 2"
     );
     // Nothing defines it yet, and it would be another value from then on.
     assert_eq!(
         refused("let $0a = 1\nsphere { center (0, 0, 0) radius q }", "q"),
-        "`q` is taken: line 2 uses it, though nothing defines it"
+        "`q` is taken: it stands in line 2"
     );
     assert_eq!(
         refused("let $0a = 1", "Olive"),
@@ -120,7 +120,7 @@ fn names_that_will_not_do_are_refused_with_the_reason() {
     );
     assert_eq!(
         refused("sphere $0A {} box B {}", "B"),
-        "`B` is taken: it is defined in line 1"
+        "`B` is taken: it stands in line 1"
     );
 }
 

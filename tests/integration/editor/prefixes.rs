@@ -7,7 +7,7 @@ use pinhole::{
     color::Color,
     editor::{
         Analysis, completions, definition, fixes, folds, formatting, hints, hover, occurrences,
-        presentations, renamable, rename, selection, semantic_tokens, signature, swatches, symbols,
+        presentations, renamable, rename, semantic_tokens, signature, swatches, symbols,
     },
     format,
     source::{Source, SourceId, Sources, Span},
@@ -41,10 +41,6 @@ fn ask(analysis: &Analysis<'_>, at: usize) {
         rename(analysis, at, "a_new_name_for_it").is_ok(),
         !found.is_empty()
     );
-    let selection = selection(analysis, at);
-    for pair in selection.windows(2) {
-        assert!(pair[1].start <= pair[0].start && pair[0].end <= pair[1].end);
-    }
 }
 
 /// Asks everything there is about the whole text.

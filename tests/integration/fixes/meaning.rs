@@ -46,10 +46,6 @@ fn fields_by_their_meaning() {
             "sphere { center (0, 0, 0)  radius 1 }",
         ),
         (
-            "sphere { center (0, 0, 0)  diameter 2 + 1 }",
-            "sphere { center (0, 0, 0)  radius (2 + 1) / 2 }",
-        ),
-        (
             "sphere { center (0, 0, 0)  radius2 }",
             "sphere { center (0, 0, 0)  radius 2 }",
         ),

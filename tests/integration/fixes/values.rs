@@ -12,9 +12,6 @@ fn edits_keep_all_that_is_written() {
     let fixes = offered(&text(sum));
     assert_eq!(fixes[0].1, text(&format!("({sum}) * 1deg")));
     assert_eq!(fixes[1].1, text(&format!("({sum}) * 1rad")));
-    // Nothing that would be cut is offered.
-    assert!(offered(&text(&format!("sqrt({sum}, 2)"))).is_empty());
-    assert_eq!(offered(&text("atan2(0.25)"))[0].1, text("atan2(0.25, 2)"));
 }
 
 #[test]
@@ -59,25 +56,14 @@ fn operands_that_do_not_go_together_are_made_to() {
         assert_eq!(texts, after);
     };
     let value = "let a = ";
-    fixed(value, "v + 2", &["v + (2, 2, 2)", "v * 2"]);
-    fixed(value, "2 - v", &["(2, 2, 2) - v", "2 * v"]);
+    fixed(value, "v + 2", &["v + (2, 2, 2)"]);
+    fixed(value, "2 - v", &["(2, 2, 2) - v"]);
     fixed(value, "1 + 2 + v", &["(1 + 2, 1 + 2, 1 + 2) + v"]);
     fixed(value, "v + w - 2 * 3", &["v + w - (2 * 3, 2 * 3, 2 * 3)"]);
-    fixed(value, "v * w", &["dot(v, w)", "cross(v, w)"]);
-    fixed(value, "2 * v * w", &["dot(2 * v, w)", "cross(2 * v, w)"]);
-    fixed(value, "1 / w", &["1 / length(w)"]);
-    fixed(value, "1 / (0 * w)", &[]);
-    fixed(value, "30deg * 2deg", &["30deg * (2deg / 1deg)"]);
-    fixed(value, "3 / 2deg", &["3 / (2deg / 1deg)"]);
-    fixed(
-        value,
-        "v + // two\n2",
-        &["v + // two\n(2, 2, 2)", "v * // two\n2"],
-    );
+    fixed(value, "v * w", &[]);
+    fixed(value, "30deg + 2", &["30deg + 2deg", "30deg + 2rad"]);
+    fixed(value, "v + // two\n2", &["v + // two\n(2, 2, 2)"]);
     // What is wanted decides.
-    let center = "sphere { center (0, 1, 0)  radius length(w) }\nsphere { center ";
-    fixed(center, "v * w }", &["cross(v, w) }"]);
-    fixed("sphere { center v  radius ", "v * w }", &["dot(v, w) }"]);
     fixed("sphere { center v  radius ", "v + 2 }", &[]);
     fixed("let a = ", "red + blue", &[]);
     // No comment is lost.
@@ -86,17 +72,7 @@ fn operands_that_do_not_go_together_are_made_to() {
 
 #[test]
 fn parts_and_degrees_are_written_out() {
-    for (before, after) in [
-        ("sphere { center (1, 2) }", "sphere { center (1, 2, 1) }"),
-        (
-            "let a = 10deg sphere { center (0, 1, 0)  radius a + 2deg }",
-            "let a = 10deg sphere { center (0, 1, 0)  radius (a + 2deg) / 1deg }",
-        ),
-        (
-            "let a = 10deg sphere { center (0, 1, 0)  radius a }",
-            "let a = 10deg sphere { center (0, 1, 0)  radius a / 1deg }",
-        ),
-    ] {
+    for (before, after) in [("sphere { center (1, 2) }", "sphere { center (1, 2, 2) }")] {
         let offered = offered(&of_scene(before));
         let texts: Vec<&str> = offered.iter().map(|(_, text)| text.as_str()).collect();
         assert_eq!(texts, [of_scene(after)]);
@@ -126,20 +102,4 @@ fn a_corner_lies_on_the_right_side_of_the_other() {
     );
     // They would be as wrong the other way round.
     assert!(offered(&format!("{camera}box {{ min (0, 0, 0)  max (1, 0, 1) }}")).is_empty());
-}
-
-#[test]
-fn a_call_keeps_the_numbers_that_it_has() {
-    for (before, after) in [
-        ("atan2(1)", "atan2(1, 2)"),
-        ("atan2(3 + 4)", "atan2(3 + 4, 2)"),
-        ("max(y)", "max(y, 2)"),
-        ("rgb(1, 2)", "rgb(1, 2, 0)"),
-    ] {
-        let scene = |call| of_scene(&format!("let y = 1\nlet a = {call}"));
-        let title = format!("write `{after}`");
-        offers(&scene(before), &[(title.as_str(), &scene(after))]);
-    }
-    // A colour is no number.
-    offers(&of_scene("let a = rgb(olive)"), &[]);
 }

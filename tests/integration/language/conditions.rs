@@ -114,17 +114,17 @@ fn up_along_the_view_is_a_warning_exactly_where_it_is() {
         let found = scene::read(&sources(&text)).diagnostics;
         found[0].help.clone().expect("a help")
     };
-    for (fields, top, up) in [
-        ("direction (0, -1, 0)", "−z", "(0, 0, -1)"),
-        ("direction (0, 1, 0)", "+z", "(0, 0, 1)"),
-        ("direction (0, -1, 0) up (0, -1, 0)", "+z", "(0, 0, 1)"),
-        ("direction (0, 1, 0) up (0, -1, 0)", "−z", "(0, 0, -1)"),
-        ("direction (0, 0, -1) up (0, 0, 1)", "+y", "(0, 1, 0)"),
-        ("direction (-1, 0, 0) up (1, 0, 0)", "−z", "(0, 0, -1)"),
-        ("direction (0, -1, 0) up (0, 1e300, 0)", "−z", "(0, 0, -1)"),
+    for (fields, up) in [
+        ("direction (0, -1, 0)", "(0, 0, -1)"),
+        ("direction (0, 1, 0)", "(0, 0, 1)"),
+        ("direction (0, -1, 0) up (0, -1, 0)", "(0, 0, 1)"),
+        ("direction (0, 1, 0) up (0, -1, 0)", "(0, 0, -1)"),
+        ("direction (0, 0, -1) up (0, 0, 1)", "(0, 1, 0)"),
+        ("direction (-1, 0, 0) up (1, 0, 0)", "(0, 0, -1)"),
+        ("direction (0, -1, 0) up (0, 1e300, 0)", "(0, 0, -1)"),
     ] {
         let help = help(&format!("eye (0, 0, 0) {fields}"));
-        assert!(help.contains(top) && help.contains(up), "{fields}: {help}");
+        assert!(help.contains(up), "{fields}: {help}");
     }
 }
 

@@ -72,19 +72,6 @@ fn what_does_not_follow_from_it_is_reported() {
 }
 
 #[test]
-fn what_is_set_is_not_forgotten_when_a_name_is_changed() {
-    let text =
-        "let red = 5\ncamera { eye (0, 1, 5)  lookat (0, 0, 0) }\nsphere S { center (0, 1, 0) }\n";
-    let fixes = |sets: &[&str]| {
-        let sources = Sources::new(Source::from_text("a.scn", text)).with_sets(sets);
-        let found = scene::read(&sources).diagnostics;
-        found.first().map(|diagnostic| diagnostic.fixes.len())
-    };
-    assert_eq!(fixes(&[]), Some(1));
-    assert_eq!(fixes(&["S.radius=red"]), Some(0));
-}
-
-#[test]
 fn the_names_in_what_cannot_be_one_are_known() {
     let uses = "let b = a  sphere { center (0, b, 0)  radius 2 * a }";
     for start in [

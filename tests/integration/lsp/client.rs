@@ -2,12 +2,10 @@
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
-    path::Path,
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
 };
 
 use serde_json::{Value, json};
-use tempfile::TempDir;
 
 pub const URI: &str = "file:///home/somebody/a%20scene.scn";
 
@@ -18,24 +16,13 @@ pub struct Client {
     requests: i32,
     /// The last diagnostics that came before a response.
     told: Value,
-    /// The user's caches, if they are its own.
-    caches: Option<TempDir>,
 }
 
 impl Client {
     /// The server, to which nothing was said yet.
     pub fn start() -> Self {
-        let caches = tempfile::tempdir().expect("a folder");
-        let mut client = Self::start_with(caches.path());
-        client.caches = Some(caches);
-        client
-    }
-
-    /// The same for a user with these caches.
-    pub fn start_with(caches: &Path) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
             .arg("lsp")
-            .env("XDG_CACHE_HOME", caches)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -49,7 +36,6 @@ impl Client {
             output: BufReader::new(output),
             requests: 0,
             told: Value::Null,
-            caches: None,
         }
     }
 

@@ -1,6 +1,5 @@
 //! The language server from outside: the binary, and what goes through its standard input and output.
 
 mod client;
-mod links;
 mod neovim;
 mod session;

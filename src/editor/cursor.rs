@@ -1,0 +1,245 @@
+//! What could stand at a place of a text in which somebody types.
+//!
+//! A made-up name takes the place of the word there, and the text is parsed as any other: where that name is in the tree tells what
+//! could stand there.
+
+use super::{
+    Analysis,
+    analysis::Path,
+    tokens::{Role, Token, file},
+};
+use crate::{
+    scene::schema::{self, Type},
+    source::{Source, SourceId, Span},
+    syntax::{
+        self,
+        tree::{self, Block, ValueKind},
+    },
+};
+
+/// A name that nobody gives to anything.
+const CURSOR: &str = "__cursor__";
+
+/// A place in a text, with what stands around it.
+#[derive(Clone, Debug)]
+pub struct Situation {
+    /// What could stand here.
+    pub expected: Expected,
+    /// The block around it, if its kind is known.
+    pub block: Option<&'static schema::Block>,
+    /// The fields that are given in that block, the word at the place excepted.
+    pub given: Vec<&'static str>,
+    /// The field whose value it is.
+    pub field: Option<&'static schema::Field>,
+    /// The type that would fit, if it is known.
+    pub wanted: Option<Type>,
+    /// The name that is being defined: it cannot use itself.
+    pub defining: Option<Span>,
+    /// Whether it is a whole value, nothing of which stands here yet.
+    pub is_whole_value: bool,
+    /// Whether what belongs to the word follows it: the braces of a block, the value of a field, the arguments of a function.
+    pub goes_on: bool,
+    /// The word that is being typed, or nothing.
+    pub word: Span,
+}
+
+/// What could stand at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// `let`, or a block.
+    Item,
+    /// A field of the block.
+    Field,
+    /// A value, or a part of one.
+    Value,
+}
+
+/// What could stand at a place; none within comments, numbers and new names.
+pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
+    let ends = |token: &Token| token.span.end == at && !is_part(analysis, token);
+    let word = touched(analysis, at, |token| token.span.start < at && !ends(token))?;
+    let is_word = word.range().is_empty() || analysis.slice(word).starts_with(is_letter);
+    let ask = |path: Path<'_, '_>| of_path(path, word);
+    is_word.then(|| with_cursor(analysis, word, ask)).flatten()
+}
+
+/// The innermost call around a place, by the place of the function's name, and which of its arguments is written there.
+pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
+    let word = touched(analysis, at, |token| is_part(analysis, token))?;
+    with_cursor(analysis, word, |path| {
+        let around = path.values.iter().zip(path.values.iter().skip(1));
+        let mut calls = around.filter_map(|(outer, inner)| match &outer.kind {
+            ValueKind::Call(call) => {
+                let mut arguments = call.arguments.iter();
+                let index = arguments.position(|it| it.value.span == inner.span)?;
+                Some((call.function.span, index))
+            }
+            _ => None,
+        });
+        calls.next_back()
+    })
+}
+
+/// Whether a token is a part of a value by itself: a word, a number or the code of a colour.
+fn is_part(analysis: &Analysis<'_>, token: &Token) -> bool {
+    matches!(token.role, Role::Number | Role::ColorCode)
+        || analysis.slice(token.span).starts_with(is_letter)
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_ascii_alphabetic() || c == '_'
+}
+
+/// The token that a place touches, of those that are meant, or the place itself; none within comments.
+fn touched(analysis: &Analysis<'_>, at: usize, is_meant: impl Fn(&Token) -> bool) -> Option<Span> {
+    let comments = analysis.comments();
+    let next = comments.partition_point(|comment| comment.end < at);
+    let is_in_comment = comments.get(next).is_some_and(|comment| {
+        // Behind `*/` the comment is over; a comment to the end of the line is not over before it.
+        let is_closed = comment.end == at && analysis.slice(*comment).ends_with("*/");
+        comment.start < at && !is_closed
+    });
+    let tokens = &analysis.tokens;
+    let first = tokens.partition_point(|token| token.span.end < at);
+    let mut touching = tokens.iter().skip(first);
+    let token = touching
+        .by_ref()
+        .take_while(|token| token.span.start <= at)
+        .find(|token| is_meant(token));
+    (!is_in_comment).then(|| token.map_or(file(at, at), |token| token.span))
+}
+
+/// What is said of the made-up name in the place of a word, by what stands around it in the tree.
+fn with_cursor<T>(
+    analysis: &Analysis<'_>,
+    word: Span,
+    ask: impl FnOnce(Path<'_, '_>) -> Option<T>,
+) -> Option<T> {
+    let (before, after) = (
+        analysis.text().get(..word.start)?,
+        analysis.text().get(word.end..)?,
+    );
+    let apart = if word.range().is_empty() { " " } else { "" };
+    // Of a list that is not closed behind the place the tree keeps nothing.
+    let mut closing = String::new();
+    loop {
+        let text = format!("{before}{CURSOR}{closing}{apart}{after}");
+        let source = Source::from_text("", text);
+        let parsed = syntax::parse(&source, SourceId::File);
+        let path = Path::new(&parsed.tree.items, word.start + 1);
+        let is_lost = path
+            .values
+            .last()
+            .is_some_and(|it| matches!(it.kind, ValueKind::Bad));
+        if !is_lost || !closing.is_empty() {
+            return ask(path);
+        }
+        closing = ")".repeat(open_lists(analysis, word.start).max(1));
+    }
+}
+
+/// How many lists are open at a place.
+fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
+    let before = analysis.tokens.iter();
+    let before = before.take_while(|token| token.span.end <= at);
+    before.fold(0, |open, token| match analysis.slice(token.span) {
+        "(" => open + 1,
+        ")" => usize::saturating_sub(open, 1),
+        "{" | "}" | "let" => 0,
+        _ => open,
+    })
+}
+
+fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
+    let row = path.block.and_then(|block| {
+        let kind = block.kind?.text;
+        schema::block(kind).or_else(|| schema::nearest_block(kind))
+    });
+    let given = path.block.into_iter().flat_map(|block| &block.fields);
+    let given = given.filter_map(|field| Some(row?.field(field.name.text)?.name));
+    let mut situation = Situation {
+        expected: Expected::Item,
+        block: row,
+        given: given.collect(),
+        field: None,
+        wanted: None,
+        defining: path.definition.and_then(|it| it.name).map(|name| name.span),
+        is_whole_value: false,
+        goes_on: false,
+        word,
+    };
+    if let (Some(last), true) = (path.values.last(), holds_value(&path)) {
+        situation.expected = Expected::Value;
+        situation.field = path.field.and_then(|field| row?.field(field.name.text));
+        situation.wanted = wanted(&path, situation.field.map(|field| field.takes));
+        situation.is_whole_value =
+            path.values.len() == 1 && is_cursor(last) && word.start == word.end;
+        situation.goes_on = matches!(last.kind, ValueKind::Call(_));
+    } else if let Some(field) = path.field {
+        situation.expected = Expected::Field;
+        // The next field would be read as its value.
+        let next = match &field.value.kind {
+            ValueKind::Name(name) => Some(*name),
+            ValueKind::Call(call) => Some(call.function.text),
+            _ => None,
+        };
+        let next = next.and_then(|name| row?.field(name));
+        situation.given.extend(next.map(|next| next.name));
+        let is_empty = matches!(field.value.kind, ValueKind::Missing | ValueKind::Bad);
+        situation.goes_on = !is_empty && next.is_none();
+    } else if let Some(block) = path.block {
+        situation.expected = expected_in(block, word.start)?;
+        // A block that stands behind the place would be read as its name.
+        let is_own =
+            |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
+        situation.goes_on = block.open.is_some() && is_own(block);
+    } else if path.definition.is_some() {
+        return None;
+    }
+    situation.goes_on &= word.start < word.end;
+    Some(situation)
+}
+
+/// Whether a place lies in a value of the tree, and not in the name of the field or the definition.
+fn holds_value(path: &Path<'_, '_>) -> bool {
+    path.field.is_none_or(|field| field.name.text != CURSOR)
+        && path
+            .definition
+            .and_then(|it| it.name)
+            .is_none_or(|name| name.text != CURSOR)
+}
+
+fn is_cursor(value: &tree::Value<'_>) -> bool {
+    matches!(value.kind, ValueKind::Name(CURSOR))
+}
+
+/// What could stand in a block where none of its fields is; none in its head.
+fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
+    if block.kind.is_some_and(|kind| kind.text == CURSOR) {
+        return Some(Expected::Item);
+    }
+    let is_inside = block.open.is_some_and(|open| open.end <= at);
+    is_inside.then_some(Expected::Field)
+}
+
+/// The type that would fit in the innermost list.
+fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
+    let mut wanted = takes;
+    for (outer, inner) in path.values.iter().zip(path.values.iter().skip(1)) {
+        wanted = match &outer.kind {
+            ValueKind::Call(call) => {
+                let mut arguments = call.arguments.iter();
+                let index = arguments.position(|it| it.value.span == inner.span)?;
+                schema::function(call.function.text)?.parameter(index)
+            }
+            ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
+                Some(Type::Colors) => Some(Type::Color),
+                // Parentheses around a part of an expression, or those of a vector: both hold numbers most of the time.
+                Some(Type::Vector) => Some(Type::Number),
+                wanted => wanted,
+            },
+            _ => wanted,
+        };
+    }
+    wanted
+}

@@ -1,0 +1,76 @@
+//! The table of sampling techniques.
+
+use crate::suggest::{self, is_among};
+
+/// A row for each technique: what it is in the program, its word, what it is, and other words that people try for it.
+macro_rules! methods {
+    ($($method:ident $name:literal $help:literal [$($tried:literal)*])*) => {
+        /// A sampling technique.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Method {
+            $(#[doc = $help] $method,)*
+        }
+
+        impl Method {
+            /// Its word in the language.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$method => $name,)*
+                }
+            }
+        }
+
+        /// Every sampling technique, with a line of help.
+        pub const METHODS: &[(Method, &str)] = &[$((Method::$method, $help)),*];
+
+        /// Other words that people try for methods.
+        const ALSO_TRIED: &[(Method, &[&str])] = &[$((Method::$method, &[$($tried),*])),*];
+    };
+}
+
+methods! {
+    Regular "regular" "an even grid, centred" ["grid" "uniform_grid" "centered"]
+    Random "random" "independent and uniform" ["monte_carlo" "independent" "white_noise"]
+    Jittered "jittered" "one at random in each cell of a grid" ["stratified"]
+    NRooks "n_rooks" "one in each row and each column" ["latin_hypercube" "lhs" "rooks"]
+    MultiJittered "multi_jittered" "jittered and n_rooks at once" ["cmj" "correlated_multi_jittered"]
+    Hammersley "hammersley" "the Hammersley points, shifted per pixel" []
+    Halton "halton" "the Halton points, shifted per pixel" []
+    Sobol "sobol" "Sobol' points with Owen scrambling, per pixel" ["owen" "low_discrepancy"]
+    Scatter "scatter" "points uniform over the whole picture" []
+    Exact "exact" "no samples: the mean itself, computed" ["analytic" "analytical"]
+}
+
+impl Method {
+    /// All that take samples, in the order of the language's table.
+    pub const SAMPLED: [Self; 9] = [
+        Self::Regular,
+        Self::Random,
+        Self::Jittered,
+        Self::NRooks,
+        Self::MultiJittered,
+        Self::Hammersley,
+        Self::Halton,
+        Self::Sobol,
+        Self::Scatter,
+    ];
+}
+
+/// A method, found by its name.
+pub fn method(name: &str) -> Option<Method> {
+    let mut methods = METHODS.iter().map(|&(method, _)| method);
+    methods.find(|method| method.name() == name)
+}
+
+/// The method that was probably meant, if any is near.
+pub fn nearest_method(written: &str) -> Option<&'static str> {
+    let mut tried = ALSO_TRIED.iter();
+    let tried = tried.find(|(_, words)| is_among(written, words));
+    let tried = tried.map(|(method, _)| method.name());
+    tried.or_else(|| suggest::nearest(written, method_names()))
+}
+
+/// The names of the methods.
+pub fn method_names() -> impl Iterator<Item = &'static str> {
+    METHODS.iter().map(|(method, _)| method.name())
+}
