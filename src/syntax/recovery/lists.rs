@@ -161,7 +161,7 @@ impl<'s> Recovery<'_, 's> {
                     Some(last) if last.comma.is_none() => last.comma = Some(comma),
                     _ => list.needless = list.needless.or(Some(comma)),
                 }
-            } else if self.ends_list() {
+            } else if self.ends_value() || self.is_next_item() {
                 let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
                 let fits = is_whole && count.contains(&list.elements.len());
                 self.unclosed(open, close, fits);
@@ -182,20 +182,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether a list must have ended before this: a brace, the end, `let`, or the name of a field.
-    fn ends_list(&mut self) -> bool {
-        let word = self.word(0);
-        match self.kind(0) {
-            TokenKind::End => true,
-            TokenKind::Name => {
-                word == "let"
-                    || (self.is_field_name(word) && !self.words.is_value(word))
-                    || (self.is_on_new_line(0) && (self.is_head(0) || !self.within.is_block))
-            }
-            TokenKind::Sign if word == "{" => !self.is_flat_list(),
-            TokenKind::Sign => matches!(word, "}" | ";" | "="),
-            _ => false,
-        }
+    /// Whether a definition's line ended before this name.
+    fn is_next_item(&mut self) -> bool {
+        !self.within.is_block && self.is_name(0) && self.is_on_new_line(0)
     }
 
     fn unclosed(&mut self, open: Span, close: &str, fits: bool) {

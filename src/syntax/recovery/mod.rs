@@ -150,6 +150,9 @@ impl<'w, 's> Recovery<'w, 's> {
         self.items.truncate(items);
         self.problems.truncate(problems);
         self.comments.truncate(comments);
+        for places in self.within.slips.values_mut() {
+            places.retain(|place| place.start < start);
+        }
         self.read_to = read_to;
         None
     }

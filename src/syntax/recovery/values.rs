@@ -158,7 +158,7 @@ impl<'s> Recovery<'_, 's> {
             let sign = self.bump();
             self.comments(Place::Value);
             if PRODUCT.contains(&self.word(0)) {
-                self.missing_operand("after", written, sign, None);
+                self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
                 left = bad(left.span.to(self.passed_operators()));
             } else if self.ends_value() {
                 left = self.without_operand(left, written, sign);
@@ -211,17 +211,13 @@ impl<'s> Recovery<'_, 's> {
             self.unknown_operator(written, sign, None);
         } else if SUM.contains(&written) {
             let fix = self.remove(format!("remove this `{written}`"), sign);
-            self.missing_operand("after", written, sign, Some(fix));
+            self.report(&say::MISSING_OPERAND, sign, &["after", written], Some(fix));
             return left;
         } else {
             // Without a factor the value would be of another type.
-            self.missing_operand("after", written, sign, None);
+            self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
         }
         bad(left.span.to(sign))
-    }
-
-    fn missing_operand(&mut self, side: &str, written: &str, sign: Span, fix: Option<Fix>) {
-        self.report(&say::MISSING_OPERAND, sign, &[side, written], fix);
     }
 
     /// Passes over operators that have no value before them, with the value behind them.
@@ -238,7 +234,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Whether no value can stand here: at what closes or separates, a field, or an item.
-    fn ends_value(&mut self) -> bool {
+    pub(super) fn ends_value(&mut self) -> bool {
         let word = self.word(0);
         match self.kind(0) {
             TokenKind::End => true,
@@ -297,7 +293,7 @@ impl<'s> Recovery<'_, 's> {
             (_, "{") if self.is_flat_list() => self.group("}"),
             _ if PRODUCT.contains(&word) => {
                 let sign = self.here();
-                self.missing_operand("before", word, sign, None);
+                self.report(&say::MISSING_OPERAND, sign, &["before", word], None);
                 bad(sign.to(self.passed_operators()))
             }
             _ => {
