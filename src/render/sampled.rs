@@ -12,7 +12,7 @@ use crate::{
     film::{self, Encoder, Film},
     sampling::Sampling,
     threads,
-    tracer::{GRID, Quartering, Room, World},
+    tracer::{GRID, Quartering, Scratch, World},
 };
 
 /// A tile has about so many samples, a few milliseconds' work: no thread waits longer for the others at the end.
@@ -75,9 +75,9 @@ fn film_and_rays<P: film::Pixel>(
     let side = tile_side(sampling);
     threads::install(control.threads, || {
         wanted(part, side, control).par_bridge().for_each_init(
-            || (Tally::new(colors.len()), Room::default()),
-            |(tally, room), tile| {
-                let Some(pixels) = renderer.tile(tile, tally, room) else {
+            || (Tally::new(colors.len()), Scratch::default()),
+            |(tally, scratch), tile| {
+                let Some(pixels) = renderer.tile(tile, tally, scratch) else {
                     return;
                 };
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);

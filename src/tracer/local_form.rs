@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// Roundings on the way to a value of a local form, generously counted.
-pub const ROUNDINGS: f64 = 16.0 * f64::UNIT;
+pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// A rectangle of the view plane.
 #[derive(Clone, Debug)]
@@ -103,7 +103,7 @@ impl LocalForm {
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
-        let rad = (inherited + (a + b + c) * ROUNDINGS + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + (a + b + c) * LOCAL_ROUNDING + 16.0 * f64::TINY) * UP;
         Self { factors, rad }
     }
 
@@ -134,7 +134,7 @@ impl LocalForm {
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
         let factors = [0, 1, 2].map(|i| self.factors[i] - k * other.factors[i]);
-        let inherited = self.rad + k.abs() * other.rad + sizes * ROUNDINGS;
+        let inherited = self.rad + k.abs() * other.rad + sizes * LOCAL_ROUNDING;
         Self::new(factors, inherited)
     }
 }
@@ -143,7 +143,7 @@ impl LocalQuadratic {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
-        let rad = (inherited + sizes * ROUNDINGS + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + sizes * LOCAL_ROUNDING + 16.0 * f64::TINY) * UP;
         Self { factors, rad }
     }
 

@@ -120,6 +120,17 @@ impl Default for Lanes {
 }
 
 impl PixelSurface {
+    /// Without boundaries, which would begin at a place among all lines.
+    pub(super) fn new(place: usize, start: usize) -> Self {
+        Self {
+            place,
+            edges: [start; 2],
+            conic: None,
+            pattern: Pattern::Plain(0.0),
+            depth: Depth::Unknown,
+        }
+    }
+
     /// What stands for one of its colours.
     pub(super) fn code(&self, odd: bool) -> f64 {
         (2 * self.place + 1 + usize::from(odd)) as f64
