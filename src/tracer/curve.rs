@@ -38,7 +38,7 @@ pub struct Line {
 
 /// A linear form in double-double.
 #[derive(Clone, Copy, Debug)]
-pub struct Fine {
+pub struct DoubleForm {
     /// The factors of x, y and 1.
     pub factors: [Double; 3],
     /// How far a value of the form may be from the true one, in the pixel.
@@ -112,7 +112,7 @@ impl<T: Real> SubPixelFrame<T> {
     /// The factors of some forms and a last one in the sub-pixel, scaled by one power of two to be about 1. A multiple of the last is subtracted
     /// from each of the others, which moves the board's origin near the sub-pixel: the one that makes it small at the corner where the last form
     /// is largest (elsewhere the last may be next to 0). Also whether the sum of the multiples is odd.
-    pub fn board_forms(&self, forms: [&Form<T>; 2], last: &Form<T>) -> ([Fine; 3], bool) {
+    pub fn board_forms(&self, forms: [&Form<T>; 2], last: &Form<T>) -> ([DoubleForm; 3], bool) {
         let (below, rad) = self.local(last);
         let [x, y] = [&below[0], &below[1]].map(|slope| 0.5_f64.copysign(slope.to_f64()));
         let corner = |[a, b, c]: &[T; 3]| a.to_f64() * x + b.to_f64() * y + c.to_f64();
@@ -136,7 +136,7 @@ impl<T: Real> SubPixelFrame<T> {
         let exponent = -size.exponent();
         let lines = local.map(|(factors, rad)| {
             let factors = factors.map(|factor| double(&factor.scaled(exponent)));
-            Fine {
+            DoubleForm {
                 rad: rad.scaled(exponent).to_f64(),
                 factors,
             }

@@ -155,15 +155,13 @@ impl<T: Real> Sphere<T> {
         };
         // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of it is the sharper one.
         let other = b * b - &self.power * &square;
-        let root = if other.rad < q.rad {
-            other.sqrt()
-        } else {
-            q.sqrt()
+        let root = match other.rad < q.rad {
+            true => other.sqrt(),
+            false => q.sqrt(),
         };
-        let inverse = if !b.mid.is_negative() {
-            square / (b + root)
-        } else {
-            (b - root) / &self.power
+        let inverse = match b.mid.is_negative() {
+            true => (b - root) / &self.power,
+            false => square / (b + root),
         };
         self.crossing(&inverse, SurfacePart::Exit)
     }
