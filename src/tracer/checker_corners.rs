@@ -130,8 +130,8 @@ impl Mesh {
             return None;
         }
         let mut columns = [0.0; LANES];
-        for (column, place) in columns.iter_mut().enumerate() {
-            *place = middle(2 * column as u32, block.width);
+        for (column, x) in columns.iter_mut().enumerate() {
+            *x = middle(2 * column as u32, block.width);
         }
         Some(Self {
             block,

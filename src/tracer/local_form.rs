@@ -38,8 +38,7 @@ pub struct LocalForm {
 }
 
 /// A linear form in units of its error.
-#[derive(Clone, Copy, Debug)]
-pub struct ScaledLine(pub [f64; 3]);
+pub type ScaledLine = [f64; 3];
 
 /// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of its values.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +118,7 @@ impl LocalForm {
     }
 
     pub fn line(&self) -> ScaledLine {
-        ScaledLine(self.factors.map(|factor| factor / self.rad))
+        self.factors.map(|factor| factor / self.rad)
     }
 
     #[inline(always)]

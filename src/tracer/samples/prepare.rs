@@ -35,8 +35,8 @@ impl PreparedPixel {
         let camera = &f64::frame(&world.geometry).camera;
         let pixel = Patch::new(camera, Area::pixel(self.x, self.y));
         self.clear();
-        for place in 0..self.candidates.len() {
-            self.surface(world, &pixel, place)?;
+        for index in 0..self.candidates.len() {
+            self.surface(world, &pixel, index)?;
         }
         self.order(world, &pixel)
     }
@@ -58,11 +58,11 @@ impl PreparedPixel {
     }
 
     /// Writes down a candidate's boundaries and colours.
-    fn surface(&mut self, world: &World, pixel: &Patch, place: usize) -> Result<(), Hard> {
-        let candidate = self.candidates[place];
+    fn surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
+        let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
         let start = self.lines.len();
-        let mut surface = PixelSurface::new(place, start);
+        let mut surface = PixelSurface::new(index, start);
         let met = match object.convex() {
             _ if candidate.is_whole => true,
             Ok(convex) => self.edges(convex.bounds(), pixel)?,
@@ -222,7 +222,7 @@ impl PreparedPixel {
     /// Sorts the surfaces from back to front, or has them compared at every sample.
     fn order(&mut self, world: &World, pixel: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
-        let range = |surface: &PixelSurface| candidates[surface.place].inverse_depth;
+        let range = |surface: &PixelSurface| candidates[surface.index].inverse_depth;
         self.surfaces
             .sort_by(|a, b| range(a).low.total_cmp(&range(b).low));
         let is_sorted = self
@@ -235,7 +235,7 @@ impl PreparedPixel {
         let mut rad = 0.0_f64;
         for surface in &mut self.surfaces {
             let start = self.planes.len();
-            let object = &*f64::object(&world.geometry, self.candidates[surface.place].object);
+            let object = &*f64::object(&world.geometry, self.candidates[surface.index].object);
             surface.depth = match object.convex() {
                 Ok(convex) => {
                     let faces = convex.firsts().iter().map(|face| face.local(pixel));

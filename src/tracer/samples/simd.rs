@@ -114,7 +114,7 @@ fn between(
         let beyond = if value < -1.0 { odd } else { DOUBT };
         if value > 1.0 { even } else { beyond }
     };
-    if let [ScaledLine([a, b, c])] = lines {
+    if let [[a, b, c]] = lines {
         for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
             *shown = side(a * x + b * y + c);
         }
@@ -124,7 +124,7 @@ fn between(
     let sign = &mut sign[..least.len()];
     sign.fill(1.0);
     least.fill(f64::INFINITY);
-    for ScaledLine([a, b, c]) in lines {
+    for [a, b, c] in lines {
         let samples = x.iter().zip(y);
         for ((sign, least), (&x, &y)) in sign.iter_mut().zip(&mut *least).zip(samples) {
             let value = a * x + b * y + c;
@@ -186,7 +186,7 @@ impl Lanes {
                 }
             }
         }
-        for ScaledLine([a, b, c]) in edges {
+        for [a, b, c] in edges {
             for ((margin, &x), &y) in margin.iter_mut().zip(x).zip(y) {
                 let value = a * x + b * y + c;
                 *margin = if value < *margin { value } else { *margin };
