@@ -25,7 +25,7 @@ pub fn render(
     part: Area,
     control: &Control,
 ) -> Result<Film, RenderError> {
-    Ok(film_and_rays(world, sampling, part, control)?.0)
+    Ok(render_and_count(world, sampling, part, control)?.0)
 }
 
 /// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
@@ -35,20 +35,11 @@ pub fn render_bytes(
     part: Area,
     control: &Control,
 ) -> Result<Film<[u8; 3]>, RenderError> {
-    Ok(film_and_rays(world, sampling, part, control)?.0)
+    Ok(render_and_count(world, sampling, part, control)?.0)
 }
 
 /// Renders, and says how many of the samples were traced: the others lie in pixels that are certain to show one colour.
-pub fn render_and_count(
-    world: &World,
-    sampling: &Sampling,
-    part: Area,
-    control: &Control,
-) -> Result<(Film, u64), RenderError> {
-    film_and_rays(world, sampling, part, control)
-}
-
-fn film_and_rays<P: film::Pixel>(
+pub fn render_and_count<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
