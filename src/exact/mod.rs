@@ -37,7 +37,7 @@ use std::{
 
 use crate::{
     area::Area,
-    tracer::{Candidate, Curve, Part, Quartering, Room, SubPixel, World},
+    tracer::{Candidate, Curve, Part, Quartering, Scratch, SubPixel, World},
 };
 
 use self::{
@@ -144,11 +144,11 @@ impl<'a> Integrator<'a> {
             pixels: vec![black; part.pixels() as usize],
         };
         let mut curves = Vec::new();
-        let mut room = Room::default();
+        let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
         // Pixels of a checkerboard for which that is not enough.
         let mut others = Vec::new();
-        let flow = self.quartering.parts(part, &mut room, &mut |part| {
+        let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
             if cancel.load(Relaxed) {
                 return ControlFlow::Break(());
             }

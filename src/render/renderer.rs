@@ -19,7 +19,7 @@ use crate::{
     film::{self, Encoder},
     math::Vectors,
     sampling::Sampling,
-    tracer::{Candidate, Checks, Part, Quartering, Room, World, samples},
+    tracer::{Candidate, Checks, Part, Quartering, Scratch, World, samples},
 };
 
 /// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
@@ -45,7 +45,12 @@ pub(super) struct Renderer<'a, P> {
 
 impl<P: film::Pixel> Renderer<'_, P> {
     /// The pixels of a tile, row by row; none once the render is cancelled.
-    pub(super) fn tile(&self, tile: Area, tally: &mut Tally<P>, room: &mut Room) -> Option<Vec<P>> {
+    pub(super) fn tile(
+        &self,
+        tile: Area,
+        tally: &mut Tally<P>,
+        scratch: &mut Scratch,
+    ) -> Option<Vec<P>> {
         let background = self.shown[self.world.background()];
         let mut film = Tile {
             area: tile,
@@ -79,7 +84,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], Trace::OneByOne, &mut film, tally))
             }
         };
-        let flow = self.quartering.parts(tile, room, &mut visit);
+        let flow = self.quartering.parts(tile, scratch, &mut visit);
         (self.control.progress)(film.unreported);
         self.rays.fetch_add(film.rays, Ordering::Relaxed);
         flow.is_continue().then_some(film.pixels)

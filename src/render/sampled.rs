@@ -12,7 +12,7 @@ use crate::{
     film::{self, Encoder, Film},
     sampling::Sampling,
     threads,
-    tracer::{GRID, Quartering, Room, World},
+    tracer::{GRID, Quartering, Scratch, World},
 };
 
 /// A tile has about so many samples, a few milliseconds' work: no thread waits longer for the others at the end.
@@ -25,7 +25,7 @@ pub fn render(
     part: Area,
     control: &Control,
 ) -> Result<Film, RenderError> {
-    Ok(film_and_rays(world, sampling, part, control)?.0)
+    Ok(render_and_count(world, sampling, part, control)?.0)
 }
 
 /// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
@@ -35,20 +35,11 @@ pub fn render_bytes(
     part: Area,
     control: &Control,
 ) -> Result<Film<[u8; 3]>, RenderError> {
-    Ok(film_and_rays(world, sampling, part, control)?.0)
+    Ok(render_and_count(world, sampling, part, control)?.0)
 }
 
 /// Renders, and says how many of the samples were traced: the others lie in pixels that are certain to show one colour.
-pub fn render_and_count(
-    world: &World,
-    sampling: &Sampling,
-    part: Area,
-    control: &Control,
-) -> Result<(Film, u64), RenderError> {
-    film_and_rays(world, sampling, part, control)
-}
-
-fn film_and_rays<P: film::Pixel>(
+pub fn render_and_count<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
@@ -75,9 +66,9 @@ fn film_and_rays<P: film::Pixel>(
     let side = tile_side(sampling);
     threads::install(control.threads, || {
         wanted(part, side, control).par_bridge().for_each_init(
-            || (Tally::new(colors.len()), Room::default()),
-            |(tally, room), tile| {
-                let Some(pixels) = renderer.tile(tile, tally, room) else {
+            || (Tally::new(colors.len()), Scratch::default()),
+            |(tally, scratch), tile| {
+                let Some(pixels) = renderer.tile(tile, tally, scratch) else {
                     return;
                 };
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);

@@ -12,7 +12,7 @@ pub(super) struct Tally<P> {
     pub(super) means: Means<P>,
     /// The pixel, prepared.
     pub(super) pixel: PreparedPixel,
-    /// Room for the points.
+    /// Scratch for the points.
     pub(super) points: Points,
 }
 

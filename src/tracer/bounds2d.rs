@@ -25,7 +25,7 @@ pub struct Extent {
 }
 
 /// By how much of its terms a quotient is widened: a few roundings count for 2^−50 of them.
-const WIDER: f64 = 1.0 / (1u64 << 40) as f64;
+const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Below this, numbers lose digits to the range of an `f64`.
 const LEAST: f64 = 1e-280;
@@ -102,7 +102,7 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     }
     let across = [x, y].map(|c| {
         let (middle, reach) = (c * z, radius * (c * c + below).sqrt());
-        let slack = (middle.abs() + reach) * WIDER;
+        let slack = (middle.abs() + reach) * QUOTIENT_SLACK;
         Range {
             low: (middle - reach - slack) / below * ahead,
             high: (middle + reach + slack) / below * ahead,
@@ -110,7 +110,7 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     });
     Hull::Ahead(Extent {
         across,
-        nearest: ahead / (z - radius) * (1.0 + WIDER) * sphere.scale(),
+        nearest: ahead / (z - radius) * (1.0 + QUOTIENT_SLACK) * sphere.scale(),
     })
 }
 
@@ -124,15 +124,18 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     for corner in corners {
         let [x, y, z] = corner.each_ref().map(|ball| {
             let middle = ball.mid.to_f64();
-            Range::about(middle, ball.rad.to_f64() * UP + middle.abs() * WIDER)
+            Range::about(
+                middle,
+                ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
+            )
         });
         least = least.min(z.low);
         greatest = greatest.max(z.high);
         for (range, at) in across.iter_mut().zip([x, y]) {
             let low = at.low / if at.low < 0.0 { z.low } else { z.high };
             let high = at.high / if at.high < 0.0 { z.high } else { z.low };
-            range.low = range.low.min(low - low.abs() * WIDER);
-            range.high = range.high.max(high + high.abs() * WIDER);
+            range.low = range.low.min(low - low.abs() * QUOTIENT_SLACK);
+            range.high = range.high.max(high + high.abs() * QUOTIENT_SLACK);
         }
     }
     if greatest < 0.0 {
@@ -144,6 +147,6 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     }
     Hull::Ahead(Extent {
         across: across.map(|range| range.times_power(ahead)),
-        nearest: ahead / least * (1.0 + WIDER),
+        nearest: ahead / least * (1.0 + QUOTIENT_SLACK),
     })
 }

@@ -14,7 +14,7 @@ use multiversion::multiversion;
 
 use super::{
     checkerboard::LocalBoard,
-    local_form::{LocalForm, ROUNDINGS},
+    local_form::{LOCAL_ROUNDING, LocalForm},
     object::Object,
     world::{Precision, World},
 };
@@ -129,8 +129,8 @@ impl Mesh {
             return None;
         }
         let mut columns = [0.0; LANES];
-        for (column, place) in columns.iter_mut().enumerate() {
-            *place = middle(2 * column as u32, block.width);
+        for (column, x) in columns.iter_mut().enumerate() {
+            *x = middle(2 * column as u32, block.width);
         }
         Some(Self {
             block,
@@ -169,8 +169,8 @@ impl Mesh {
                 let middle = (n.0 * x + n.1) * inverse - 0.5;
                 let rounded = middle + ROUND;
                 let whole = rounded - ROUND;
-                let room = 0.5 - (middle - whole).abs();
-                let square = if room > slack { whole } else { f64::NAN };
+                let margin = 0.5 - (middle - whole).abs();
+                let square = if margin > slack { whole } else { f64::NAN };
                 (square, rounded.to_bits())
             };
             let ((square0, bits0), (square1, bits1)) =
@@ -321,7 +321,7 @@ impl Squares {
     /// How far a computed quotient may be from the true one, if it is no greater than this.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * CLEAR / least;
-        (inherited + (greatest + 1.0) * ROUNDINGS) * UP
+        (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
     /// From which to which square there are any in the pixel, in x and in z: perhaps one square more than there are. `None` if that

@@ -21,7 +21,7 @@ pub struct Form<T: Real> {
 
 /// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum; half as many again to
 /// cover their products.
-const ROUNDINGS: f64 = 12.0;
+const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
     /// The form v·r for a vector in the camera's axes.
@@ -36,7 +36,7 @@ impl<T: Real> Form<T> {
         // In the widest views of all Z is below the normal numbers, and rounded.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
-        let by_component = |x: &Ball<T>| (x.rad + x.size() * (ROUNDINGS * T::UNIT)) * UP;
+        let by_component = |x: &Ball<T>| (x.rad + x.size() * (FORM_ROUNDINGS * T::UNIT)) * UP;
         Self {
             factors,
             rad,
@@ -77,7 +77,7 @@ impl<T: Real> Form<T> {
         Self {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
             // X and Y are at most 1.
-            rad: (self.rad + other.rad + sum * (ROUNDINGS * T::UNIT)) * UP,
+            rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
             // Each has as many roundings of its own factors as their difference has.
             rads: self
                 .rads
@@ -111,7 +111,9 @@ impl Form<Double> {
 /// What rounding adds to the error of a form's values.
 fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius {
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
-    (a * window.x + b * window.y + c) * (ROUNDINGS * T::UNIT) + T::TINY * (a + b) + T::TINY * 8.0
+    (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
+        + T::TINY * (a + b)
+        + T::TINY * 8.0
 }
 
 /// The inverse depth of the plane n·q = h as a form, for n in the world's axes and points q as seen from the eye.

@@ -17,8 +17,8 @@ use crate::{
 
 /// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear one each factor has one, and so has its quotient by the error;
 /// products and sums, where offsets are at most ½, have two. Of a quadratic one each of six terms has five at most, generously counted.
-const LINEAR_ROUNDINGS: f64 = 4.0 * f64::UNIT;
-pub const ROUNDINGS: f64 = 16.0 * f64::UNIT;
+const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
+pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// A rectangle of the view plane.
 #[derive(Clone, Debug)]
@@ -38,8 +38,7 @@ pub struct LocalForm {
 }
 
 /// A linear form in units of its error.
-#[derive(Clone, Copy, Debug)]
-pub struct ScaledLine(pub [f64; 3]);
+pub type ScaledLine = [f64; 3];
 
 /// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of its values.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +101,7 @@ impl LocalForm {
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
-        let rad = (inherited + (a + b + c) * LINEAR_ROUNDINGS + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + (a + b + c) * LINEAR_ROUNDING + 16.0 * f64::TINY) * UP;
         Self { factors, rad }
     }
 
@@ -118,7 +117,7 @@ impl LocalForm {
     }
 
     pub fn line(&self) -> ScaledLine {
-        ScaledLine(self.factors.map(|factor| factor / self.rad))
+        self.factors.map(|factor| factor / self.rad)
     }
 
     #[inline(always)]
@@ -143,7 +142,7 @@ impl LocalQuadratic {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
-        let rad = (inherited + sizes * ROUNDINGS + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + sizes * LOCAL_ROUNDING + 16.0 * f64::TINY) * UP;
         Self { factors, rad }
     }
 

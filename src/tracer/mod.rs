@@ -41,7 +41,7 @@ pub use camera::{Basis, Point};
 pub use candidates::Candidate;
 pub use checker_corners::Checks;
 pub(crate) use checker_corners::Squares;
-pub use cull::{GRID, Part, Quartering, Room};
+pub use cull::{GRID, Part, Quartering, Scratch};
 pub use curve::{Conic, Curve, Line};
 pub(crate) use curve::{LOOSE_LINE, SubPixelFrame, Surface};
 pub(crate) use local_form::{LocalForm, Patch};

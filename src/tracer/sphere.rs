@@ -41,7 +41,7 @@ pub struct Sphere<T: Real> {
 }
 
 /// Roundings of a value, in units of [`Real::UNIT`]: twelve as in a form's, twice over for squares, and eight for their sum.
-const ROUNDINGS: f64 = 32.0;
+const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
     /// Prepares a sphere.
@@ -150,20 +150,18 @@ impl<T: Real> Sphere<T> {
     /// Where the ray leaves the sphere: of the two forms of the root the one that does not cancel.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
-            rad: r.square.magnitude() * (ROUNDINGS * T::UNIT) + T::TINY * 8.0,
+            rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
         // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of it is the sharper one.
         let other = b * b - &self.power * &square;
-        let root = if other.rad < q.rad {
-            other.sqrt()
-        } else {
-            q.sqrt()
+        let root = match other.rad < q.rad {
+            true => other.sqrt(),
+            false => q.sqrt(),
         };
-        let inverse = if !b.mid.is_negative() {
-            square / (b + root)
-        } else {
-            (b - root) / &self.power
+        let inverse = match b.mid.is_negative() {
+            true => (b - root) / &self.power,
+            false => square / (b + root),
         };
         self.crossing(&inverse, SurfacePart::Exit)
     }
@@ -181,9 +179,9 @@ impl Sphere<f64> {
     /// The centre and the radius of a ball that holds it, errors included, in its own unit; none for an eye that is not outside.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
         // Three roundings of 2^−53.
-        const WIDER: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
+        const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
-        (self.side == Ordering::Greater).then_some((self.center, radius * WIDER))
+        (self.side == Ordering::Greater).then_some((self.center, radius * ROOT_SLACK))
     }
 
     /// How it stands to a rectangle; `None` if no ray through it meets the sphere.
@@ -289,7 +287,7 @@ impl Sphere<f64> {
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
     /// that is not outside.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
-        let error = self.power.rad / self.power.size() + ROUNDINGS * f64::UNIT;
+        let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
     }
 
@@ -398,7 +396,7 @@ fn radii<T: Real>(
     rad_square: T::Radius,
     [x, y, z]: [T::Radius; 3],
 ) -> (T::Radius, T::Radius) {
-    let unit = ROUNDINGS * T::UNIT;
+    let unit = SPHERE_ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
     // The components of c × r: each a difference of two products.

@@ -13,7 +13,7 @@ use pinhole::{
     render::{Control, render, render_bytes},
     sampling::Sampling,
     scene::{Count, Lens, Method, Outline, Sampler, Scene, Shape, View},
-    tracer::{Part, Quartering, Room, World},
+    tracer::{Part, Quartering, Scratch, World},
 };
 
 #[path = "../../benches/one_by_one/mod.rs"]
@@ -253,7 +253,7 @@ fn crowds_of_all_kinds() {
         let world = World::new(&all);
         for (samples, pixels) in [(1.0, &mut dense), (1e4, &mut open)] {
             let parts = Quartering::for_samples(&world, samples);
-            let _ = parts.parts(whole(&all), &mut Room::default(), &mut |part| {
+            let _ = parts.parts(whole(&all), &mut Scratch::default(), &mut |part| {
                 *pixels += match part {
                     Part::Plain { area } if samples == 1.0 => area.pixels(),
                     Part::Open { .. } if samples > 1.0 => 1,
@@ -352,7 +352,7 @@ fn parts_cover_each_pixel_once() {
         for samples in [0.01, 1.0, 3.0, 8.0, 64.0, f64::INFINITY] {
             let mut seen = vec![0; area.pixels() as usize];
             let parts = Quartering::for_samples(&world, samples);
-            let flow = parts.parts(area, &mut Room::default(), &mut |part| {
+            let flow = parts.parts(area, &mut Scratch::default(), &mut |part| {
                 let part = match part {
                     Part::Flat { area, .. } | Part::Plain { area } => area,
                     Part::Open { x, y, .. } => Area::pixel(x, y),

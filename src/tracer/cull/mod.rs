@@ -65,7 +65,7 @@ pub enum Part<'a> {
 
 /// Lists that are kept from area to area: the candidates at each depth of the quartering.
 #[derive(Debug, Default)]
-pub struct Room {
+pub struct Scratch {
     candidates: Vec<Vec<Candidate>>,
 }
 
@@ -84,7 +84,7 @@ impl<'a> Quartering<'a> {
     pub fn parts(
         &self,
         wanted: Area,
-        room: &mut Room,
+        scratch: &mut Scratch,
         visit: &mut impl FnMut(Part) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let whole = self.world.picture();
@@ -95,13 +95,13 @@ impl<'a> Quartering<'a> {
                 wanted,
                 visit,
             };
-            let mut candidates = take(room, 0);
+            let mut candidates = take(scratch, 0);
             let flow = match candidates::within(self.world, area, self.most(area), &mut candidates)
             {
-                true => cut.cut(area, &candidates, 1, room),
+                true => cut.cut(area, &candidates, 1, scratch),
                 false => cut.show(Part::Plain { area }),
             };
-            room.candidates[0] = candidates;
+            scratch.candidates[0] = candidates;
             flow
         })
     }
@@ -128,7 +128,7 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
         area: Area,
         candidates: &[Candidate],
         depth: usize,
-        room: &mut Room,
+        scratch: &mut Scratch,
     ) -> ControlFlow<()> {
         let world = self.quartering.world;
         match candidates {
@@ -180,14 +180,14 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
                 })
             });
         }
-        let mut below = take(room, depth);
+        let mut below = take(scratch, depth);
         let wanted = self.wanted;
         let mut quarters = area.quarters().filter(|quarter| quarter.meets(wanted));
         let flow = quarters.try_for_each(|quarter| {
             candidates::narrowed(world, quarter, candidates, &mut below);
-            self.cut(quarter, &below, depth + 1, room)
+            self.cut(quarter, &below, depth + 1, scratch)
         });
-        room.candidates[depth] = below;
+        scratch.candidates[depth] = below;
         flow
     }
 
@@ -215,9 +215,9 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
 }
 
 /// The list of a depth, to be put back there.
-fn take(room: &mut Room, depth: usize) -> Vec<Candidate> {
-    if room.candidates.len() <= depth {
-        room.candidates.resize_with(depth + 1, Vec::new);
+fn take(scratch: &mut Scratch, depth: usize) -> Vec<Candidate> {
+    if scratch.candidates.len() <= depth {
+        scratch.candidates.resize_with(depth + 1, Vec::new);
     }
-    std::mem::take(&mut room.candidates[depth])
+    std::mem::take(&mut scratch.candidates[depth])
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Part, Quartering, Room, candidates};
+use super::{Part, Quartering, Scratch, candidates};
 use crate::{
     area::Area,
     scene::{self, Scene},
@@ -58,17 +58,21 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
         for layers in [triangles_in_layers(count), boards_in_layers(count)] {
             let world = World::new(&read(&layers));
             let parts = Quartering::new(&world);
-            let flow = parts.parts(Area::whole(SIZE, SIZE), &mut Room::default(), &mut |part| {
-                let few = match part {
-                    Part::Flat { .. } => 0,
-                    // All boards meet at the horizon, between these two rows.
-                    Part::Open { y: 31 | 32, .. } => 0,
-                    Part::Open { candidates, .. } => candidates.len(),
-                    Part::Plain { .. } => usize::MAX,
-                };
-                assert!(few <= 2, "{count}: {part:?}");
-                ControlFlow::Continue(())
-            });
+            let flow = parts.parts(
+                Area::whole(SIZE, SIZE),
+                &mut Scratch::default(),
+                &mut |part| {
+                    let few = match part {
+                        Part::Flat { .. } => 0,
+                        // All boards meet at the horizon, between these two rows.
+                        Part::Open { y: 31 | 32, .. } => 0,
+                        Part::Open { candidates, .. } => candidates.len(),
+                        Part::Plain { .. } => usize::MAX,
+                    };
+                    assert!(few <= 2, "{count}: {part:?}");
+                    ControlFlow::Continue(())
+                },
+            );
             assert!(flow.is_continue());
         }
     }

@@ -11,7 +11,7 @@ use crate::tracer::{
 };
 
 /// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of pixels at its rim, roundings included, are inside.
-const WIDER: f64 = 1.125;
+const ROOT_MARGIN: f64 = 1.125;
 
 /// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred thousand pixels wide is a hundred of them.
 pub(super) const LEVELS: u32 = 24;
@@ -92,7 +92,7 @@ impl Rectangle {
 impl Grid {
     /// The grid of a window.
     pub fn new(window: &Window<f64>) -> Self {
-        let half = window.x.max(window.y) * WIDER;
+        let half = window.x.max(window.y) * ROOT_MARGIN;
         let mut grid = Self {
             least: -half,
             per_unit: f64::from(1 << LEVELS) / (2.0 * half),

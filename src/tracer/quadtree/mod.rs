@@ -19,7 +19,6 @@ use self::{rectangle_query::Search, tree::Tree};
 use super::{camera::Direction, local_form::Patch};
 
 pub use self::grid::{Grid, Item, Nearness};
-pub use self::point_query::Descent;
 pub use self::tree::OBJECTS_A_CELL;
 
 /// The objects that may be seen, by where in the view plane they are.
@@ -36,10 +35,15 @@ impl Quadtree {
         Self { grid, tree }
     }
 
-    /// The way down to the objects that a ray may meet; none for a direction outside of the window.
+    /// Shows `visit` the objects that a ray may meet, the largest first, until it fails, but for those that are not nearer than it last answered; none for a
+    /// direction outside of the window.
     #[inline]
-    pub fn at(&self, r: &Direction<f64>) -> Option<Descent<'_>> {
-        Some(Descent::new(&self.tree, self.grid.units(r)?))
+    pub fn visit<E>(
+        &self,
+        r: &Direction<f64>,
+        visit: impl FnMut(usize) -> Result<Nearness, E>,
+    ) -> Option<Result<(), E>> {
+        Some(self.tree.visit(self.grid.units(r)?, visit))
     }
 
     /// The objects that rays through a patch may meet, in file order, but for those that one hides which fills the patch: `behind` tells what is not

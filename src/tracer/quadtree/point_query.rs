@@ -1,71 +1,41 @@
-//! The point query: the way down to the objects that one ray may meet.
+//! The point query: the objects that one ray may meet.
 //!
-//! In: a place in the grid. Out: the lists of the cells that hold it, from the root down, each ended where the rest is hidden.
+//! In: a point in the grid. Out: the objects of the cells that hold it, from the root down, each list ended where the rest is hidden.
 
 use super::{
-    grid::{Item, LEVELS, Nearness},
+    grid::{LEVELS, Nearness},
     tree::Tree,
 };
 
-/// The way from the root to the smallest cell that holds a point.
-#[derive(Debug)]
-pub struct Descent<'a> {
-    tree: &'a Tree,
-    cell: Option<u32>,
-    at: [u32; 2],
-    level: u32,
-}
-
-impl<'a> Descent<'a> {
-    pub(super) fn new(tree: &'a Tree, at: [u32; 2]) -> Self {
-        Self {
-            tree,
-            cell: Some(0),
-            at,
-            level: LEVELS,
-        }
-    }
-
-    /// The next list, unless all that is left is behind `bar`.
+impl Tree {
+    /// Shows `visit` the objects that the ray through a point may meet, until it fails, but for those that are not nearer than it last answered.
     #[inline]
-    pub fn next(&mut self, bar: Nearness) -> Option<List<'a>> {
-        let cell = self.tree.cells[self.cell? as usize];
-        if cell.nearest <= bar {
-            return None;
-        }
-        let list = List {
-            entries: &self.tree.entries[cell.start as usize..cell.end as usize],
-            at: self.at,
-        };
-        self.cell = (cell.quarters > 0).then(|| {
-            self.level -= 1;
-            let bit = |axis: usize| self.at[axis] >> self.level & 1;
-            cell.quarters + bit(0) + 2 * bit(1)
-        });
-        Some(list)
-    }
-}
-
-/// The list of a cell.
-#[derive(Clone, Copy, Debug)]
-pub struct List<'a> {
-    entries: &'a [Item],
-    at: [u32; 2],
-}
-
-impl<'a> List<'a> {
-    /// The next object that the ray may meet, unless all that is left is behind `bar`.
-    #[inline]
-    pub fn next(&mut self, bar: Nearness) -> Option<usize> {
-        while let [entry, rest @ ..] = self.entries {
-            if entry.nearest <= bar {
-                return None;
+    pub(super) fn visit<E>(
+        &self,
+        at: [u32; 2],
+        mut visit: impl FnMut(usize) -> Result<Nearness, E>,
+    ) -> Result<(), E> {
+        let (mut index, mut level) = (0, LEVELS);
+        let mut hidden = Nearness::NONE;
+        loop {
+            let cell = &self.cells[index as usize];
+            if cell.nearest <= hidden {
+                return Ok(());
             }
-            self.entries = rest;
-            if entry.bounds.holds(self.at) {
-                return Some(entry.object as usize);
+            for item in &self.entries[cell.start as usize..cell.end as usize] {
+                if item.nearest <= hidden {
+                    break;
+                }
+                if item.bounds.holds(at) {
+                    hidden = visit(item.object as usize)?;
+                }
             }
+            if cell.quarters == 0 {
+                return Ok(());
+            }
+            level -= 1;
+            let bit = |axis: usize| at[axis] >> level & 1;
+            index = cell.quarters + bit(0) + 2 * bit(1);
         }
-        None
     }
 }

@@ -91,7 +91,7 @@ fn may_see(world: &World, pixel: &mut PreparedPixel) {
     };
     pixel.colors.clear();
     for surface in &pixel.surfaces {
-        let [first, second] = world.slots(pixel.candidates[surface.place].object);
+        let [first, second] = world.slots(pixel.candidates[surface.index].object);
         let codes = [false, true].map(|odd| surface.code(odd));
         match surface.pattern {
             Pattern::Plain(code) if code == codes[1] => pixel.colors.push(color(code, second)),

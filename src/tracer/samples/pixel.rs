@@ -50,8 +50,8 @@ pub(super) struct ColorCount {
 /// What a pixel shows of an object.
 #[derive(Debug)]
 pub(super) struct PixelSurface {
-    /// Its place among the candidates.
-    pub(super) place: usize,
+    /// Its index among the candidates.
+    pub(super) index: usize,
     /// Where its boundaries begin among all lines, and where they end: each is ≥ 0 where it is hit.
     pub(super) edges: [usize; 2],
     /// The boundary of a sphere.
@@ -120,8 +120,19 @@ impl Default for Lanes {
 }
 
 impl PixelSurface {
+    /// Without boundaries, which would begin there among all lines.
+    pub(super) fn new(index: usize, start: usize) -> Self {
+        Self {
+            index,
+            edges: [start; 2],
+            conic: None,
+            pattern: Pattern::Plain(0.0),
+            depth: Depth::Unknown,
+        }
+    }
+
     /// What stands for one of its colours.
     pub(super) fn code(&self, odd: bool) -> f64 {
-        (2 * self.place + 1 + usize::from(odd)) as f64
+        (2 * self.index + 1 + usize::from(odd)) as f64
     }
 }

@@ -11,7 +11,7 @@ use super::{
         checkerboard::Checkerboard,
         form::Form,
         interval::Side,
-        local_form::{LocalForm, Patch, ROUNDINGS},
+        local_form::{LOCAL_ROUNDING, LocalForm, Patch},
         object::Object,
         sphere::Sphere,
         world::{Precision, World},
@@ -30,67 +30,45 @@ const LINES: usize = 6;
 /// The preparation has met something that is better traced sample by sample.
 pub(super) struct Hard;
 
-/// Whether an object is seen in the pixel at all.
-enum Met {
-    Yes,
-    No,
-}
-
 impl PreparedPixel {
     pub(super) fn prepare(&mut self, world: &World) -> Result<(), Hard> {
-        let frame = Patch::new(
-            &f64::frame(&world.geometry).camera,
-            Area::pixel(self.x, self.y),
-        );
-        self.surfaces.clear();
-        self.lines.clear();
-        self.planes.clear();
-        for place in 0..self.candidates.len() {
-            self.surface(world, &frame, place)?;
+        let camera = &f64::frame(&world.geometry).camera;
+        let pixel = Patch::new(camera, Area::pixel(self.x, self.y));
+        self.clear();
+        for index in 0..self.candidates.len() {
+            self.surface(world, &pixel, index)?;
         }
-        self.order(world, &frame)
+        self.order(world, &pixel)
     }
 
     /// The same where a board is the only candidate and fills the pixel.
     pub(super) fn prepare_checks(&mut self, checks: &Checks) -> Result<(), Hard> {
-        self.surfaces.clear();
-        self.lines.clear();
-        self.planes.clear();
-        self.depths = None;
-        let mut surface = PixelSurface {
-            place: 0,
-            edges: [0; 2],
-            conic: None,
-            pattern: Pattern::Plain(0.0),
-            depth: Depth::Unknown,
-        };
+        self.clear();
+        let mut surface = PixelSurface::new(0, 0);
         surface.pattern = self.lines(&checks.squares, checks.ranges(), &surface)?;
         self.surfaces.push(surface);
         Ok(())
     }
 
+    fn clear(&mut self) {
+        self.surfaces.clear();
+        self.lines.clear();
+        self.planes.clear();
+        self.depths = None;
+    }
+
     /// Writes down a candidate's boundaries and colours.
-    fn surface(&mut self, world: &World, frame: &Patch, place: usize) -> Result<(), Hard> {
-        let candidate = self.candidates[place];
+    fn surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
+        let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
         let start = self.lines.len();
-        let mut surface = PixelSurface {
-            place,
-            edges: [start; 2],
-            conic: None,
-            pattern: Pattern::Plain(0.0),
-            depth: Depth::Unknown,
-        };
+        let mut surface = PixelSurface::new(index, start);
         let met = match object.convex() {
-            _ if candidate.is_whole => Met::Yes,
-            Ok(convex) => self.edges(convex.bounds(), frame)?,
-            Err(sphere) => self.silhouette(sphere, frame, &mut surface)?,
+            _ if candidate.is_whole => true,
+            Ok(convex) => self.edges(convex.bounds(), pixel)?,
+            Err(sphere) => self.silhouette(sphere, pixel, &mut surface)?,
         };
-        if matches!(met, Met::No) {
-            self.lines.truncate(start);
-            return Ok(());
-        }
-        if let Met::No = self.clips(world, frame, candidate, object)? {
+        if !met || !self.clips(world, pixel, candidate, object)? {
             self.lines.truncate(start);
             return Ok(());
         }
@@ -99,30 +77,30 @@ impl PreparedPixel {
         if let Object::Checkerboard(board) = object {
             let [first, second] = world.slots(candidate.object);
             if first != second {
-                surface.pattern = self.pattern(board, frame, &surface)?;
+                surface.pattern = self.pattern(board, pixel, &surface)?;
             }
         }
         self.surfaces.push(surface);
         Ok(())
     }
 
-    /// Adds forms that are all ≥ 0 where an object is hit.
-    fn edges(&mut self, forms: &[Form<f64>], frame: &Patch) -> Result<Met, Hard> {
+    /// Adds forms that are all ≥ 0 where an object is hit. As all functions down to `clips`, it says whether the object may be hit at all.
+    fn edges(&mut self, forms: &[Form<f64>], pixel: &Patch) -> Result<bool, Hard> {
         for form in forms {
-            if let Met::No = self.edge(form.local(frame))? {
-                return Ok(Met::No);
+            if !self.edge(form.local(pixel))? {
+                return Ok(false);
             }
         }
-        Ok(Met::Yes)
+        Ok(true)
     }
 
-    fn edge(&mut self, local: LocalForm) -> Result<Met, Hard> {
+    fn edge(&mut self, local: LocalForm) -> Result<bool, Hard> {
         match local.range().side() {
-            Side::Above => Ok(Met::Yes),
-            Side::Below => Ok(Met::No),
+            Side::Above => Ok(true),
+            Side::Below => Ok(false),
             Side::Both => {
                 self.lines.push(local.line());
-                Ok(Met::Yes)
+                Ok(true)
             }
             Side::Unknown => Err(Hard),
         }
@@ -132,17 +110,17 @@ impl PreparedPixel {
     fn silhouette(
         &mut self,
         sphere: &Sphere<f64>,
-        frame: &Patch,
+        pixel: &Patch,
         surface: &mut PixelSurface,
-    ) -> Result<Met, Hard> {
+    ) -> Result<bool, Hard> {
         if !sphere.is_outside() {
             // On the surface, or too seldom seen in part to be worth a rule of its own.
             return Err(Hard);
         }
-        let (q, b) = sphere.local(frame);
+        let (q, b) = sphere.local(pixel);
         match q.range().side() {
             Side::Above => {}
-            Side::Below => return Ok(Met::No),
+            Side::Below => return Ok(false),
             Side::Both => surface.conic = Some(q.certain()),
             Side::Unknown => return Err(Hard),
         }
@@ -153,10 +131,10 @@ impl PreparedPixel {
     fn clips(
         &mut self,
         world: &World,
-        frame: &Patch,
+        pixel: &Patch,
         candidate: Candidate,
         object: &Object<f64>,
-    ) -> Result<Met, Hard> {
+    ) -> Result<bool, Hard> {
         let prepared = f64::frame(&world.geometry);
         let plane = match object
             .convex()
@@ -165,22 +143,20 @@ impl PreparedPixel {
             Ok(([plane], [])) => Some(plane),
             _ => None,
         };
-        let mut met = Met::Yes;
+        let mut met = true;
         if candidate.is_cut() {
             let (Some(near), Some(plane)) = (&prepared.near, plane) else {
                 return Err(Hard);
             };
-            met = self.edge(near.minus(plane).local(frame))?;
+            met = self.edge(near.minus(plane).local(pixel))?;
         }
         if let Some(far) = &prepared.far
             && !candidate.is_whole
         {
-            let is_before = candidate.inverse_depth.low > far.over(frame).high;
+            let is_before = candidate.inverse_depth.low > far.over(pixel).high;
             if !is_before {
                 let plane = plane.ok_or(Hard)?;
-                if let Met::No = self.edge(plane.minus(far).local(frame))? {
-                    met = Met::No;
-                }
+                met &= self.edge(plane.minus(far).local(pixel))?;
             }
         }
         Ok(met)
@@ -190,10 +166,10 @@ impl PreparedPixel {
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
-        frame: &Patch,
+        pixel: &Patch,
         surface: &PixelSurface,
     ) -> Result<Pattern, Hard> {
-        let squares = Squares::new(&board.local(&frame.center, &frame.sides));
+        let squares = Squares::new(&board.local(&pixel.center, &pixel.sides));
         let Squares { across, below, .. } = &squares;
         let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
         if !sizes.iter().all(|&rad| rad < LARGEST) {
@@ -244,26 +220,25 @@ impl PreparedPixel {
     }
 
     /// Sorts the surfaces from back to front, or has them compared at every sample.
-    fn order(&mut self, world: &World, frame: &Patch) -> Result<(), Hard> {
+    fn order(&mut self, world: &World, pixel: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
-        let range = |surface: &PixelSurface| candidates[surface.place].inverse_depth;
+        let range = |surface: &PixelSurface| candidates[surface.index].inverse_depth;
         self.surfaces
             .sort_by(|a, b| range(a).low.total_cmp(&range(b).low));
         let is_sorted = self
             .surfaces
             .windows(2)
             .all(|pair| range(&pair[0]).high < range(&pair[1]).low);
-        self.depths = None;
         if is_sorted {
             return Ok(());
         }
         let mut rad = 0.0_f64;
         for surface in &mut self.surfaces {
             let start = self.planes.len();
-            let object = &*f64::object(&world.geometry, self.candidates[surface.place].object);
+            let object = &*f64::object(&world.geometry, self.candidates[surface.index].object);
             surface.depth = match object.convex() {
                 Ok(convex) => {
-                    let faces = convex.firsts().iter().map(|face| face.local(frame));
+                    let faces = convex.firsts().iter().map(|face| face.local(pixel));
                     self.planes.extend(faces);
                     let range = [start, self.planes.len()];
                     match convex.is_inside() {
@@ -273,11 +248,11 @@ impl PreparedPixel {
                 }
                 Err(sphere) => {
                     let (factor, error) = sphere.depth_factor().ok_or(Hard)?;
-                    let (q, b) = sphere.local(frame);
+                    let (q, b) = sphere.local(pixel);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
                     let size = root.sqrt() + b.factors[2].abs() + b.spread();
                     // |√a − √b| ≤ √|a − b|.
-                    let own = b.rad + q.rad.sqrt() + size * (ROUNDINGS + error);
+                    let own = b.rad + q.rad.sqrt() + size * (LOCAL_ROUNDING + error);
                     rad = rad.max(own * factor * UP);
                     Depth::Sphere { q, b, factor }
                 }

@@ -9,7 +9,7 @@ use multiversion::multiversion;
 use super::{
     super::{
         checker_corners::Squares,
-        local_form::{LocalForm, LocalQuadratic, ROUNDINGS, ScaledLine},
+        local_form::{LOCAL_ROUNDING, LocalForm, LocalQuadratic, ScaledLine},
     },
     pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, PixelSurface, PreparedPixel},
 };
@@ -114,7 +114,7 @@ fn between(
         let beyond = if value < -1.0 { odd } else { DOUBT };
         if value > 1.0 { even } else { beyond }
     };
-    if let [ScaledLine([a, b, c])] = lines {
+    if let [[a, b, c]] = lines {
         for ((shown, &x), &y) in shown.iter_mut().zip(x).zip(y) {
             *shown = side(a * x + b * y + c);
         }
@@ -124,7 +124,7 @@ fn between(
     let sign = &mut sign[..least.len()];
     sign.fill(1.0);
     least.fill(f64::INFINITY);
-    for ScaledLine([a, b, c]) in lines {
+    for [a, b, c] in lines {
         let samples = x.iter().zip(y);
         for ((sign, least), (&x, &y)) in sign.iter_mut().zip(&mut *least).zip(samples) {
             let value = a * x + b * y + c;
@@ -150,21 +150,21 @@ fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut 
         let below = l[0] * x + l[1] * y + l[2];
         let inverse = 1.0 / below;
         let double = 2.0 * UP * inverse;
-        let place = |n: [f64; 3], own: f64| {
+        let square = |n: [f64; 3], own: f64| {
             let value = (n[0] * x + n[1] * y + n[2]) * inverse;
             // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ| |ℓ' − ℓ|)/ℓ', and ℓ' is at least ℓ/2.
-            let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * ROUNDINGS;
+            let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * LOCAL_ROUNDING;
             let middle = value - 0.5;
             let rounded = middle + ROUND;
-            let room = 0.5 - (middle - (rounded - ROUND)).abs();
-            (rounded.to_bits(), room - error * UP)
+            let margin = 0.5 - (middle - (rounded - ROUND)).abs();
+            (rounded.to_bits(), margin - error * UP)
         };
-        let ((bits0, room0), (bits1, room1)) = (place(n0, rads[0]), place(n1, rads[1]));
+        let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
         // Not so for NaN either, and the error of what is too great for the rounding is too great, too.
-        let first = if room0 > 0.0 { code } else { DOUBT };
-        let second = if room1 > 0.0 { first } else { DOUBT };
+        let first = if margin0 > 0.0 { code } else { DOUBT };
+        let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
             second
         } else {
@@ -186,7 +186,7 @@ impl Lanes {
                 }
             }
         }
-        for ScaledLine([a, b, c]) in edges {
+        for [a, b, c] in edges {
             for ((margin, &x), &y) in margin.iter_mut().zip(x).zip(y) {
                 let value = a * x + b * y + c;
                 *margin = if value < *margin { value } else { *margin };

@@ -14,7 +14,7 @@ pub(crate) use self::{
     precision::{Geometry, Precision},
 };
 
-use std::{cmp::Ordering, sync::atomic::AtomicBool};
+use std::{cmp::Ordering, convert::Infallible, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
@@ -177,19 +177,18 @@ impl World {
     #[inline]
     fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
-        let mut descent = self.quadtree.at(&r).ok_or(Doubt)?;
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
-        while let Some(mut list) = descent.next(bar) {
-            while let Some(index) = list.next(bar) {
-                if self.meet(&r, index, &mut nearest)?
-                    && let Some(Nearest { crossing, .. }) = &nearest
-                {
-                    bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
-                }
+        let visited = self.quadtree.visit(&r, |index| {
+            if self.meet(&r, index, &mut nearest)?
+                && let Some(Nearest { crossing, .. }) = &nearest
+            {
+                bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
             }
-        }
+            Ok(bar)
+        });
+        visited.ok_or(Doubt)??;
         self.with_color(&r, nearest)
     }
 
@@ -201,12 +200,13 @@ impl World {
     /// The objects that the ray through a point may meet, in file order.
     pub(super) fn candidates(&self, point: &Point) -> Vec<usize> {
         let r = self.geometry.fast.camera.direction(point);
-        let Some(mut descent) = self.quadtree.at(&r) else {
-            return (0..self.len()).collect();
-        };
         let mut candidates = Vec::new();
-        while let Some(mut list) = descent.next(Nearness::NONE) {
-            candidates.extend(std::iter::from_fn(|| list.next(Nearness::NONE)));
+        let visited = self.quadtree.visit(&r, |index| {
+            candidates.push(index);
+            Ok::<_, Infallible>(Nearness::NONE)
+        });
+        if visited.is_none() {
+            return (0..self.len()).collect();
         }
         candidates.sort_unstable();
         candidates
