@@ -115,7 +115,7 @@ fn broken_texts_get_answers_too() {
         labels("sphere {\n  rad$0\nbox { center (0, 0, 0) }"),
         "center color radius"
     );
-    assert_eq!(labels("sphere { radius ! 2 $0 } box {"), "center color");
+    assert_eq!(labels("sphere { radius = 2 $0 } box {"), "center color");
     assert_eq!(
         labels("sampler { method $0"),
         "exact halton hammersley jittered multi_jittered n_rooks random regular scatter sobol"
