@@ -7,7 +7,7 @@ use std::{env, fs, hint::black_box, num::NonZero, sync::atomic::AtomicBool};
 
 use pinhole::{
     area::Area,
-    math::Vectors,
+    math::SimdWidth,
     render::{Control, render, render_exact},
     report::numerics::textbook::Textbook,
     sampling::{Points, Sampling},
@@ -237,7 +237,7 @@ fn textbook(scene: &Scene) -> impl Fn() {
         let mut seen = vec![0_u64; 2 * objects];
         for (x, y) in Area::whole(width, height).iter() {
             let count = sampling.count(x, y);
-            sampling.place(Vectors::Widest, [x, y], count, 0..count, &mut points);
+            sampling.place(SimdWidth::Widest, [x, y], count, 0..count, &mut points);
             for offset in points.iter() {
                 if let Some(hit) = textbook.seen(x, y, offset) {
                     seen[2 * hit.object + usize::from(hit.odd)] += 1;

@@ -153,8 +153,8 @@ impl<'a> Integrator<'a> {
                 return ControlFlow::Break(());
             }
             match part {
-                Part::Flat { area, slot } => film.fill(area, self.colors[slot]),
-                Part::Open {
+                Part::OneColor { area, slot } => film.fill(area, self.colors[slot]),
+                Part::Pixel {
                     x,
                     y,
                     candidates,
@@ -169,7 +169,7 @@ impl<'a> Integrator<'a> {
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
                 // `Quartering::new` allows any number of candidates.
-                Part::Plain { .. } => unreachable!("every part of an exact picture is quartered"),
+                Part::Crowded { .. } => unreachable!("every part of an exact picture is quartered"),
             }
             ControlFlow::Continue(())
         });

@@ -4,9 +4,9 @@ use super::{Big, Real};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
-/// The algorithms are Dekker's and Knuth's error-free transformations, and the accurate double-word operations analysed by
+/// The algorithms are Dekker's and Knuth's error-free transformations; sum and product are the accurate ones analysed by
 /// Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks of double-word arithmetic" (2017):
-/// relative errors of 3u² for the sum, 5u² for the product and 10u² for the quotient, u = 2^−53. Products are split after
+/// relative errors of 3u² and 5u², u = 2^−53. The quotient is a long division, the root a step of Newton's method, each with a residual in double-double. Products are split after
 /// Dekker rather than by a fused multiply-add, which is a slow function call where the processor has none; both are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {

@@ -11,9 +11,9 @@ mod exact;
 pub mod predicates;
 mod radius;
 mod real;
+mod simd_width;
 mod sine;
 pub mod trig;
-mod vectors;
 
 pub use angle::Angle;
 pub use ball::{Ball, Ball3, Doubt, UP, cross, dot};
@@ -22,5 +22,5 @@ pub use double::{Double, two_product, two_sum};
 pub use exact::{Exact, Exact3};
 pub use radius::{Radius, Wide};
 pub use real::{ROUND, Real, floor};
+pub use simd_width::SimdWidth;
 pub use sine::sin_cos;
-pub use vectors::Vectors;

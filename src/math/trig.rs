@@ -34,12 +34,12 @@ fn sin_cos(angle: Angle) -> (Double, Double) {
     (sin, cos)
 }
 
-/// The angle whose sine this is; none outside of −1 to 1.
+/// The angle whose sine this is; not a number outside of −1 to 1.
 pub fn asin(sine: f64) -> Angle {
     Angle::from_radians(libm::asin(sine))
 }
 
-/// The angle whose cosine this is; none outside of −1 to 1.
+/// The angle whose cosine this is; not a number outside of −1 to 1.
 pub fn acos(cosine: f64) -> Angle {
     Angle::from_radians(libm::acos(cosine))
 }

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     area::Area,
     film::{self, Encoder},
-    math::Vectors,
+    math::SimdWidth,
     sampling::Sampling,
     tracer::{Candidate, Checks, Part, Quartering, Scratch, World, samples},
 };
@@ -64,11 +64,11 @@ impl<P: film::Pixel> Renderer<'_, P> {
             rays: 0,
         };
         let mut visit = |part: Part| match part {
-            Part::Flat { area, slot } => {
+            Part::OneColor { area, slot } => {
                 film.fill(area, self.shown[slot]);
                 self.go_on()
             }
-            Part::Open {
+            Part::Pixel {
                 x,
                 y,
                 candidates,
@@ -79,7 +79,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 &mut film,
                 tally,
             ),
-            Part::Plain { area } => {
+            Part::Crowded { area } => {
                 let mut pixels = area.iter();
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], Trace::OneByOne, &mut film, tally))
             }
@@ -150,9 +150,9 @@ impl<P: film::Pixel> Renderer<'_, P> {
             ..
         } = tally;
         let vectors = match trace {
-            Trace::Together(..) if some.end - some.start >= WIDE_SAMPLES => Vectors::Widest,
+            Trace::Together(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
             // To choose others takes longer, and rays that are traced one by one afterwards are slower for it.
-            _ => Vectors::Baseline,
+            _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
         // One by one, each may take its time.

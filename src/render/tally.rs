@@ -103,7 +103,7 @@ impl<P: film::Pixel> Means<P> {
             self.0.resize(KEPT, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;
-        // Which place it is does not matter, so that counts may lose their high bits.
+        // Any hash will do; odd and prime factors spread counts and slots over the places.
         let place = (count as usize)
             .wrapping_add((other as usize).wrapping_mul(7))
             .wrapping_add(a * 67 + b * 131)

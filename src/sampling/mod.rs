@@ -47,7 +47,7 @@ use self::{
 };
 use crate::{
     area::Area,
-    math::Vectors,
+    math::SimdWidth,
     scene::{Count, Method, Sampler},
 };
 
@@ -166,14 +166,14 @@ impl Sampling {
     /// What a pixel's points have in common is prepared anew in each call, so ask for a few thousand at once.
     pub fn points(&self, x: u32, y: u32, count: u64, range: Range<u64>, out: &mut Vec<DVec2>) {
         let mut points = Points::default();
-        self.place(Vectors::Widest, [x, y], count, range, &mut points);
+        self.place(SimdWidth::Widest, [x, y], count, range, &mut points);
         out.extend(points.iter());
     }
 
     /// The same points in the place of those before, by vectors of either kind.
     pub fn place(
         &self,
-        vectors: Vectors,
+        vectors: SimdWidth,
         [x, y]: [u32; 2],
         count: u64,
         range: Range<u64>,
@@ -188,8 +188,8 @@ impl Sampling {
         };
         let out = out.room(range.clone().count());
         match vectors {
-            Vectors::Widest => place_simd(pattern, key, range, out),
-            Vectors::Baseline => pattern.place(key, range, out),
+            SimdWidth::Widest => place_simd(pattern, key, range, out),
+            SimdWidth::Baseline => pattern.place(key, range, out),
         }
     }
 }

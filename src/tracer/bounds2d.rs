@@ -27,7 +27,7 @@ pub struct Extent {
 /// By how much of its terms a quotient is widened: a few roundings count for 2^−50 of them.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Below this, numbers lose digits to the range of an `f64`.
+/// Below this, products with roundings, 2^−53 of a number, may lose digits to the range of an `f64`, which ends at 1e-308 for whole ones.
 const LEAST: f64 = 1e-280;
 
 impl Object<f64> {

@@ -68,7 +68,7 @@ pub enum Shown<'a> {
     /// One square, or squares of one colour side by side; whether that is the second.
     One(bool),
     /// A few squares of one pixel.
-    Some(&'a Checks),
+    Squares(&'a Checks),
     /// One pixel, of which that is not known.
     Unknown,
 }
@@ -202,7 +202,7 @@ impl Mesh {
             };
             if sign == 0.0 {
                 match self.checks(row, first, above, below) {
-                    Some(checks) => each(area, Shown::Some(&checks))?,
+                    Some(checks) => each(area, Shown::Squares(&checks))?,
                     None => each(area, Shown::Unknown)?,
                 }
                 first += 1;

@@ -113,6 +113,7 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
+        // A product below the normal numbers loses up to half of the least number; there are fewer than 16.
         + T::TINY * 8.0
 }
 

@@ -19,6 +19,8 @@ use crate::{
 /// products and sums, where offsets are at most ½, have two. Of a quadratic one each of six terms has five at most, generously counted.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
+/// Products below the normal numbers lose up to half of the least number each, of which there are at most 16.
+const LOST: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
 #[derive(Clone, Debug)]
@@ -101,7 +103,7 @@ impl LocalForm {
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
-        let rad = (inherited + (a + b + c) * LINEAR_ROUNDING + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + (a + b + c) * LINEAR_ROUNDING + LOST) * UP;
         Self { factors, rad }
     }
 
@@ -142,7 +144,7 @@ impl LocalQuadratic {
     /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
-        let rad = (inherited + sizes * LOCAL_ROUNDING + 16.0 * f64::TINY) * UP;
+        let rad = (inherited + sizes * LOCAL_ROUNDING + LOST) * UP;
         Self { factors, rad }
     }
 

@@ -30,7 +30,7 @@ mod world;
 
 pub mod candidates;
 mod checker_corners;
-mod cull;
+mod quartering;
 mod ray;
 pub mod samples;
 
@@ -41,11 +41,11 @@ pub use camera::{Basis, Point};
 pub use candidates::Candidate;
 pub use checker_corners::Checks;
 pub(crate) use checker_corners::Squares;
-pub use cull::{GRID, Part, Quartering, Scratch};
 pub use curve::{Conic, Curve, Line};
 pub(crate) use curve::{LOOSE_LINE, SubPixelFrame, Surface};
 pub(crate) use local_form::{LocalForm, Patch};
 pub(crate) use object::Object;
+pub use quartering::{GRID, Part, Quartering, Scratch};
 pub use ray::{Hit, ray};
 pub use samples::PreparedPixel;
 pub use sub_pixel::SubPixel;

@@ -285,7 +285,7 @@ impl Sphere<f64> {
     }
 
     /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
-    /// that is not outside.
+    /// that is not outside, or not known to a quarter: up to there twice the error of a number covers that of its inverse.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))

@@ -112,14 +112,14 @@ type Sample = (u32, u32, DVec2);
 
 /// What is seen at a point by the plain loop over all objects.
 fn plain(world: &World, (x, y, offset): Sample) -> usize {
-    world.slot_among(x, y, offset, 0..world.len())
+    world.slot_among(x, y, offset, 0..world.object_count())
 }
 
 /// The same in one precision alone; none if that is in doubt.
 fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
-    let seen = world.seen(&r, 0..world.len()).ok()?;
+    let seen = world.seen(&r, 0..world.object_count()).ok()?;
     Some(world.slot(seen))
 }
 
@@ -268,7 +268,7 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             };
             assert!(candidates::within(&world, part, usize::MAX, &mut some));
             let patch = Patch::new(camera, part);
-            candidates::visible_among(&world, &patch, 0..world.len(), &mut all);
+            candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
             // The quadtree's bounds may leave out more, but nothing else comes in.
             let objects = |candidates: &[Candidate]| -> Vec<_> {
                 candidates
@@ -282,7 +282,7 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             for (x, y) in part.iter() {
                 let (_, _, offset) = random.point();
                 let point = camera.sample_point(x, y, offset);
-                let (expected, _) = world.object_among(&point, 0..world.len());
+                let (expected, _) = world.object_among(&point, 0..world.object_count());
                 let (found, _) = world.object_among(&point, some.iter().copied());
                 assert_eq!(found, expected, "seed {seed}: {part:?}");
                 seen += usize::from(expected.is_some());

@@ -169,5 +169,5 @@ fn what_is_wanted_is_the_same() {
     assert_eq!(reading.scene, plain.scene);
     let scene = plain.scene.expect("a scene");
     let world = World::new_unless(&scene, &cancel).expect("a world");
-    assert_eq!(world.len(), scene.objects.len());
+    assert_eq!(world.object_count(), scene.objects.len());
 }

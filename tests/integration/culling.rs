@@ -255,8 +255,8 @@ fn crowds_of_all_kinds() {
             let parts = Quartering::for_samples(&world, samples);
             let _ = parts.parts(whole(&all), &mut Scratch::default(), &mut |part| {
                 *pixels += match part {
-                    Part::Plain { area } if samples == 1.0 => area.pixels(),
-                    Part::Open { .. } if samples > 1.0 => 1,
+                    Part::Crowded { area } if samples == 1.0 => area.pixels(),
+                    Part::Pixel { .. } if samples > 1.0 => 1,
                     _ => 0,
                 };
                 ControlFlow::Continue(())
@@ -354,8 +354,8 @@ fn parts_cover_each_pixel_once() {
             let parts = Quartering::for_samples(&world, samples);
             let flow = parts.parts(area, &mut Scratch::default(), &mut |part| {
                 let part = match part {
-                    Part::Flat { area, .. } | Part::Plain { area } => area,
-                    Part::Open { x, y, .. } => Area::pixel(x, y),
+                    Part::OneColor { area, .. } | Part::Crowded { area } => area,
+                    Part::Pixel { x, y, .. } => Area::pixel(x, y),
                 };
                 part.iter().for_each(|(x, y)| seen[area.index(x, y)] += 1);
                 ControlFlow::Continue(())

@@ -135,7 +135,7 @@ mod tests {
         let mut known = Vec::new();
         let mut tell = |pixel, sum| known.push((pixel, sum));
         let mut visit = |part: Part| {
-            if let Part::Open {
+            if let Part::Pixel {
                 x,
                 y,
                 candidates: [candidate],

@@ -108,6 +108,7 @@ impl Grid {
     /// The unit that a coordinate lies in, or the nearest one; the first for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
+        // One less than the last unit, so that the window's end, one more, is a unit, too.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }

@@ -16,7 +16,7 @@ use glam::DVec2;
 
 use self::pixel::{BACKGROUND, CHUNK_SAMPLES, ColorCount, DOUBT, Pattern};
 use super::{candidates::Candidate, checker_corners::Checks, world::World};
-use crate::math::Vectors;
+use crate::math::SimdWidth;
 
 pub use self::pixel::PreparedPixel;
 
@@ -50,7 +50,7 @@ pub fn count(
     pixel: &mut PreparedPixel,
     [x, y]: [&[f64]; 2],
     samples: usize,
-    vectors: Vectors,
+    vectors: SimdWidth,
     mut count: impl FnMut(usize, u64),
 ) {
     let alone = |pixel: &PreparedPixel, index: usize| {

@@ -23,8 +23,8 @@ pub struct PreparedPixel {
     pub(super) surfaces: Vec<PixelSurface>,
     /// Of all surfaces.
     pub(super) lines: Vec<ScaledLine>,
-    /// How the surfaces lie, if that is to be looked at sample by sample.
-    pub(super) depths: Option<f64>,
+    /// How far apart inverse depths must be to be told apart, if surfaces are compared sample by sample.
+    pub(super) apart: Option<f64>,
     /// Of all surfaces, if they are looked at.
     pub(super) planes: Vec<LocalForm>,
     /// Whether samples are to be traced one by one.
@@ -93,7 +93,7 @@ pub(super) enum Depth {
 pub(super) struct Lanes {
     /// What is seen so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],
-    /// How deep that lies.
+    /// Its inverse depth.
     pub(super) nearest: [f64; CHUNK_SAMPLES],
     /// How certainly a surface is hit.
     pub(super) margin: [f64; CHUNK_SAMPLES],

@@ -20,7 +20,8 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Forms of a board with greater errors than this are left to higher precisions: products with numbers of squares would be infinite.
+/// Forms of a board with greater errors than this are left to higher precisions: products with numbers of squares, which are below 2^53, and of a few such factors would
+/// be infinite.
 const LARGEST: f64 = 1e250;
 
 /// A square of a board is told by lines if no more than this many of them pass through the pixel, else by division. Measured: 3 to 12 make no
@@ -54,7 +55,7 @@ impl PreparedPixel {
         self.surfaces.clear();
         self.lines.clear();
         self.planes.clear();
-        self.depths = None;
+        self.apart = None;
     }
 
     /// Writes down a candidate's boundaries and colours.
@@ -266,7 +267,7 @@ impl PreparedPixel {
         if !apart.is_finite() {
             return Err(Hard);
         }
-        self.depths = Some(apart);
+        self.apart = Some(apart);
         Ok(())
     }
 }

@@ -13,7 +13,7 @@ use super::{
     },
     pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, PixelSurface, PreparedPixel},
 };
-use crate::math::{ROUND, UP, Vectors};
+use crate::math::{ROUND, SimdWidth, UP};
 
 #[multiversion(targets = "simd")]
 fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
@@ -25,10 +25,10 @@ pub(super) type At<'a> = [&'a [f64]; 2];
 
 impl PreparedPixel {
     /// What the first `count` samples of a chunk see, and how often each colour is seen.
-    pub(super) fn chunk(&mut self, points: At, count: usize, vectors: Vectors) {
+    pub(super) fn chunk(&mut self, points: At, count: usize, vectors: SimdWidth) {
         match vectors {
-            Vectors::Widest => see_simd(self, points, count),
-            Vectors::Baseline => self.see(points, count),
+            SimdWidth::Widest => see_simd(self, points, count),
+            SimdWidth::Baseline => self.see(points, count),
         }
     }
 
@@ -43,14 +43,14 @@ impl PreparedPixel {
             }
             surfaces => {
                 lanes.seen[..length].fill(BACKGROUND);
-                if self.depths.is_some() {
+                if self.apart.is_some() {
                     lanes.nearest[..length].fill(f64::NEG_INFINITY);
                 }
                 for surface in surfaces {
                     let [start, end] = surface.edges;
                     lanes.margin(&self.lines[start..end], surface.conic.as_ref(), points);
                     surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.shown);
-                    match self.depths {
+                    match self.apart {
                         None => lanes.cover(length),
                         Some(apart) => {
                             lanes.depths(&surface.depth, &self.planes, points);
@@ -101,7 +101,7 @@ impl PixelSurface {
     }
 }
 
-/// Which side of an odd number of lines a sample is on.
+/// Whether a sample lies beyond an even or an odd number of lines.
 #[inline(always)]
 fn between(
     lines: &[ScaledLine],

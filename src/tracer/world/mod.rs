@@ -164,13 +164,8 @@ impl World {
     }
 
     /// How many objects there are.
-    pub fn len(&self) -> usize {
+    pub fn object_count(&self) -> usize {
         self.geometry.objects.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.geometry.objects.is_empty()
     }
 
     /// What is seen as far as `f64` can tell, of the objects on the way down the quadtree.
@@ -206,7 +201,7 @@ impl World {
             Ok::<_, Infallible>(Nearness::NONE)
         });
         if visited.is_none() {
-            return (0..self.len()).collect();
+            return (0..self.object_count()).collect();
         }
         candidates.sort_unstable();
         candidates

@@ -39,14 +39,14 @@ pub struct Quartering<'a> {
 #[derive(Clone, Copy, Debug)]
 pub enum Part<'a> {
     /// One colour is seen in all of it.
-    Flat {
+    OneColor {
         /// Where it lies.
         area: Area,
         /// The colour's slot in the palette.
         slot: usize,
     },
     /// A pixel in which more than one colour may be seen, as far as is known.
-    Open {
+    Pixel {
         /// Its column.
         x: u32,
         /// Its row.
@@ -57,7 +57,7 @@ pub enum Part<'a> {
         checks: Option<&'a Checks>,
     },
     /// More may be seen than is worth to know: its samples are traced one by one.
-    Plain {
+    Crowded {
         /// Where it lies.
         area: Area,
     },
@@ -70,7 +70,7 @@ pub struct Scratch {
 }
 
 impl<'a> Quartering<'a> {
-    /// For a prepared scene whose picture is to be known exactly: no part is [`Plain`](Part::Plain).
+    /// For a prepared scene whose picture is to be known exactly: no part is [`Crowded`](Part::Crowded).
     pub fn new(world: &'a World) -> Self {
         Self::for_samples(world, f64::INFINITY)
     }
@@ -99,7 +99,7 @@ impl<'a> Quartering<'a> {
             let flow = match candidates::within(self.world, area, self.most(area), &mut candidates)
             {
                 true => cut.cut(area, &candidates, 1, scratch),
-                false => cut.show(Part::Plain { area }),
+                false => cut.show(Part::Crowded { area }),
             };
             scratch.candidates[0] = candidates;
             flow
@@ -134,24 +134,24 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
         match candidates {
             [] => {
                 let slot = world.background();
-                return self.show(Part::Flat { area, slot });
+                return self.show(Part::OneColor { area, slot });
             }
             [only] if only.is_whole => {
                 let slots = world.slots(only.object);
                 let [slot, second] = slots;
                 if slot == second {
-                    return self.show(Part::Flat { area, slot });
+                    return self.show(Part::OneColor { area, slot });
                 }
                 let show = &mut |area: Area, seen: Shown| {
                     let checks = match seen {
                         Shown::One(odd) => {
                             let slot = slots[usize::from(odd)];
-                            return self.show(Part::Flat { area, slot });
+                            return self.show(Part::OneColor { area, slot });
                         }
-                        Shown::Some(checks) => Some(checks),
+                        Shown::Squares(checks) => Some(checks),
                         Shown::Unknown => None,
                     };
-                    self.show(Part::Open {
+                    self.show(Part::Pixel {
                         x: area.x,
                         y: area.y,
                         candidates,
@@ -167,12 +167,12 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
         let is_worth_more = candidates.len() <= self.quartering.most(area);
         // A cell of the quadtree lists as many, of which each sample would be asked instead.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
-            return self.show(Part::Plain { area });
+            return self.show(Part::Crowded { area });
         }
         if !is_worth_more || area.pixels() == 1 {
             let mut pixels = area.iter();
             return pixels.try_for_each(|(x, y)| {
-                self.show(Part::Open {
+                self.show(Part::Pixel {
                     x,
                     y,
                     candidates,
@@ -194,18 +194,18 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
     /// Shows what is wanted of a part.
     fn show(&mut self, part: Part) -> ControlFlow<()> {
         let part = match part {
-            Part::Flat { area, slot } => Part::Flat {
+            Part::OneColor { area, slot } => Part::OneColor {
                 area: area.common(self.wanted),
                 slot,
             },
-            Part::Plain { area } => Part::Plain {
+            Part::Crowded { area } => Part::Crowded {
                 area: area.common(self.wanted),
             },
-            Part::Open { .. } => part,
+            Part::Pixel { .. } => part,
         };
         let is_wanted = match part {
-            Part::Flat { area, .. } | Part::Plain { area } => area.pixels() > 0,
-            Part::Open { x, y, .. } => Area::pixel(x, y).meets(self.wanted),
+            Part::OneColor { area, .. } | Part::Crowded { area } => area.pixels() > 0,
+            Part::Pixel { x, y, .. } => Area::pixel(x, y).meets(self.wanted),
         };
         match is_wanted {
             true => (self.visit)(part),

@@ -63,11 +63,11 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
                 &mut Scratch::default(),
                 &mut |part| {
                     let few = match part {
-                        Part::Flat { .. } => 0,
+                        Part::OneColor { .. } => 0,
                         // All boards meet at the horizon, between these two rows.
-                        Part::Open { y: 31 | 32, .. } => 0,
-                        Part::Open { candidates, .. } => candidates.len(),
-                        Part::Plain { .. } => usize::MAX,
+                        Part::Pixel { y: 31 | 32, .. } => 0,
+                        Part::Pixel { candidates, .. } => candidates.len(),
+                        Part::Crowded { .. } => usize::MAX,
                     };
                     assert!(few <= 2, "{count}: {part:?}");
                     ControlFlow::Continue(())
