@@ -1,8 +1,7 @@
 //! The list of problems, and its two forms: for people and for programs.
 //!
-//! In: the problems of the stages, each an enum whose variants carry code, message, labels and help by miette's derive.
-//! Out: [`Diagnostic`]s with the edits that may help, in the order of the text, as a terminal shows them or as lines of JSON. Where to print them, and in
-//! which style, is the caller's decision.
+//! In: [`Diagnostic`]s, which the stages make where a problem arises, with the edits that may help. Out: the same in the order of the text, as a terminal shows
+//! them or as lines of JSON. Where to print them, and in which style, is the caller's decision.
 
 mod fix;
 #[cfg(feature = "cli")]
@@ -10,15 +9,13 @@ mod report;
 #[cfg(feature = "cli")]
 mod visible;
 
-pub use fix::{Edit, Fix, Fixable, apply, with_comments};
+pub use fix::{Edit, Fix, apply, with_comments};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 #[cfg(feature = "cli")]
 pub use visible::visible;
 
 use std::fmt::Write;
-
-use miette::SourceSpan;
 
 use crate::source::{Source, SourceId, Sources, Span};
 
@@ -72,40 +69,6 @@ pub struct Label {
 }
 
 impl Diagnostic {
-    /// Reads a stage's problem; its labels are spans that went through [`Span`]'s conversion to miette's.
-    pub fn from_problem(problem: &dyn miette::Diagnostic, sources: &Sources) -> Self {
-        let labels = problem.labels().into_iter().flatten().map(|label| {
-            let source = sources.at(label.offset());
-            let start = label.offset() - source.start();
-            Label {
-                span: Span::new(source, start, start + label.len()),
-                message: label.label().unwrap_or_default().to_owned(),
-            }
-        });
-        Self {
-            severity: match problem.severity() {
-                Some(miette::Severity::Warning | miette::Severity::Advice) => Severity::Warning,
-                Some(miette::Severity::Error) | None => Severity::Error,
-            },
-            code: problem.code().map(|c| c.to_string()).unwrap_or_default(),
-            message: problem.to_string(),
-            help: problem.help().map(|help| help.to_string()),
-            labels: labels.collect(),
-            fixes: Vec::new(),
-            is_needless: false,
-            is_of_syntax: false,
-        }
-    }
-
-    /// Reads a stage's problem together with its fixes.
-    pub fn fixable(problem: &impl Fixable, sources: &Sources) -> Self {
-        Self {
-            fixes: problem.fixes(sources),
-            is_of_syntax: problem.is_of_syntax(),
-            ..Self::from_problem(problem, sources)
-        }
-    }
-
     /// Whether it is an error.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
@@ -120,14 +83,6 @@ pub fn sort(diagnostics: &mut [Diagnostic]) {
             (label.span.source, label.span.start)
         })
     });
-}
-
-// miette's spans know no source, so on the way through its derive they count from the start of the first text.
-impl From<Span> for SourceSpan {
-    fn from(span: Span) -> Self {
-        let length = span.end.saturating_sub(span.start);
-        (span.source.start() + span.start, length).into()
-    }
 }
 
 /// Every diagnostic as a line of JSON, as the command line's contract says.

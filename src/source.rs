@@ -13,19 +13,8 @@ use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 pub enum SourceId {
     /// The scene file (or standard input).
     File,
-    /// The `--set` argument whose text begins here, if the texts of a scene stand one behind another.
+    /// The `--set` argument with this number, from 0.
     Set(usize),
-}
-
-impl SourceId {
-    /// Where its text begins, if the texts of a scene stand one behind another. That tells all places of a scene apart by one number, which fits
-    /// wherever the texts themselves do.
-    pub fn start(self) -> usize {
-        match self {
-            Self::File => 0,
-            Self::Set(start) => start,
-        }
-    }
 }
 
 /// A half-open range of bytes in one source.
@@ -95,27 +84,17 @@ impl Sources {
 
     /// The `--set` arguments, and what spans call them.
     pub fn sets(&self) -> impl Iterator<Item = (SourceId, &Source)> {
-        // The end of a text is a place of its own, and not the start of the next.
-        let mut start = self.file.text.len() + 1;
-        self.sets.iter().map(move |set| {
-            let id = SourceId::Set(start);
-            start += set.text.len() + 1;
-            (id, set)
-        })
+        let sets = self.sets.iter().enumerate();
+        sets.map(|(index, set)| (SourceId::Set(index), set))
     }
 
     /// The text that a span points into; the file for an argument that does not exist.
     pub fn get(&self, id: SourceId) -> &Source {
-        let mut sets = self.sets();
-        let set = sets.find(|&(set, _)| set == id);
-        set.map_or(&self.file, |(_, source)| source)
-    }
-
-    /// Which text holds a place, counted from the start of the first of them.
-    pub fn at(&self, place: usize) -> SourceId {
-        let sets = self.sets().map(|(id, _)| id);
-        let before = sets.take_while(|id| id.start() <= place);
-        before.last().unwrap_or(SourceId::File)
+        let set = match id {
+            SourceId::File => None,
+            SourceId::Set(index) => self.sets.get(index),
+        };
+        set.unwrap_or(&self.file)
     }
 
     /// The text under a span.
@@ -303,19 +282,6 @@ mod tests {
         let source = Source::from_text("a.scn", text.as_str());
         for (index, (offset, _)) in text.char_indices().enumerate() {
             assert_eq!(source.place(offset).column, index + 1);
-        }
-    }
-
-    #[test]
-    fn places_of_all_texts_are_told_apart() {
-        let sources = Sources::new(Source::from_text("a.scn", "ab")).with_sets(["", "x=1", "y"]);
-        let ids: Vec<_> = sources.sets().map(|(id, _)| id).collect();
-        assert_eq!(ids, [3, 4, 8].map(SourceId::Set));
-        for id in ids.into_iter().chain([SourceId::File]) {
-            // Its end is the last place of a text.
-            for place in [0, sources.get(id).text().len()] {
-                assert_eq!(sources.at(id.start() + place), id);
-            }
         }
     }
 

@@ -2,15 +2,6 @@
 
 use crate::source::{SourceId, Sources, Span};
 
-/// A problem that knows what could be done about it.
-pub trait Fixable: miette::Diagnostic {
-    /// The ways out that are edits, the likeliest first. None of them needs another one.
-    fn fixes(&self, sources: &Sources) -> Vec<Fix>;
-
-    /// Whether the text cannot be taken apart, whatever its names mean.
-    fn is_of_syntax(&self) -> bool;
-}
-
 /// One way out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {

@@ -30,7 +30,7 @@ pub fn fixes<'a>(
 
 /// All that can be put right without being asked, as one change; none if nothing can.
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
-    let fixed = scene::fix_all(analysis.survey.sources());
+    let fixed = scene::fix_all(analysis.model.sources());
     let edit = change(analysis.text(), &fixed.text);
     (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed", [edit]))
 }

@@ -13,7 +13,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// What is known of it.
-    pub survey: SemanticModel<'s>,
+    pub model: SemanticModel<'s>,
     /// The words and signs, by their places.
     pub tokens: Vec<Token>,
 }
@@ -34,16 +34,16 @@ pub(super) struct Path<'a, 's> {
 impl<'s> Analysis<'s> {
     /// Reads a text.
     pub fn new(sources: &'s Sources) -> Self {
-        let survey = scene::analyze(sources);
+        let model = scene::analyze(sources);
         Self {
-            tokens: tokens::tokens(&survey),
-            survey,
+            tokens: tokens::tokens(&model),
+            model,
         }
     }
 
     /// The file.
     pub fn source(&self) -> &'s Source {
-        &self.survey.sources().file
+        &self.model.sources().file
     }
 
     /// The text.
@@ -58,17 +58,17 @@ impl<'s> Analysis<'s> {
 
     /// What is wrong with it: the same list as everywhere.
     pub fn diagnostics(&self) -> &[Diagnostic] {
-        &self.survey.diagnostics
+        &self.model.diagnostics
     }
 
     /// The comments.
     pub fn comments(&self) -> &[Span] {
-        &self.survey.parsed.comments
+        &self.model.parsed.comments
     }
 
     /// The items of the tree.
     pub(super) fn items(&self) -> &[Item<'s>] {
-        &self.survey.parsed.tree.items
+        &self.model.parsed.tree.items
     }
 
     /// The blocks of the tree.
@@ -105,7 +105,7 @@ impl<'s> Analysis<'s> {
     /// What a value of a definition or a field is.
     pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
         let takes = path.row().and_then(|row| row.field(path.field?.name.text));
-        self.survey.value(value, takes.map(|field| field.takes))
+        self.model.value(value, takes.map(|field| field.takes))
     }
 
     /// The line of a span, counted from 1.

@@ -27,7 +27,7 @@ pub struct Swatch {
 /// Every colour that is written out in the text, in order.
 pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
     let mut swatches = Vec::new();
-    for definition in analysis.survey.definitions() {
+    for definition in analysis.model.definitions() {
         collect(analysis, &definition.value, &mut swatches);
     }
     for block in analysis.blocks() {
@@ -54,7 +54,7 @@ fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut 
         }
         _ => false,
     };
-    if is_color && let Some(Value::Color(color)) = analysis.survey.value(value, None) {
+    if is_color && let Some(Value::Color(color)) = analysis.model.value(value, None) {
         let span = value.span;
         swatches.push(Swatch { span, color });
         return;

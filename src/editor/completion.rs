@@ -184,7 +184,7 @@ fn example(analysis: &Analysis<'_>, situation: &Situation, field: &Field) -> Str
         let row = situation.block?.field(name)?;
         let mut fields = block?.fields.iter();
         let given = fields.find(|given| given.name.text == name)?;
-        analysis.survey.value(&given.value, Some(row.takes))
+        analysis.model.value(&given.value, Some(row.takes))
     })
 }
 
@@ -287,18 +287,18 @@ fn definitions(
     is_color: Option<bool>,
 ) -> Vec<Completion> {
     let mut completions = Vec::new();
-    for definition in analysis.survey.definitions() {
+    for definition in analysis.model.definitions() {
         let Some(name) = definition.name else {
             continue;
         };
         let is_own = situation.field.is_none() && situation.defining == Some(name.span);
         let is_before = definition.span.end <= situation.word.start && !is_own;
-        let first = analysis.survey.definition_at(name.text, usize::MAX);
+        let first = analysis.model.definition_at(name.text, usize::MAX);
         let is_first = first.is_some_and(|first| first.span == definition.span);
         if !is_before || !is_first {
             continue;
         }
-        let value = analysis.survey.defined(definition);
+        let value = analysis.model.defined(definition);
         let kind = value.map(|value| value.kind());
         let fits = match (is_color, kind) {
             (_, Some(kind)) if situation.wanted == Some(Type::Colors) => kind == Type::Colors,

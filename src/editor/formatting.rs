@@ -8,7 +8,7 @@ use crate::{format::format_parsed, source::Span};
 
 /// What takes the place of what; nothing if the text has mistakes of syntax.
 pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<(Span, String)>> {
-    let formatted = format_parsed(analysis.source(), &analysis.survey.parsed)?;
+    let formatted = format_parsed(analysis.source(), &analysis.model.parsed)?;
     Some(changes(analysis.text(), &formatted))
 }
 

@@ -24,9 +24,9 @@ pub fn hints(analysis: &Analysis<'_>, within: std::ops::Range<usize>) -> Vec<Hin
     let mut hints = Vec::new();
     let touches =
         |value: &tree::Value<'_>| within.contains(&value.span.end) || within.end == value.span.end;
-    for definition in analysis.survey.definitions() {
+    for definition in analysis.model.definitions() {
         if touches(&definition.value) && is_computed(&definition.value) {
-            let value = analysis.survey.defined(definition);
+            let value = analysis.model.defined(definition);
             hints.extend(value.map(|value| Hint {
                 at: definition.value.span.end,
                 text: format!("= {value}"),
@@ -60,7 +60,7 @@ fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -
     if !is_computed(&field.value) {
         return None;
     }
-    let value = analysis.survey.value(&field.value, Some(row.takes))?;
+    let value = analysis.model.value(&field.value, Some(row.takes))?;
     Some(format!("= {value}"))
 }
 
@@ -81,7 +81,7 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     if !counts(analysis, block, field) {
         return None;
     }
-    let parts = &analysis.survey.parts;
+    let parts = &analysis.model.parts;
     let image = parts.image?;
     match (block.kind?.text, field.name.text) {
         ("camera", "d") => {

@@ -97,7 +97,7 @@ pub(super) fn about_definition<'s>(analysis: &Analysis<'s>, definition: &Definit
     let name = definition.name.map_or("", |name| name.text);
     let written = shorten(analysis.slice(definition.value.span));
     let line = analysis.line(definition.span);
-    let value = match analysis.survey.defined(definition) {
+    let value = match analysis.model.defined(definition) {
         Some(value) => described(value),
         None => "it has no value: see what is reported there".to_owned(),
     };
@@ -138,7 +138,7 @@ fn kind(analysis: &Analysis<'_>, row: &Block) -> String {
 
 /// The camera's axes, its field of view and its vanishing points, as `inspect` shows them.
 fn camera(analysis: &Analysis<'_>) -> Option<String> {
-    let parts = &analysis.survey.parts;
+    let parts = &analysis.model.parts;
     let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
     let mut text = format!(
         "looks {}; a field of view of {} degrees, `d {}`, `view_height {}`\n",
@@ -174,7 +174,7 @@ fn camera(analysis: &Analysis<'_>) -> Option<String> {
 fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     let block = path.block?;
     let (kind, name) = (block.kind?.text, block.name?.text);
-    let objects = &analysis.survey.parts.objects;
+    let objects = &analysis.model.parts.objects;
     let index = objects.partition_point(|object| object.span.start < block.span.start);
     let object = objects
         .get(index)
@@ -209,12 +209,12 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
     let value = *path.values.get(depth)?;
     let found = match depth {
         0 => analysis.value(value, path),
-        _ => analysis.survey.value(value, None),
+        _ => analysis.model.value(value, None),
     };
     let about = |span, markdown| Some(Hover { span, markdown });
     match &value.kind {
         ValueKind::Name(name) => {
-            let definition = analysis.survey.definition_at(name, value.span.start);
+            let definition = analysis.model.definition_at(name, value.span.start);
             if let Some(definition) = definition {
                 return about(value.span, about_definition(analysis, definition));
             }

@@ -16,7 +16,7 @@ pub struct SemanticToken {
     pub span: Span,
     /// What it is.
     pub kind: SemanticKind,
-    /// Whether the name is defined here.
+    /// Whether a `let` defines the name here.
     pub is_declaration: bool,
 }
 

@@ -10,7 +10,7 @@ use std::ops::Range;
 /// A function as it is called.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// `atan2(number, number) → angle`
+    /// `atan2(y, x) → angle`
     pub label: String,
     /// What it is, in a line.
     pub help: &'static str,

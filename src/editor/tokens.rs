@@ -59,10 +59,10 @@ pub fn file(start: usize, end: usize) -> Span {
 }
 
 /// The tokens of a text. None reaches into a comment.
-pub fn tokens(survey: &SemanticModel<'_>) -> Vec<Token> {
-    let text = survey.sources().file.text();
-    let mut roles = Roles(scanned(text, &survey.parsed.comments));
-    for item in &survey.parsed.tree.items {
+pub fn tokens(model: &SemanticModel<'_>) -> Vec<Token> {
+    let text = model.sources().file.text();
+    let mut roles = Roles(scanned(text, &model.parsed.comments));
+    for item in &model.parsed.tree.items {
         match item {
             Item::Definition(definition) => {
                 roles.is(definition.keyword, Role::Let);

@@ -7,7 +7,7 @@
 
 use super::{
     entries::{Block, Entry, What},
-    words::{has_line_end, width},
+    token_stream::{has_line_end, width},
 };
 use crate::scene::schema;
 

@@ -4,7 +4,7 @@
 
 use super::{
     WIDTH,
-    words::{Before, Gap, Reader, Word, width},
+    token_stream::{Before, Gap, Reader, Word, width},
 };
 use crate::{
     source::{Source, Span},

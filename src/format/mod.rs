@@ -12,7 +12,7 @@
 mod columns;
 mod entries;
 mod page;
-mod words;
+mod token_stream;
 
 use std::collections::HashSet;
 

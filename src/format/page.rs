@@ -4,7 +4,7 @@ use super::{
     WIDTH,
     columns::SLACK,
     entries::{Block, Entry, What},
-    words::{Before, Word, column_after, ends_line, is_comment, width},
+    token_stream::{Before, Word, column_after, ends_line, is_comment, width},
 };
 
 /// By how much a block's fields stand further to the right than itself, and the other lines of a value than its first.

@@ -2,7 +2,7 @@
 //!
 //! What a client tells is taken in at once, and what it asks is put into a queue, of which [`Server::advance`] answers a slice; so a host can
 //! see what has come in the meantime, as a request's cancelling. Each answer is about the text as it was when it was asked for: before a text changes, what waits
-//! about it is answered. Of several states of a text only the last is judged.
+//! about it is answered. Diagnostics are computed for a text's last version alone.
 
 use std::{
     collections::{BTreeSet, HashMap, VecDeque},

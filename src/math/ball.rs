@@ -102,7 +102,7 @@ impl<T: Real> Ball<T> {
     /// self · power, for a power of two.
     #[inline]
     pub fn times_power(&self, power: f64) -> Self {
-        // Exact, but for an underflow.
+        // Dyadic, but for an underflow.
         Self {
             mid: self.mid.times(&T::from_f64(power)),
             rad: self.rad * power * UP + T::TINY,
@@ -112,7 +112,7 @@ impl<T: Real> Ball<T> {
     /// self · 2^exponent.
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
-        // Exact, but for an underflow.
+        // Dyadic, but for an underflow.
         let lost = lost_of::<T>(self.mid.is_zero());
         Self {
             mid,

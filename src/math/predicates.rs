@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{Exact, Exact3, two_sum};
+use super::{Dyadic, Dyadic3, two_sum};
 
 /// A plane.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub enum Plane {
     /// Through a point across a normal.
     Tilted {
         /// The normal, of any length but 0.
-        normal: Exact3,
+        normal: Dyadic3,
         /// The point.
         point: DVec3,
     },
@@ -28,13 +28,13 @@ pub enum Plane {
 impl Plane {
     /// The plane through a point across a normal.
     pub fn across(normal: DVec3, point: DVec3) -> Self {
-        let normal = Exact::vector(normal);
+        let normal = Dyadic::vector(normal);
         Self::Tilted { normal, point }
     }
 
     /// The plane through three points.
     pub fn through([a, b, c]: [DVec3; 3]) -> Self {
-        let normal = Exact::cross(&Exact::between(a, b), &Exact::between(a, c));
+        let normal = Dyadic::cross(&Dyadic::between(a, b), &Dyadic::between(a, c));
         Self::Tilted { normal, point: a }
     }
 
@@ -45,15 +45,15 @@ impl Plane {
             return a == b && p == q;
         }
         let ((a, p), (b, q)) = (self.normal_and_point(), other.normal_and_point());
-        Exact::is_zero(&Exact::cross(&a, &b))
-            && Exact::dot(&a, &Exact::between(p, q)).sign().is_eq()
+        Dyadic::is_zero(&Dyadic::cross(&a, &b))
+            && Dyadic::dot(&a, &Dyadic::between(p, q)).sign().is_eq()
     }
 
-    fn normal_and_point(&self) -> (Exact3, DVec3) {
+    fn normal_and_point(&self) -> (Dyadic3, DVec3) {
         match self {
             Self::Axial { axis, at } => {
                 let axis = DVec3::AXES[*axis];
-                (Exact::vector(axis), axis * *at)
+                (Dyadic::vector(axis), axis * *at)
             }
             Self::Tilted { normal, point } => (normal.clone(), *point),
         }
@@ -62,17 +62,23 @@ impl Plane {
 
 /// Whether the cross product of `up` with `to − from` is zero.
 pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
-    Exact::is_zero(&Exact::cross(&Exact::vector(up), &Exact::between(from, to)))
+    Dyadic::is_zero(&Dyadic::cross(
+        &Dyadic::vector(up),
+        &Dyadic::between(from, to),
+    ))
 }
 
 /// The sign of the dot product of `up` with `to − from`.
 pub fn dot_sign(up: DVec3, from: DVec3, to: DVec3) -> Ordering {
-    Exact::dot(&Exact::vector(up), &Exact::between(from, to)).sign()
+    Dyadic::dot(&Dyadic::vector(up), &Dyadic::between(from, to)).sign()
 }
 
 /// Whether three points lie on one line.
 pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
-    Exact::is_zero(&Exact::cross(&Exact::between(a, b), &Exact::between(a, c)))
+    Dyadic::is_zero(&Dyadic::cross(
+        &Dyadic::between(a, b),
+        &Dyadic::between(a, c),
+    ))
 }
 
 /// Whether three lengths are the sides of a triangle: each is less than the two others together.

@@ -1,7 +1,7 @@
 //! The table of blocks and their fields.
 
 use super::{
-    rows::{Block, Choice, Condition, Field, Kind, Preset, Spread},
+    row_types::{Block, Choice, Condition, Field, Kind, Preset, Spread},
     types::Type,
 };
 

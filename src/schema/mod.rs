@@ -9,13 +9,13 @@ mod blocks;
 mod builtins;
 pub mod css;
 mod methods;
-mod rows;
+mod row_types;
 mod types;
 
 pub use blocks::BLOCKS;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
 pub use methods::{METHODS, Method, method, method_names, nearest_method};
-pub use rows::{Block, Choice, Condition, Field, Kind, Preset, Spread};
+pub use row_types::{Block, Choice, Condition, Field, Kind, Preset, Spread};
 
 pub use types::{Type, Value};
 

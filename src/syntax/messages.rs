@@ -17,7 +17,6 @@ pub const MISSING_NAME: Message = Message::new("missing_name", "a `let` lacks it
 pub const BAD_NAME: Message = Message::new("bad_name", "`{0}` cannot be a name", "a name should stand here", "a name is made of the letters a to z, digits and `_`, and does not start with a digit");
 pub const MISSING_EQUALS: Message = Message::new("missing_equals", "`let {0}` lacks its `=`", "`=` should stand here", "");
 pub const LET_WITHOUT_VALUE: Message = Message::new("missing_value", "`let {0}` has no value", "a value should follow", "write `let {0} = ` and a value");
-pub const SET_WITHOUT_VALUE: Message = Message::new("missing_value", "this `--set` gives no value", "a value should follow", "write a value after the `=`");
 pub const MISSING_LET: Message = Message::new("missing_let", "a value is given to `{0}` without `let`", "`let {0}` should stand here", "write `let {0} = {1}`");
 pub const MISPLACED_LET: Message = Message::new("misplaced_let", "a `let` stands within a block", "only fields stand here", "write it before the block");
 pub const MISSING_KIND: Message = Message::new("missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`");

@@ -2,7 +2,8 @@
 //!
 //! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest reads the items that are
 //! right (`grammar`, `parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
-//! of each slip and nodes of what can be understood. What the names mean is not known here, but for telling slips apart.
+//! of each slip and nodes of what can be understood. Names are looked up only to choose between
+//! explanations of a mistake.
 
 #![cfg_attr(
     not(test),
@@ -18,17 +19,17 @@
 mod grammar;
 #[rustfmt::skip]
 mod messages;
+mod parallel;
 mod parser;
-mod parts;
 mod problem;
 mod recovery;
 mod scan;
 pub mod tokens;
 pub mod tree;
-mod words;
+mod vocabulary;
 
+pub use parallel::parse_in_parts;
 pub use parser::{parse, parse_unless, parse_value};
-pub use parts::parse_in_parts;
 pub use problem::{field_without_value, invalid_utf8, shorten, utf16};
 pub use tree::Tree;
 
@@ -46,6 +47,6 @@ pub struct Parsed<'s> {
     pub comments: Vec<Span>,
     /// What is wrong with the text.
     pub problems: Vec<Diagnostic>,
-    /// Where a mistake took the rest of the text: what is missing after it is not missed.
+    /// Where a mistake took the rest of the text, so that nothing is reported to be missing.
     pub cut: Option<usize>,
 }

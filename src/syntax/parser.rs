@@ -5,8 +5,7 @@
 //! words show that something else was meant (a field that its block does not know), `recovery` reads that one item.
 //!
 //! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a right text can be taken
-//! apart. Spans are taken
-//! from tokens: pest's own span of a rule may end after the white space behind it.
+//! apart.
 
 use std::{ops::Range, sync::atomic::AtomicBool, thread};
 
@@ -25,7 +24,7 @@ use super::{
         Block, Call, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad,
         chain, negation, number,
     },
-    words::Words,
+    vocabulary::Vocabulary,
 };
 use crate::{
     cancel,
@@ -33,7 +32,7 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
-/// The stack that pest gets: it takes some ten kilobytes for each level of nesting without optimization.
+/// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
 pub const STACK: usize = 64 << 20;
 
 /// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its pairs of a whole file would take much memory.
@@ -49,9 +48,9 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
     with_stack(|| {
         let text = source.text();
         let scan = Scan::of(text, source.bom_len(), cancel);
-        let words = Words::new(text);
+        let words = Vocabulary::new(text);
         let mut recovery = Recovery::new(source, id, &words);
-        let mut right = Right::new(text, id, &words);
+        let mut right = TreeBuilder::new(text, id, &words);
         let mut at = source.bom_len();
         let mut ends = scan.ends.as_slice();
         let mut deep = scan.deep.as_slice();
@@ -110,7 +109,7 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
     with_stack(|| {
         let text = source.text();
         let scan = Scan::of(text, start, &cancel::NEVER);
-        let words = Words::new("");
+        let words = Vocabulary::new("");
         let mut recovery = Recovery::new(source, id, &words);
         let value = recovery.whole_value(start);
         (value, recovery.finish(scan).problems)
@@ -134,19 +133,19 @@ fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
 }
 
 /// Makes nodes of what pest read.
-pub struct Right<'w, 's> {
+pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
-    words: &'w Words<'s>,
+    words: &'w Vocabulary<'s>,
     /// Where the slice that pest reads starts: its offsets count from there.
     base: usize,
-    /// Whether something in the item may have been meant otherwise.
+    /// Whether the item follows the grammar, but holds a field or a function that is not known, so that recovery should try it.
     doubtful: bool,
 }
 
-impl<'w, 's> Right<'w, 's> {
+impl<'w, 's> TreeBuilder<'w, 's> {
     /// For a text.
-    pub fn new(text: &'s str, id: SourceId, words: &'w Words<'s>) -> Self {
+    pub fn new(text: &'s str, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         Self {
             text,
             id,

@@ -92,7 +92,7 @@ impl Scan {
         scan
     }
 
-    /// Whether nothing was found that is a mistake or hides one.
+    /// Whether the text has no comment that is never closed, no value that nests too deep and no odd white space.
     pub fn is_plain(&self) -> bool {
         self.open_comment.is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }

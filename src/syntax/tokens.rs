@@ -1,8 +1,8 @@
 //! The lexer: from a text to its tokens.
 //!
 //! In: a text and an offset. Out: one token after the other, comments among them; what lies between two tokens is white
-//! space. It knows nothing of the grammar, so it reads any text: a character that starts no token is one by itself. Recovery,
-//! the formatter and the editor read with it.
+//! space. It knows nothing of the grammar, so it reads any text: a character that starts no token is one by itself. The
+//! scan for comments, recovery and the editor read with it; the formatter walks the tree.
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

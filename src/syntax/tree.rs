@@ -6,7 +6,7 @@
 
 use crate::{math::Angle, source::Span};
 
-/// A whole file, or a single value of a `--set` argument.
+/// A whole file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree<'s> {
     /// The items in their order.
@@ -165,7 +165,7 @@ impl<'s> Value<'s> {
 /// The ways to write a value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ValueKind<'s> {
-    /// A number; its spelling stands under the span.
+    /// A number by its spelling, without a unit.
     Number(&'s str),
     /// A number with a unit.
     Angle {

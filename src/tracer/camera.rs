@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     area::Area,
-    math::{Ball, Ball3, Big, Exact, Exact3, Radius, Real, UP},
+    math::{Ball, Ball3, Big, Dyadic, Dyadic3, Radius, Real, UP},
     scene::{self, CenteredTriangle, Image, Lens, Outline, Scene, Shape, View},
 };
 
@@ -30,8 +30,8 @@ pub struct Basis {
 }
 
 /// v/|v|, each component to the last bits of a [`Big`].
-fn normalized(v: &Exact3) -> [Big; 3] {
-    let length = Exact::dot(v, v).to_big().sqrt();
+fn normalized(v: &Dyadic3) -> [Big; 3] {
+    let length = Dyadic::dot(v, v).to_big().sqrt();
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
@@ -46,10 +46,10 @@ fn sum(a: &Big, b: &Big) -> Big {
 }
 
 /// lookat − eye, or the direction, as it is.
-fn view_direction(camera: &scene::Camera) -> Exact3 {
+fn view_direction(camera: &scene::Camera) -> Dyadic3 {
     match camera.view {
-        View::Lookat(lookat) => Exact::between(camera.eye, lookat),
-        View::Direction(direction) => Exact::vector(direction),
+        View::Lookat(lookat) => Dyadic::between(camera.eye, lookat),
+        View::Direction(direction) => Dyadic::vector(direction),
     }
 }
 
@@ -61,13 +61,13 @@ impl Basis {
     /// which looks along h and has the same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
-        let up = Exact::vector(camera.up);
-        let backward = forward.each_ref().map(|x| &Exact::new(0.0) - x);
-        let mut right = Exact::cross(&up, &backward);
-        if Exact::is_zero(&right) {
-            right = Exact::cross(&Exact::vector(scene::level_direction(camera.up)), &up);
+        let up = Dyadic::vector(camera.up);
+        let backward = forward.each_ref().map(|x| &Dyadic::new(0.0) - x);
+        let mut right = Dyadic::cross(&up, &backward);
+        if Dyadic::is_zero(&right) {
+            right = Dyadic::cross(&Dyadic::vector(scene::level_direction(camera.up)), &up);
         }
-        let top = Exact::cross(&backward, &right);
+        let top = Dyadic::cross(&backward, &right);
 
         let (u, v, w) = (normalized(&right), normalized(&top), normalized(&backward));
         let (sin, cos) = Big::sin_cos(camera.roll);

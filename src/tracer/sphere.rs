@@ -16,7 +16,7 @@ use super::{
     interval::{Cover, Range},
     local_form::{LocalForm, LocalQuadratic, Patch},
 };
-use crate::math::{Ball, Ball3, Double, Doubt, Exact, Radius, Real, UP, dot};
+use crate::math::{Ball, Ball3, Double, Doubt, Dyadic, Radius, Real, UP, dot};
 
 /// A sphere prepared for one picture. Its lengths are scaled by a power of two to be about 1.
 #[derive(Clone, Debug)]
@@ -381,9 +381,9 @@ fn power<T: Real>(
     {
         return (power, side);
     }
-    let c = Exact::between(eye, center);
-    let radius = Exact::new(radius);
-    let power = &Exact::dot(&c, &c) - &(&radius * &radius);
+    let c = Dyadic::between(eye, center);
+    let radius = Dyadic::new(radius);
+    let power = &Dyadic::dot(&c, &c) - &(&radius * &radius);
     let side = power.sign();
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }

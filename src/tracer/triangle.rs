@@ -13,7 +13,7 @@ use super::{
     form::{Form, inverse_depth},
 };
 use crate::{
-    math::{Ball, Ball3, Big, Exact, Exact3, Radius, Real, cross, sin_cos},
+    math::{Ball, Ball3, Big, Dyadic, Dyadic3, Radius, Real, cross, sin_cos},
     scene::{self, CenteredTriangle, Outline},
 };
 
@@ -114,19 +114,19 @@ struct SeenPlane<T: Real> {
 impl<T: Real> SeenPlane<T> {
     /// Through three points, the normal being (b − a) × (c − a); none if it holds the eye.
     fn through(camera: &Camera<T>, [a, b, c]: &[DVec3; 3]) -> Option<Self> {
-        let normal = Exact::cross(&Exact::between(*a, *b), &Exact::between(*a, *c));
+        let normal = Dyadic::cross(&Dyadic::between(*a, *b), &Dyadic::between(*a, *c));
         Self::new(camera, *a, &normal)
     }
 
     /// Through a triangle's centroid; none if it holds the eye.
     fn across(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<Self> {
-        Self::new(camera, shape.centroid, &Exact::vector(shape.normal))
+        Self::new(camera, shape.centroid, &Dyadic::vector(shape.normal))
     }
 
-    fn new(camera: &Camera<T>, point: DVec3, normal: &Exact3) -> Option<Self> {
-        let h = Exact::dot(&Exact::between(camera.eye, point), normal);
+    fn new(camera: &Camera<T>, point: DVec3, normal: &Dyadic3) -> Option<Self> {
+        let h = Dyadic::dot(&Dyadic::between(camera.eye, point), normal);
         let side = h.sign();
-        let parts = normal.each_ref().map(Exact::to_big);
+        let parts = normal.each_ref().map(Dyadic::to_big);
         let sizes = parts.each_ref().map(Real::magnitude);
         let pivot = (1..3).fold(0, |i, j| if sizes[j] > sizes[i] { j } else { i });
         let over_pivot = |x: &Big| x.over(&parts[pivot]);

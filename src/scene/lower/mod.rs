@@ -2,22 +2,22 @@
 //!
 //! In: the tree of a file and the overrides. Out: the scene, or what is wrong with it. The items are walked once, in order:
 //! every name is defined and every field evaluated where it stands; then the overrides of fields are evaluated, which see
-//! all names; then each block is built. A problem of one field never hides one of another.
+//! all names; then each block is built (an object at once, where no override goes by its name). A problem of one field never hides one of another.
 
 mod build;
 mod camera;
 mod cuboid;
 mod field_fixes;
+mod field_value;
 mod fields;
 mod missing;
 mod overriding;
-mod reading;
+mod read;
 mod sampler;
 mod triangle;
-mod typing;
 mod unknown;
 
-pub use reading::{analyze, read, read_in_parts, read_unless};
+pub use read::{analyze, read, read_in_parts, read_unless};
 
 use std::{collections::HashMap, sync::atomic::AtomicBool};
 
@@ -42,7 +42,7 @@ struct Lowering<'s> {
     sources: &'s Sources,
     /// Once it is set, the rest is left out.
     cancel: &'s AtomicBool,
-    /// Whether an unclosed comment took the end of the text.
+    /// Whether a mistake took the end of the text, such as a comment that is never closed.
     cut: bool,
     names: Names<'s>,
     overrides: Vec<Override<'s>>,

@@ -3,7 +3,7 @@
 //! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
 //! or can be made to be.
 
-use super::{Block, Lowering, field_fixes::quoted, typing::rgb};
+use super::{Block, Lowering, field_fixes::quoted, field_value::rgb};
 use crate::{
     diagnostic::{Diagnostic, Fix},
     math::Angle,

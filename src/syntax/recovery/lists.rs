@@ -57,9 +57,6 @@ impl<'s> Recovery<'_, 's> {
         if !list.is_round && self.problems.len() == told {
             return self.brackets(list);
         }
-        if takes == Some(Type::Vector) && self.lists == 0 && self.decimal_comma(&list.elements) {
-            return bad(span);
-        }
         let Some(elements) = self.checked(list, &count) else {
             return bad(span);
         };
@@ -258,30 +255,5 @@ impl<'s> Recovery<'_, 's> {
             "" => Value { kind, span },
             text => self.call_of(Name { text, span }, elements(values), span),
         }
-    }
-
-    /// `(3, 3,5, 8)`: a comma right between two digits, where blanks follow the others.
-    fn decimal_comma(&mut self, elements: &[Element<'s>]) -> bool {
-        let is_tight = |pair: &[Element<'s>]| match pair {
-            [a, b] => {
-                let (left, right) = (a.value.span, b.value.span);
-                let is_near = a.comma.is_some() && right.start == left.end + 1;
-                let (head, rest) = (self.written(left), self.written(right));
-                let is_fraction = rest.bytes().all(|byte| byte.is_ascii_digit());
-                let is_whole = is_plain_number(&a.value) && !head.contains('.');
-                (is_near && is_fraction && is_whole).then_some((left, right))
-            }
-            _ => None,
-        };
-        let tight: Vec<(Span, Span)> = elements.windows(2).filter_map(is_tight).collect();
-        let (4, &[(left, right)]) = (elements.len(), tight.as_slice()) else {
-            return false;
-        };
-        let comma = Span::new(self.id, left.end, right.start);
-        let title = format!("write `{}.{}`", self.written(left), self.written(right));
-        let message = "a decimal point is written `.`, not `,`";
-        let fix = Fix::new(title, [Edit::new(comma, ".")]);
-        self.report(&say::DECIMAL_COMMA, comma, &[message], fix);
-        true
     }
 }

@@ -5,8 +5,8 @@
 //! numbers in `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
 //! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace (`resync`).
-//! - A fix is offered where it is plain, and then the tree holds what the fix would make: what else is wrong is told before as
-//!   after. Where none is offered, the value is bad, and nothing that uses it is reported.
+//! - A fix is offered where it is plain, and then the tree holds what the fix would make, so that applying it changes no
+//!   other problem. Where none is offered, the value is bad, and nothing that uses it is reported.
 //! - Where different slips are found in one value, none of their fixes is sure (`settle`).
 
 mod fields;
@@ -25,7 +25,7 @@ use super::{
     scan::Scan,
     tokens::{Lexer, Token, TokenKind},
     tree::{Item, Name, Tree, Value, ValueKind, bad},
-    words::Words,
+    vocabulary::Vocabulary,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix},
@@ -38,7 +38,7 @@ pub struct Recovery<'w, 's> {
     source: &'s Source,
     text: &'s str,
     id: SourceId,
-    words: &'w Words<'s>,
+    words: &'w Vocabulary<'s>,
     lexer: Lexer<'s>,
     /// Tokens that were looked at, without comments and what cannot be seen.
     tokens: Vec<Token>,
@@ -85,7 +85,7 @@ struct Within<'s> {
 
 impl<'w, 's> Recovery<'w, 's> {
     /// Reads this text.
-    pub fn new(source: &'s Source, id: SourceId, words: &'w Words<'s>) -> Self {
+    pub fn new(source: &'s Source, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         let text = source.text();
         Self {
             source,
@@ -162,8 +162,6 @@ impl<'w, 's> Recovery<'w, 's> {
         self.seek(start);
         self.last_end = start;
         if self.kind(0) == TokenKind::End {
-            let span = Span::new(self.id, start.saturating_sub(1), start);
-            self.report(&say::SET_WITHOUT_VALUE, span, &[], None);
             return bad(Span::new(self.id, start, start));
         }
         let told = self.problems.len();

@@ -1,4 +1,4 @@
-//! Values: operators, operands, and several values where one should stand.
+//! Values: operators and operands.
 
 use super::{
     Recovery, example,

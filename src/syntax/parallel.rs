@@ -12,12 +12,12 @@ use std::{
 };
 
 use super::{
-    parser::{CHUNK, Right, STACK},
+    parser::{CHUNK, STACK, TreeBuilder},
     recovery::Recovery,
     scan::Scan,
     tokens::Lexer,
     tree::Item,
-    words::Words,
+    vocabulary::Vocabulary,
 };
 use crate::{
     cancel,
@@ -49,7 +49,7 @@ pub fn parse_in_parts<'s>(
     let threads = threads::available().min(parts.len()).min(MOST_THREADS);
     let next = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
-    let words = Words::new(text);
+    let words = Vocabulary::new(text);
     let work = |found: mpsc::SyncSender<_>| {
         while !stopped.load(Ordering::Relaxed) {
             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -113,12 +113,12 @@ fn part_of<'s>(
     source: &'s Source,
     id: SourceId,
     ends: &[usize],
-    words: &Words<'s>,
+    words: &Vocabulary<'s>,
     cancel: &AtomicBool,
 ) -> Option<Vec<Item<'s>>> {
     let text = source.text();
     let mut recovery = Recovery::new(source, id, words);
-    let mut right = Right::new(text, id, words);
+    let mut right = TreeBuilder::new(text, id, words);
     for chunk in ends.windows(2) {
         let &[start, end] = chunk else { return None };
         if cancel::is_set(cancel) {

@@ -1,4 +1,4 @@
-//! Numbers without any rounding.
+//! Dyadic numbers: whole numbers times powers of two, which sums, differences and products of `f64` are, without any rounding.
 //!
 //! They settle the few questions that must not depend on rounding at all: does the eye lie in this plane, on this sphere, is the up vector parallel
 //! to the view direction. That takes some microseconds.
@@ -13,14 +13,14 @@ use super::{
     big::{Float, exact, is_zero},
 };
 
-/// A number made of `f64` by sums, differences and products alone.
+/// A whole number times a power of two: what sums, differences and products of `f64` are.
 #[derive(Clone, Debug)]
-pub struct Exact(Float);
+pub struct Dyadic(Float);
 
 /// A vector of them.
-pub type Exact3 = [Exact; 3];
+pub type Dyadic3 = [Dyadic; 3];
 
-impl Exact {
+impl Dyadic {
     /// The number itself.
     pub fn new(x: f64) -> Self {
         Self(exact(x))
@@ -43,48 +43,48 @@ impl Exact {
     }
 
     /// A vector.
-    pub fn vector(v: DVec3) -> Exact3 {
+    pub fn vector(v: DVec3) -> Dyadic3 {
         v.to_array().map(Self::new)
     }
 
     /// to − from.
-    pub fn between(from: DVec3, to: DVec3) -> Exact3 {
+    pub fn between(from: DVec3, to: DVec3) -> Dyadic3 {
         [0, 1, 2].map(|i| Self(exact(to[i]) - exact(from[i])))
     }
 
     /// The scalar product of two vectors.
-    pub fn dot(a: &Exact3, b: &Exact3) -> Self {
+    pub fn dot(a: &Dyadic3, b: &Dyadic3) -> Self {
         &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
     }
 
     /// The vector product of two vectors.
-    pub fn cross(a: &Exact3, b: &Exact3) -> Exact3 {
+    pub fn cross(a: &Dyadic3, b: &Dyadic3) -> Dyadic3 {
         [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
     }
 
     /// Whether a vector has no length.
-    pub fn is_zero(v: &Exact3) -> bool {
+    pub fn is_zero(v: &Dyadic3) -> bool {
         v.iter().all(|x| is_zero(&x.0))
     }
 }
 
-impl ops::Add for &Exact {
-    type Output = Exact;
-    fn add(self, other: Self) -> Exact {
-        Exact(&self.0 + &other.0)
+impl ops::Add for &Dyadic {
+    type Output = Dyadic;
+    fn add(self, other: Self) -> Dyadic {
+        Dyadic(&self.0 + &other.0)
     }
 }
 
-impl ops::Sub for &Exact {
-    type Output = Exact;
-    fn sub(self, other: Self) -> Exact {
-        Exact(&self.0 - &other.0)
+impl ops::Sub for &Dyadic {
+    type Output = Dyadic;
+    fn sub(self, other: Self) -> Dyadic {
+        Dyadic(&self.0 - &other.0)
     }
 }
 
-impl ops::Mul for &Exact {
-    type Output = Exact;
-    fn mul(self, other: Self) -> Exact {
-        Exact(&self.0 * &other.0)
+impl ops::Mul for &Dyadic {
+    type Output = Dyadic;
+    fn mul(self, other: Self) -> Dyadic {
+        Dyadic(&self.0 * &other.0)
     }
 }

@@ -1,8 +1,8 @@
-//! The words by which recovery tells what was meant.
+//! The known words by which recovery tells what was meant.
 //!
 //! The grammar takes any name for a field, a kind or a value. What a text says that does not follow it can only be told by
-//! which of them are known: in `radius color olive` a value is missing. This is the one file of the stage that looks them
-//! up, in the schema and among the names that the text defines.
+//! which of them are known: in `radius color olive` a value is missing. They are looked up in the schema
+//! and among the names that the text defines.
 
 use std::{collections::HashMap, ops::RangeInclusive, sync::OnceLock};
 
@@ -17,13 +17,13 @@ const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vec
 
 /// The words of the language and of a text.
 #[derive(Debug)]
-pub struct Words<'s> {
+pub struct Vocabulary<'s> {
     text: &'s str,
     /// The names behind every `let`, once somebody asks.
     lets: OnceLock<HashMap<&'s str, bool>>,
 }
 
-impl<'s> Words<'s> {
+impl<'s> Vocabulary<'s> {
     /// Those of a text.
     pub fn new(text: &'s str) -> Self {
         Self {
@@ -137,7 +137,6 @@ impl<'s> Words<'s> {
             ValueKind::Call(call) => {
                 row.field(call.function.text).is_some() && !self.is_value(call.function.text)
             }
-            ValueKind::Tuple(parts) => parts.len() > 3 && takes == Type::Vector,
             _ => takes == Type::Method,
         }
     }

@@ -23,7 +23,7 @@ pub enum Before {
     Nothing,
     /// A blank.
     Space,
-    /// A blank; or, where the line would be too long, its end. The less the number, the rather: it grows with the
+    /// A blank, or a line's end if the line would be too long; the lowest number breaks first. It grows with the
     /// parentheses around the word, and with the tightness of the operator.
     Fold(usize),
     /// The end of a line, which goes on here.
