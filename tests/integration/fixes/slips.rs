@@ -64,7 +64,7 @@ const ROWS: &[(&str, &str, &str)] = &[
     ),
     (
         "box { center (3, 3,5, 8) }",
-        "decimal_comma",
+        "part_count",
         "box { center (3, 3.5, 8) }",
     ),
     // Vectors and colours.
