@@ -35,6 +35,9 @@ use crate::{
 /// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
 pub const STACK: usize = 64 << 20;
 
+/// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte: most values are short, and there is one for each default.
+const SHALLOW: usize = 32;
+
 /// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its pairs of a whole file would take much memory.
 pub const CHUNK: usize = 4096;
 
@@ -106,14 +109,18 @@ fn goes_on(text: &str, end: usize, at: usize) -> bool {
 
 /// Parses the part of a text from an offset on as one value: a `--set` argument's.
 pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Diagnostic>) {
-    with_stack(|| {
-        let text = source.text();
+    let text = source.text();
+    let read = || {
         let scan = Scan::of(text, start, &cancel::NEVER);
         let words = Vocabulary::new("");
         let mut recovery = Recovery::new(source, id, &words);
         let value = recovery.whole_value(start);
         (value, recovery.finish(scan).problems)
-    })
+    };
+    match text.len() - start < SHALLOW {
+        true => read(),
+        false => with_stack(read),
+    }
 }
 
 /// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
