@@ -63,6 +63,11 @@ const ROWS: &[(&str, &str, &str)] = &[
         "sampler { per_pixel 16 }",
     ),
     (
+        "sphere { center (0,0,0) rgb (255,0,0) }",
+        "missing_field_name",
+        "sphere { center (0,0,0) color rgb (255,0,0) }",
+    ),
+    (
         "box { center (3, 3,5, 8) }",
         "part_count",
         "box { center (3, 3.5, 8) }",
