@@ -47,12 +47,10 @@ test("a scene that is open gets its diagnostics and every answer has a provider"
   const found = seen.diagnostics.get(document.uri.toString());
   const eyes = found.find(({ message }) => message.includes("eyes"));
   assert.ok(eyes, JSON.stringify(found));
-  assert.equal(eyes.code.value, "unknown_field");
-  const page = readFileSync(eyes.code.target.fsPath, "utf8");
-  assert.equal(page, readFileSync(new URL("../../../codes/unknown_field.md", import.meta.url), "utf8"));
+  assert.equal(eyes.code, "unknown_field");
   for (const answer of [
     "CompletionItem", "Hover", "CodeActions", "Rename", "Reference", "Color", "DocumentFormattingEdit", "DocumentSymbol",
-    "FoldingRange", "SelectionRange", "InlayHints", "DocumentSemanticTokens", "SignatureHelp", "Definition",
+    "FoldingRange", "InlayHints", "DocumentSemanticTokens", "SignatureHelp", "Definition",
   ]) {
     assert.ok(seen.providers[`register${answer}Provider`], `${answer}: ${Object.keys(seen.providers)}`);
   }
