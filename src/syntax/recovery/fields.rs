@@ -7,7 +7,7 @@ use crate::{
     syntax::{
         messages as say,
         problem::{replace, shorten},
-        tokens::{TokenKind, numeric_part},
+        tokens::{TokenKind, line_end, numeric_part},
         tree::{Block, Field, Name, Value, ValueKind, bad, number},
     },
 };
@@ -84,11 +84,17 @@ impl<'s> Recovery<'_, 's> {
 
     fn unclosed_block(&mut self, block: &Block<'s>) {
         let Some(open) = block.open else { return };
-        let end = self.behind();
-        let apart = match self.written(open.to(end)).contains('\n') {
-            true => self.source.line_end(),
-            false => " ",
-        };
+        let mut end = self.behind();
+        let mut apart = " ";
+        if self.written(open.to(end)).contains('\n') {
+            apart = self.source.line_end();
+            // A comment behind the last field stays there.
+            let line_end = line_end(self.text, end.start);
+            let rest = self.text.get(end.start..line_end).unwrap_or_default();
+            if self.here().start >= line_end && !rest.contains("/*") {
+                end = Span::new(self.id, line_end, line_end);
+            }
+        }
         let kind = shorten(block.kind.map_or("this block", |kind| kind.text));
         let edit = Edit::new(end, format!("{apart}}}"));
         let fix = Fix::new(format!("close the block of `{kind}`"), [edit]);

@@ -230,3 +230,20 @@ fn what_is_open_at_the_end_is_closed_there() {
     );
     offers(&format!("{scene}/* far\naway\n"), &[]);
 }
+
+#[test]
+fn a_block_is_closed_behind_the_comment_of_its_last_field() {
+    let camera = "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n";
+    for (rest, closed) in [
+        ("  radius 2 // big\n", "  radius 2 // big\n}\n"),
+        ("  radius 2 // big", "  radius 2 // big\n}"),
+        (
+            "  radius 2 /* very\n big */\n",
+            "  radius 2\n} /* very\n big */\n",
+        ),
+    ] {
+        let begun = format!("{camera}sphere {{ center (0, 1, 0)\n");
+        let fix = ("close the block of `sphere`", format!("{begun}{closed}"));
+        offers(&format!("{begun}{rest}"), &[(fix.0, &fix.1)]);
+    }
+}
