@@ -89,9 +89,7 @@ impl<T: Real> Checkerboard<T> {
         }
         Ok(odd)
     }
-}
 
-impl<T: Real> Checkerboard<T> {
     /// The board about a ray, in units of the sides of what lies there of the picture. A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin
     /// near: the one that makes them small at the corner where ℓ is largest (elsewhere it may be next to 0).
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {

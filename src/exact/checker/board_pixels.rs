@@ -153,6 +153,15 @@ mod tests {
         known
     }
 
+    #[test]
+    fn most_pixels_of_few_lines_are_known() {
+        let world = world("eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75", 0.7);
+        let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
+        let sharp = known.filter(|sum| sum.bound < 1e-9).count();
+        // Of 18 rows of 24 pixels more than half lie below the horizon.
+        assert!(sharp > 100, "{sharp}");
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(300))]
 

@@ -163,7 +163,7 @@ impl Lines {
         }
     }
 
-    /// Adds how far line `line` of a family, counted from its first, may be from the computed one: its forms are off, its factors have three roundings, its value four.
+    /// Adds how far line n of a family may be from the computed one: its forms are off, its factors have three roundings, its value four.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Row) {
         let below = &self.below;
