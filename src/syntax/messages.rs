@@ -1,6 +1,7 @@
 //! What is said of each slip. `{0}` and `{1}` stand for what is named where it arises.
 
-use super::problem::Message;
+use super::problem::{Message, times};
+use crate::{diagnostic::Diagnostic, source::Span};
 
 pub const INVALID_UTF8: Message = Message::new("invalid_utf8", "this file is not valid UTF-8{0}", "this byte is part of no character", "save the file as UTF-8");
 pub const UTF16: Message = Message::new("invalid_utf8", "this file is UTF-16, not UTF-8", "the byte order mark of UTF-16", "save the file as UTF-8");
@@ -33,6 +34,7 @@ pub const FIELD_WITHOUT_VALUE: Message = Message::new("missing_value", "`{0}` ha
 pub const NEEDLESS_EQUALS: Message = Message::new("needless_equals", "a field takes its value without `{0}`{1}", "not needed", "");
 pub const TWO_WORDS: Message = Message::new("bad_name", "`{0}` is one word", "the name of a field", "");
 pub const MISSING_SPACE: Message = Message::new("missing_space", "a space is missing between `{0}` and `{1}`", "a field and its value", "");
+pub const COLOR_WITHOUT_NAME: Message = Message::new("missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write `color {0}`");
 pub const MISSING_FIELD_NAME: Message = Message::new("missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write the name of the field that `{0}` is for before it");
 // Values.
 pub const TOO_DEEP: Message = Message::new("too_deep", "this value nests more than {0} levels deep", "one level more", "give a part of it a name with `let`, and use the name here");
@@ -52,3 +54,18 @@ pub const DECIMAL_COMMA: Message = Message::new("decimal_comma", "{0}", "a comma
 pub const BAD_COLOR_CODE: Message = Message::new("bad_color_code", "`{0}` is no colour", "{1}", "write three or six digits from 0 to 9 and a to f, such as `#fa0` or `#ffaa00`");
 pub const BAD_NUMBER: Message = Message::new("bad_number", "`{0}` is no number", "{1}", "write a number such as `2`, `0.5` or `1e-3`");
 pub const SPACED_UNIT: Message = Message::new("spaced_unit", "a unit stands right behind its number", "no space between the two", "{0}");
+
+/// Some bytes are part of no character.
+pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
+    INVALID_UTF8.at(span, &[&times(more)], None)
+}
+
+/// The text starts with the byte order mark of UTF-16.
+pub fn utf16(span: Span) -> Diagnostic {
+    UTF16.at(span, &[], None)
+}
+
+/// A field has no value.
+pub fn field_without_value(name: &str, span: Span) -> Diagnostic {
+    FIELD_WITHOUT_VALUE.at(span, &[name], None)
+}

@@ -28,9 +28,10 @@ pub mod tokens;
 pub mod tree;
 mod vocabulary;
 
+pub use messages::{field_without_value, invalid_utf8, utf16};
 pub use parallel::parse_in_parts;
 pub use parser::{parse, parse_unless, parse_value};
-pub use problem::{field_without_value, invalid_utf8, shorten, utf16};
+pub use problem::shorten;
 pub use tree::Tree;
 
 use crate::{diagnostic::Diagnostic, source::Span};

@@ -1,6 +1,5 @@
-//! How a problem of syntax is made, of one of `messages`.
+//! How a problem of syntax is made of what `messages` says.
 
-use super::messages;
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, Label, Severity},
     source::Span,
@@ -60,21 +59,6 @@ impl Message {
             is_of_syntax: true,
         }
     }
-}
-
-/// Some bytes are part of no character.
-pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
-    messages::INVALID_UTF8.at(span, &[&times(more)], None)
-}
-
-/// The text starts with the byte order mark of UTF-16.
-pub fn utf16(span: Span) -> Diagnostic {
-    messages::UTF16.at(span, &[], None)
-}
-
-/// A field has no value.
-pub fn field_without_value(name: &str, span: Span) -> Diagnostic {
-    messages::FIELD_WITHOUT_VALUE.at(span, &[name], None)
 }
 
 /// Writes a text in a place.

@@ -87,14 +87,16 @@ impl<'s> Recovery<'_, 's> {
         let (l, r) = (self.short(left.span), self.short(right.span));
         let is_method = self.within.takes == Some(Type::Method);
         if self.within.is_block && self.lists == 0 && (is_whole || is_method) {
-            let is_rgb =
-                matches!(&right.kind, ValueKind::Call(call) if call.function.text == "rgb");
-            let has_color = self.words.takes(self.within.kind, "color").is_some();
-            let fix = (is_rgb && has_color).then(|| {
-                let edit = Edit::insert(self.id, right.span.start, "color ");
-                Fix::new(format!("write `color {r}`"), [edit])
-            });
-            self.report(&say::MISSING_FIELD_NAME, right.span, &[&r], fix);
+            let is_color = match &right.kind {
+                ValueKind::Call(call) => call.function.text == "rgb",
+                ValueKind::Name(name) => self.words.is_color(name),
+                kind => matches!(kind, ValueKind::ColorCode(_)),
+            };
+            let said = match is_color && self.words.takes(self.within.kind, "color").is_some() {
+                true => &say::COLOR_WITHOUT_NAME,
+                false => &say::MISSING_FIELD_NAME,
+            };
+            self.report(said, right.span, &[&r], None);
             return None;
         }
         // `2 pi`, if both are surely numbers.

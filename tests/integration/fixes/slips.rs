@@ -63,11 +63,6 @@ const ROWS: &[(&str, &str, &str)] = &[
         "sampler { per_pixel 16 }",
     ),
     (
-        "sphere { center (0,0,0) rgb (255,0,0) }",
-        "missing_field_name",
-        "sphere { center (0,0,0) color rgb (255,0,0) }",
-    ),
-    (
         "box { center (3, 3,5, 8) }",
         "part_count",
         "box { center (3, 3.5, 8) }",
@@ -77,6 +72,11 @@ const ROWS: &[(&str, &str, &str)] = &[
         "sphere { center +(2,0,0) }",
         "plus_sign",
         "sphere { center (2,0,0) }",
+    ),
+    (
+        "sphere { center (0, 0, 0) rgb (1, 0, 0) }",
+        "missing_field_name",
+        "",
     ),
     ("sphere { center (1, , 3) }", "missing_value", ""),
     (

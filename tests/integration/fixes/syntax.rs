@@ -120,7 +120,7 @@ fn vectors_side_by_side_are_two_fields() {
     );
     assert_eq!(
         said(field, "sphere { center (0, 6, 1)  red  radius 2 }"),
-        "write the name of the field that `red` is for before it"
+        "write `color red`"
     );
     assert_eq!(
         said("pinhole::missing_operator", "let a = (0, 6, 1)  (0, 6, 0)"),
