@@ -68,6 +68,29 @@ fn a_heap_in_one_pixel() {
     assert!(seen.bound() <= 1e-9, "{:e}", seen.bound());
 }
 
+/// The horizons of parallel boards are one line, and so is the edge that the triangles of a fan share: a pixel that they pass through
+/// is not cut any further, whose pieces would be without number.
+#[test]
+fn many_lines_that_are_one() {
+    let view = "image { width 48 height 27 }
+        camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 roll 7deg }\n";
+    let (mut boards, mut fan) = (view.to_owned(), view.to_owned());
+    for index in 0..40 {
+        let index = f64::from(index);
+        let (y, square) = (-0.1 * index, 0.5 + 0.1 * index);
+        let _ = writeln!(boards, "checkerboard {{ y {y} square {square} }}");
+        let (sin, cos) = libm::sincos(0.08 * index);
+        let _ = writeln!(
+            fan,
+            "triangle {{ v0 (0, 0, 0) v1 (0, 2, 0) v2 ({cos}, 1, {sin}) color rgb({index}, 90, 40) }}"
+        );
+    }
+    for text in [boards, fan] {
+        let seen = exact(&read(&text));
+        assert!(seen.bound() <= 1e-9, "{:e}", seen.bound());
+    }
+}
+
 #[test]
 fn bytes_are_those_of_the_means() {
     for name in examples() {
