@@ -55,13 +55,12 @@ pub fn nearest<'c>(
 }
 
 /// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
-pub fn is_among(written: &str, words: &[&str]) -> bool {
-    let letters = |word: &'_ str| -> String {
-        let letters = word.chars().filter(|letter| *letter != '_');
-        letters.map(|letter| letter.to_ascii_lowercase()).collect()
-    };
+pub fn is_among(written: &str, words: &str) -> bool {
+    let letters = |word: &str| word.replace('_', "").to_ascii_lowercase();
     let written = letters(written);
-    words.iter().any(|word| letters(word) == written)
+    words
+        .split_whitespace()
+        .any(|word| letters(word) == written)
 }
 
 /// The words that a name is made of: `near_clip` and `nearClip` are near and clip.

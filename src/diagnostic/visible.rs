@@ -29,7 +29,7 @@ pub fn push_visible(text: &mut String, character: char) {
 }
 
 /// Whether a character is shown as its code.
-pub fn is_invisible(character: char) -> bool {
+fn is_invisible(character: char) -> bool {
     match character {
         '\n' | '\t' => false,
         // Unicode Standard Annex #9, table 4: the marks, embeddings, overrides and isolates.

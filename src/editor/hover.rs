@@ -185,22 +185,18 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     })
 }
 
-/// Which of the values around a place there is something to say of: the smallest one; or what a number or a vector that says all
-/// itself is an operand or an argument of.
+/// Which of the values around a place there is something to say of: the smallest one; or what a number, a list or a sign is an operand or an
+/// argument of.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
+    use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
-    let says_all = match value.kind {
-        ValueKind::Number(_)
-        | ValueKind::Tuple(_)
-        | ValueKind::Parentheses(_)
-        | ValueKind::Negation { .. } => is_literal(value),
-        _ => false,
-    };
-    let is_computed = |value: &&tree::Value<'_>| {
-        matches!(value.kind, ValueKind::Chain { .. } | ValueKind::Call(_))
-    };
+    let is_part = matches!(
+        value.kind,
+        Number(_) | Tuple(_) | Parentheses(_) | Negation { .. }
+    );
+    let is_computed = |value: &&tree::Value<'_>| matches!(value.kind, Chain { .. } | Call(_));
     let computed = around.iter().rposition(is_computed);
-    Some(computed.filter(|_| says_all).unwrap_or(around.len()))
+    Some(computed.filter(|_| is_part).unwrap_or(around.len()))
 }
 
 /// What a value comes to.
@@ -222,7 +218,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
                 return about(value.span, format!("`{name}` is {}", described(found?)));
             }
             let mut constants = schema::CONSTANTS.iter();
-            let (name, help) = constants.find(|(constant, _)| constant == name)?;
+            let (name, _, help) = constants.find(|(constant, ..)| constant == name)?;
             about(value.span, format!("`{name}`: {help}"))
         }
         ValueKind::Call(call) if token.role == Role::Function => {

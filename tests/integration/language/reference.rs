@@ -75,7 +75,7 @@ fn the_reference_has_every_method_function_and_name() {
             function.name
         );
     }
-    for (name, _) in schema::CONSTANTS {
+    for (name, ..) in schema::CONSTANTS {
         assert!(reference.contains(&format!("`{name}`")));
     }
 }
