@@ -101,28 +101,3 @@ fn join<'n>(names: impl IntoIterator<Item = &'n str>, word: &str) -> String {
     }
     format!("{} {word} {last}", names.join(", "))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn near_names_only() {
-        let fields = ["center", "radius", "color", "d", "up"];
-        assert_eq!(nearest("radus", fields), Some("radius"));
-        assert_eq!(nearest("colour", fields), Some("color"));
-        assert_eq!(nearest("centre", fields), Some("center"));
-        assert_eq!(nearest("UP", fields), Some("up"));
-        assert_eq!(nearest("D", fields), Some("d"));
-        assert_eq!(nearest("x", fields), None);
-        assert_eq!(nearest("transparency", fields), None);
-        assert_eq!(nearest("", fields), None);
-    }
-
-    #[test]
-    fn lists() {
-        assert_eq!(list(["a"]), "a");
-        assert_eq!(list(["a", "b"]), "a and b");
-        assert_eq!(choice(["a", "b", "c"]), "a, b or c");
-    }
-}
