@@ -226,11 +226,7 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         Completion {
             label: field.name.to_owned(),
             kind: CompletionKind::Field,
-            detail: match field.preset {
-                Preset::Value(literal) => format!("{}, {literal} by default", field.takes.word()),
-                Preset::Required => format!("{}, required", field.takes.word()),
-                Preset::Alternative | Preset::Nothing => field.takes.word().to_owned(),
-            },
+            detail: describe::kind_and_preset(field).replace('`', ""),
             help: describe::about_field(row, field),
             insert,
             replaces: situation.word,

@@ -9,7 +9,7 @@ use crate::{
     color::Color,
     explain, inspect,
     math::Angle,
-    numbers::{short, short_vector},
+    numbers::short,
     scene::{
         Value, css,
         describe::{ABOUT_LET, about_block, about_field, about_function},
@@ -140,34 +140,8 @@ fn kind(analysis: &Analysis<'_>, row: &Block) -> String {
 fn camera(analysis: &Analysis<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
-    let mut text = format!(
-        "looks {}; a field of view of {} degrees, `d {}`, `view_height {}`\n",
-        camera.looks,
-        short(camera.fov_deg),
-        short(camera.d),
-        short(camera.view_height)
-    );
-    let axes = [
-        ("u", camera.u, "the picture's right"),
-        ("v", camera.v, "the picture's top"),
-        ("w", camera.w, "against the view direction"),
-    ];
-    for (name, axis, meaning) in axes {
-        text += &format!("\n- `{name}` {}, {meaning}", short_vector(axis));
-    }
-    for (axis, point) in ["x", "y", "z"].into_iter().zip(points) {
-        text += &match point {
-            Some([x, y]) => format!(
-                "\n- vanishing point of {axis}: pixel ({}, {})",
-                short(x),
-                short(y)
-            ),
-            None => {
-                format!("\n- vanishing point of {axis}: none, it is parallel to the view plane")
-            }
-        };
-    }
-    Some(text)
+    let summary = inspect::camera_summary(&camera, &points);
+    Some(format!("```text\n{summary}```"))
 }
 
 /// An object, as `inspect` shows it.

@@ -72,7 +72,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
     // A field that its block does not know is mistake enough for `check`, however its value is written.
-    let is_unknown = |it: &&Diagnostic| it.code.starts_with("pinhole::unknown");
+    let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
+    let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);
     let unknown = unknown.cloned().collect();
     let lists = [of_syntax.cloned().collect(), parsed.problems, unknown];

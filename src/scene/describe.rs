@@ -84,7 +84,7 @@ pub fn about_block(row: &Block) -> String {
     for field in row.fields {
         let _ = write!(
             text,
-            "\n- `{}` {}: {}",
+            "\n- `{}` ({}): {}",
             field.name,
             kind_and_preset(field),
             field.help
@@ -96,7 +96,7 @@ pub fn about_block(row: &Block) -> String {
 /// A field: what it is, what it takes, what it is if not given, and what it must be.
 pub fn about_field(row: &Block, field: &Field) -> String {
     let mut text = format!(
-        "`{}` of {}: {}\n\n{}",
+        "`{}` of {}: {}\n\n({})",
         field.name,
         row.noun,
         field.help,
@@ -127,12 +127,13 @@ pub fn about_field(row: &Block, field: &Field) -> String {
     text
 }
 
-fn kind_and_preset(field: &Field) -> String {
+/// What a field takes, and what it is if not given.
+pub fn kind_and_preset(field: &Field) -> String {
     let kind = field.takes.word();
     match field.preset {
-        Preset::Value(literal) => format!("({kind}, `{literal}` by default)"),
-        Preset::Required => format!("({kind}, required)"),
-        Preset::Alternative | Preset::Nothing => format!("({kind})"),
+        Preset::Value(literal) => format!("{kind}, `{literal}` by default"),
+        Preset::Required => format!("{kind}, required"),
+        Preset::Alternative | Preset::Nothing => kind.to_owned(),
     }
 }
 

@@ -66,8 +66,8 @@ impl Lowering<'_> {
         Some(Fix::new(title, [Edit::new(place, added)]))
     }
 
-    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs, and the fields of the
-    /// other ways are a single one.
+    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs, and nothing else stands
+    /// between the fields that go.
     pub(super) fn one_of(
         &self,
         block: &Block<'_>,
@@ -89,13 +89,14 @@ impl Lowering<'_> {
             }
             kept.retain(is_given);
             removed.retain(is_given);
-            let [only] = removed[..] else { return None };
-            let title = format!("keep {}, remove `{only}`", quoted(&kept));
-            Some(Fix::remove_whole(
-                title,
-                block.given(only)?.field(),
-                self.sources,
-            ))
+            let places = removed.iter().filter_map(|name| block.given(name));
+            let whole = places.map(|given| given.field()).reduce(Span::to)?;
+            let within = block.given.iter().flatten();
+            let within =
+                within.filter(|it| whole.start <= it.name.start && it.name.end <= whole.end);
+            let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
+            let fix = || Fix::remove_whole(title, whole, self.sources);
+            (within.count() == removed.len()).then(fix)
         });
         ways.into_iter().flatten()
     }

@@ -139,21 +139,7 @@ impl<'s> Lowering<'s> {
 
     fn block(&mut self, block: &tree::Block<'s>) {
         let Some(row) = self.row(block) else { return };
-        if let Some(name) = block.name
-            && !row.is_object
-            && block.bad.is_empty()
-        {
-            let help = format!(
-                "take `{}` away; only objects have names, for a scene has one `{}`",
-                name.text, row.name
-            );
-            self.problems.push(
-                error("unexpected_name", format!("{} takes no name", row.noun))
-                    .at(name.span, "not here")
-                    .help(help)
-                    .fixes([self.without_name(&name)]),
-            );
-        }
+        self.name_of_block(row, block);
         let first = self.blocks.iter().find(|first| first.row.kind == row.kind);
         let duplicate = first.map(|first| {
             let message = format!("there are two `{}` blocks", row.name);
@@ -191,7 +177,6 @@ impl<'s> Lowering<'s> {
         self.conflicts(&lowered);
         self.has_objects |= row.is_object;
         if row.is_object {
-            self.name_of_object(&lowered);
             self.missing_fields(&lowered);
             let object = self.object(&lowered);
             self.objects.extend(object);
@@ -308,16 +293,23 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Takes the name of a block away.
-    fn without_name(&self, name: &Name<'s>) -> Fix {
-        let title = format!("take the name `{}` away", name.text);
-        Fix::remove(title, name.span, self.sources)
-    }
-
-    fn name_of_object(&mut self, block: &Block<'s>) {
+    /// Knows the name of an object. Other blocks take none.
+    fn name_of_block(&mut self, row: &schema::Block, block: &tree::Block<'s>) {
         let Some(name) = block.name else { return };
         let text = name.text;
-        let problem = if schema::block(text).is_some_and(|row| !row.is_object) {
+        let problem = if !row.is_object {
+            // What is bad may be a field, and the name a part of it.
+            if !block.bad.is_empty() {
+                return;
+            }
+            let help = format!(
+                "take `{text}` away; only objects have names, for a scene has one `{}`",
+                row.name
+            );
+            error("unexpected_name", format!("{} takes no name", row.noun))
+                .at(name.span, "not here")
+                .help(help)
+        } else if schema::block(text).is_some_and(|row| !row.is_object) {
             let help =
                 format!("choose another name: `--set {text}.…` is to reach the block `{text}`");
             error("reserved_name", format!("no object can be named `{text}`"))
@@ -331,8 +323,9 @@ impl<'s> Lowering<'s> {
             self.first_names.insert(text, name.span);
             return;
         };
-        let problem = problem.fixes([self.without_name(&name)]);
-        self.problems.push(problem);
+        let title = format!("take the name `{text}` away");
+        let fix = Fix::remove(title, name.span, self.sources);
+        self.problems.push(problem.fixes([fix]));
     }
 }
 

@@ -75,14 +75,12 @@ impl<'s> Lowering<'s> {
         value: &tree::Value<'s>,
     ) -> Option<Meant> {
         let (row, word) = (block.row, name.text);
-        let whole = match value.span.end > name.span.end {
-            true => name.span.to(value.span),
-            false => name.span,
-        };
+        let end = value.span.end.max(name.span.end);
+        let whole = Span::new(name.span.source, name.span.start, end);
         let is_of_file = value.span.source == SourceId::File;
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
-            return Some(self.renamed(block, field, name, value));
+            return Some(self.renamed(block, field, name, value, whole));
         }
         if let Some(field) = row.fields.iter().find(|field| is_tried(field.doubled)) {
             let number = match (self.fitting(block, field, value), &value.kind) {
@@ -114,7 +112,7 @@ impl<'s> Lowering<'s> {
         };
         if let Some(field) = row.fields.iter().find(|field| Some(field.takes) == takes) {
             if !matches!(value.kind, ValueKind::Missing) {
-                return Some(self.renamed(block, field, name, value));
+                return Some(self.renamed(block, field, name, value, whole));
             }
             let written = format!("{} {word}", field.name);
             let shown = format!("`{written}`");
@@ -122,28 +120,24 @@ impl<'s> Lowering<'s> {
             return Some(Meant::new(&[field.name], shown, whole, written));
         }
         let near = row.nearest_field(word)?;
-        Some(self.renamed(block, near, name, value))
+        Some(self.renamed(block, near, name, value, whole))
     }
 
-    /// What was meant is this field.
+    /// What was meant is this field. An argument keeps the sign between its name and its value.
     fn renamed(
         &mut self,
         block: &Block<'s>,
         field: &'static Field,
         name: &Name<'s>,
         value: &tree::Value<'s>,
+        whole: Span,
     ) -> Meant {
         let written = self.fitting(block, field, value);
         let shown = format!("`{}`", field.name);
         match written {
             Some(written) if written != self.sources.text(value.span) => {
-                let is_of_file = value.span.source == SourceId::File;
-                let written = is_of_file.then(|| format!("{} {written}", field.name));
-                let whole = Span::new(
-                    name.span.source,
-                    name.span.start,
-                    value.span.end.max(name.span.end),
-                );
+                let written = format!("{} {written}", field.name);
+                let written = Some(written).filter(|_| value.span.source == SourceId::File);
                 Meant::new(&[field.name], shown, whole, written)
             }
             written => {

@@ -62,10 +62,16 @@ fn a_comment_goes_with_what_it_is_about() {
     let block = |fields: &str| format!("{camera}box {{\n{fields}}}");
     offers(
         &block("  min (0, 0, 0)  // low\n  max (1, 1, 1)  // high\n  center (0, 1, 0)\n"),
-        &[(
-            "keep `min` and `max`, remove `center`",
-            &block("  min (0, 0, 0)  // low\n  max (1, 1, 1)  // high\n"),
-        )],
+        &[
+            (
+                "keep `min` and `max`, remove `center`",
+                &block("  min (0, 0, 0)  // low\n  max (1, 1, 1)  // high\n"),
+            ),
+            (
+                "keep `center`, remove `min` and `max`, with its comment",
+                &block("  center (0, 1, 0)\n"),
+            ),
+        ],
     );
 }
 
