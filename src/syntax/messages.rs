@@ -30,7 +30,6 @@ pub const NEEDLESS_SEPARATOR: Message = Message::new("needless_separator", "no `
 pub const STRAY_CLOSING: Message = Message::new("stray_closing", "this `{0}` closes nothing", "nothing is open here", "write the parenthesis that opens it, or take it away");
 pub const UNEXPECTED: Message = Message::new("unexpected", "expected {0}, found `{1}`", "not here", "");
 // Fields.
-pub const FIELD_WITHOUT_VALUE: Message = Message::new("missing_value", "`{0}` has no value", "a value should follow this", "write a value after it");
 pub const NEEDLESS_EQUALS: Message = Message::new("needless_equals", "a field takes its value without `{0}`{1}", "not needed", "");
 pub const TWO_WORDS: Message = Message::new("bad_name", "`{0}` is one word", "the name of a field", "");
 pub const MISSING_SPACE: Message = Message::new("missing_space", "a space is missing between `{0}` and `{1}`", "a field and its value", "");
@@ -63,9 +62,4 @@ pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
 /// The text starts with the byte order mark of UTF-16.
 pub fn utf16(span: Span) -> Diagnostic {
     UTF16.at(span, &[], None)
-}
-
-/// A field has no value.
-pub fn field_without_value(name: &str, span: Span) -> Diagnostic {
-    FIELD_WITHOUT_VALUE.at(span, &[name], None)
 }

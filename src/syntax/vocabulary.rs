@@ -94,12 +94,12 @@ impl<'s> Vocabulary<'s> {
 
     /// Whether a name is that of a colour.
     pub fn is_color(&self, name: &str) -> bool {
-        predefined(name) == Some("a colour")
+        schema::css::color(name).is_some()
     }
 
     /// Whether a name is that of a function.
     pub fn is_function(&self, name: &str) -> bool {
-        predefined(name) == Some("a function")
+        schema::function(name).is_some()
     }
 
     /// How many arguments a function takes; of one that is not known, none that can be told.

@@ -40,8 +40,8 @@ pub(super) struct Defined {
     pub value: Option<Value>,
     /// The name in the definition.
     pub place: Span,
-    /// The argument that set it, if one did.
-    pub set: Option<SourceId>,
+    /// The text that its value stands in: the file, or an argument.
+    pub from: SourceId,
 }
 
 impl<'s> Names<'s> {
@@ -63,13 +63,13 @@ impl<'s> Names<'s> {
     }
 
     /// Defines a name; a second time it keeps its value.
-    pub fn define(&mut self, name: Name<'s>, value: Option<Value>, set: Option<SourceId>) {
+    pub fn define(&mut self, name: Name<'s>, value: Option<Value>, from: SourceId) {
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
             self.order.push(name.text);
             free.insert(Defined {
                 value,
                 place: name.span,
-                set,
+                from,
             });
         }
     }
@@ -104,10 +104,5 @@ impl<'s> Names<'s> {
     /// The comparisons that are left in search of the nearest name.
     pub fn budget(&self) -> &Budget {
         &self.budget
-    }
-
-    /// Every name that the file defines.
-    pub fn all(&self) -> impl Iterator<Item = &'s str> {
-        self.definitions.keys().copied()
     }
 }
