@@ -248,9 +248,9 @@ fn power(byte: u8, power: f64) -> u8 {
     let part = f64::from(byte) / 255.0;
     let light = match part <= 0.04045 {
         true => part / 12.92,
-        false => ((part + 0.055) / 1.055).powf(2.4),
+        false => libm::pow((part + 0.055) / 1.055, 2.4),
     };
-    (255.0 * light.powf(1.0 / power)).round() as u8
+    (255.0 * libm::pow(light, 1.0 / power)).round() as u8
 }
 
 fn board(program: &mut Program, change: impl Fn(&mut f64, &mut f64, &mut [u8; 3])) {

@@ -114,7 +114,7 @@ impl Program {
         let w = (self.eye - self.lookat).normalize();
         let u = self.up.cross(w).normalize();
         let v = w.cross(u);
-        let (sin, cos) = self.roll.sin_cos();
+        let (sin, cos) = libm::sincos(self.roll);
         let (u, v) = (cos * u - sin * v, sin * u + cos * v);
         let pixel = 2.0 / f64::from(if self.is_wide { width } else { height });
         let mut random = SmallRng::seed_from_u64(self.seed);
@@ -150,22 +150,22 @@ impl Program {
     /// The light of a colour: flat colours come out as they were written, but where light is not encoded or encoded twice.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
-            Encoding::Power(power) => part.powf(power),
+            Encoding::Power(power) => libm::pow(part, power),
             _ if part <= 0.04045 => part / 12.92,
-            _ => ((part + 0.055) / 1.055).powf(2.4),
+            _ => libm::pow((part + 0.055) / 1.055, 2.4),
         }
     }
 
     fn encode(&self, light: f64) -> f64 {
         let srgb = |light: f64| match light <= 0.003_130_8 {
             true => 12.92 * light,
-            false => 1.055 * light.powf(1.0 / 2.4) - 0.055,
+            false => 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055,
         };
         match self.encoding {
             Encoding::Srgb => srgb(light),
             Encoding::None => light,
             Encoding::Twice => srgb(srgb(light)),
-            Encoding::Power(power) => light.powf(1.0 / power),
+            Encoding::Power(power) => libm::pow(light, 1.0 / power),
         }
     }
 
