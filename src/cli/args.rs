@@ -376,8 +376,8 @@ pub struct FmtArgs {
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
 pub struct DiffArgs {
-    /// A picture, PNG or EXR, or `-` for standard input; its numbers count as sRGB in a PNG and as linear
-    /// light in an EXR, and what is transparent is seen on black
+    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input; whole numbers
+    /// count as sRGB and floats as linear light, and what is transparent is seen on black
     pub a: PathBuf,
     /// Another picture, or a scene whose exact picture A is compared with
     pub b: PathBuf,

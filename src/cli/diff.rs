@@ -42,7 +42,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             shown(&args.a)
         )));
     }
-    let a = film::read_picture(&a).map_err(|error| unreadable(&args.a, &error))?;
+    let a = read(&args.a, &a)?;
     let b = input::whole(&args.b).map_err(|error| unreadable(&args.b, &error))?;
     let cancel = interrupt.watch();
     let control = Control {
@@ -58,8 +58,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             );
             return Err(Trouble(message));
         }
-        let picture = film::read_picture(&b).map_err(|error| unreadable(&args.b, &error))?;
-        Other::Picture(picture)
+        Other::Picture(read(&args.b, &b)?)
     } else {
         let input = Input::of(&args.b, b, &args.overrides);
         let Some(scene) = input.scene().scene else {
@@ -145,6 +144,15 @@ impl Other {
     }
 }
 
+/// Reads a picture, and warns of what its format does to colours.
+fn read(path: &Path, bytes: &[u8]) -> Result<Picture, Trouble> {
+    let picture = film::read_picture(bytes).map_err(|error| unreadable(path, &error))?;
+    if let Some(warning) = picture.coding.warning() {
+        output::warning(&format!("{}: {warning}", shown(path)));
+    }
+    Ok(picture)
+}
+
 fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot read {}: {error}", shown(path)))
 }
@@ -156,9 +164,12 @@ fn is_scene(path: &Path) -> bool {
 /// Whether a file's ending is that of a picture, so that it is one, however broken.
 fn is_named_as_picture(path: &Path) -> bool {
     path.extension().is_some_and(|ending| {
-        ["png", "exr"]
-            .iter()
-            .any(|own| ending.eq_ignore_ascii_case(own))
+        [
+            "png", "exr", "ppm", "pgm", "pbm", "pam", "bmp", "tif", "tiff", "webp", "gif", "jpg",
+            "jpeg",
+        ]
+        .iter()
+        .any(|own| ending.eq_ignore_ascii_case(own))
     })
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
-use crate::sampling::hash::{Key, scale};
+use crate::sampling::rng::{Key, scale};
 
 /// Numbers that are a function of a case and a block of its inputs.
 #[derive(Clone, Debug)]

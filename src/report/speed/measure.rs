@@ -19,7 +19,7 @@ use crate::{
     render::{Control, Exact, RenderError, render_and_count, render_exact},
     sampling::{
         Sampling,
-        hash::{Key, scale},
+        rng::{Key, scale},
     },
     scene::{Count, Method, Sampler, Scene},
     threads,

@@ -54,7 +54,7 @@ fn a_heap_in_one_pixel() {
          camera { eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }
          sampler { method exact }\n",
     );
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for color in ["olive", "teal", "orange", "red", "blue"].repeat(8) {
         let [at, more]: [DVec2; 2] = [random.offset(), random.offset()];
         let (x, y, z) = (40.0 * at.x, 40.0 * at.y, 40.0 * more.x);
@@ -125,7 +125,7 @@ fn what_is_uniform_is_its_colour() {
         .map(|color| Color::to_linear(*color))
         .collect();
     let mut uniform = 0;
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for (x, y) in Area::whole(96, 96).iter() {
         if exact.bounds[(y * 96 + x) as usize] == 0.0 {
             uniform += 1;
@@ -144,7 +144,7 @@ fn what_is_uniform_is_its_colour() {
 
 #[test]
 fn ten_thousand_objects() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut scene = random_scene(&mut random, true);
     (scene.image.width, scene.image.height) = (96, 64);
     scene.camera.near = 0.0;
