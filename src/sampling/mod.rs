@@ -39,7 +39,6 @@ use std::ops::Range;
 use glam::DVec2;
 use multiversion::multiversion;
 
-pub(crate) use self::halton::radical_inverse_3;
 pub use self::points::Points;
 use self::{
     bricks::Bricks, halton::Halton, hammersley::Hammersley, hash::Key, jittered::Jittered,

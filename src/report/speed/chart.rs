@@ -30,13 +30,13 @@ use crate::numbers;
 const SIZE: (u32, u32) = (560, 440);
 
 /// Room at the right for the labels, the longest of which is `multi_jittered`.
-const LABELS: i32 = 148;
+const LABELS: i32 = 162;
 
 /// Labels are at least so far apart.
-const LABEL_HEIGHT: i32 = 19;
+const LABEL_HEIGHT: i32 = 21;
 
 /// The size of letters.
-const LETTERS: f64 = 16.0;
+const LETTERS: f64 = 18.0;
 
 /// What a chart shows.
 struct Chart<'a> {
@@ -136,8 +136,8 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
         .margin_right(LABELS)
         .margin_left(2)
         .margin_bottom(2)
-        .x_label_area_size(48)
-        .y_label_area_size(72)
+        .x_label_area_size(52)
+        .y_label_area_size(76)
         .build_cartesian_2d(x_axis.scale(), y_axis.scale())?;
     plot.configure_mesh()
         .x_label_formatter(&|x| (chart.write_x)(*x))
@@ -151,14 +151,14 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
         .light_line_style(BLACK.mix(0.07))
         .draw()?;
     let (columns, rows) = plot.plotting_area().get_pixel_range();
-    let title = TextStyle::from(("sans-serif", 18.0).into_font());
+    let title = TextStyle::from(("sans-serif", 20.0).into_font());
     area.draw(&Text::new(chart.title, (columns.start, 10), title))?;
     let place = |x: f64, y: f64| plot.backend_coord(&(x, y));
     for wanted in wanted() {
         let (_, y) = place(x_axis.ends.start, wanted);
         let ends = [(columns.start, y), (columns.end, y)];
         area.draw(&DashedPathElement::new(ends, 4, 4, BLACK.mix(0.6)))?;
-        write(&area, error(wanted), (columns.start + 5, y - 9))?;
+        write(&area, error(wanted), (columns.start + 5, y - 10))?;
     }
     if let Some(time) = chart.exact.filter(|time| time.is_finite()) {
         let (x, _) = place(time, y_axis.ends.start);
@@ -199,7 +199,7 @@ fn exact<DB: DrawingBackend>(
     area.draw(&PathElement::new(head, style))?;
     let place = match x < (columns.start + columns.end) / 2 {
         true => (x + 9, rows.end - 14),
-        false => (x - 48, rows.start + 12),
+        false => (x - 54, rows.start + 12),
     };
     write(area, "exact".to_owned(), place)
 }

@@ -19,6 +19,9 @@ pub fn text(measured: &Measurement) -> String {
         .set_content_arrangement(ContentArrangement::Disabled)
         .set_header(summary.heads)
         .add_rows(summary.rows);
+    if let Some(methods) = table.column_mut(0) {
+        methods.set_padding((0, 1));
+    }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }

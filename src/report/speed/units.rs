@@ -1,6 +1,7 @@
 //! How errors, times, numbers of samples and slopes are written.
 
 use super::{needed::Needed, statistics::PowerLaw};
+use crate::numbers;
 
 /// What stands for a number that is not known.
 pub const UNKNOWN: &str = "–";
@@ -16,7 +17,7 @@ pub fn error(error: f64) -> String {
 }
 
 /// A time in seconds or milliseconds, with so many digits.
-pub fn seconds(seconds: f64, digits: i32) -> String {
+pub fn seconds(seconds: f64, digits: usize) -> String {
     match seconds {
         _ if seconds.is_nan() => UNKNOWN.to_owned(),
         _ if seconds < 0.9995 => format!("{} ms", significant(seconds * 1e3, digits)),
@@ -43,12 +44,12 @@ pub fn samples(needed: &Needed) -> String {
 
 /// A slope with its standard error.
 pub fn slope(fit: Option<PowerLaw>) -> String {
-    let signed = |number: f64| format!("{number:.2}").replace('-', "−");
+    let signed = |number: f64| format!("{number:.3}").replace('-', "−");
     match fit {
         None => UNKNOWN.to_owned(),
         Some(fit) => match fit.slope_error {
             None => signed(fit.slope),
-            Some(error) => format!("{} ± {error:.2}", signed(fit.slope)),
+            Some(error) => format!("{} ± {error:.3}", signed(fit.slope)),
         },
     }
 }
@@ -61,16 +62,43 @@ pub fn plural(count: usize, what: &str) -> String {
     }
 }
 
-/// So many digits, not counting zeros in front; what is very large or small has an exponent.
-fn significant(number: f64, digits: i32) -> String {
+/// So many significant digits, zeros at the end included; what is very large or small has an exponent.
+fn significant(number: f64, digits: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }
     if !(1e-4..1e7).contains(&number) {
         return format!("{number:.1e}");
     }
-    let before = libm::log10(number).floor() as i32 + 1;
-    let unit = libm::exp10(f64::from((before - digits).max(0)));
-    let after = (digits - before).max(0) as usize;
-    format!("{:.after$}", (number / unit).round() * unit)
+    let rounded = numbers::significant(number, digits);
+    let before = libm::log10(rounded).floor() as i32 + 1;
+    let after = (digits as i32 - before).max(0) as usize;
+    format!("{rounded:.after$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_are_worth_reading() {
+        for (number, text) in [
+            (1.0 / 256.0, "1/256"),
+            (0.012_84, "0.013"),
+            (0.5, "0.50"),
+            (0.0, "0"),
+            (1e-6, "1.0e-6"),
+        ] {
+            assert_eq!(error(number), text);
+        }
+        for (time, digits, text) in [
+            (0.012_345, 3, "12.3 ms"),
+            (1.234_5, 3, "1.23 s"),
+            (0.434, 2, "430 ms"),
+            (0.000_12, 2, "0.12 ms"),
+            (f64::NAN, 3, "–"),
+        ] {
+            assert_eq!(seconds(time, digits), text);
+        }
+    }
 }
