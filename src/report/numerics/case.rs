@@ -66,13 +66,16 @@ impl Case {
     }
 }
 
+/// Makes points.
+type Points = dyn Fn(&mut Random) -> Point;
+
 /// A scene and where in its picture questions are asked.
 pub(super) struct Input {
     scene: Scene,
     /// Those that the oracle computes with.
     bits: usize,
     /// Points of the picture; anywhere if nothing is said.
-    points: Option<Box<dyn Fn(&mut Random) -> Point>>,
+    points: Option<Box<Points>>,
     /// How many of the questions are asked there, in halves of all; the others close to boundaries.
     halves: u64,
 }

@@ -134,7 +134,7 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
     let mut plot = ChartBuilder::on(&area)
         .margin_top(36)
         .margin_right(LABELS)
-        .margin_left(2)
+        .margin_left(10)
         .margin_bottom(2)
         .x_label_area_size(52)
         .y_label_area_size(76)

@@ -155,29 +155,32 @@ impl Session<'_> {
         if is_open {
             asked = (0..RUNGS.1).map(|power| 1 << (2 * power)).collect();
         }
+        let mut before = Duration::ZERO;
         for (point, per_pixel) in asked.into_iter().enumerate() {
             let started = Instant::now();
             self.measured.rungs.push(per_pixel);
             for series in 0..self.measured.series.len() {
                 self.sampled(series, point, 0)?;
             }
-            if is_open && !self.goes_on(started.elapsed()) {
+            let last = started.elapsed();
+            // A time is the sum of one that does not depend on the samples, and one that is four times as long for four times as many.
+            let next = last + 4 * last.saturating_sub(before);
+            if is_open && !self.goes_on(next) {
                 break;
             }
+            before = last;
         }
         Ok(())
     }
 
-    /// Whether four times as many samples are to be taken, if these took so long.
-    fn goes_on(&self, last: Duration) -> bool {
-        let rungs = self.measured.rungs.len();
+    /// Whether four times as many samples are to be taken, if that takes so long.
+    fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let is_far = |series: &Series| series.points.last().is_some_and(|it| it.error() > least);
-        // They take at most four times as long.
-        let round = (self.started.elapsed() + 4 * last).as_secs_f64();
+        let round = (self.started.elapsed() + next).as_secs_f64();
         let all = round * self.request.runs.unwrap_or(RUNS.0) as f64;
-        rungs < RUNGS.0
-            || (self.measured.series.iter().any(is_far) && all <= self.request.budget.as_secs_f64())
+        let has_time = all <= self.request.budget.as_secs_f64();
+        self.measured.rungs.len() < RUNGS.0 || (has_time && self.measured.series.iter().any(is_far))
     }
 
     fn has_time_for(&self, round: Duration) -> bool {

@@ -52,44 +52,35 @@ impl Measurement {
 }
 
 impl Series {
-    /// Errors are taken to fall as a power of the samples: between two numbers of samples that were measured, by the line through both in
-    /// logarithms; beyond the last, and before the first, from there with the fitted slope. Times are taken to grow evenly with the samples.
+    /// Errors are taken to fall as a power of the samples: by the line in logarithms through the two numbers of samples that were measured on either
+    /// side, or the first or last two of them. Times are taken to grow evenly with the samples.
     pub fn needed(&self, error: f64) -> Option<Needed> {
         let points = &self.points;
         // From here on no error that was measured is greater.
         let enough = points.iter().rposition(|point| point.error() > error);
         let enough = enough.map_or(0, |last| last + 1);
-        let at = |samples: f64, is_extrapolated: bool| {
-            let per_pixel = samples.ceil().max(1.0);
-            per_pixel.is_finite().then(|| Needed {
-                per_pixel: Some(per_pixel),
-                cpu: self.time_at(per_pixel, |point| point.times.cpu()),
-                wall: self.time_at(per_pixel, |point| point.times.wall()),
-                is_extrapolated,
-            })
+        let is_first = |samples: u64| points.first().is_some_and(|it| it.per_pixel == samples);
+        let (samples, is_extrapolated) = if enough == 0 && is_first(1) {
+            (1.0, false)
+        } else {
+            let pair = enough.clamp(1, points.len().saturating_sub(1).max(1));
+            let (few, many) = (points.get(pair - 1)?, points.get(pair)?);
+            let falls = libm::log(few.error() / many.error());
+            let samples = [few, many].map(|point| point.per_pixel as f64);
+            // Without any error, these are enough for whatever is asked for.
+            let share = libm::log(few.error() / error) / falls;
+            let share = if many.error() == 0.0 { 1.0 } else { share };
+            let is_falling = falls > 0.0;
+            let samples = samples[0] * libm::pow(samples[1] / samples[0], share);
+            (is_falling.then_some(samples)?, enough != pair)
         };
-        let point = points.get(enough).or(points.last())?;
-        let samples = point.per_pixel as f64;
-        if enough > 0 && enough < points.len() {
-            let (few, many) = (&points[enough - 1], point);
-            if many.error() == 0.0 {
-                return at(samples, false);
-            }
-            let share = libm::log(few.error() / error) / libm::log(few.error() / many.error());
-            let few = few.per_pixel as f64;
-            return at(few * libm::pow(samples / few, share), false);
-        }
-        if enough == 0 && point.per_pixel == 1 {
-            return at(1.0, false);
-        }
-        let slope = self
-            .fit()
-            .map(|fit| fit.slope)
-            .filter(|&slope| slope < 0.0)?;
-        at(
-            samples * libm::pow(error / point.error(), 1.0 / slope),
-            true,
-        )
+        let per_pixel = samples.ceil().max(1.0);
+        per_pixel.is_finite().then(|| Needed {
+            per_pixel: Some(per_pixel),
+            cpu: self.time_at(per_pixel, |point| point.times.cpu()),
+            wall: self.time_at(per_pixel, |point| point.times.wall()),
+            is_extrapolated,
+        })
     }
 
     /// The time that so many samples take, by the line between the points on either side, or between the first and the last.
