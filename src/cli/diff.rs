@@ -11,7 +11,7 @@ use pinhole::{
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
     grade::{self, Grade},
-    numbers::{grouped, short},
+    numbers::{grouped, short, significant},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
     tracer::World,
@@ -323,7 +323,7 @@ impl Report {
                 writeln!(
                     out,
                     "rmse      {} in linear light, where white is 1",
-                    short(significant(found.rmse))
+                    short(significant(found.rmse, 3))
                 )?;
             }
         }
@@ -442,7 +442,7 @@ fn percent(share: f64) -> String {
 
 fn round(steps: f64) -> String {
     match steps < 0.1 {
-        true => short(significant(steps)),
+        true => short(significant(steps, 3)),
         false => short((100.0 * steps).round() / 100.0),
     }
 }
@@ -450,9 +450,4 @@ fn round(steps: f64) -> String {
 /// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
-}
-
-/// Three significant digits.
-fn significant(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
 }

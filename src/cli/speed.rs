@@ -11,8 +11,7 @@ use pinhole::{
     film,
     render::{Control, RenderError},
     report::speed::{
-        self, Measurement, Plan, Request, Subject, Tries, against_samples, against_time, to_csv,
-        to_json,
+        self, Measurement, Request, Subject, against_samples, against_time, to_csv, to_json,
     },
     scene::{Method, Scene},
 };
@@ -26,6 +25,12 @@ use super::{
     output, progress,
 };
 
+/// The progress bar has so many steps.
+const STEPS: u64 = 1000;
+
+/// The page on everything.
+const INDEX: &str = "index.html";
+
 /// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
@@ -33,7 +38,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     check_methods(&request)?;
     if let Some(folder) = &args.output {
         make_folder(folder)?;
-        let index = folder.join("index.html");
+        let index = folder.join(INDEX);
         film::check_writable(&index).map_err(|error| cannot_write(&index, &error))?;
     }
     let mut subjects = Vec::new();
@@ -62,7 +67,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         };
         if args.format.format == Format::Human {
             let gap = if measured.is_empty() { "" } else { "\n" };
-            output::to_people(&format!("{gap}{}", speed::table(&found)));
+            output::to_people(&format!("{gap}{}", speed::text(&found)));
         }
         measured.push(found);
         if interrupt.pressed() {
@@ -149,49 +154,21 @@ fn measure(
     request: &Request,
     interrupt: &Interrupt,
 ) -> Result<Option<Measurement>, Trouble> {
-    let cancel = interrupt.watch();
     let control = Control {
         threads: request.threads,
         progress: &|_| {},
-        cancel,
+        cancel: interrupt.watch(),
     };
-    let plan = counted(request.preparations(scene), &control, |control| {
-        Plan::new(subject, scene, request, control)
-    });
-    let measured = plan.and_then(|plan| {
-        let mut measured = counted(plan.total(), &control, |control| {
-            speed::measure(&plan, control)
-        })?;
-        let (runs, nanoseconds) = speed::further(&plan, &measured);
-        counted(nanoseconds, &control, |control| {
-            speed::measure_further(runs, &plan, control, &mut measured)
-        })?;
-        let tries = Tries::new(&plan, &measured);
-        counted(tries.total(), &control, |control| {
-            tries.run(&mut measured, control)
-        })?;
-        Ok(measured)
+    let measured = progress::watched(STEPS, |done| {
+        let tell = |share| done.store((share * STEPS as f64) as u64, Ordering::Relaxed);
+        speed::measure(subject, scene, request, &control, &tell)
     });
     match measured {
-        Ok(measured) if measured.rounds() == 0 => Ok(None),
+        Ok(measured) if measured.runs() == 0 => Ok(None),
         Ok(measured) => Ok(Some(measured)),
         Err(RenderError::Cancelled) => Ok(None),
         Err(error) => Err(Trouble(error.to_string())),
     }
-}
-
-/// Does work that tells its progress, and shows it.
-fn counted<T>(total: u64, control: &Control, work: impl FnOnce(&Control) -> T) -> T {
-    progress::watched(total, |done| {
-        let progress = |more| {
-            done.fetch_add(more, Ordering::Relaxed);
-        };
-        work(&Control {
-            threads: control.threads,
-            progress: &progress,
-            cancel: control.cancel,
-        })
-    })
 }
 
 /// Writes everything: of one scene into the folder itself, of several each into a folder there, under a page on all.
@@ -213,8 +190,12 @@ fn write(folder: &Path, scenes: &[PathBuf], measured: &[Measurement]) -> Result<
 }
 
 fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
+    let csv = folder.join("report.csv");
     let files = [
-        ("report.csv", to_csv(measured)),
+        (
+            "report.csv",
+            to_csv(measured).map_err(|error| cannot_write(&csv, &error))?,
+        ),
         ("report.json", format!("{:#}\n", to_json(measured))),
         ("error-against-time.svg", against_time(measured)),
         ("error-against-samples.svg", against_samples(measured)),
@@ -226,7 +207,7 @@ fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
 }
 
 fn write_page(folder: &Path, measured: &[Measurement]) -> Result<(), Trouble> {
-    let path = folder.join("index.html");
+    let path = folder.join(INDEX);
     let page = speed::page(measured).map_err(|error| cannot_write(&path, &error))?;
     write_file(&path, &page)
 }
@@ -251,13 +232,25 @@ fn cannot_write(path: &Path, error: &io::Error) -> Trouble {
     Trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
-/// A scene's folder: its file's name without the ending, with a number if another one has that.
+/// A scene's folder: its file's name without the ending, with a number if another one has that, or the page. It is a name within the report's
+/// folder, whatever the file is called: no dots at its ends, and nothing but letters, digits and what is usual between them.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
-        _ => "scene".to_owned(),
+        _ => String::new(),
+    };
+    let is_usual = |letter: char| letter.is_alphanumeric() || " .-_()+=,".contains(letter);
+    let stem = stem.replace(|letter| !is_usual(letter), "_");
+    let stem = match stem.trim_matches(['.', ' ']) {
+        "" => "scene",
+        stem => stem,
+    };
+    // There are file systems that do not tell capital letters from small ones.
+    let is_taken = |name: &String| {
+        let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
+        is_same(INDEX) || taken.iter().any(|other| is_same(other))
     };
     let numbered = (2..).map(|number| format!("{stem}-{number}"));
-    let mut names = [stem.clone()].into_iter().chain(numbered);
-    names.find(|name| !taken.contains(name)).unwrap_or(stem)
+    let mut names = [stem.to_owned()].into_iter().chain(numbered);
+    names.find(|name| !is_taken(name)).unwrap_or_default()
 }

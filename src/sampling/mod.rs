@@ -39,7 +39,6 @@ use std::ops::Range;
 use glam::DVec2;
 use multiversion::multiversion;
 
-pub(crate) use self::halton::radical_inverse_3;
 use self::{
     bricks::Bricks, halton::Halton, hammersley::Hammersley, jittered::Jittered,
     multi_jittered::MultiJittered, order::Order, rng::Key, scatter::Scatter, sobol::Sobol,
