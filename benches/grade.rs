@@ -95,12 +95,12 @@ fn ask(program: &str, case: &Case, folder: &Path) -> Value {
 }
 
 fn told(answer: &Value) -> String {
-    let mistakes = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
-    let told: Vec<String> = mistakes
+    let likely = answer["likely"].as_array().map_or(&[][..], Vec::as_slice);
+    let told: Vec<String> = likely
         .iter()
-        .map(|m| format!("{} {}", m["id"], m["set"]))
+        .map(|said| said["mistake"].to_string())
         .collect();
-    format!("{} {}", answer["verdict"], told.join("; "))
+    told.join("; ")
 }
 
 /// Writes a picture and its scene; answers what is wrong with it.

@@ -34,44 +34,34 @@ impl Case {
 
     /// Judges what `diff` says.
     pub fn judge(&self, answer: &Value) -> Judgement {
-        let said = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
-        if self.mistakes.is_empty() {
-            return match answer["verdict"].as_str() {
-                Some("right" | "noise") => Judgement::Right,
-                _ => Judgement::False,
-            };
-        }
-        if answer["verdict"] == "right" || answer["verdict"] == "noise" {
-            return Judgement::Missed;
-        }
-        let found = self
-            .mistakes
+        let likely = answer["likely"].as_array().map_or(&[][..], Vec::as_slice);
+        let is_noise = likely.iter().any(|said| said["mistake"] == "noise");
+        let is_right = answer["equal"] == true || is_noise;
+        let said: Vec<&Value> = likely
             .iter()
-            .filter(|mistake| is_said(mistake, said));
-        match found.count() {
-            count if count == self.mistakes.len() && said.len() == count => Judgement::Right,
-            count if count == self.mistakes.len() => Judgement::TooMany,
-            0 if said.is_empty() => Judgement::Unknown,
-            0 => Judgement::False,
+            .filter(|said| said["mistake"] != "noise")
+            .collect();
+        let is_said = |mistake: &&&Mistake| said.iter().any(|said| names(mistake, said));
+        let count = self.mistakes.iter().filter(is_said).count();
+        match (self.mistakes.is_empty(), is_right) {
+            (true, true) => Judgement::Right,
+            (true, false) => Judgement::False,
+            (false, true) if said.is_empty() => Judgement::Missed,
+            _ if count == self.mistakes.len() && said.len() == count => Judgement::Right,
+            _ if count == self.mistakes.len() => Judgement::TooMany,
+            _ if said.is_empty() => Judgement::Unknown,
+            _ if count == 0 => Judgement::False,
             _ => Judgement::Partly,
         }
     }
 }
 
-/// Whether a mistake is among those that were said.
-fn is_said(mistake: &Mistake, said: &[Value]) -> bool {
+/// Whether what is said names a mistake.
+fn names(mistake: &Mistake, said: &Value) -> bool {
+    let message = said["message"].as_str().unwrap_or_default();
     mistake.name.split('|').any(|name| {
         let (id, object) = name.split_once(' ').unwrap_or((name, ""));
-        said.iter().any(|said| {
-            let sets = said["set"].as_array().map_or(&[][..], Vec::as_slice);
-            let message = said["message"].as_str().unwrap_or_default();
-            let is_set = |set: &Value| {
-                set.as_str()
-                    .and_then(|set| set.split_once('='))
-                    .is_some_and(|set| set.0 == name)
-            };
-            sets.iter().any(is_set) || (said["id"] == id && message.contains(object))
-        })
+        said["mistake"] == id && message.contains(object)
     })
 }
 
