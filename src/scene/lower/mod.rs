@@ -140,7 +140,11 @@ impl<'s> Lowering<'s> {
             match item {
                 Item::Definition(definition) => self.definition(definition),
                 Item::Block(block) => self.block(block),
-                Item::Bad(span) => self.bad.push(self.sources.text(*span)),
+                Item::Bad(span) => {
+                    let text = self.sources.text(*span);
+                    self.names.know_words(text);
+                    self.bad.push(text);
+                }
             }
         }
     }
@@ -179,8 +183,6 @@ impl<'s> Lowering<'s> {
             }
             // What uses it below is silent: what it means there, nobody can tell.
             self.names.define(name, None, None);
-        } else if definition.is_part_of_name() {
-            self.names.know_part(name.text);
         } else if reported && self.names.place(name.text).is_some() {
             // It stays what it is.
         } else if let Some(first) = self.names.place(name.text) {
