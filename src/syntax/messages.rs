@@ -63,3 +63,29 @@ pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
 pub fn utf16(span: Span) -> Diagnostic {
     UTF16.at(span, &[], None)
 }
+
+/// What other languages say: the words that start it, what it is, and what to do instead.
+const STATEMENTS: &[[&str; 3]] = &[
+    ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
+    ["for while loop repeat foreach", "loops", "write each object by itself, or write the file by a program"],
+    ["import include require use #include", "including of other files", "write all of a scene into one file"],
+    ["#version #declare #local #macro #define #if #end", "directives", "name a value with `let NAME = VALUE`; a comment begins with `//`"],
+    ["print echo printf console", "output", "take it away; `pinhole inspect` shows what a scene's values are"],
+    ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
+];
+
+/// What a statement of another language is, and what to do instead.
+pub fn statement(word: &str) -> Option<[&'static str; 2]> {
+    let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
+    STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
+}
+
+/// Files of other programs: how they are called, how they start, what marks them and how often at least, and what they have not.
+pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[
+    ("XML", "<?xml", "<", 1, ""),
+    ("XML", "<", "</", 1, ""),
+    ("JSON", "{\" [{ [\"", "\"", 2, ""),
+    ("a scene of POV-Ray", "", "light_source|#declare|#version|#include|pigment|global_settings|location <|look_at <", 3, ""),
+    ("a scene of pbrt", "", "LookAt |WorldBegin|Shape \"|Film \"|Integrator \"|Sampler \"|AttributeBegin|Camera \"", 2, ""),
+    ("YAML", "", ":\n|: ", 3, "{="),
+];

@@ -22,7 +22,7 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The same names, in order.
     order: Vec<&'s str>,
-    /// Words in what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
+    /// Words in what was reported, such as what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
     pub(super) parts: HashSet<&'s str>,
     /// Every `let` of the file, wherever.
     definitions: HashMap<&'s str, Span>,
@@ -74,9 +74,10 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Knows a word of what was to be a name and cannot be one.
-    pub fn know_part(&mut self, word: &'s str) {
-        self.parts.insert(word);
+    /// Knows the words of what cannot be told, such as what was to be a name and cannot be one.
+    pub fn know_words(&mut self, text: &'s str) {
+        let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        self.parts.extend(text.split(is_other));
     }
 
     /// Where a name was defined, if it was.

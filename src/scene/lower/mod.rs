@@ -89,7 +89,11 @@ impl<'s> Lowering<'s> {
             match item {
                 Item::Definition(definition) => self.definition(definition),
                 Item::Block(block) => self.block(block),
-                Item::Bad(span) => self.bad.push(self.sources.text(*span)),
+                Item::Bad(span) => {
+                    let text = self.sources.text(*span);
+                    self.names.know_words(text);
+                    self.bad.push(text);
+                }
             }
         }
     }
@@ -117,7 +121,6 @@ impl<'s> Lowering<'s> {
                 // What uses it below is silent: what it means there, nobody can tell.
                 self.names.define(name, None, SourceId::File);
             }
-            _ if definition.is_part_of_name() => self.names.know_part(name.text),
             (None, None) => {
                 let from = definition.value.span.source;
                 self.names.define(name, value, from);
