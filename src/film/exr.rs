@@ -25,7 +25,7 @@ use exr::{
 
 use super::{
     Film,
-    read::{Coding, Picture, Rounding, Unreadable, check_pixels},
+    picture::{Coding, Picture, Rounding, Unreadable, check_pixels},
 };
 use crate::area::Area;
 

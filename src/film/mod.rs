@@ -1,12 +1,13 @@
 //! Pixels, and the files they go to.
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, and a picture file: `png` with the scene that made
-//! it, or `exr`. `write` sees to it that a file is written whole or not at all. `read` makes films of picture files, also of other
-//! programs', and `compare` says how far two films are apart.
+//! it, or `exr`. `write` sees to it that a file is written whole or not at all. `read` makes a `picture` of a file, also of another
+//! program's, and `compare` says how far two films are apart.
 
 mod compare;
 mod exr;
 mod memory;
+mod picture;
 mod png;
 mod read;
 mod srgb;
@@ -19,11 +20,12 @@ pub use self::{
     },
     exr::write_exr,
     memory::TooLarge,
+    picture::{Coding, Picture, Rounding, Unreadable},
     png::{
         NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png,
         write_png,
     },
-    read::{Coding, Picture, Rounding, Unreadable, is_picture, read_picture},
+    read::{is_picture, read_picture},
     srgb::Encoder,
     write::{Sink, check_writable, write_stream, write_whole},
 };

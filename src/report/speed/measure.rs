@@ -12,6 +12,7 @@ use std::{
 };
 
 use cpu_time::ProcessTime;
+use rand::seq::SliceRandom;
 
 use super::{
     machine::Machine,
@@ -22,10 +23,7 @@ use crate::{
     area::Area,
     film::{self, Film},
     render::{Control, Exact, RenderError, render_and_count, render_exact},
-    sampling::{
-        Sampling,
-        rng::{Key, scale},
-    },
+    sampling::{Sampling, rng::Key},
     scene::{Count, Method, Sampler, Scene},
     threads,
     tracer::World,
@@ -132,7 +130,8 @@ impl Session<'_> {
             if self.request.runs.is_none() && !self.has_time_for(first) {
                 break;
             }
-            shuffle(&mut tasks, round);
+            // An order that depends on the number of the round alone.
+            tasks.shuffle(&mut Key::new(round, 0).rng());
             for &task in &tasks {
                 match task {
                     Task::Exact => self.exact()?,
@@ -273,14 +272,6 @@ impl Session<'_> {
             _ => self.started.elapsed().as_secs_f64() / self.request.budget.as_secs_f64(),
         };
         (self.progress)(share.min(1.0));
-    }
-}
-
-/// An order that depends on the number of the round alone (Fisher and Yates).
-fn shuffle(tasks: &mut [Task], round: u64) {
-    let key = Key::new(round, 0);
-    for last in (1..tasks.len()).rev() {
-        tasks.swap(last, scale(key.bits(last as u64), last as u64 + 1) as usize);
     }
 }
 
