@@ -6,6 +6,7 @@ use crate::{
     math::Angle,
     numbers::{grouped, short},
     scene::{Count, Method, Value, css, schema},
+    schema::Type,
     syntax::tree::{self, Block, Field, ValueKind},
 };
 
@@ -57,7 +58,8 @@ pub fn hints(analysis: &Analysis<'_>, within: std::ops::Range<usize>) -> Vec<Hin
 /// What a field's expression comes to.
 fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<String> {
     let row = schema::block(block.kind?.text)?.field(field.name.text)?;
-    if !is_computed(&field.value) {
+    // The words of methods are none of the text's names, whatever these are called.
+    if row.takes == Type::Method || !is_computed(&field.value) {
         return None;
     }
     let value = analysis.model.value(&field.value, Some(row.takes))?;

@@ -208,7 +208,9 @@ fn no_such_let(name: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnost
         Item::Definition(definition) => Some(definition.name?.text),
         Item::Block(_) | Item::Bad(_) => None,
     });
-    let is_block = schema::block(name.text).is_some() || objects(items).contains(&name.text);
+    let is_unnamed = |block: &schema::Block| !block.is_object;
+    let is_block =
+        schema::block(name.text).is_some_and(is_unnamed) || objects(items).contains(&name.text);
     let mut blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = blocks.find(|block| block.field(name.text).is_some());
     let near = || suggest::nearest(name.text, lets).map(str::to_owned);

@@ -38,7 +38,7 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     if sees(camera.near, far) {
         return None;
     }
-    // What neither of them cuts away alone lies between them.
+    // Where something is seen without one of the two planes, that one is to blame.
     if sees(0.0, far) {
         return Some(Unseen::Clipped("near"));
     }

@@ -44,11 +44,12 @@ impl<'s> Evaluator<'_, 's> {
             None if self.names.parts.contains(name) => return None,
             None => {}
         }
-        let next = self.problems.len();
-        let index = *self.names.reported.borrow_mut().entry(name).or_insert(next);
-        match self.problems.get_mut(index) {
+        let mut problems = self.names.problems.borrow_mut();
+        let mut reported = self.names.reported.borrow_mut();
+        let index = *reported.entry(name).or_insert(problems.len());
+        match problems.get_mut(index) {
             Some(problem) => and_here(problem, span),
-            None => self.problems.push(match self.names.definition(name) {
+            None => problems.push(match self.names.definition(name) {
                 Some(definition) => self.used_before(name, span, definition),
                 None => self.unknown_name(name, span, wanted),
             }),
@@ -151,11 +152,10 @@ impl<'s> Evaluator<'_, 's> {
 fn and_here(problem: &mut Diagnostic, span: Span) {
     // More places than these would hide the first.
     const MOST: usize = 20;
-    if problem.labels.len() > MOST {
-        return;
+    if problem.labels.len() <= MOST {
+        let message = "and here".to_owned();
+        problem.labels.push(Label { span, message });
     }
-    let message = "and here".to_owned();
-    problem.labels.push(Label { span, message });
     for fix in &mut problem.fixes {
         let text = fix.edits.first().map(|edit| edit.text.clone());
         fix.edits.extend(text.map(|text| Edit::new(span, text)));

@@ -6,6 +6,7 @@ use std::{
 };
 
 use crate::{
+    diagnostic::Diagnostic,
     scene::value::Value,
     source::{SourceId, Span},
     suggest::Budget,
@@ -30,6 +31,8 @@ pub struct Names<'s> {
     pub(super) objects: HashSet<&'s str>,
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
+    /// What was reported of names, apart from the other problems, some of which are dropped again.
+    pub(in crate::scene) problems: RefCell<Vec<Diagnostic>>,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
     pub(super) reported: RefCell<HashMap<&'s str, usize>>,
 }

@@ -20,7 +20,7 @@ const START: Span = Span {
     end: 0,
 };
 
-/// The most samples of a picture, given by `total` or by `per_pixel`.
+/// The most samples of a picture, also where they are given by `per_pixel`.
 const MOST_SAMPLES: u64 = 1 << 53;
 
 impl<'s> Lowering<'s> {
@@ -63,7 +63,10 @@ impl<'s> Lowering<'s> {
 
     fn has_errors(&self) -> bool {
         let mut all = self.problems.iter().chain(&self.found);
-        all.any(Diagnostic::is_error) || !self.sources.file.invalid_utf8().is_empty()
+        // What is reported of names is always an error.
+        all.any(Diagnostic::is_error)
+            || !self.names.problems.borrow().is_empty()
+            || !self.sources.file.invalid_utf8().is_empty()
     }
 
     fn missing_camera(&mut self) {

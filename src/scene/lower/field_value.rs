@@ -43,8 +43,10 @@ impl<'s> Lowering<'s> {
             return Some(value);
         };
         // That a number rounds to 0 is why it does not hold.
-        let is_rounded = self.problems.len() > before;
-        self.problems.truncate(before);
+        let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
+        if is_rounded {
+            self.problems.truncate(before);
+        }
         let written = shorten(self.sources.text(tree.span));
         let found = match (&tree.kind, value) {
             _ if is_rounded => format!("{written}, which rounds to 0"),
@@ -195,7 +197,9 @@ impl<'s> Lowering<'s> {
 /// A value that keeps a condition, in the place of one that does not.
 fn allowed(row: &Field, condition: Condition, value: Value) -> String {
     match (condition, value) {
-        (Condition::Whole, Value::Number(number)) if number.abs() < 1e15 => {
+        (Condition::Whole, Value::Number(number))
+            if row.allows(Value::Number(number.round().max(1.0))) =>
+        {
             number.round().max(1.0).to_string()
         }
         (Condition::MoreThan(bound), Value::Number(number)) if number < bound => {

@@ -53,7 +53,7 @@ struct Lowering<'s> {
     first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be understood.
     bad: Vec<&'s str>,
-    /// What is wrong with the syntax.
+    /// What was found before: wrong with the syntax, and with the targets of arguments.
     found: Vec<Diagnostic>,
     problems: Vec<Diagnostic>,
     /// The values of unknown fields, in the order of the text.
@@ -196,6 +196,8 @@ impl<'s> Lowering<'s> {
             return row;
         }
         let near = schema::nearest_block(kind.text);
+        // Nobody can tell what it was to be: an object, perhaps.
+        self.has_objects |= near.is_none();
         // Of a block that is only begun, the parser says all.
         if near.is_none() && block.close.is_none() && block.fields.is_empty() {
             return None;

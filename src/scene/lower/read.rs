@@ -49,9 +49,9 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
         let mut lowering = Lowering::new(sources, Names::default(), cancel);
         let all = syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |items| {
             lowering.items(&items);
-            lowering.problems.is_empty()
+            lowering.is_right()
         });
-        if all && lowering.problems.is_empty() {
+        if all && lowering.is_right() {
             return lowering.reading();
         }
     }
@@ -108,14 +108,20 @@ impl<'s> Lowering<'s> {
         }
     }
 
+    /// Whether nothing was reported so far.
+    fn is_right(&self) -> bool {
+        self.problems.is_empty() && self.names.problems.borrow().is_empty()
+    }
+
     /// What there is of a scene, errors or not, and the names that were defined.
     fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
         let parts = self.build();
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
+        let of_names = self.names.problems.take();
         let found = std::mem::take(&mut self.problems).into_iter();
-        diagnostics.extend(found.take_while(|_| self.is_wanted()));
+        diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)

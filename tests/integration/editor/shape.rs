@@ -156,6 +156,9 @@ fn remarks_say_what_the_text_does_not() {
         remarked("let a = 2 let b = a * 2 sphere { center (0, a + b, 0) radius -a color olive }"),
         "let a = 2 let b = a * 2‹= 4› sphere { center (0, a + b, 0)‹= (0, 6, 0)› radius -a‹= -2› color olive }"
     );
+    // The word of a method is no name of the text.
+    let sampler = "let random = 3 sampler { method random }";
+    assert_eq!(remarked(sampler), sampler);
     let view = "eye (0, 1, 5) lookat (0, 1, 0)";
     assert_eq!(
         remarked(&format!("camera {{ {view} d 1 }}")),
