@@ -125,7 +125,11 @@ fn escaped(text: &str) -> String {
 
 fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> Drawn<DB> {
     let points = || chart.lines.iter().flat_map(|line| &line.points);
-    let x_axis = Axis::around(points().map(|point| point.0).chain(chart.exact));
+    let x_axis = Axis::around(
+        points()
+            .map(|point| point.0)
+            .chain(chart.exact.filter(|&x| x > 0.0)),
+    );
     let errors = Axis::around(points().map(|point| point.1)).ends;
     // The errors that are asked for are shown, too, unless they are far away.
     let is_near = |wanted: &f64| (errors.start / 30.0..errors.end * 30.0).contains(wanted);
@@ -160,7 +164,7 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
         area.draw(&DashedPathElement::new(ends, 4, 4, BLACK.mix(0.6)))?;
         write(&area, error(wanted), (columns.start + 5, y - 10))?;
     }
-    if let Some(time) = chart.exact.filter(|time| time.is_finite()) {
+    if let Some(time) = chart.exact.filter(|time| time.is_finite() && *time > 0.0) {
         let (x, _) = place(time, y_axis.ends.start);
         exact(&area, x, &columns, &rows)?;
     }

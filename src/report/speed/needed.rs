@@ -46,6 +46,8 @@ impl Measurement {
             .exact_needed(error)
             .map(|needed| (Method::Exact, needed));
         let mut all: Vec<_> = sampled.chain(exact).collect();
+        // Where the system does not tell the CPU time, no method has the least.
+        all.retain(|(_, needed)| needed.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| a.cpu.total_cmp(&b.cpu));
         all
     }
@@ -92,11 +94,20 @@ impl Series {
         let around = |pair: &&[Point]| {
             (pair[0].per_pixel as f64..=pair[1].per_pixel as f64).contains(&per_pixel)
         };
-        let (a, b) = match points.windows(2).find(around) {
-            Some(pair) => (&pair[0], &pair[1]),
-            None => (first, last),
+        let slope = |a: &Point, b: &Point| (time(b) - time(a)) / (b.per_pixel - a.per_pixel) as f64;
+        let along = |a: &Point, slope: f64| time(a) + slope * (per_pixel - a.per_pixel as f64);
+        if let Some([a, b]) = points.windows(2).find(around) {
+            return along(a, slope(a, b));
+        }
+        // More samples take no less time, and none take some: neither the slope nor the time of no sample is negative.
+        let slope = match slope(first, last) {
+            falling if falling < 0.0 => 0.0,
+            slope => slope,
         };
-        let a_second = (time(b) - time(a)) / (b.per_pixel - a.per_pixel) as f64;
-        (time(a) + a_second * (per_pixel - a.per_pixel as f64)).max(0.0)
+        if per_pixel > last.per_pixel as f64 {
+            return along(last, slope);
+        }
+        let most = time(first) / first.per_pixel as f64;
+        along(first, if slope > most { most } else { slope })
     }
 }
