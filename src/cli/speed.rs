@@ -20,7 +20,7 @@ use serde_json::json;
 use super::{
     Status, Trouble,
     args::{Format, ReportArgs, methods},
-    input::{Input, check_standard, is_standard, shown},
+    input::{Input, check_standard, is_same_file, is_standard, shown},
     interrupt::Interrupt,
     output, progress,
 };
@@ -30,6 +30,15 @@ const STEPS: u64 = 1000;
 
 /// The page on everything.
 const INDEX: &str = "index.html";
+
+/// What a folder holds, the page at the end.
+const FILES: [&str; 5] = [
+    "report.csv",
+    "report.json",
+    "error-against-time.svg",
+    "error-against-samples.svg",
+    INDEX,
+];
 
 /// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
@@ -60,6 +69,11 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if status != Status::Done {
         return Ok(status);
     }
+    let folders = args
+        .output
+        .as_deref()
+        .map(|folder| folders(folder, &args.scenes));
+    let folders = folders.transpose()?;
     let mut measured = Vec::new();
     for (subject, scene) in &subjects {
         let Some(found) = measure(subject, scene, &request, interrupt)? else {
@@ -75,8 +89,13 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         }
     }
     // What was measured is kept, so Ctrl-C does not end the writing of it.
-    if let (Some(folder), false) = (&args.output, measured.is_empty()) {
-        write(folder, &args.scenes, &measured)?;
+    if let (Some(folder), Some(folders), false) = (&args.output, folders, measured.is_empty()) {
+        for (folder, measured) in folders.iter().zip(&measured) {
+            write_one(folder, measured)?;
+        }
+        if args.scenes.len() > 1 {
+            write_page(folder, &measured)?;
+        }
     }
     if args.format.format == Format::Json && !measured.is_empty() {
         let all = measured.iter().all(|measured| !measured.interrupted);
@@ -171,36 +190,44 @@ fn measure(
     }
 }
 
-/// Writes everything: of one scene into the folder itself, of several each into a folder there, under a page on all.
-fn write(folder: &Path, scenes: &[PathBuf], measured: &[Measurement]) -> Result<(), Trouble> {
-    if let [one] = measured
-        && scenes.len() == 1
-    {
-        return write_one(folder, one);
+/// Where the report of each scene goes: of one into the folder itself, of several each into a folder there, under a page on all. What cannot be
+/// written, or would write over a scene, is refused before anything is measured.
+fn folders(folder: &Path, scenes: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
+    let mut names = Vec::new();
+    if scenes.len() > 1 {
+        for scene in scenes {
+            names.push(name(scene, &names));
+        }
     }
-    let mut names: Vec<String> = Vec::new();
-    for (scene, measured) in scenes.iter().zip(measured) {
-        let name = name(scene, &names);
-        let folder = folder.join(&name);
-        make_folder(&folder)?;
-        write_one(&folder, measured)?;
-        names.push(name);
+    let mut folders: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
+    folders.iter().try_for_each(|folder| check_folder(folder))?;
+    if folders.is_empty() {
+        folders.push(folder.to_owned());
     }
-    write_page(folder, measured)
+    let files = folders
+        .iter()
+        .flat_map(|folder| FILES.map(|file| folder.join(file)));
+    for file in files.chain([folder.join(INDEX)]) {
+        if let Some(scene) = scenes.iter().find(|scene| is_same_file(&file, scene)) {
+            return Err(Trouble(format!(
+                "the report would write over the scene {}",
+                shown(scene)
+            )));
+        }
+    }
+    Ok(folders)
 }
 
 fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
+    make_folder(folder)?;
     let csv = folder.join("report.csv");
-    let files = [
-        (
-            "report.csv",
-            to_csv(measured).map_err(|error| cannot_write(&csv, &error))?,
-        ),
-        ("report.json", format!("{:#}\n", to_json(measured))),
-        ("error-against-time.svg", against_time(measured)),
-        ("error-against-samples.svg", against_samples(measured)),
+    let texts = [
+        to_csv(measured).map_err(|error| cannot_write(&csv, &error))?,
+        format!("{:#}\n", to_json(measured)),
+        against_time(measured),
+        against_samples(measured),
     ];
-    for (name, text) in files {
+    for (name, text) in FILES.into_iter().zip(texts) {
         write_file(&folder.join(name), &text)?;
     }
     write_page(folder, std::slice::from_ref(measured))
@@ -218,13 +245,18 @@ fn write_file(path: &Path, text: &str) -> Result<(), Trouble> {
         .map_err(|error| cannot_write(path, &error))
 }
 
-fn make_folder(folder: &Path) -> Result<(), Trouble> {
-    if folder.is_file() {
-        return Err(Trouble(format!(
+fn check_folder(folder: &Path) -> Result<(), Trouble> {
+    match folder.is_file() {
+        true => Err(Trouble(format!(
             "{} is a file, and the report is a folder of files",
             shown(folder)
-        )));
+        ))),
+        false => Ok(()),
     }
+}
+
+fn make_folder(folder: &Path) -> Result<(), Trouble> {
+    check_folder(folder)?;
     fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A case makes inputs around a singularity: tangents, horizons, shared edges, eyes on surfaces, numbers of all sizes. What is
 //! seen there is decided three times: by the [`oracle`] in hundreds of bits, by the formulas of a [`textbook`] in `f64`, and by
-//! the tracer that renders pictures, one ray at a time: many at a time, in vectors, make the same pictures to the bit, which tests compare. Decisions that differ from the oracle's are counted, distances and points measured at one
+//! the tracer that renders pictures, one ray at a time. (Rays in vectors give the same pictures to the bit, as tests see to.) Decisions that differ from the oracle's are counted, distances and points measured at one
 //! input of 16. Inputs lie at the neighbouring `f64`s on both sides of a boundary and at distances from it that are spread evenly on a
 //! logarithmic scale, or where the case says.
 //!

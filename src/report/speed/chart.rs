@@ -110,9 +110,9 @@ fn draw(chart: &Chart, name: &str) -> String {
                  @media(prefers-color-scheme:dark){.chart{color:#ddd;background:#181818}}\
                  @media print{.chart{color:#000;background:#fff}}</style>\n";
     let head = format!(">\n<title>{title}</title>\n{style}");
-    svg.replacen("<svg ", &opening, 1)
+    svg.replace("#000000", "currentColor")
+        .replacen("<svg ", &opening, 1)
         .replacen(">\n", &head, 1)
-        .replace("#000000", "currentColor")
 }
 
 /// Text as it stands in XML.

@@ -55,17 +55,17 @@ impl Measurement {
 
 impl Series {
     /// Errors are taken to fall as a power of the samples: by the line in logarithms through the two numbers of samples that were measured on either
-    /// side, or the first or last two of them. Times are taken to grow evenly with the samples.
+    /// side, or the last two of them. Times are taken to grow evenly with the samples. Where the least number is enough, it is that.
     pub fn needed(&self, error: f64) -> Option<Needed> {
         let points = &self.points;
         // From here on no error that was measured is greater.
         let enough = points.iter().rposition(|point| point.error() > error);
         let enough = enough.map_or(0, |last| last + 1);
-        let is_first = |samples: u64| points.first().is_some_and(|it| it.per_pixel == samples);
-        let (samples, is_extrapolated) = if enough == 0 && is_first(1) {
-            (1.0, false)
+        let (samples, is_extrapolated) = if enough == 0 {
+            // Fewer may be enough, too, but nobody has tried.
+            (points.first()?.per_pixel as f64, false)
         } else {
-            let pair = enough.clamp(1, points.len().saturating_sub(1).max(1));
+            let pair = enough.min(points.len().saturating_sub(1).max(1));
             let (few, many) = (points.get(pair - 1)?, points.get(pair)?);
             let falls = libm::log(few.error() / many.error());
             let samples = [few, many].map(|point| point.per_pixel as f64);
@@ -85,7 +85,7 @@ impl Series {
         })
     }
 
-    /// The time that so many samples take, by the line between the points on either side, or between the first and the last.
+    /// The time that so many samples take, no fewer than the first point's: by the line between the points on either side, or between the first and the last.
     fn time_at(&self, per_pixel: f64, time: fn(&Point) -> f64) -> f64 {
         let points = &self.points;
         let [first, .., last] = points.as_slice() else {
@@ -99,15 +99,11 @@ impl Series {
         if let Some([a, b]) = points.windows(2).find(around) {
             return along(a, slope(a, b));
         }
-        // More samples take no less time, and none take some: neither the slope nor the time of no sample is negative.
+        // More samples take no less time.
         let slope = match slope(first, last) {
             falling if falling < 0.0 => 0.0,
             slope => slope,
         };
-        if per_pixel > last.per_pixel as f64 {
-            return along(last, slope);
-        }
-        let most = time(first) / first.per_pixel as f64;
-        along(first, if slope > most { most } else { slope })
+        along(last, slope)
     }
 }

@@ -38,10 +38,7 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
         let (name, cpu) = (method.name(), time(needed, needed.cpu));
         match needed.per_pixel {
             None => format!("{name} takes {cpu}, without error"),
-            Some(_) => format!(
-                "{name} takes {cpu}, with {} samples per pixel",
-                samples(needed)
-            ),
+            Some(_) => format!("{name} takes {cpu}, with {}", per_pixel(needed)),
         }
     };
     let [first, rest @ ..] = all.as_slice() else {
@@ -64,13 +61,22 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
                 .find(|(method, _)| *method == Method::Exact);
             let others: Vec<_> = [next].into_iter().chain(exact).map(told).collect();
             format!(
-                "Use {}: it comes to an error of {wanted} in the least CPU time, {cpu}, with {} samples per pixel. For comparison, {}.",
+                "Use {}: it comes to an error of {wanted} in the least CPU time, {cpu}, with {}. For comparison, {}.",
                 method.name(),
-                samples(needed),
+                per_pixel(needed),
                 others.join("; ")
             )
         }
     }
+}
+
+fn per_pixel(needed: &Needed) -> String {
+    let one = if needed.per_pixel == Some(1.0) {
+        ""
+    } else {
+        "s"
+    };
+    format!("{} sample{one} per pixel", samples(needed))
 }
 
 /// For each method its slope, and for each error the samples, the CPU time and the wall time that it takes.

@@ -323,8 +323,15 @@ fn wrong_arguments_are_told() {
     let errors = fails(&folder, &["a.scn", "--samples", "9007199254740992"], 2);
     assert!(errors.contains("more than 2^53"), "{errors}");
     let errors = fails(&folder, &["a.scn", "bad.scn", "--samples", "1"], 1);
-    assert!(
-        errors.contains("pinhole::unknown_field") && !errors.contains("rays"),
-        "{errors}"
-    );
+    assert!(errors.contains("pinhole::unknown_field"), "{errors}");
+    // A report never writes over a scene.
+    fs::copy(
+        folder.path().join("a.scn"),
+        folder.path().join("index.html"),
+    )
+    .unwrap();
+    let kept = read(&folder, "index.html");
+    let errors = fails(&folder, &["index.html", "--samples", "1", "-o", "."], 2);
+    assert!(errors.contains("would write over the scene"), "{errors}");
+    assert_eq!(read(&folder, "index.html"), kept);
 }

@@ -81,18 +81,22 @@ fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
         false,
     );
     is(needed(&straight, 0.2), 4.0, 1.0, false);
-    // Beyond the last point and before the first, the slope of −1/2 goes on; the time goes on from the first to the last.
+    // Beyond the last point the slope of −1/2 goes on; the time goes on from the first to the last.
     is(needed(&straight, 0.05 + 1e-9), 64.0, 0.5 + 63.0 / 6.0, true);
-    // Times that fall by chance do not fall on, and no samples take no time that is negative.
+    // Times that fall by chance do not fall on.
     let falling = [(1, 1.2, 0.4), (4, 1.1, 0.2), (16, 1.0, 0.1)];
     is(needed(&falling, 0.05 + 1e-9), 64.0, 1.0, true);
-    let steep = [(64, 1.0, 0.2), (256, 5.0, 0.1)];
-    is(needed(&steep, 0.4 + 1e-9), 16.0, 0.25, true);
+    // The first number is enough, alone or not, whatever the others do.
+    is(needed(&[(64, 1.0, 0.2)], 0.4), 64.0, 1.0, false);
+    is(
+        needed(&[(4, 1.0, 0.0), (16, 5.0, 0.0)], 0.4),
+        4.0,
+        1.0,
+        false,
+    );
     let few = [(4, 1.0, 0.2), (16, 3.0, 0.1)];
-    is(needed(&few, 0.4 - 1e-9), 2.0, 1.0 - 2.0 / 6.0, true);
-    // There is no fewer than one.
+    is(needed(&few, 0.4 - 1e-9), 4.0, 1.0, false);
     is(needed(&straight, 0.9), 1.0, 0.5, false);
-    is(needed(&few, 0.9), 1.0, 1.0 - 3.0 / 6.0, true);
 }
 
 #[test]
