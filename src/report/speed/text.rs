@@ -3,8 +3,8 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets::NOTHING};
 
 use super::{
-    measurement::Measurement,
-    summary::{self, heading, notes, printable, verdict},
+    results::Measurement,
+    summary::{self, heading, notes, printable, verdicts},
 };
 
 /// Lines are no longer than this.
@@ -25,11 +25,7 @@ pub fn text(measured: &Measurement) -> String {
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
-    let verdicts = measured
-        .errors
-        .iter()
-        .map(|&error| verdict(measured, error));
-    let paragraphs = verdicts.chain(notes(measured));
+    let paragraphs = verdicts(measured).into_iter().chain(notes(measured));
     let paragraphs: Vec<_> = paragraphs.map(|it| textwrap::fill(&it, WIDTH)).collect();
     format!(
         "{}: {}\n\n{}\n\n{}\n",

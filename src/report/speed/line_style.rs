@@ -19,7 +19,7 @@ pub type Place = (i32, i32);
 
 /// How a method is drawn.
 #[derive(Clone, Copy)]
-pub struct Look {
+pub struct LineStyle {
     pub color: RGBColor,
     shape: Shape,
     /// The length of dashes and gaps in pixels; a solid line if there is none.
@@ -39,7 +39,7 @@ enum Shape {
     Plus,
 }
 
-impl Look {
+impl LineStyle {
     pub fn of(method: Method) -> Self {
         let (color, shape, dash) = match method {
             Method::Regular => ((0x77, 0x77, 0x77), Shape::Square, Some((2, 3))),
