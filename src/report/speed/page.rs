@@ -71,7 +71,7 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
 }
 
 fn section(measured: &Measurement) -> io::Result<Section> {
-    let summary = table(measured);
+    let summary = table(measured, &measured.errors);
     let overrides = measured.subject.recipe.overrides.iter();
     Ok(Section {
         name: printable(&measured.subject.name),
@@ -129,7 +129,11 @@ fn caption(measured: &Measurement) -> String {
         }
         _ => " The slope says how fast the error falls with the samples.",
     };
-    format!("What an error takes: samples per pixel, CPU time and wall time.{slope}")
+    let samples = match measured.series.is_empty() {
+        true => "",
+        false => "samples per pixel, ",
+    };
+    format!("What an error takes: {samples}CPU time and wall time.{slope}")
 }
 
 /// The exact picture and those of the methods; nothing if there are none.

@@ -56,18 +56,16 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     let names = listed(fastest.iter().map(|(method, _)| method.name()));
     let is_exact = |(method, _): &&(Method, Estimate)| *method == Method::Exact;
     let last = fastest.last().map_or(*first, |(_, last)| *last);
+    let [least, most] = [first, &last].map(|it| time(it, it.cpu));
     let why = match fastest.as_slice() {
-        [(Method::Exact, it)] => {
-            let cpu = time(it, it.cpu);
-            format!(": it makes no error and takes {cpu} of CPU time")
+        [(Method::Exact, _)] => format!("it takes {least} of CPU time and makes none"),
+        [(_, it)] => {
+            format!(
+                "it takes the least CPU time, {least}, with {}",
+                per_pixel(it)
+            )
         }
-        [(_, it)] => format!(
-            ": it comes to an error of {wanted} in the least CPU time, {}, with {}",
-            time(it, it.cpu),
-            per_pixel(it)
-        ),
         all => {
-            let [least, most] = [first, &last].map(|it| time(it, it.cpu));
             let range = match least == most {
                 true => least,
                 false => format!("{least} to {most}"),
@@ -76,9 +74,7 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
                 true => ", and exact makes none",
                 false => "",
             };
-            format!(
-                ", which are about as fast: an error of {wanted} takes {range} of CPU time{exact}"
-            )
+            format!("they are about as fast, with {range} of CPU time{exact}")
         }
     };
     let next = others.iter().find(|it| !is_exact(it));
@@ -91,7 +87,7 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
         true => String::new(),
         false => format!(" For comparison, {}.", compared.join("; ")),
     };
-    format!("{basis} {names}{why}.{compared}")
+    format!("{basis} {names} for an error of {wanted}: {why}.{compared}")
 }
 
 /// What a method takes.
@@ -126,10 +122,10 @@ pub fn listed<'a>(words: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// For each method its slope, and for each error the samples, the CPU time and the wall time that it takes.
-pub fn table(measured: &Measurement) -> Table {
+/// For each method its slope, and for each of some errors the samples, the CPU time and the wall time that it takes.
+pub fn table(measured: &Measurement, errors: &[f64]) -> Table {
     let mut heads = vec!["method".to_owned(), "slope of\nthe error".to_owned()];
-    for wanted in measured.errors.iter().map(|&wanted| asked_error(wanted)) {
+    for wanted in errors.iter().copied().map(asked_error) {
         let columns = ["samples", "CPU time", "wall time"];
         heads.extend(columns.map(|what| format!("{what}\nfor {wanted}")));
     }
@@ -143,15 +139,14 @@ pub fn table(measured: &Measurement) -> Table {
             .chain(cells)
             .collect()
     };
-    let errors = || measured.errors.iter();
     let mut rows: Vec<_> = (measured.series.iter())
         .map(|series| {
-            let estimates = errors().map(|&error| measured.estimate(series, error));
+            let estimates = errors.iter().map(|&error| measured.estimate(series, error));
             row(series.method, slope(series.fit()), estimates.collect())
         })
         .collect();
     if measured.exact.is_some() {
-        let estimates = errors().map(|&error| measured.exact_estimate(error));
+        let estimates = errors.iter().map(|&error| measured.exact_estimate(error));
         rows.push(row(Method::Exact, String::new(), estimates.collect()));
     }
     Table { heads, rows }

@@ -251,7 +251,7 @@ fn an_answer_is_as_sure_as_what_it_rests_on() {
     let apart: [(Method, &[f64]); 2] = [(sobol, &[1.0, 1.1, 1.2]), (halton, &[1.3, 1.4, 1.5])];
     assert_eq!(
         said(&apart, None, 0.1),
-        "Use sobol: it comes to an error of 0.1 in the least CPU time, 1.10 s, with 16 samples per pixel. \
+        "Use sobol for an error of 0.1: it takes the least CPU time, 1.10 s, with 16 samples per pixel. \
          For comparison, halton takes 1.40 s, with 16 samples per pixel."
     );
     let close: [(Method, &[f64]); 3] = [
@@ -261,18 +261,23 @@ fn an_answer_is_as_sure_as_what_it_rests_on() {
     ];
     assert_eq!(
         said(&close, Some(&[1.05, 1.15, 9.0]), 0.1),
-        "Use sobol, halton or exact, which are about as fast: an error of 0.1 takes 1.10 s to 1.15 s of CPU time, \
+        "Use sobol, halton or exact for an error of 0.1: they are about as fast, with 1.10 s to 1.15 s of CPU time, \
          and exact makes none. For comparison, random takes 4.10 s, with 16 samples per pixel."
     );
     let one: [(Method, &[f64]); 2] = [(sobol, &[1.0]), (halton, &[1.3])];
-    assert!(said(&one, None, 0.1).starts_with("By one run alone, use sobol: it comes"));
+    assert!(
+        said(&one, None, 0.1).starts_with("By one run alone, use sobol for an error of 0.1: it")
+    );
     // What is extrapolated decides only where there is nothing else.
     assert_eq!(
         said(&apart, Some(&[9.0, 9.1, 9.2]), 0.051),
-        "Use exact: it makes no error and takes 9.10 s of CPU time. \
+        "Use exact for an error of 0.051: it takes 9.10 s of CPU time and makes none. \
          For comparison, sobol would take ~4.3 s, with ~62 samples per pixel."
     );
-    assert!(said(&apart, None, 0.051).starts_with("By extrapolation, use sobol: it comes"));
+    assert!(
+        said(&apart, None, 0.051)
+            .starts_with("By extrapolation, use sobol for an error of 0.051: it")
+    );
     assert_eq!(
         said(&apart[..1], None, 0.051),
         "One method is known to come to an error of 0.051: sobol would take ~4.3 s, with ~62 samples per pixel."
