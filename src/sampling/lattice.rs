@@ -114,8 +114,7 @@ impl Strata {
     /// An offset chosen in one stratum by random bits.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
-        let stratum = self.get(i);
-        offset(stratum.start() + scale(bits, self.least + stratum.more()))
+        self.get(i).choose(self.least, bits)
     }
 }
 
