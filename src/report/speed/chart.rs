@@ -51,7 +51,7 @@ struct Chart {
 }
 
 struct Line {
-    look: LineStyle,
+    style: LineStyle,
     label: &'static str,
     points: Vec<(f64, f64)>,
 }
@@ -100,7 +100,7 @@ fn lines(measured: &Measurement, x: fn(&Point) -> f64) -> Vec<Line> {
     let line = measured.series.iter().map(|series| {
         let points = series.points.iter().map(|point| (x(point), point.error()));
         Line {
-            look: LineStyle::of(series.method),
+            style: LineStyle::of(series.method),
             label: series.method.name(),
             // What has no logarithm has no place.
             points: points.filter(|&(x, y)| x > 0.0 && y > 0.0).collect(),
@@ -183,14 +183,14 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
     let heights = spread_out(&ends, &rows);
     let labels = ends.iter().zip(heights);
     for ((line, places), (end, height)) in chart.lines.iter().zip(&lines).zip(labels) {
-        line.look.line(&area, places)?;
+        line.style.line(&area, places)?;
         let marker = (columns.end + 20, height);
         for &place in places.iter().chain([&marker]) {
-            line.look.marker(&area, place)?;
+            line.style.marker(&area, place)?;
         }
         let start = (end.0 + 7, end.1);
         let leader = vec![start, (columns.end + 5, height), (marker.0 - 8, height)];
-        area.draw(&PathElement::new(leader, line.look.color.mix(0.45)))?;
+        area.draw(&PathElement::new(leader, line.style.color.mix(0.45)))?;
         write(&area, line.label.to_owned(), (marker.0 + 10, height))?;
     }
     area.present()

@@ -85,7 +85,6 @@ pub fn to_json(measured: &Measurement) -> Value {
         "complete": !measured.interrupted,
         "runs": measured.runs(),
         "per_pixel": measured.rungs,
-        "seconds": measured.seconds,
         "reference": {
             "method": "exact",
             "bound": reference.bound(),

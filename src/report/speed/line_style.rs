@@ -1,11 +1,10 @@
-//! How a method is drawn: a colour, a shape and a dash, each of which tells it from the others nearby on its own.
+//! How a method is drawn: a colour, a marker and a dash, each of which tells it from the others nearby on its own.
 
 use plotters::{
     coord::Shift,
     element::DashedPathElement,
     prelude::{
-        Circle, Color, DrawingArea, DrawingAreaErrorKind, DrawingBackend, PathElement, Polygon,
-        RGBColor, ShapeStyle,
+        Color, DrawingArea, DrawingAreaErrorKind, DrawingBackend, PathElement, Polygon, RGBColor,
     },
 };
 
@@ -21,43 +20,44 @@ pub type Place = (i32, i32);
 #[derive(Clone, Copy)]
 pub struct LineStyle {
     pub color: RGBColor,
-    shape: Shape,
+    marker: Marker,
     /// The length of dashes and gaps in pixels; a solid line if there is none.
     dash: Option<(u32, u32)>,
 }
 
+/// A shape about a place by its corners: one that is filled, or lines.
 #[derive(Clone, Copy)]
-enum Shape {
-    Disc,
-    Ring,
-    Square,
-    Box,
-    Up,
-    Down,
-    Diamond,
-    Cross,
-    Plus,
+enum Marker {
+    Filled(&'static [Place]),
+    Lines(&'static [&'static [Place]]),
 }
 
+const SQUARE: &[Place] = &[(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -5)];
+const UP: &[Place] = &[(-5, 4), (5, 4), (0, -5)];
+const DOWN: &[Place] = &[(-5, -4), (5, -4), (0, 5)];
+const DIAMOND: &[Place] = &[(-5, 0), (0, -5), (5, 0), (0, 5)];
+const CROSS: &[&[Place]] = &[&[(-4, -4), (4, 4)], &[(-4, 4), (4, -4)]];
+const PLUS: &[&[Place]] = &[&[(-5, 0), (5, 0)], &[(0, -5), (0, 5)]];
+#[rustfmt::skip]
+const DISC: &[Place] = &[(5, 0), (4, 3), (3, 4), (0, 5), (-3, 4), (-4, 3), (-5, 0), (-4, -3), (-3, -4), (0, -5), (3, -4), (4, -3), (5, 0)];
+
 impl LineStyle {
+    #[rustfmt::skip]
     pub fn of(method: Method) -> Self {
-        let (color, shape, dash) = match method {
-            Method::Regular => ((0x77, 0x77, 0x77), Shape::Square, Some((2, 3))),
-            Method::Random => ((0xcc, 0x33, 0x11), Shape::Cross, None),
-            Method::Jittered => ((0x1f, 0x78, 0xb4), Shape::Ring, None),
-            Method::NRooks => ((0xa6, 0x76, 0x1d), Shape::Plus, Some((8, 4))),
-            Method::MultiJittered => ((0x00, 0x8f, 0x7a), Shape::Disc, None),
-            Method::Hammersley => ((0xd0, 0x2f, 0x84), Shape::Up, Some((8, 4))),
-            Method::Halton => ((0x75, 0x57, 0xc4), Shape::Down, Some((2, 3))),
-            Method::Sobol => ((0x2b, 0x8a, 0x2b), Shape::Diamond, Some((14, 4))),
-            Method::Scatter | Method::Exact => ((0xe0, 0x7b, 0x00), Shape::Box, Some((5, 2))),
+        let (color, marker, dash) = match method {
+            Method::Regular => (0x77_77_77, Marker::Filled(SQUARE), Some((2, 3))),
+            Method::Random => (0xcc_33_11, Marker::Lines(CROSS), None),
+            Method::Jittered => (0x1f_78_b4, Marker::Lines(&[DISC]), None),
+            Method::NRooks => (0xa6_76_1d, Marker::Lines(PLUS), Some((8, 4))),
+            Method::MultiJittered => (0x00_8f_7a, Marker::Filled(DISC), None),
+            Method::Hammersley => (0xd0_2f_84, Marker::Filled(UP), Some((8, 4))),
+            Method::Halton => (0x75_57_c4, Marker::Filled(DOWN), Some((2, 3))),
+            Method::Sobol => (0x2b_8a_2b, Marker::Filled(DIAMOND), Some((14, 4))),
+            Method::Scatter | Method::Exact => (0xe0_7b_00, Marker::Lines(&[SQUARE]), Some((5, 2))),
         };
-        let (r, g, b) = color;
-        Self {
-            color: RGBColor(r, g, b),
-            shape,
-            dash,
-        }
+        let [_, r, g, b] = u32::to_be_bytes(color);
+        let color = RGBColor(r, g, b);
+        Self { color, marker, dash }
     }
 
     /// Draws a line through these places.
@@ -66,15 +66,10 @@ impl LineStyle {
         area: &DrawingArea<DB, Shift>,
         places: &[Place],
     ) -> Drawn<DB> {
-        let style = self.color.stroke_width(2);
+        let (places, style) = (places.to_vec(), self.color.stroke_width(2));
         match self.dash {
-            None => area.draw(&PathElement::new(places.to_vec(), style)),
-            Some((dash, gap)) => area.draw(&DashedPathElement::new(
-                places.iter().copied(),
-                dash,
-                gap,
-                style,
-            )),
+            None => area.draw(&PathElement::new(places, style)),
+            Some((dash, gap)) => area.draw(&DashedPathElement::new(places, dash, gap, style)),
         }
     }
 
@@ -84,36 +79,15 @@ impl LineStyle {
         area: &DrawingArea<DB, Shift>,
         (x, y): Place,
     ) -> Drawn<DB> {
-        let (filled, open): (ShapeStyle, ShapeStyle) =
-            (self.color.filled(), self.color.stroke_width(2));
         let at = |corners: &[Place]| -> Vec<Place> {
             corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect()
         };
-        match self.shape {
-            Shape::Disc => area.draw(&Circle::new((x, y), 4, filled)),
-            Shape::Ring => area.draw(&Circle::new((x, y), 4, open)),
-            Shape::Square => area.draw(&Polygon::new(
-                at(&[(-4, -4), (4, -4), (4, 4), (-4, 4)]),
-                filled,
-            )),
-            Shape::Box => area.draw(&PathElement::new(
-                at(&[(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -5)]),
-                open,
-            )),
-            Shape::Up => area.draw(&Polygon::new(at(&[(-5, 4), (5, 4), (0, -5)]), filled)),
-            Shape::Down => area.draw(&Polygon::new(at(&[(-5, -4), (5, -4), (0, 5)]), filled)),
-            Shape::Diamond => area.draw(&Polygon::new(
-                at(&[(-5, 0), (0, -5), (5, 0), (0, 5)]),
-                filled,
-            )),
-            Shape::Cross => {
-                area.draw(&PathElement::new(at(&[(-4, -4), (4, 4)]), open))?;
-                area.draw(&PathElement::new(at(&[(-4, 4), (4, -4)]), open))
-            }
-            Shape::Plus => {
-                area.draw(&PathElement::new(at(&[(-5, 0), (5, 0)]), open))?;
-                area.draw(&PathElement::new(at(&[(0, -5), (0, 5)]), open))
-            }
+        match self.marker {
+            Marker::Filled(corners) => area.draw(&Polygon::new(at(corners), self.color.filled())),
+            Marker::Lines(lines) => lines.iter().try_for_each(|line| {
+                let style = self.color.stroke_width(2);
+                area.draw(&PathElement::new(at(line), style))
+            }),
         }
     }
 }

@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use super::{
     chart::{against_samples, against_time, shown_errors},
-    notation::{asked_error, error, plural, seconds},
+    notation::{error, plural, seconds},
     picture::{self, uri},
     results::{Measurement, Shown},
-    summary::{heading, listed, notes, printable, table, verdicts},
+    summary::{heading, notes, printable, table, verdicts},
 };
 
 /// What the template fills in for a scene.
@@ -22,30 +22,22 @@ struct Section {
     heading: String,
     overrides: Vec<String>,
     verdicts: Vec<String>,
-    charts: Vec<Chart>,
-    /// What the table shows.
-    caption: String,
+    /// SVG, not to be escaped; none without a sampled method.
+    charts: Vec<String>,
+    /// Whether the charts show errors that are asked for.
+    has_dashed_lines: bool,
+    /// Whether exact is among the methods.
+    has_exact: bool,
+    has_slopes: bool,
+    has_slope_errors: bool,
     heads: Vec<String>,
     rows: Vec<Vec<String>>,
     notes: Vec<String>,
-    parts: Option<Parts>,
-    whole: Picture,
-}
-
-#[derive(Serialize)]
-struct Chart {
-    /// Not to be escaped.
-    svg: String,
-    caption: String,
-}
-
-/// A part of the picture by every method.
-#[derive(Serialize)]
-struct Parts {
-    title: String,
-    /// Where it lies.
-    place: String,
+    /// Which part of the picture is shown of every method.
+    part: String,
+    /// The exact one first; none without another.
     pictures: Vec<Picture>,
+    whole: Picture,
 }
 
 #[derive(Serialize)]
@@ -73,6 +65,8 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
 fn section(measured: &Measurement) -> io::Result<Section> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.recipe.overrides.iter();
+    let fits = || measured.series.iter().filter_map(|series| series.fit());
+    let (part, pictures) = pictures(measured)?;
     Ok(Section {
         name: printable(&measured.subject.name),
         heading: heading(measured),
@@ -80,80 +74,39 @@ fn section(measured: &Measurement) -> io::Result<Section> {
         verdicts: verdicts(measured),
         charts: match measured.series.is_empty() {
             true => Vec::new(),
-            false => charts(measured),
+            false => vec![against_time(measured), against_samples(measured)],
         },
-        caption: caption(measured),
+        has_dashed_lines: !shown_errors(measured).is_empty(),
+        has_exact: measured.exact.is_some(),
+        has_slopes: fits().next().is_some(),
+        has_slope_errors: fits().any(|fit| fit.slope_error.is_some()),
         heads: summary.heads,
         rows: summary.rows,
         notes: notes(measured),
-        parts: parts(measured)?,
+        part,
+        pictures,
         whole: whole(measured)?,
     })
 }
 
-fn charts(measured: &Measurement) -> Vec<Chart> {
-    let errors = shown_errors(measured).into_iter().map(asked_error);
-    let errors: Vec<_> = errors.collect();
-    let dashed = match errors.as_slice() {
-        [] => String::new(),
-        [error] => format!(
-            " The dashed line is an error of {error}: a method reaches it where its line crosses."
-        ),
-        errors => format!(
-            " Each dashed line is an error, {}: a method reaches it where its line crosses.",
-            listed(errors.iter().map(String::as_str))
-        ),
-    };
-    let exact = match measured.exact {
-        Some(_) => " Exact makes no error: the vertical line is its time.",
-        None => "",
-    };
-    vec![
-        Chart {
-            svg: against_time(measured),
-            caption: format!("Lower and further to the left is better.{dashed}{exact}"),
-        },
-        Chart {
-            svg: against_samples(measured),
-            caption: "How well a method uses its samples: the steeper its line falls, the better. Independent random samples have a slope of −0.5.".to_owned(),
-        },
-    ]
-}
-
-fn caption(measured: &Measurement) -> String {
-    let mut fits = measured.series.iter().filter_map(|series| series.fit());
-    let slope = match fits.clone().count() {
-        0 => "",
-        _ if fits.any(|fit| fit.slope_error.is_some()) => {
-            " The slope, ± its standard error, says how fast the error falls with the samples."
-        }
-        _ => " The slope says how fast the error falls with the samples.",
-    };
-    let samples = match measured.series.is_empty() {
-        true => "",
-        false => "samples per pixel, ",
-    };
-    format!("What an error takes: {samples}CPU time and wall time.{slope}")
-}
-
-/// The exact picture and those of the methods; nothing if there are none.
-fn parts(measured: &Measurement) -> io::Result<Option<Parts>> {
+/// A part of the picture in words, and as the exact method and the others make it; nothing without the others.
+fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Picture>)> {
     let shown = measured.series.iter();
     let shown = shown.filter_map(|series| Some((series.method, series.picture.as_ref()?)));
     let shown: Vec<_> = shown.collect();
-    let Some(&(first, Shown { part, .. })) = shown.first() else {
-        return Ok(None);
+    let Some(&(first, &Shown { part, .. })) = shown.first() else {
+        return Ok(Default::default());
     };
-    let exact_time = match &measured.exact {
-        Some(times) => format!(", {}", seconds(times.cpu(), 2)),
-        None => String::new(),
-    };
+    let exact = picture::cropped(&measured.reference.film, part).map_err(io::Error::other)?;
     let mut pictures = vec![Picture {
-        uri: uri(&picture::cropped(&measured.reference.film, *part).map_err(io::Error::other)?)?,
+        uri: uri(&exact)?,
         name: "exact",
-        about: format!("no error{exact_time}"),
+        about: match &measured.exact {
+            Some(times) => format!("no error, {}", seconds(times.cpu(), 2)),
+            None => "no error".to_owned(),
+        },
     }];
-    for (method, shown) in &shown {
+    for (method, shown) in shown {
         pictures.push(Picture {
             uri: uri(&shown.film)?,
             name: method.name(),
@@ -165,48 +118,26 @@ fn parts(measured: &Measurement) -> io::Result<Option<Parts>> {
             ),
         });
     }
-    let place = format!(
-        "A part of {} × {} pixels, {} from the left and {} from the top, where {} errs most.",
+    let part = format!(
+        "{} × {} pixels, {} from the left and {} from the top, where {} errs most",
         part.width,
         part.height,
         part.x,
         part.y,
         first.name()
     );
-    Ok(Some(match shown.as_slice() {
-        [(method, shown)] => Parts {
-            title: format!(
-                "What {} makes of {} per pixel",
-                method.name(),
-                plural(shown.per_pixel as usize, "sample")
-            ),
-            place,
-            pictures,
-        },
-        _ => Parts {
-            title: "What each method makes of the same CPU time".to_owned(),
-            place: match measured.exact {
-                Some(_) => format!("{place} Exact takes a time of its own."),
-                None => place,
-            },
-            pictures,
-        },
-    }))
+    Ok((part, pictures))
 }
 
 fn whole(measured: &Measurement) -> io::Result<Picture> {
     let film = picture::reduced(&measured.reference.film).map_err(io::Error::other)?;
-    let is_whole = film.width() == measured.whole().width;
+    let (width, height) = (film.width(), film.height());
     Ok(Picture {
         uri: uri(&film)?,
         name: "the exact picture as a whole",
-        about: match is_whole {
-            true => "The whole picture.".to_owned(),
-            false => format!(
-                "The whole picture, reduced to {} × {} pixels.",
-                film.width(),
-                film.height()
-            ),
+        about: match width == measured.whole().width {
+            true => "the whole picture".to_owned(),
+            false => format!("the whole picture, reduced to {width} × {height} pixels"),
         },
     })
 }

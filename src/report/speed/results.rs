@@ -60,8 +60,6 @@ pub struct Measurement {
     pub series: Vec<Series>,
     /// Whether the user ended it.
     pub interrupted: bool,
-    /// How long it took in all, in seconds.
-    pub seconds: f64,
 }
 
 /// What was measured of a sampled method.

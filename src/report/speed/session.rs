@@ -72,7 +72,6 @@ pub fn measure(
         series: series.collect(),
         reference,
         interrupted: false,
-        seconds: 0.0,
     };
     let mut session = Session {
         scene,
@@ -90,7 +89,6 @@ pub fn measure(
     let mut measured = session.measured;
     measured.series.retain(|series| !series.points.is_empty());
     measured.exact = measured.exact.filter(|exact| !exact.wall.is_empty());
-    measured.seconds = started.elapsed().as_secs_f64();
     Ok(measured)
 }
 

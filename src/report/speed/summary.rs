@@ -114,7 +114,7 @@ fn per_pixel(estimate: &Estimate) -> String {
 }
 
 /// Words with commas, and an `or` before the last.
-pub fn listed<'a>(words: impl Iterator<Item = &'a str>) -> String {
+fn listed<'a>(words: impl Iterator<Item = &'a str>) -> String {
     let words: Vec<_> = words.collect();
     match words.as_slice() {
         [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),

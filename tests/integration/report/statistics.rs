@@ -238,7 +238,6 @@ fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement 
         exact: exact.map(|runs| times(runs, 1.0)),
         series: series.collect(),
         interrupted: false,
-        seconds: 0.0,
     }
 }
 
