@@ -100,7 +100,7 @@ pub enum Unreadable {
         cause: String,
     },
     /// To unpack it takes too much memory, besides what the picture itself takes.
-    #[error("it is packed in such a way that reading it takes more than 512 MiB of memory")]
+    #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
     /// It is larger than pictures that are read.
     #[error("it has {0} × {1} pixels, and pictures of more than 67108864 are not read")]

@@ -16,30 +16,23 @@ const PART: (u32, u32) = (240, 135);
 const WHOLE: (u32, u32) = (640, 480);
 
 /// The part of a picture where it is most wrong, in steps of half its size.
-pub fn part(film: &Film, reference: &Film) -> Area {
+pub fn part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
     let places = |length: u32, size: u32| {
         let last = length - size;
         (0..last).step_by((size / 2).max(1) as usize).chain([last])
     };
-    let squares = |part: &Area| -> f64 {
-        let pixels = part
-            .iter()
-            .map(|(x, y)| [film, reference].map(|film| film.pixel(x, y)));
-        pixels
-            .map(|[a, b]| (0..3).map(|c| (a[c] - b[c]) * (a[c] - b[c])).sum::<f64>())
-            .sum()
-    };
-    let rows = places(film.height(), height);
-    let corners = rows.flat_map(|y| places(film.width(), width).map(move |x| (x, y)));
-    let parts = corners.map(|(x, y)| Area {
-        x,
-        y,
-        width,
-        height,
-    });
-    let worst = parts.max_by(|a, b| squares(a).total_cmp(&squares(b)));
-    worst.unwrap_or(Area::whole(width, height))
+    let (mut worst, mut most) = (Area::whole(width, height), 0.0);
+    for y in places(film.height(), height) {
+        for x in places(film.width(), width) {
+            let part = Area { x, y, ..worst };
+            let error = film::rmse(&cropped(film, part)?, &cropped(reference, part)?);
+            if error > most {
+                (worst, most) = (part, error);
+            }
+        }
+    }
+    Ok(worst)
 }
 
 /// A part of a picture as a picture.

@@ -231,13 +231,17 @@ impl Session<'_> {
             let (film, [cpu, _]) =
                 timed(|| sampled(self.scene, series.method, samples, self.control))?;
             let reference = &measured.reference.film;
-            let part = *part.get_or_insert_with(|| picture::part(&film, reference));
+            let here = match part {
+                Some(part) => part,
+                None => picture::part(&film, reference)?,
+            };
+            part = Some(here);
             series.picture = Some(Shown {
                 per_pixel,
                 cpu,
                 rmse: film::rmse(&film, reference),
-                part,
-                film: picture::cropped(&film, part)?,
+                part: here,
+                film: picture::cropped(&film, here)?,
             });
         }
         Ok(())

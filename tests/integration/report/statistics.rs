@@ -1,13 +1,13 @@
 //! Numbers about numbers: medians, slopes, what an error takes, and what is said of that.
 
-use std::{num::NonZero, sync::atomic::AtomicBool};
+use std::{cell::RefCell, num::NonZero, sync::atomic::AtomicBool, time::Duration};
 
 use pinhole::{
     area::Area,
     film::Recipe,
     render::{Control, render_exact},
     report::speed::{
-        Estimate, Machine, Measurement, Point, Series, Subject, Times,
+        Estimate, Machine, Measurement, Point, Request, Series, Subject, Times, measure,
         statistics::{PowerLaw, median, root_mean_square},
         verdict,
     },
@@ -194,6 +194,42 @@ fn multi_jittered_takes_as_many_samples_as_make_a_grid() {
     is(grids.estimate(1.0 / 32.0), 1024.0, 1024.0, false);
 }
 
+fn subject() -> Subject {
+    Subject {
+        name: "a.scn".to_owned(),
+        recipe: Recipe {
+            scene: String::new(),
+            overrides: Vec::new(),
+            crop: None,
+        },
+    }
+}
+
+#[test]
+fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
+    let request = Request {
+        methods: vec![Method::Sobol],
+        samples: vec![4, 1, 4],
+        runs: Some(2),
+        errors: vec![0.1],
+        budget: Duration::from_secs(1),
+    };
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let told = RefCell::new(Vec::new());
+    let tell = |share| told.borrow_mut().push(share);
+    let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
+    assert_eq!(measured.rungs, [1, 4]);
+    assert!(measured.exact.is_none());
+    // The first run goes up, the second in an order of its own.
+    let told = told.into_inner();
+    assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
+    assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");
+}
+
 /// Methods with the CPU times of some runs, each with 4 and 16 samples, which come to errors of 0.2 and 0.1.
 fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement {
     let world = World::new(&read(SCENE));
@@ -221,14 +257,7 @@ fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement 
         picture: None,
     });
     Measurement {
-        subject: Subject {
-            name: "a.scn".to_owned(),
-            recipe: Recipe {
-                scene: String::new(),
-                overrides: Vec::new(),
-                crop: None,
-            },
-        },
+        subject: subject(),
         machine: Machine::here(),
         threads: 1,
         seed: 0,
