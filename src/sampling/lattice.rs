@@ -114,7 +114,8 @@ impl Strata {
     /// An offset chosen in one stratum by random bits.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
-        self.get(i).choose(self.least, bits)
+        let stratum = self.get(i);
+        offset(stratum.start() + scale(bits, self.least + stratum.more()))
     }
 }
 

@@ -43,10 +43,6 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     let Some((_, first)) = fastest.first() else {
         return format!("No method is known to come to an error of {wanted}.");
     };
-    if let ([only], []) = (fastest.as_slice(), others.as_slice()) {
-        let only = cost(only);
-        return format!("One method is known to come to an error of {wanted}: {only}.");
-    }
     let basis = match (first.is_extrapolated, measured.runs()) {
         (false, 1) => "By one run alone, use",
         (false, _) => "Use",
@@ -55,6 +51,12 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     };
     let names = listed(fastest.iter().map(|(method, _)| method.name()));
     let is_exact = |(method, _): &&(Method, Estimate)| *method == Method::Exact;
+    if let ([only], []) = (fastest.as_slice(), others.as_slice()) {
+        let cost = cost(only);
+        return format!(
+            "{basis} {names} for an error of {wanted}, the only method that is known to come to it: {cost}."
+        );
+    }
     let last = fastest.last().map_or(*first, |(_, last)| *last);
     let [least, most] = [first, &last].map(|it| time(it, it.cpu));
     let why = match fastest.as_slice() {

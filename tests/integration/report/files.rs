@@ -158,6 +158,11 @@ fn a_large_picture_is_shown_whole_and_small() {
     assert_eq!((picture.width(), picture.height()), (434, 234));
     assert!(page.contains("reduced to 434 × 234 pixels"));
     assert!(page.len() < 500_000, "{}", page.len());
+    // Nothing is said of what was not measured.
+    assert!(page.contains("What sobol makes of the picture"));
+    for absent in ["Exact makes no error", "Exact takes", "±", "same CPU time"] {
+        assert!(!page.contains(absent), "{absent}");
+    }
 }
 
 #[test]

@@ -305,7 +305,11 @@ fn exact_alone_has_a_time_and_no_samples() {
     let json: Value = serde_json::from_str(&read(&folder, "out/report.json")).unwrap();
     assert_eq!(json["per_pixel"], serde_json::json!([]));
     assert_eq!(json["exact"]["runs"]["time"].as_array().unwrap().len(), 2);
-    parsed(&read(&folder, "out/index.html"));
+    let page = read(&folder, "out/index.html");
+    parsed(&page);
+    for absent in ["<svg", "dashed line", "samples per pixel", "The slope"] {
+        assert!(!page.contains(absent), "{absent}");
+    }
     parsed(&read(&folder, "out/error-against-samples.svg"));
 }
 

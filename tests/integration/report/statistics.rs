@@ -308,7 +308,8 @@ fn an_answer_is_as_sure_as_what_it_rests_on() {
     );
     assert_eq!(
         said(&apart[..1], None, 0.051),
-        "One method is known to come to an error of 0.051: sobol would take ~4.3 s, with ~62 samples per pixel."
+        "By extrapolation, use sobol for an error of 0.051, the only method that is known to come to it: \
+         sobol would take ~4.3 s, with ~62 samples per pixel."
     );
     assert_eq!(
         said(&apart, None, 1e-17),
