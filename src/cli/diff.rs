@@ -101,12 +101,13 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         Format::Json => output::to_programs(format!("{}\n", report.json()).as_bytes())?,
     }
     if let Some(path) = &args.output {
-        match film::heat_map(&a.film, other.film(), tolerance) {
-            Ok(map) => write_heat_map(path, &map, legend(is_equal), cancel)?,
-            Err(film::HeatError::Sizes(_)) => {
-                output::warning(&"pictures of different sizes have no heat map");
+        match report.comparison {
+            Err(_) => output::warning(&"pictures of different sizes have no heat map"),
+            Ok(_) => {
+                let map = film::heat_map(&a.film, other.film(), tolerance)
+                    .map_err(|error| Trouble(error.to_string()))?;
+                write_heat_map(path, &map, legend(is_equal), cancel)?;
             }
-            Err(error) => return Err(Trouble(error.to_string())),
         }
     }
     Ok(match is_equal {

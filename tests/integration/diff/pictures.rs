@@ -402,7 +402,7 @@ fn files_that_are_no_pictures_are_trouble() {
     for (arguments, words) in [
         (
             ["a.jpg", "a.png"],
-            "it begins as a JPEG file does, but is damaged",
+            "it begins as JPEG files do, but is damaged",
         ),
         (["a.png", "a.hdr"], "but seems to be HDR"),
         (["text.png", "a.png"], "it is no picture in PNG, OpenEXR"),
