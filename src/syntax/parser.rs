@@ -175,16 +175,12 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            end = item.span().end;
-            if let (Item::Block(block), Some(Item::Definition(before))) =
-                (&item, recovery.items.last())
-                && before.span.start >= recovery.read_to
-                && self.is_rest_of_value(block, before)
+            if let (Item::Block(block), Some(Item::Definition(_))) = (&item, recovery.items.last())
+                && self.is_rest_of_value(block, end)
             {
-                let start = before.span.start;
-                recovery.items.pop();
-                return (recovery.item(start), false);
+                return (end, true);
             }
+            end = item.span().end;
             if self.doubtful || self.has_dashes(item.span()) {
                 match recovery.item_as_meant(start) {
                     Some(read_to) if read_to == end => continue,
@@ -198,14 +194,14 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     }
 
     /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
-    fn is_rest_of_value(&self, block: &Block<'_>, before: &Definition<'_>) -> bool {
+    fn is_rest_of_value(&self, block: &Block<'_>, end: usize) -> bool {
         let (Some(kind), Some(name)) = (block.kind, block.name) else {
             return false;
         };
         let breaks = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
         !self.words.is_kind(kind.text)
             && self.words.is_kind(name.text)
-            && !breaks(before.span.end, kind.span.start)
+            && !breaks(end, kind.span.start)
             && breaks(kind.span.end, name.span.start)
     }
 

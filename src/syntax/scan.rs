@@ -101,20 +101,6 @@ impl Scan {
     pub fn report(self, source: &Source, id: SourceId, parsed: &mut Parsed<'_>) {
         let text = source.text();
         self.report_odd_spaces(text, id, &mut parsed.problems);
-        let lone = self.comments.iter().find_map(|comment| {
-            let written = text.get(comment.clone())?;
-            let line = written
-                .starts_with("//")
-                .then(|| written.trim_end_matches('\r'))?;
-            Some((comment.start, comment.start + line.find('\r')?, comment.end))
-        });
-        // Where lines end at carriage returns alone, a comment of one line takes all that follows.
-        if let Some((start, at, end)) = lone {
-            parsed.problems.push(lone_return(source, id, at));
-            if end == text.len() {
-                parsed.cut = parsed.cut.or(Some(start));
-            }
-        }
         if let Some(start) = self.open_comment {
             // What the comment took is no second mistake.
             parsed.problems.retain(|problem| {
@@ -170,16 +156,6 @@ fn name_of_space(text: &str) -> String {
     format!("U+{:04X}, {name},", u32::from(character))
 }
 
-/// A carriage return within a comment of one line; the fix ends all lines that end so.
-fn lone_return(source: &Source, id: SourceId, at: usize) -> Diagnostic {
-    let text = source.text();
-    let returns = text.match_indices('\r');
-    let lone = returns.filter(|(at, _)| text.as_bytes().get(at + 1) != Some(&b'\n'));
-    let edits = lone.map(|(at, _)| Edit::new(Span::new(id, at, at + 1), source.line_end()));
-    let fix = Fix::new("end these lines as text files do", edits);
-    say::LONE_RETURN.at(Span::new(id, at, at + 1), &[], fix)
-}
-
 /// A comment of one line is meant, as a rule, if what it took from the next line on starts as an item does. It ends with its
 /// line, before what closes something that was opened before it.
 fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
@@ -199,11 +175,5 @@ fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
         false => line,
     };
     let edit = Edit::insert(id, start + inner.len(), " */");
-    let fix = Fix::new("close it in its line", [edit]);
-    let mut found = say::UNCLOSED_COMMENT.at(span, &[], fix);
-    if inner == line {
-        let fix = Fix::new("begin it with `//`", [Edit::new(span, "//")]);
-        found.fixes.push(fix);
-    }
-    found
+    say::UNCLOSED_COMMENT.at(span, &[], Fix::new("close it in its line", [edit]))
 }

@@ -121,7 +121,6 @@ impl<'s> Recovery<'_, 's> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
         let takes = self.within.takes;
-        let tight = written.replace('_', "");
         let (label, right, place) = if self.words.is_factor(unit) {
             let takes_number = matches!(takes, None | Some(Type::Number));
             let product = takes_number.then(|| format!("{digits} * {unit}"));
@@ -131,8 +130,6 @@ impl<'s> Recovery<'_, 's> {
             (label, Some(format!("#{hex}")), span)
         } else if let Some(sizes) = self.sizes(written) {
             ("`x` is no operator", Some(sizes), span)
-        } else if numeric_part(&tight) == tight {
-            ("a `_` stands between two digits only", Some(tight), span)
         } else {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)

@@ -197,9 +197,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     fn unknown_operator(&mut self, written: &str, span: Span, fix: Option<Fix>) {
-        let help = match (written, self.within.takes) {
-            ("%", Some(Type::Color)) => "write a part of a colour as a number from 0 to 255",
-            ("%", _) => "write the number itself, such as `0.5`",
+        let help = match written {
+            "%" => "write the number itself, such as `0.5`",
             _ => "write a product, such as `a * a`, or `sqrt(a)`",
         };
         self.report(&say::UNKNOWN_OPERATOR, span, &[written, help], fix);
