@@ -19,8 +19,8 @@
 mod grammar;
 #[rustfmt::skip]
 mod messages;
-mod parallel;
 mod parser;
+mod parts;
 mod problem;
 mod recovery;
 mod scan;
@@ -29,8 +29,8 @@ pub mod tree;
 mod vocabulary;
 
 pub use messages::{invalid_utf8, utf16};
-pub use parallel::parse_in_parts;
 pub use parser::{parse, parse_unless, parse_value};
+pub use parts::parse_in_parts;
 pub use problem::shorten;
 pub use tree::Tree;
 

@@ -33,7 +33,7 @@ use crate::{
 };
 
 /// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
-pub const STACK: usize = 64 << 20;
+const STACK: usize = 64 << 20;
 
 /// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte: most values are short, and there is one for each default.
 const SHALLOW: usize = 32;
@@ -95,7 +95,7 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
 }
 
 /// The places from an offset on.
-fn after(places: &[usize], from: usize) -> &[usize] {
+pub fn after(places: &[usize], from: usize) -> &[usize] {
     let first = places.partition_point(|&place| place < from);
     places.get(first..).unwrap_or_default()
 }
@@ -124,7 +124,7 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
 }
 
 /// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
-fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
+pub fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK);
         match builder
