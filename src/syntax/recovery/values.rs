@@ -1,12 +1,6 @@
 //! Values: operators and operands.
 
-use super::{
-    Recovery, example,
-    foreign::Place,
-    is_name,
-    joined::{are_names, elements},
-    unquoted,
-};
+use super::{Recovery, example, foreign::Place, is_name, joined::are_names, unquoted};
 use crate::{
     diagnostic::{Edit, Fix},
     schema::{self, Type},
@@ -363,12 +357,11 @@ impl<'s> Recovery<'_, 's> {
             arguments.push(self.signed());
         }
         let span = name.span.to(self.behind());
-        if self.problems.len() > told {
-            return bad(span);
+        if self.problems.len() == told {
+            let right = format!("{}({})", name.text, self.list_of(&arguments));
+            self.missing_parentheses(span, Some(replace(span, right)));
         }
-        let right = format!("{}({})", name.text, self.list_of(&arguments));
-        self.missing_parentheses(span, Some(replace(span, right)));
-        self.call_of(name, elements(arguments), span)
+        bad(span)
     }
 
     pub(super) fn call_of(
@@ -425,15 +418,9 @@ impl<'s> Recovery<'_, 's> {
     fn quoted(&mut self) -> Value<'s> {
         let span = self.bump();
         let inner = unquoted(self.written(span));
-        let is_name = is_name(inner);
-        let fix = is_name.then(|| replace(span, inner));
+        let fix = is_name(inner).then(|| replace(span, inner));
         self.report(&say::QUOTED, span, &[&shorten(inner)], fix);
-        let kind = if is_name {
-            ValueKind::Name(inner)
-        } else {
-            ValueKind::Bad
-        };
-        Value { kind, span }
+        bad(span)
     }
 
     /// Passes over the rest of a value that nests too deep.
