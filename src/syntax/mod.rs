@@ -1,7 +1,7 @@
 //! Text → tree.
 //!
 //! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest reads the items that are
-//! right (`grammar`, `parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
+//! right (`parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
 //! of each slip and nodes of what can be understood. Names are looked up only to choose between
 //! explanations of a mistake.
 
@@ -16,7 +16,6 @@
     )
 )]
 
-mod grammar;
 #[rustfmt::skip]
 mod messages;
 mod parser;

@@ -7,16 +7,20 @@
 //! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a right text can be taken
 //! apart.
 
-use std::{ops::Range, sync::atomic::AtomicBool, thread};
+use std::{
+    ops::Range,
+    sync::{LazyLock, atomic::AtomicBool},
+    thread,
+};
 
 use pest::{
     Parser as _,
     iterators::{Pair, Pairs},
+    pratt_parser::{Assoc, Op, PrattParser},
 };
 
 use super::{
     Parsed,
-    grammar::{Grammar, PRECEDENCE, Rule},
     recovery::Recovery,
     scan::Scan,
     tokens::{Lexer, TokenKind},
@@ -31,6 +35,19 @@ use crate::{
     diagnostic::Diagnostic,
     source::{Source, SourceId, Span},
 };
+
+/// pest's parser for the rules of the grammar.
+#[derive(pest_derive::Parser)]
+#[grammar = "grammar/scn.pest"]
+struct Grammar;
+
+/// The operators, the loosest first.
+static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
+    PrattParser::new()
+        .op(Op::infix(Rule::sum, Assoc::Left))
+        .op(Op::infix(Rule::product, Assoc::Left))
+        .op(Op::prefix(Rule::sign))
+});
 
 /// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
 const STACK: usize = 64 << 20;

@@ -170,23 +170,18 @@ impl<'s> Recovery<'_, 's> {
         sign: Span,
         right: Value<'s>,
     ) -> Value<'s> {
-        let (operator, is_right) = match written {
-            "+" => (Operator::Add, true),
-            "-" => (Operator::Subtract, true),
-            "*" => (Operator::Multiply, true),
-            "/" => (Operator::Divide, true),
-            "−" => (Operator::Subtract, false),
-            "×" | "·" => (Operator::Multiply, false),
-            "÷" => (Operator::Divide, false),
+        let operator = match written {
+            "+" => Operator::Add,
+            "-" => Operator::Subtract,
+            "*" => Operator::Multiply,
+            "/" => Operator::Divide,
             _ => {
-                self.unknown_operator(written, sign, None);
+                let meant = ["−-", "×*", "·*", "÷/"].into_iter();
+                let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
+                self.unknown_operator(written, sign, meant.map(|meant| replace(sign, meant)));
                 return bad(left.span.to(right.span));
             }
         };
-        if !is_right {
-            let fix = replace(sign, operator.sign().to_string());
-            self.unknown_operator(written, sign, Some(fix));
-        }
         chain(left, operator, sign, right)
     }
 
@@ -205,7 +200,6 @@ impl<'s> Recovery<'_, 's> {
         } else if SUM.contains(&written) {
             let fix = self.remove(format!("remove this `{written}`"), sign);
             self.report(&say::MISSING_OPERAND, sign, &["after", written], Some(fix));
-            return left;
         } else {
             // Without a factor the value would be of another type.
             self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
