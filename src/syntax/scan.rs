@@ -13,7 +13,6 @@ use super::{
 use crate::{
     cancel,
     diagnostic::{Diagnostic, Edit, Fix},
-    schema,
     source::{Source, SourceId, Span},
 };
 
@@ -108,7 +107,10 @@ impl Scan {
                 problem.code != "pinhole::unclosed_block" && first < start
             });
             parsed.cut = Some(start);
-            parsed.problems.push(unclosed_comment(text, id, start));
+            let span = Span::new(id, start, start + 2);
+            parsed
+                .problems
+                .push(say::UNCLOSED_COMMENT.at(span, &[], None));
         }
         let comments = self.comments.into_iter();
         let comments = comments.map(|comment| Span::new(id, comment.start, comment.end));
@@ -154,26 +156,4 @@ fn name_of_space(text: &str) -> String {
         _ => "a control character",
     };
     format!("U+{:04X}, {name},", u32::from(character))
-}
-
-/// A comment of one line is meant, as a rule, if what it took from the next line on starts as an item does. It ends with its
-/// line, before what closes something that was opened before it.
-fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
-    let span = Span::new(id, start, start + 2);
-    let (before, taken) = text.split_at(start);
-    let line = taken.lines().next().unwrap_or_default().trim_end();
-    let next = Lexer::past_comments(text, start + line.len());
-    let word = text.get(next.start..next.end).unwrap_or_default();
-    if !(matches!(word, "" | "let" | "}") || schema::block(word).is_some()) {
-        return say::UNCLOSED_COMMENT.at(span, &[], None);
-    }
-    let before = before.rsplit('\n').next().unwrap_or_default();
-    let opened = before.matches(['{', '(']).count();
-    let closed = before.matches(['}', ')']).count();
-    let inner = match opened > closed {
-        true => line.trim_end_matches(['}', ')', ' ']),
-        false => line,
-    };
-    let edit = Edit::insert(id, start + inner.len(), " */");
-    say::UNCLOSED_COMMENT.at(span, &[], Fix::new("close it in its line", [edit]))
 }
