@@ -1,4 +1,4 @@
-//! From the text to the tree, and on to the scene: in parts side by side where all is well, and as a whole.
+//! From the text to the tree, and on to the scene: in parts where all is well, and as a whole.
 
 use std::sync::atomic::AtomicBool;
 
@@ -31,12 +31,12 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// A part is long enough to be worth its hand-over, and so short that many are at work at once, and that soon none is when nobody
-/// wants them.
+/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree takes little memory, and that soon
+/// none is read when nobody wants it.
 const PART: usize = 1 << 16;
 
-/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
-/// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
+/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made sense of one after the other, so
+/// that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
 /// whole, for a report may tell of what stands elsewhere.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
