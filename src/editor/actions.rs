@@ -1,6 +1,6 @@
 //! Changes of the text: the ways out of diagnostics, and the canonical layout.
 
-use super::{Analysis, tokens::file};
+use super::{analysis::Analysis, tokens::file};
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix},
     format::format_parsed,

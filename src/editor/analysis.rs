@@ -3,7 +3,8 @@
 use super::tokens::{self, Token};
 use crate::{
     diagnostic::Diagnostic,
-    scene::{self, SemanticModel, Value, schema},
+    scene::{self, SemanticModel},
+    schema::{self, Value},
     source::{Source, SourceId, Sources, Span},
     syntax::tree::{self, Block, Definition, Field, Item},
 };

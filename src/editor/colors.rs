@@ -3,14 +3,11 @@
 //! A colour is written back as what was there: a name as a name if the new colour has one, a code as a code, `rgb(…)` as numbers. A call
 //! that is more than three numbers is left alone: another colour would take the expressions and the comments in it away.
 
-use super::{Analysis, tokens::Role};
+use super::{analysis::Analysis, tokens::Role};
 use crate::{
     color::Color,
     numbers,
-    scene::{
-        Value, css,
-        schema::{self, Type},
-    },
+    schema::{self, Type, Value, css},
     source::Span,
     syntax::tree::{self, Call, ValueKind},
 };

@@ -3,16 +3,14 @@
 //! A field or a block comes with a value that it can have, to type over.
 
 use super::{
-    Analysis,
+    analysis::Analysis,
     cursor::{Expected, Situation, situation},
     hover,
 };
 use crate::{
     color::Color,
-    scene::{
-        Value, css, describe, example_beside,
-        schema::{self, Field, Function, Kind, Preset, Type},
-    },
+    scene::{describe, example_beside},
+    schema::{self, Field, Function, Kind, Preset, Type, Value, css},
     source::Span,
 };
 

@@ -4,12 +4,11 @@
 //! could stand there.
 
 use super::{
-    Analysis,
-    analysis::Path,
+    analysis::{Analysis, Path},
     tokens::{Role, Token, file},
 };
 use crate::{
-    scene::schema::{self, Type},
+    schema::{self, Type},
     source::{Source, SourceId, Span},
     syntax::{
         self,

@@ -1,6 +1,6 @@
 //! What can be folded away: blocks, and runs of comments.
 
-use super::Analysis;
+use super::analysis::Analysis;
 use crate::source::Span;
 
 /// Lines that can be folded to the first of them.

@@ -1,12 +1,12 @@
 //! What a text does not say but could: shown in grey between its words.
 
-use super::Analysis;
+use super::analysis::Analysis;
 use crate::{
     inspect,
     math::Angle,
     numbers::{grouped, short},
-    scene::{Count, Method, Value, css, schema},
-    schema::Type,
+    scene::Count,
+    schema::{self, Method, Type, Value, css},
     syntax::tree::{self, Block, Field, ValueKind},
 };
 

@@ -1,8 +1,7 @@
 //! What the word at a place means.
 
 use super::{
-    Analysis,
-    analysis::Path,
+    analysis::{Analysis, Path},
     tokens::{Role, Token},
 };
 use crate::{
@@ -10,11 +9,8 @@ use crate::{
     explain, inspect,
     math::Angle,
     numbers::short,
-    scene::{
-        Value, css,
-        describe::{ABOUT_LET, about_block, about_field, about_function},
-        schema::{self, Block, Kind},
-    },
+    scene::describe::{ABOUT_LET, about_block, about_field, about_function},
+    schema::{self, Block, Kind, Value, css},
     source::Span,
     syntax::{
         shorten,

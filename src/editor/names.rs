@@ -3,11 +3,11 @@
 //! A `let` and an object may have the same name, and have nothing to do with each other then.
 
 use super::{
-    Analysis,
+    analysis::Analysis,
     tokens::{Role, Token},
 };
 use crate::{
-    scene::{predefined, schema},
+    schema::{self, predefined},
     source::Span,
 };
 

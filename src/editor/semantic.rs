@@ -1,11 +1,11 @@
 //! What each word is, for colouring.
 
 use super::{
-    Analysis,
+    analysis::Analysis,
     tokens::{Role, Token},
 };
 use crate::{
-    scene::{css, schema},
+    schema::{self, css},
     source::Span,
 };
 

@@ -1,10 +1,7 @@
 //! The function that is being called, and which of its arguments is being written.
 
-use super::{Analysis, cursor};
-use crate::{
-    scene::{describe, schema},
-    source::Span,
-};
+use super::{analysis::Analysis, cursor};
+use crate::{scene::describe, schema, source::Span};
 use std::ops::Range;
 
 /// A function as it is called.

@@ -1,8 +1,8 @@
 //! The outline of a text: its definitions and blocks, with their fields.
 
-use super::Analysis;
+use super::analysis::Analysis;
 use crate::{
-    scene::schema,
+    schema,
     source::Span,
     syntax::{
         shorten,

@@ -4,10 +4,8 @@
 //! the language.
 
 use crate::{
-    scene::{
-        SemanticModel,
-        schema::{self, Type},
-    },
+    scene::SemanticModel,
+    schema::{self, Type},
     source::{SourceId, Span},
     syntax::{
         tokens::{Lexer, TokenKind},

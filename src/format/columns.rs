@@ -9,7 +9,7 @@ use super::{
     entries::{Block, Entry, What},
     token_stream::{has_line_end, width},
 };
-use crate::scene::schema;
+use crate::schema;
 
 /// Parts that differ in their widths by more than this do not share a column.
 const SLACK: usize = 20;

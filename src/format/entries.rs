@@ -2,10 +2,7 @@
 //!
 //! It is decided here which line a comment belongs to, and which blocks stay on one line.
 
-use super::{
-    WIDTH,
-    token_stream::{Before, Gap, Reader, Word, width},
-};
+use super::token_stream::{Before, Gap, Reader, WIDTH, Word, width};
 use crate::{
     source::{Source, Span},
     syntax::{

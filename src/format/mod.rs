@@ -14,6 +14,8 @@ mod entries;
 mod page;
 mod token_stream;
 
+pub use token_stream::WIDTH;
+
 use crate::{
     diagnostic::Diagnostic,
     scene::{self, SemanticModel},
@@ -23,10 +25,6 @@ use crate::{
         tree::{Item, Tree, ValueKind},
     },
 };
-
-/// A line gets no longer than this, as far as there are places to break it. What stands in columns is measured before it is
-/// aligned, and comments at the end of a line do not count.
-pub const WIDTH: usize = 100;
 
 /// The canonical layout of a scene's text; or, if it has mistakes of syntax, these.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {

@@ -1,10 +1,9 @@
 //! Writes entries with their columns.
 
 use super::{
-    WIDTH,
     columns::shared,
     entries::{Block, Entry, What},
-    token_stream::{Before, Word, column_after, ends_line, is_comment, width},
+    token_stream::{Before, WIDTH, Word, column_after, ends_line, is_comment, width},
 };
 
 /// By how much a block's fields stand further to the right than itself, and the other lines of a value than its first.

@@ -214,6 +214,10 @@ impl<'a, 's> Reader<'a, 's> {
     }
 }
 
+/// A line gets no longer than this, as far as there are places to break it. What stands in columns is measured before it is
+/// aligned, and comments at the end of a line do not count.
+pub const WIDTH: usize = 100;
+
 /// How wide words are on one line; of a comment with several lines, the last one counts.
 pub fn width(words: &[Word<'_>]) -> usize {
     words.iter().fold(0, |width, word| {

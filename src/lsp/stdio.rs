@@ -13,7 +13,7 @@ use std::{
 use lsp_server::{ErrorCode, Message};
 use serde_json::{Value, json};
 
-use super::Server;
+use super::server::Server;
 
 /// A message, or something that came in its place.
 type Incoming = Result<Message, Malformed>;

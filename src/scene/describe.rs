@@ -2,11 +2,10 @@
 
 use std::{fmt::Write, ops::Range};
 
-use super::{
-    css,
-    schema::{self, Block, Field, Function, Preset, Type},
+use crate::{
+    schema::{self, Block, Field, Function, Preset, Type, css},
+    suggest,
 };
-use crate::suggest;
 
 /// What `let` does.
 pub const ABOUT_LET: &str =

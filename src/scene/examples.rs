@@ -5,8 +5,12 @@
 
 use glam::DVec3;
 
-use super::{eval::literal, schema::Field, value::Value};
-use crate::{math::predicates, numbers};
+use super::eval::literal;
+use crate::{
+    math::predicates,
+    numbers,
+    schema::{Field, Value},
+};
 
 /// A value that a field can have, given the values of the others in its block. Where none that is tried fits, it is the field's own
 /// example.

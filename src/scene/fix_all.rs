@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use super::read;
+use super::lower::read;
 use crate::{
     diagnostic::{Edit, Fix, apply},
     source::{Place, Source, SourceId, Sources},

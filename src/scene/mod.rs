@@ -26,7 +26,7 @@ mod semantic_model;
 mod unseen;
 mod value;
 
-pub use crate::schema::{self, Method, Predefined, Value, css, predefined};
+pub use crate::schema::Method;
 pub use examples::example_beside;
 pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{analyze, read, read_in_parts, read_unless};

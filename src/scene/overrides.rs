@@ -3,9 +3,10 @@
 //! In: the arguments as they were typed, and the tree of the file. Out: the tree with their values in it. What a value is in its place is for lowering to find
 //! out.
 
-use super::{error::error, schema};
+use super::error::error;
 use crate::{
     diagnostic::Diagnostic,
+    schema,
     source::{SourceId, Sources, Span},
     suggest::{self, Budget},
     syntax::{

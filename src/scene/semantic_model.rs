@@ -3,12 +3,12 @@
 //! In: what lowering read. Out: the tree beside what it means, and the value of any part of it.
 
 use super::{
-    Camera, Image, Object, Sampler, Scene, Value,
     eval::{Evaluator, Names},
-    schema::Type,
+    model::{Camera, Image, Object, Sampler, Scene},
 };
 use crate::{
     diagnostic::Diagnostic,
+    schema::{Type, Value},
     source::Sources,
     syntax::{
         Parsed,

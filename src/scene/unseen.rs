@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Camera, Image, Lens, Object, Outline, Shape, View};
+use super::model::{Camera, Image, Lens, Object, Outline, Shape, View};
 use crate::math::trig;
 
 /// By so much of the lengths that are compared a comparison has to be clear. With up and the view direction at [`LEAST_SINE`] or more the

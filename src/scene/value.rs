@@ -5,10 +5,10 @@
 
 use glam::DVec3;
 
-pub use crate::schema::Value;
 use crate::{
     color::Color,
     math::{Angle, trig},
+    schema::Value,
     syntax::tree::Operator,
 };
 

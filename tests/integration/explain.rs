@@ -238,7 +238,7 @@ fn text_of(word: &str) -> String {
 
 #[test]
 fn words_of_the_language_are_explained() {
-    use pinhole::scene::schema;
+    use pinhole::schema;
     for row in schema::BLOCKS {
         let page = text_of(row.name);
         assert!(page.contains(row.help), "{page}");

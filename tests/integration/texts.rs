@@ -3,7 +3,7 @@
 use pinhole::{
     color::Color,
     diagnostic::{Fix, apply, visible},
-    scene::css::{color, names},
+    schema::css::{color, names},
     source::{Source, SourceId, Sources, Span},
     suggest::{choice, list, nearest},
 };

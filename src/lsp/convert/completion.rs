@@ -2,7 +2,7 @@
 
 use gen_lsp_types as lsp;
 
-use super::{Page, markup};
+use super::page::{Page, markup};
 use crate::editor::{Completion, CompletionKind, Piece};
 
 impl Page<'_> {

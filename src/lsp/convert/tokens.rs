@@ -2,7 +2,7 @@
 
 use gen_lsp_types as lsp;
 
-use super::{Page, count};
+use super::page::{Page, count};
 use crate::editor::{SemanticKind, SemanticToken};
 
 impl Page<'_> {

@@ -1,15 +1,14 @@
 //! Functions and their arguments.
 
-use super::{Evaluator, LARGEST};
+use super::evaluator::{Evaluator, LARGEST};
 use crate::{
     color::Color,
     numbers,
     scene::{
         error::{error, warning},
-        predefined,
-        schema::{self, Function, Type},
-        value::{self, Value},
+        value,
     },
+    schema::{self, Function, Type, Value, predefined},
     source::Span,
     suggest,
     syntax::{

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::Evaluator;
+use super::evaluator::Evaluator;
 use crate::{
-    scene::{error::error, schema::Type, value::Value},
+    scene::error::error,
+    schema::{Type, Value},
     source::Span,
     syntax::{
         shorten,

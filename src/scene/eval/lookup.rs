@@ -1,14 +1,10 @@
 //! What a name stands for, and what is wrong with one that stands for nothing.
 
-use super::{Evaluator, names::Defined};
+use super::{evaluator::Evaluator, names::Defined};
 use crate::{
     diagnostic::{Diagnostic, Edit, Label},
-    scene::{
-        css,
-        error::error,
-        schema::{self, Predefined, Type, predefined},
-        value::Value,
-    },
+    scene::error::error,
+    schema::{self, Predefined, Type, Value, css, predefined},
     source::{SourceId, Span},
     suggest,
     syntax::tree::{self, ValueKind},

@@ -7,7 +7,7 @@ use std::{
 
 use crate::{
     diagnostic::Diagnostic,
-    scene::value::Value,
+    schema::Value,
     source::{SourceId, Span},
     suggest::Budget,
     syntax::{

@@ -1,14 +1,11 @@
 //! Signs and operators.
 
-use super::{Evaluator, LARGEST};
+use super::evaluator::{Evaluator, LARGEST};
 use crate::{
     diagnostic::Fix,
     math::Angle,
-    scene::{
-        error::error,
-        schema::Type,
-        value::{self, Value},
-    },
+    scene::{error::error, value},
+    schema::{Type, Value},
     source::Span,
     syntax::{
         shorten,

@@ -7,12 +7,8 @@ use glam::DVec3;
 use crate::{
     color::Color,
     math::Angle,
-    scene::{
-        Method,
-        eval::literal,
-        schema::{self, Field, Kind, Preset},
-        value::Value,
-    },
+    scene::eval::literal,
+    schema::{self, Field, Kind, Method, Preset, Value},
     source::Span,
     syntax::tree::Name,
 };

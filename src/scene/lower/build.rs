@@ -1,14 +1,18 @@
 //! Blocks → scene: what each part is, once all fields have their values.
 
-use super::{Lowering, block::Block, fixes, mentions};
+use super::{
+    block::Block,
+    fixes,
+    lowering::{Lowering, mentions},
+};
 use crate::{
     diagnostic::{Diagnostic, Fix},
     scene::{
-        Count, Image, Method, SMALLEST, Sampler,
         error::{error, warning},
-        schema::{self, Kind},
+        model::{Count, Image, SMALLEST, Sampler},
         semantic_model::Parts,
     },
+    schema::{self, Kind, Method},
     source::{SourceId, Span},
     syntax::shorten,
 };

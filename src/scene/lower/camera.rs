@@ -3,17 +3,16 @@
 use glam::DVec3;
 
 use super::{
-    Lowering,
     block::{Block, Given},
+    lowering::Lowering,
 };
 use crate::{
     diagnostic::Fix,
     math::predicates,
     numbers,
     scene::{
-        Camera, Image, Lens, Object, View,
         error::{error, warning},
-        level_direction,
+        model::{Camera, Image, Lens, Object, View, level_direction},
         unseen::{LEAST_SINE, Unseen, sphere_around, why_unseen},
     },
 };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Lowering;
+use super::lowering::Lowering;
 use crate::{
     diagnostic::Diagnostic,
     math::Angle,
@@ -10,9 +10,8 @@ use crate::{
     scene::{
         error::error,
         eval::{Evaluator, in_bytes},
-        schema::{self, Condition, Field, Preset, Type},
-        value::Value,
     },
+    schema::{self, Condition, Field, Preset, Type, Value},
     suggest,
     syntax::{
         shorten,

@@ -1,12 +1,10 @@
 //! Edits of fields and blocks as a whole.
 
-use super::{Lowering, block::Block};
+use super::{block::Block, lowering::Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
-    scene::{
-        example_beside,
-        schema::{Choice, Preset},
-    },
+    scene::examples::example_beside,
+    schema::{Choice, Preset},
     source::{SourceId, Sources, Span},
     suggest,
 };

@@ -1,11 +1,11 @@
 //! Fields that a block needs and is not given.
 
 use super::{
-    Lowering,
     block::Block,
     fixes::{examples, quoted},
+    lowering::Lowering,
 };
-use crate::scene::{error::error, schema::Preset};
+use crate::{scene::error::error, schema::Preset};
 
 impl<'s> Lowering<'s> {
     pub(super) fn missing_fields(&mut self, block: &Block<'s>) {

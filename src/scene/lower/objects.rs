@@ -1,14 +1,15 @@
 //! Objects, once all fields have their values.
 
-use super::{Lowering, block::Block};
+use super::{block::Block, lowering::Lowering};
 use crate::{
     diagnostic::{Edit, Fix},
     math::predicates,
     numbers,
     scene::{
-        CenteredTriangle, Checkerboard, Cuboid, Object, Outline, Shape, Sphere, Triangle,
-        error::error, schema::Kind,
+        error::error,
+        model::{CenteredTriangle, Checkerboard, Cuboid, Object, Outline, Shape, Sphere, Triangle},
     },
+    schema::Kind,
 };
 
 const VERTICES: [&str; 3] = ["v0", "v1", "v2"];

@@ -2,13 +2,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::Lowering;
+use super::lowering::Lowering;
 use crate::{
     cancel::{self, Cancelled},
     diagnostic::{self, Diagnostic},
     scene::{
-        Reading,
         eval::Names,
+        model::Reading,
         overrides,
         semantic_model::{Parts, SemanticModel},
     },

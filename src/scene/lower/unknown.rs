@@ -3,16 +3,11 @@
 //! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
 //! or can be made to be.
 
-use super::{Lowering, block::Block, fixes::quoted};
+use super::{block::Block, fixes::quoted, lowering::Lowering};
 use crate::{
     diagnostic::{Diagnostic, Fix},
-    scene::{
-        css,
-        error::error,
-        example_beside,
-        schema::{self, Field, Type},
-        value::Value,
-    },
+    scene::{error::error, examples::example_beside},
+    schema::{self, Field, Type, Value, css},
     source::{SourceId, Span},
     suggest,
     syntax::tree::{self, Name, ValueKind},

@@ -3,7 +3,7 @@
 use pinhole::{
     color::Color,
     editor::{Analysis, Completion, CompletionKind, Piece, completions},
-    scene::schema::{BLOCKS, Preset},
+    schema::{BLOCKS, Preset},
 };
 
 use super::{at_cursor, cursor, of_whole};

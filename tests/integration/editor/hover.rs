@@ -3,7 +3,7 @@
 use pinhole::{
     editor::{hover, signature},
     explain,
-    scene::schema::{BLOCKS, METHODS},
+    schema::{BLOCKS, METHODS},
 };
 
 use super::{at_cursor, under};

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use pinhole::{
     editor::{SemanticKind, semantic_tokens},
-    scene::{self, Predefined, schema},
+    schema::{self, Predefined},
     source::{SourceId, Span},
     syntax::{
         self,
@@ -105,7 +105,7 @@ fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, Semanti
         // Two words that are one name, written wrongly.
         ValueKind::Name(name) if name.contains(['-', ' ']) => {}
         ValueKind::Name(name) => {
-            let kind = match scene::predefined(name) {
+            let kind = match schema::predefined(name) {
                 _ if is_method => SemanticKind::EnumMember,
                 Some(Predefined::Function(_)) => SemanticKind::Function,
                 Some(Predefined::Value(_)) => SemanticKind::EnumMember,

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use pinhole::scene::schema;
+use pinhole::schema;
 
 use super::codes;
 

@@ -1,0 +1,170 @@
+//! Evaluates literals, and says what messages call a value.
+
+use super::names::Names;
+use crate::{
+    color::Color,
+    diagnostic::Diagnostic,
+    scene::error::{error, warning},
+    schema::{self, Type, Value},
+    source::{Source, SourceId, Sources, Span},
+    syntax::{
+        self, shorten,
+        tree::{self, Unit, ValueKind},
+    },
+};
+
+/// Evaluates values, and collects what is wrong with them.
+#[derive(Debug)]
+pub struct Evaluator<'a, 's> {
+    /// The texts.
+    pub sources: &'s Sources,
+    /// The names that can be used.
+    pub names: &'a Names<'s>,
+    /// What is wrong.
+    pub problems: &'a mut Vec<Diagnostic>,
+}
+
+/// The value of a text that stands for a value by itself, such as a default of the schema.
+pub fn literal(written: &str, takes: Type) -> Option<Value> {
+    if takes == Type::Method {
+        return schema::method(written).map(Value::Method);
+    }
+    let sources = Sources::new(Source::from_text("", written));
+    let (tree, _) = syntax::parse_value(&sources.file, SourceId::File, 0);
+    let mut evaluator = Evaluator {
+        sources: &sources,
+        names: &Names::default(),
+        problems: &mut Vec::new(),
+    };
+    evaluator.value(&tree, Some(takes))
+}
+
+impl<'s> Evaluator<'_, 's> {
+    /// The value of an expression; `wanted` is the type that would fit, if one is known.
+    pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
+        match &value.kind {
+            ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),
+            ValueKind::Angle { number, unit } => {
+                let number = self.number(number, value.span)?;
+                Some(Value::Angle(unit.of(number)))
+            }
+            ValueKind::ColorCode(written) => color_code(written).map(Value::Color),
+            ValueKind::Name(name) => self.name(name, value.span, wanted),
+            ValueKind::Call(call) => self.call(call),
+            ValueKind::Parentheses(inner) => self.value(inner, wanted),
+            ValueKind::Tuple(elements) => self.tuple(elements, value.span, wanted),
+            ValueKind::Negation { sign, operand } => self.negation(*sign, operand),
+            ValueKind::Chain { first, rest } => self.chain(first, rest, wanted),
+            ValueKind::Missing | ValueKind::Bad => None,
+        }
+    }
+
+    fn number(&mut self, written: &str, span: Span) -> Option<f64> {
+        let number: f64 = if written.contains('_') {
+            written.replace('_', "").parse().ok()?
+        } else {
+            written.parse().ok()?
+        };
+        if number.is_infinite() {
+            let message = format!("the number {} is too large", shorten(written));
+            self.problems.push(
+                error("number_too_large", message)
+                    .at(span, "too large")
+                    .help(LARGEST),
+            );
+            return None;
+        }
+        let mantissa = written.split(['e', 'E']).next().unwrap_or_default();
+        if number == 0.0 && mantissa.contains(|digit| matches!(digit, '1'..='9')) {
+            let message = format!(
+                "the number {} is too small, and becomes 0",
+                shorten(written)
+            );
+            self.problems.push(
+                warning("number_underflow", message)
+                    .at(span, "becomes 0")
+                    .help("write 0 if that is meant; the least number above 0 is 5e-324")
+                    .writing(span, ["0"]),
+            );
+        }
+        Some(number)
+    }
+
+    /// What is wrong with a number in the place of an angle. Only units with which it fits are offered.
+    pub fn bare_angle(
+        &self,
+        what: &str,
+        tree: &tree::Value<'s>,
+        fits: impl Fn(Unit) -> bool,
+    ) -> Diagnostic {
+        let units = self.units(tree);
+        let fitting = units.iter().filter(|(unit, _)| fits(*unit));
+        let fitting: Vec<&String> = fitting.map(|(_, text)| text).collect();
+        let message = format!(
+            "{what} is an angle, and {} has no unit",
+            self.quoted(tree.span)
+        );
+        let [(_, first), (_, second)] = &units;
+        error("bare_angle", message)
+            .at(tree.span, self.described(tree, Type::Number))
+            .help(match fitting.as_slice() {
+                [only] => format!("write `{}`", shorten(only)),
+                _ => format!("write `{}` (or `{}`)", shorten(first), shorten(second)),
+            })
+            .writing(tree.span, fitting)
+    }
+
+    /// A number's spelling as an angle, in both units: what holds `pi` is more likely in radians, anything else in degrees.
+    pub(super) fn units(&self, value: &tree::Value<'s>) -> [(Unit, String); 2] {
+        let text = self.sources.text(value.span);
+        let literal = match &value.kind {
+            ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
+            kind => matches!(kind, ValueKind::Number(_)),
+        };
+        let is_sum = match &value.kind {
+            ValueKind::Chain { rest, .. } => rest.iter().any(|step| !step.operator.is_of_product()),
+            _ => false,
+        };
+        let mut units = [Unit::Degrees, Unit::Radians];
+        let letter = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        if text.split(letter).any(|word| word == "pi") {
+            units.reverse();
+        }
+        units.map(|unit| {
+            let name = unit.name();
+            let text = match (literal, is_sum) {
+                (true, _) => format!("{text}{name}"),
+                (false, true) => format!("({text}) * 1{name}"),
+                (false, false) => format!("{text} * 1{name}"),
+            };
+            (unit, text)
+        })
+    }
+
+    /// What stands under a span, for a message: a literal as it is, anything else in backquotes.
+    pub fn quoted(&self, span: Span) -> String {
+        let written = shorten(self.sources.text(span));
+        let literal = written
+            .starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '(' | '.'))
+            && !written.contains(['`', '*', '/']);
+        match literal {
+            true => written,
+            false => format!("`{written}`"),
+        }
+    }
+}
+
+pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
+
+/// A colour from its code; the parser checked the number of digits.
+fn color_code(written: &str) -> Option<Color> {
+    let digits = written.strip_prefix('#')?;
+    let code = u32::from_str_radix(digits, 16).ok()?;
+    Some(Color::from_bytes(if digits.len() == 3 {
+        let digit = |shift: u32| ((code >> shift) & 0xf) as u8 * 0x11;
+        [digit(8), digit(4), digit(0)]
+    } else {
+        let byte = |shift: u32| ((code >> shift) & 0xff) as u8;
+        [byte(16), byte(8), byte(0)]
+    }))
+}

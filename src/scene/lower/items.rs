@@ -1,0 +1,267 @@
+//! Each item of a file: a definition, or a block with its fields.
+
+use super::{
+    block::{Block, Given},
+    fixes,
+    lowering::{Lowering, mentions},
+};
+use crate::{
+    diagnostic::{Diagnostic, Edit, Fix},
+    scene::error::{error, twice},
+    schema::{self, predefined},
+    source::{SourceId, Span},
+    suggest,
+    syntax::tree::{self, Definition, Item, Name, ValueKind},
+};
+
+impl<'s> Lowering<'s> {
+    /// Makes sense of the next items of the file.
+    pub(super) fn items(&mut self, items: &[Item<'s>]) {
+        for item in items {
+            if !self.is_wanted() {
+                return;
+            }
+            self.has_items = true;
+            match item {
+                Item::Definition(definition) => self.definition(definition),
+                Item::Block(block) => self.block(block),
+                Item::Bad(span) => {
+                    let text = self.sources.text(*span);
+                    self.names.know_words(text);
+                    self.bad.push(text);
+                }
+            }
+        }
+    }
+
+    fn definition(&mut self, definition: &Definition<'s>) {
+        let name = definition.name;
+        let first = name.and_then(|name| self.names.place(name.text));
+        let value = self.evaluate(&definition.value, None);
+        let Some(name) = name else { return };
+        // A name without its `let` was reported.
+        let reported = definition.keyword.range().is_empty();
+        match (predefined(name.text), first) {
+            (Some(what), _) => {
+                if !reported {
+                    let message = format!("`{}` is {} already", name.text, what.noun());
+                    let help = format!("choose another name, such as `my_{}`", name.text);
+                    let problem = error("predefined_name", message);
+                    let problem = problem.at(name.span, "this name is taken").help(help);
+                    self.problems.push(problem);
+                }
+                // What uses it below is silent: what it means there, nobody can tell.
+                self.names.define(name, None, SourceId::File);
+            }
+            (None, None) => {
+                let from = definition.value.span.source;
+                self.names.define(name, value, from);
+            }
+            // It stays what it is.
+            (None, Some(_)) if reported => {}
+            (None, Some(first)) => {
+                let message = format!("`{}` is defined twice", name.text);
+                let title = format!("remove this `let {}`", name.text);
+                let help = "remove one of them, or give it another name; a name keeps its value";
+                self.problems.push(
+                    twice("duplicate_let", message, [first, name.span])
+                        .help(help)
+                        .fixes([Fix::remove_whole(title, definition.span, self.sources)]),
+                );
+            }
+        }
+    }
+
+    fn block(&mut self, block: &tree::Block<'s>) {
+        let Some(row) = self.row(block) else { return };
+        self.name_of_block(row, block);
+        let first = self.blocks.iter().find(|first| first.row.kind == row.kind);
+        let duplicate = first.map(|first| {
+            let message = format!("there are two `{}` blocks", row.name);
+            twice("duplicate_block", message, [first.keyword, block.keyword()])
+                .help("keep one, with the fields of both")
+                .fixes(fixes::one_of_two(
+                    row.name,
+                    [first.span, block.span],
+                    self.sources,
+                ))
+        });
+        let is_duplicate = duplicate.is_some();
+        self.problems.extend(duplicate);
+        let open = block.open.map(|open| open.start);
+        let mut lowered = Block {
+            keyword: block.keyword(),
+            name: block.name.filter(|_| row.is_object),
+            // The end is missing, or what stands before the `{` may have been a field.
+            unfinished: block.close.is_none() || block.bad.iter().any(|bad| Some(bad.start) < open),
+            ..Block::empty(row, block.span)
+        };
+        for span in &block.bad {
+            let text = self.sources.text(*span);
+            let mentioned = row.field_names().filter(|name| mentions(text, name));
+            lowered.meant.extend(mentioned);
+        }
+        let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
+        for field in block.fields.iter().filter(is_known) {
+            self.field(field, &mut lowered);
+        }
+        // What else there is tells what they can have meant.
+        for field in block.fields.iter().filter(|field| !is_known(field)) {
+            self.unknown_field(field, &mut lowered);
+        }
+        self.conflicts(&lowered);
+        self.has_objects |= row.is_object;
+        if row.is_object {
+            self.missing_fields(&lowered);
+            let object = self.object(&lowered);
+            self.objects.extend(object);
+        } else if !is_duplicate {
+            self.blocks.push(lowered);
+        }
+    }
+
+    /// The table's row for a block; for a mistyped kind that of the nearest one.
+    fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static schema::Block> {
+        let kind = block.kind?;
+        let row = schema::block(kind.text);
+        if row.is_some() {
+            return row;
+        }
+        let near = schema::nearest_block(kind.text);
+        // Nobody can tell what it was to be: an object, perhaps.
+        self.has_objects |= near.is_none();
+        // Of a block that is only begun, the parser says all.
+        if near.is_none() && block.close.is_none() && block.fields.is_empty() {
+            return None;
+        }
+        let kinds = suggest::list(schema::block_names());
+        let help = match near {
+            Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
+            None => format!("the kinds are {kinds}"),
+        };
+        let message = format!("there is no kind of block `{}`", kind.text);
+        self.problems.push(
+            error("unknown_kind", message)
+                .at(kind.span, "not a kind of block")
+                .help(help)
+                .writing(kind.span, near.map(|near| near.name)),
+        );
+        near
+    }
+
+    fn field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
+        let rows = block.row.fields.iter().zip(&mut block.given);
+        let mut rows = rows.filter(|(row, _)| row.name == field.name.text);
+        let Some((row, slot)) = rows.next() else {
+            return;
+        };
+        if matches!(field.value.kind, ValueKind::Missing) {
+            self.missing_value(&field.name, row);
+        }
+        let given = Given {
+            name: field.name.span,
+            span: field.value.span,
+            value: self.typed(row, &field.value),
+        };
+        if let Some(first) = slot {
+            let message = format!("`{}` is given twice", row.name);
+            let fields = [first.field(), given.field()];
+            self.problems.push(
+                twice("duplicate_field", message, [first.name, given.name])
+                    .help("remove one of them")
+                    .fixes(fixes::one_of_two(row.name, fields, self.sources)),
+            );
+        } else {
+            *slot = Some(given);
+        }
+    }
+
+    /// Two fields that exclude each other: the later one is labelled first.
+    fn conflicts(&mut self, block: &Block<'s>) {
+        // One report for each choice: for a box with center, size, min and max.
+        for choice in block.row.choices {
+            let fields = choice.ways.iter().flat_map(|way| way.iter().copied());
+            let given =
+                fields.filter_map(|name| Some((block.row.field(name)?, block.given(name)?)));
+            let mut given: Vec<_> = given.collect();
+            given.sort_by_key(|(_, given)| given.name.start);
+            let [(first, earlier), ..] = given[..] else {
+                continue;
+            };
+            let excluded: Vec<&str> = block.row.excludes(first.name).collect();
+            let later = given.iter().find(|(row, _)| excluded.contains(&row.name));
+            let Some(&(second, later)) = later else {
+                continue;
+            };
+            let message = format!("`{}` and `{}` exclude each other", second.name, first.name);
+            self.problems.push(
+                error("conflicting_fields", message)
+                    .at(later.name, "this says it again, in another way")
+                    .at(earlier.name, "this says it already")
+                    .help(format!("remove one of them: {}", choice.why))
+                    .fixes(self.one_of(block, choice, [first.name, second.name])),
+            );
+        }
+    }
+
+    /// A field without a value. A sign of other languages behind its name goes.
+    fn missing_value(&mut self, name: &Name<'s>, row: &schema::Field) {
+        let (noun, field, example) = (row.takes.noun(), row.name, row.example);
+        let text = self.sources.get(name.span.source).text();
+        let rest = text
+            .get(name.span.end..)
+            .unwrap_or_default()
+            .trim_start_matches([' ', '\t']);
+        let end = match rest.strip_prefix(['=', ':']) {
+            Some(rest) => text.len() - rest.len(),
+            None => name.span.end,
+        };
+        let behind = Span::new(name.span.source, name.span.end, end);
+        let edit = Edit::new(behind, format!(" {example}"));
+        self.problems.push(Diagnostic {
+            // Only reading the scene tells what a field without a value is called.
+            is_of_syntax: true,
+            ..error("missing_value", format!("`{field}` has no value"))
+                .at(name.span, "a value should follow this")
+                .help(format!(
+                    "write {noun} after it, such as `{field} {example}`"
+                ))
+                .fixes([Fix::new(format!("write `{field} {example}`"), [edit])])
+        });
+    }
+
+    /// Knows the name of an object. Other blocks take none.
+    fn name_of_block(&mut self, row: &schema::Block, block: &tree::Block<'s>) {
+        let Some(name) = block.name else { return };
+        let text = name.text;
+        let problem = if !row.is_object {
+            // What is bad may be a field, and the name a part of it.
+            if !block.bad.is_empty() {
+                return;
+            }
+            let help = format!(
+                "take `{text}` away; only objects have names, for a scene has one `{}`",
+                row.name
+            );
+            error("unexpected_name", format!("{} takes no name", row.noun))
+                .at(name.span, "not here")
+                .help(help)
+        } else if schema::block(text).is_some_and(|row| !row.is_object) {
+            let help =
+                format!("choose another name: `--set {text}.…` is to reach the block `{text}`");
+            error("reserved_name", format!("no object can be named `{text}`"))
+                .at(name.span, "this is the name of a block")
+                .help(help)
+        } else if let Some(&first) = self.first_names.get(text) {
+            let message = format!("two objects are named `{text}`");
+            twice("duplicate_name", message, [first, name.span])
+                .help("give one of them another name")
+        } else {
+            self.first_names.insert(text, name.span);
+            return;
+        };
+        let title = format!("take the name `{text}` away");
+        let fix = Fix::remove(title, name.span, self.sources);
+        self.problems.push(problem.fixes([fix]));
+    }
+}
