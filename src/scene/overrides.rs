@@ -1,6 +1,6 @@
 //! `--set TARGET=VALUE`.
 //!
-//! In: the arguments as they were typed, and the tree of the file. Out: the tree with their values in it. What a value is in its place is for lowering to find
+//! In: the arguments as they were typed, and the items of the file, all or a part of them. Out: the items with their values in them. What a value is in its place is for lowering to find
 //! out.
 
 use super::error::error;
@@ -99,43 +99,75 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     })
 }
 
-/// Puts the values of the arguments into the items of a file, in the place of what stands there. Of several things of one name the first is meant.
-pub fn apply<'s>(
+/// Puts the values of the arguments into items of a file, in the place of what stands there. Those whose targets are not
+/// among them are left. Of several things of one name the first is meant.
+pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
+    overrides.retain(|it| !it.put_into(items));
+}
+
+/// Adds the blocks that a file leaves out to its end, for the arguments whose targets are not in it. Reports the other ones.
+pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
     budget: &Budget,
 ) -> Vec<Diagnostic> {
     let mut problems = Vec::new();
-    for Override { block, name, value } in overrides {
-        let Some(target) = block else {
-            let found = items.iter_mut().find_map(|item| match item {
-                Item::Definition(it) if it.name.is_some_and(|it| it.text == name.text) => Some(it),
-                _ => None,
-            });
-            match found {
-                Some(definition) => definition.value = value,
-                None => problems.push(no_such_let(&name, items, budget)),
+    for it in overrides {
+        match it.block {
+            // Its block was added just now.
+            _ if it.put_into(items) => {}
+            None => problems.push(no_such_let(&it.name, items, budget)),
+            Some(target) if setting(target.text).is_some() => {
+                let mut block = Block {
+                    kind: Some(target),
+                    open: Some(target.span),
+                    close: Some(target.span),
+                    ..Block::empty(target.span)
+                };
+                set_field(&mut block, it.name, it.value);
+                items.push(Item::Block(block));
             }
-            continue;
-        };
-        let setting = schema::block(target.text).filter(|row| !row.is_object);
-        let has_target = |item: &Item<'s>| is_target(item, target.text, setting);
-        let mut found = items.iter().position(has_target);
-        if found.is_none() && setting.is_some() {
-            found = Some(items.len());
-            items.push(Item::Block(Block {
-                kind: Some(target),
-                open: Some(target.span),
-                close: Some(target.span),
-                ..Block::empty(target.span)
-            }));
-        }
-        match found.and_then(|index| items.get_mut(index)) {
-            Some(Item::Block(block)) => set_field(block, name, value),
-            _ => problems.push(no_such_block(&target, items, budget)),
+            Some(target) => problems.push(no_such_block(&target, items, budget)),
         }
     }
     problems
+}
+
+/// Whether it is a block with a field that an argument sets.
+pub fn is_set(item: &Item<'_>) -> bool {
+    let Item::Block(block) = item else {
+        return false;
+    };
+    let mut fields = block.fields.iter();
+    fields.any(|field| field.span.source != SourceId::File)
+}
+
+impl<'s> Override<'s> {
+    /// Gives its target the value, if it is among the items.
+    fn put_into(&self, items: &mut [Item<'s>]) -> bool {
+        let setting = self.block.and_then(|block| setting(block.text));
+        for item in items {
+            match (item, self.block) {
+                (Item::Definition(it), None)
+                    if it.name.is_some_and(|name| name.text == self.name.text) =>
+                {
+                    it.value = self.value.clone();
+                    return true;
+                }
+                (Item::Block(block), Some(target)) if is_target(block, target.text, setting) => {
+                    set_field(block, self.name, self.value.clone());
+                    return true;
+                }
+                _ => {}
+            }
+        }
+        false
+    }
+}
+
+/// The row of a block of which a scene has one.
+fn setting(name: &str) -> Option<&'static schema::Block> {
+    schema::block(name).filter(|row| !row.is_object)
 }
 
 /// The row of a block; for a mistyped kind that of the nearest one.
@@ -144,10 +176,7 @@ fn row(block: &Block<'_>) -> Option<&'static schema::Block> {
     schema::block(kind).or_else(|| schema::nearest_block(kind))
 }
 
-fn is_target(item: &Item<'_>, target: &str, setting: Option<&schema::Block>) -> bool {
-    let Item::Block(block) = item else {
-        return false;
-    };
+fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::Block>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,
         (Some(row), None) => row.is_object && block.name.is_some_and(|name| name.text == target),
@@ -209,9 +238,7 @@ fn no_such_let(name: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnost
         Item::Definition(definition) => Some(definition.name?.text),
         Item::Block(_) | Item::Bad(_) => None,
     });
-    let is_unnamed = |block: &schema::Block| !block.is_object;
-    let is_block =
-        schema::block(name.text).is_some_and(is_unnamed) || objects(items).contains(&name.text);
+    let is_block = setting(name.text).is_some() || objects(items).contains(&name.text);
     let mut blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = blocks.find(|block| block.field(name.text).is_some());
     let near = || suggest::nearest(name.text, lets).map(str::to_owned);

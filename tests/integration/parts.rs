@@ -128,6 +128,16 @@ fn arguments() {
     ] {
         assert!(check(text, 1, &[&format!("{set}={value}")]));
     }
+    // Both of one block, be it in the text or not; and of the objects, the first one is read last.
+    for sets in [
+        ["camera.eye=(b, 2, 8)", "camera.lens=(2, 4)"],
+        ["image.width=64", "image.height=48"],
+        ["image.width=64", "image.height=b"],
+        ["Ball.radius=b", "b=3"],
+        ["Ball.radius=2", "Ball.radius=b"],
+    ] {
+        assert!(check(text, 1, &sets));
+    }
 }
 
 /// One change of a text, at a place in it.

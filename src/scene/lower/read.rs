@@ -44,19 +44,34 @@ pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
 
 /// The same or, cancelled, something of no use.
 fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading {
-    if sources.sets.is_empty() {
-        let file = &sources.file;
-        let mut lowering = Lowering::new(sources, Names::default(), cancel);
-        let all = syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |items| {
+    in_parts(sources, bytes, cancel).unwrap_or_else(|| {
+        let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
+        whole(sources, &parsed, cancel).reading()
+    })
+}
+
+/// Reads a file in parts, if it is long and nothing is wrong.
+fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Reading> {
+    let mut lowering = Lowering::new(sources, Names::default(), cancel);
+    let mut overrides = overrides::read(sources, &mut lowering.problems);
+    // The value of a field that is set sees all names.
+    let mut last = Vec::new();
+    let file = &sources.file;
+    let all = lowering.is_right()
+        && syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |mut items| {
+            overrides::apply(&mut overrides, &mut items);
+            last.extend(items.extract_if(.., |item| overrides::is_set(item)));
             lowering.items(&items);
             lowering.is_right()
         });
-        if all && lowering.is_right() {
-            return lowering.reading();
-        }
+    if !all {
+        return None;
     }
-    let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
-    whole(sources, &parsed, cancel).reading()
+    lowering.problems = overrides::add(overrides, &mut last, lowering.names.budget());
+    lowering.items(&last);
+    let objects = &mut lowering.objects;
+    objects.sort_unstable_by_key(|object| object.span.start);
+    lowering.is_right().then(|| lowering.reading())
 }
 
 /// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
@@ -87,8 +102,9 @@ fn whole<'s>(
         return lowering;
     }
     let mut items = parsed.tree.items.clone();
-    let overrides = overrides::read(sources, &mut lowering.found);
-    lowering.problems = overrides::apply(overrides, &mut items, lowering.names.budget());
+    let mut overrides = overrides::read(sources, &mut lowering.found);
+    overrides::apply(&mut overrides, &mut items);
+    lowering.problems = overrides::add(overrides, &mut items, lowering.names.budget());
     // The value of a field that is set sees all names.
     let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
     let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
