@@ -49,7 +49,8 @@ impl Lowering<'_> {
         let (end, added) = match gap.rsplit_once('\n') {
             Some((_, indent)) => {
                 let last = tight.lines().next_back()?;
-                let deeper = match last.ends_with('{') {
+                // On the line that the block starts on, a comment or a field may stand behind the `{`.
+                let deeper = match last.ends_with('{') || !tight.contains('\n') {
                     true => format!("{indent}  "),
                     false => last.chars().take_while(|c| c.is_whitespace()).collect(),
                 };

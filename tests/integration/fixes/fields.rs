@@ -49,8 +49,17 @@ fn what_is_added_is_laid_out_as_the_rest() {
             "sphere { center (0, 1, 0) }\r\ncamera { eye (0, 2, 8)  lookat (0, 1, 0) }\r\n",
         )],
     );
+    let camera = "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n";
+    for (first, indent) in [("sphere { // ball", ""), ("sphere { radius 2", "  ")] {
+        offers(
+            &format!("{camera}{indent}{first}\n{indent}}}"),
+            &[(
+                "add `center`",
+                &format!("{camera}{indent}{first}\n{indent}  center (0, 1, 0)\n{indent}}}"),
+            )],
+        );
+    }
     for indent in ["\t", "    "] {
-        let camera = "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n";
         offers(
             &format!("{camera}sphere {{\n{indent}radius 2\n}}"),
             &[(
