@@ -89,20 +89,16 @@ impl Server {
         !self.waiting.is_empty() || !self.changed.is_empty()
     }
 
-    /// Does so many pieces of the work that is left, and returns what is to be said of it. A piece is one text: everything that was asked about it, and what is wrong
+    /// Does a piece of the work that is left, and returns what is to be said of it. A piece is one text: everything that was asked about it, and what is wrong
     /// with it.
-    pub fn advance(&mut self, budget: usize) -> Vec<Message> {
-        let mut said = Vec::new();
-        for _ in 0..budget {
-            let asked = self.waiting.front().map(uri);
-            let changed = || self.changed.first().map(|uri| Some(lsp::Uri(uri.clone())));
-            let Some(next) = asked.or_else(changed) else {
-                break;
-            };
-            let is_changed = next.as_ref().is_some_and(|uri| self.changed.remove(&uri.0));
-            said.extend(self.work_on(next.as_ref(), is_changed));
-        }
-        said
+    pub fn advance(&mut self) -> Vec<Message> {
+        let asked = self.waiting.front().map(uri);
+        let changed = || self.changed.first().map(|uri| Some(lsp::Uri(uri.clone())));
+        let Some(next) = asked.or_else(changed) else {
+            return Vec::new();
+        };
+        let is_changed = next.as_ref().is_some_and(|uri| self.changed.remove(&uri.0));
+        self.work_on(next.as_ref(), is_changed)
     }
 
     /// Answers what waits about such texts.

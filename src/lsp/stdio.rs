@@ -64,7 +64,7 @@ fn next_message(
         if let Ok(message) = messages.try_recv() {
             return Ok(Some(message));
         }
-        say(output, server.advance(1))?;
+        say(output, server.advance())?;
     }
     Ok(messages.recv().ok())
 }

@@ -47,7 +47,7 @@ fn answers(capabilities: Value, messages: Vec<Message>) -> Vec<Value> {
         .flat_map(|message| server.handle(message))
         .collect();
     while server.is_busy() {
-        said.extend(server.advance(1));
+        said.extend(server.advance());
     }
     said.iter()
         .map(|message| serde_json::to_value(message).expect("a value"))
