@@ -150,10 +150,9 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
 }
 
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
-    let row = path.block.and_then(|block| {
-        let kind = block.kind?.text;
-        schema::block(kind).or_else(|| schema::nearest_block(kind))
-    });
+    let row = path
+        .block
+        .and_then(|block| schema::block_or_nearest(block.kind?.text));
     let given = path.block.into_iter().flat_map(|block| &block.fields);
     let given = given.filter_map(|field| Some(row?.field(field.name.text)?.name));
     let mut situation = Situation {

@@ -172,8 +172,7 @@ fn setting(name: &str) -> Option<&'static schema::Block> {
 
 /// The row of a block; for a mistyped kind that of the nearest one.
 fn row(block: &Block<'_>) -> Option<&'static schema::Block> {
-    let kind = block.kind?.text;
-    schema::block(kind).or_else(|| schema::nearest_block(kind))
+    schema::block_or_nearest(block.kind?.text)
 }
 
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::Block>) -> bool {

@@ -54,6 +54,11 @@ pub fn nearest_block(written: &str) -> Option<&'static Block> {
     tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
 }
 
+/// The row of a block; for a mistyped word that of the nearest one.
+pub fn block_or_nearest(written: &str) -> Option<&'static Block> {
+    block(written).or_else(|| nearest_block(written))
+}
+
 /// What a predefined name stands for.
 #[derive(Clone, Copy, Debug)]
 pub enum Predefined {

@@ -39,7 +39,7 @@ impl<'s> Vocabulary<'s> {
 
     /// What a field of a block takes; a mistyped kind is the nearest one.
     pub fn takes(&self, kind: &str, field: &str) -> Option<Type> {
-        let row = schema::block(kind).or_else(|| schema::nearest_block(kind))?;
+        let row = schema::block_or_nearest(kind)?;
         row.field(field).map(|field| field.takes)
     }
 
@@ -51,7 +51,7 @@ impl<'s> Vocabulary<'s> {
 
     /// The names of a block's fields; of the nearest block, if it is mistyped.
     pub fn fields(&self, kind: &str) -> impl Iterator<Item = &'static str> + use<> {
-        let row = schema::block(kind).or_else(|| schema::nearest_block(kind));
+        let row = schema::block_or_nearest(kind);
         row.into_iter().flat_map(|row| row.field_names())
     }
 
