@@ -390,6 +390,9 @@ pub struct DiffArgs {
     /// nothing, always comes on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
+    /// Let the tolerance alone judge, so that sampling noise is wrong, too; --tolerance implies it
+    #[arg(long)]
+    pub strict: bool,
     #[command(flatten)]
     pub overrides: Overrides,
     /// How many threads to use [default: one for each processor]

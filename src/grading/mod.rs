@@ -1,0 +1,393 @@
+//! What is wrong with a picture of a scene.
+//!
+//! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: a verdict: right, right but for sampling noise, wrong by mistakes that
+//! are named, or wrong for an unknown reason; and how far each object is off.
+//!
+//! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong.
+//! `textbook` makes its picture on a `grid`, `score` says how likely somebody's picture is then, `fit` finds numbers, and `select` chooses. `words` says it.
+//! The pictures of candidates are made with a few samples in plain `f64`; the null model, noise, is judged by the exact picture and its exact variance.
+
+mod candidate;
+mod fit;
+mod grid;
+mod mistakes;
+mod parameters;
+mod score;
+mod select;
+mod textbook;
+mod words;
+
+use serde_json::{Map, Value, json};
+
+use crate::{
+    area::Area,
+    color::{Color, linear_to_srgb},
+    film::{Comparison, Film},
+    render::{Control, RenderError, render_exact},
+    scene::{Scene, Shape},
+    threads,
+    tracer::World,
+};
+
+use self::{
+    candidate::Candidate,
+    mistakes::ROWS,
+    score::{FLAT, Model, STEP, Score, around, score},
+    select::{Found, Search},
+    textbook::Moments,
+};
+
+/// A flat pixel is wrong if it is off by more than this, in steps: half of one is rounding, and half of that another way to decode.
+const WRONG: f64 = 0.75;
+
+/// What a picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Equal to the exact one within its tolerance.
+    Right,
+    /// Right but for sampling noise.
+    Noise,
+    /// Wrong, and mistakes are named.
+    Wrong,
+    /// Wrong, and no mistake that is known explains it.
+    Unknown,
+}
+
+impl Kind {
+    /// The word for programs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Noise => "noise",
+            Self::Wrong => "wrong",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// A mistake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    /// A word for programs.
+    pub id: &'static str,
+    /// What it is.
+    pub message: String,
+    /// The way out.
+    pub help: String,
+    /// The `--set` arguments that make it.
+    pub set: Vec<String>,
+    /// The share of the squared difference beyond noise that it explains.
+    pub explains: f64,
+}
+
+/// An object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectVerdict {
+    /// Its place in the file.
+    pub index: usize,
+    /// Its name.
+    pub name: Option<String>,
+    /// What it is called.
+    pub title: String,
+    /// Whether it is right.
+    pub is_right: bool,
+    /// By how many pixels it is off.
+    pub off: f64,
+}
+
+/// What is said of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// What it is.
+    pub kind: Kind,
+    /// How many independent samples in a pixel leave as much noise; none where it is not known.
+    pub samples: Option<f64>,
+    /// The mistakes.
+    pub mistakes: Vec<Mistake>,
+    /// The share of the squared difference beyond noise that mistakes leave, if it is more than noise.
+    pub rest: Option<f64>,
+    /// The objects, where something is known of them.
+    pub objects: Vec<ObjectVerdict>,
+    /// Whether the background is right.
+    pub is_background_right: bool,
+    /// Whether not all mistakes were tried, as the scene has too much in it.
+    pub is_cut: bool,
+}
+
+/// Judges a picture of a part of a scene's. `comparison` is that with the exact picture.
+pub fn judge(
+    film: &Film,
+    part: Area,
+    scene: &Scene,
+    exact: &Film,
+    comparison: &Comparison,
+    control: &Control,
+) -> Result<Verdict, RenderError> {
+    if comparison.is_equal() {
+        return Ok(Verdict::of(Kind::Right, scene));
+    }
+    let squares = exact_part(&squared(scene), part, control)?;
+    threads::install(control.threads, || {
+        judged(film, part, scene, exact, &squares, control)
+    })?
+}
+
+fn judged(
+    film: &Film,
+    part: Area,
+    scene: &Scene,
+    exact: &Film,
+    squares: &Film,
+    control: &Control,
+) -> Result<Verdict, RenderError> {
+    let variance = |(mean, square): (&[f64; 3], &[f64; 3])| {
+        [0, 1, 2].map(|i| (square[i] - mean[i] * mean[i]).max(0.0))
+    };
+    let variance = exact
+        .pixels()
+        .iter()
+        .zip(squares.pixels())
+        .map(variance)
+        .collect();
+    let model = Model {
+        moments: Moments {
+            mean: exact.pixels().to_vec(),
+            variance,
+        },
+        from: None,
+        cut: 0.0,
+    };
+    let width = film.width() as usize;
+    let noise = score(film.pixels(), &model, width);
+    let search = Search::new(scene, film, part, control.cancel);
+    let strays = strays(film.pixels(), &model, width);
+    let right = Candidate::right(scene);
+    let found = match strays.0 {
+        // All that differs lies where colours meet. Only what shows there can be wrong.
+        0 => of_edges(&search, right)?,
+        _ => match search.judged(right) {
+            Some(right) => Some(search.run(right)?),
+            None => None,
+        },
+    };
+    let mut verdict = match found {
+        Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
+        _ if strays.1 == 0 => Verdict {
+            samples: Some(noise.samples),
+            ..Verdict::of(Kind::Noise, scene)
+        },
+        _ => Verdict::of(Kind::Unknown, scene),
+    };
+    verdict.is_cut = search.is_cut.get();
+    Ok(verdict)
+}
+
+/// The best of the rows that show only where colours meet, if one is better than noise.
+fn of_edges(search: &Search, right: Candidate) -> Result<Option<Found>, RenderError> {
+    let Some(null) = search.judged(right.clone()) else {
+        return Ok(None);
+    };
+    let rows = ROWS.iter().filter(|row| row.is_of_edges);
+    let judged = rows.filter_map(|row| search.judged(right.with(row.named())?));
+    let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
+    Ok(best.filter(|best| best.cost < null.cost))
+}
+
+/// How many pixels of one colour have another, and how many of these have none of several colours beside them: an edge that is off by less than half a pixel
+/// reaches no farther.
+fn strays(seen: &[[f64; 3]], model: &Model, width: usize) -> (usize, usize) {
+    let variance = &model.moments.variance;
+    let around = around(variance, width);
+    let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
+    let is_off = |at: &usize| {
+        let pairs = seen[*at].iter().zip(&model.moments.mean[*at]);
+        pairs.into_iter().any(|(seen, mean)| {
+            (linear_to_srgb(*seen) - linear_to_srgb(*mean)).abs() > WRONG * STEP
+        })
+    };
+    let strays: Vec<usize> = (0..seen.len())
+        .filter(|&at| is_flat(&variance[at]))
+        .filter(is_off)
+        .collect();
+    (
+        strays.len(),
+        strays.iter().filter(|&&at| is_flat(&around[at])).count(),
+    )
+}
+
+/// The verdict on a picture with mistakes.
+fn wrong(search: &Search, found: &Found) -> Verdict {
+    let scene = search.scene;
+    let named = &found.candidate.named;
+    let beyond = |score: &Score| (score.squares - score.noise).max(0.0);
+    let mut before = Candidate::right(scene);
+    let all = search
+        .judged(before.clone())
+        .map_or(f64::INFINITY, |found| found.score.squares);
+    let all = (all - found.score.noise).max(1e-12);
+    let mut left = all;
+    let mut mistakes = Vec::new();
+    for one in named {
+        let Some(after) = before.with(one.clone()) else {
+            continue;
+        };
+        let is_last = after.named.len() == named.len();
+        let score = match is_last {
+            true => Some(found.score.clone()),
+            false => search.judged(after.clone()).map(|found| found.score),
+        };
+        let now = score.map_or(left, |score| (score.squares - found.score.noise).max(0.0));
+        let set = parameters::arguments(&before.scene, &after.scene);
+        let mut message = words::message(scene, one);
+        if let (candidate::Cause::Row(_), [set]) = (&one.cause, set.as_slice())
+            && let Some((target, value)) = set.split_once('=')
+            && let Some(should) = parameters::arguments(&after.scene, &before.scene)
+                .first()
+                .and_then(|set| set.split_once('='))
+            && should.0 == target
+        {
+            message = format!("{message}: {value} instead of {}", should.1);
+        }
+        mistakes.push(Mistake {
+            id: one.id,
+            message,
+            help: one.help.clone(),
+            set,
+            explains: ((left - now) / all).clamp(0.0, 1.0),
+        });
+        (left, before) = (now, after);
+    }
+    let rest = (found.score.outliers * found.score.is_outlier.len() as f64 >= 1.0)
+        .then(|| (beyond(&found.score) / all).min(1.0));
+    let of = |object: usize| {
+        let (own, other) = (&scene.objects[object], &before.scene.objects[object]);
+        let off = words::off(scene, &before.scene, object);
+        ObjectVerdict {
+            is_right: own.shape == other.shape
+                && before.is_drawn[object]
+                && off < select::HALF_PIXEL,
+            off: if before.is_drawn[object] { off } else { 0.0 },
+            ..ObjectVerdict::right(scene, object)
+        }
+    };
+    Verdict {
+        samples: Some(found.score.samples),
+        rest: rest.filter(|rest| *rest > 0.0),
+        mistakes,
+        objects: (0..scene.objects.len()).map(of).collect(),
+        is_background_right: scene.image.background == before.scene.image.background,
+        ..Verdict::of(Kind::Wrong, scene)
+    }
+}
+
+impl ObjectVerdict {
+    fn right(scene: &Scene, index: usize) -> Self {
+        Self {
+            index,
+            name: scene.objects[index].name.clone(),
+            title: parameters::Owner::Object(index).name(scene),
+            is_right: true,
+            off: 0.0,
+        }
+    }
+}
+
+impl Verdict {
+    fn of(kind: Kind, scene: &Scene) -> Self {
+        let is_known = matches!(kind, Kind::Right | Kind::Noise);
+        let objects = (0..scene.objects.len()).map(|object| ObjectVerdict::right(scene, object));
+        Self {
+            kind,
+            samples: None,
+            mistakes: Vec::new(),
+            rest: None,
+            objects: if is_known {
+                objects.collect()
+            } else {
+                Vec::new()
+            },
+            is_background_right: is_known,
+            is_cut: false,
+        }
+    }
+
+    /// The verdict in one line.
+    pub fn line(&self) -> String {
+        match self.kind {
+            Kind::Right => "right: equal to the exact picture".to_owned(),
+            Kind::Noise => match self.samples {
+                Some(samples) if samples < 1e5 => {
+                    let count = crate::numbers::short(if samples < 9.5 {
+                        (2.0 * samples).round() / 2.0
+                    } else {
+                        samples.round()
+                    });
+                    format!("right but for sampling noise: about {count} samples per pixel")
+                }
+                _ => "right but for sampling noise".to_owned(),
+            },
+            Kind::Wrong => {
+                let mistakes: Vec<_> = self
+                    .mistakes
+                    .iter()
+                    .map(|mistake| mistake.message.as_str())
+                    .collect();
+                format!("wrong: {}", mistakes.join("; "))
+            }
+            Kind::Unknown => "wrong, and not by a mistake known here".to_owned(),
+        }
+    }
+}
+
+/// A verdict for programs, field by field.
+pub fn json(verdict: &Verdict) -> Map<String, Value> {
+    let mistakes = verdict.mistakes.iter().map(|mistake| {
+        json!({
+            "id": mistake.id,
+            "message": mistake.message,
+            "help": mistake.help,
+            "set": mistake.set,
+            "explains": mistake.explains,
+        })
+    });
+    let objects = verdict.objects.iter().map(|object| {
+        json!({ "index": object.index, "name": object.name, "right": object.is_right, "off": object.off })
+    });
+    let mut fields = Map::new();
+    fields.insert("verdict".to_owned(), json!(verdict.kind.word()));
+    fields.insert("line".to_owned(), json!(verdict.line()));
+    fields.insert("samples_per_pixel".to_owned(), json!(verdict.samples));
+    fields.insert("mistakes".to_owned(), mistakes.collect());
+    fields.insert("objects".to_owned(), objects.collect());
+    if let Some(rest) = verdict.rest {
+        fields.insert("rest".to_owned(), json!(rest));
+    }
+    fields.insert("limited".to_owned(), json!(verdict.is_cut));
+    fields
+}
+
+/// The exact picture of a part of a scene's.
+fn exact_part(scene: &Scene, part: Area, control: &Control) -> Result<Film, RenderError> {
+    let world = World::new_unless(scene, control.cancel)?;
+    Ok(render_exact(&world, part, control)?.film)
+}
+
+/// A scene whose colours are the squares of another's, in linear light: its exact picture is the mean of squares.
+fn squared(scene: &Scene) -> Scene {
+    let square = |color: Color| Color {
+        srgb: color
+            .to_linear()
+            .map(|light| 255.0 * linear_to_srgb(light * light)),
+    };
+    let mut scene = scene.clone();
+    scene.image.background = square(scene.image.background);
+    for object in &mut scene.objects {
+        match &mut object.shape {
+            Shape::Sphere(sphere) => sphere.color = square(sphere.color),
+            Shape::Triangle(triangle) => triangle.color = square(triangle.color),
+            Shape::Box(cuboid) => cuboid.color = square(cuboid.color),
+            Shape::Checkerboard(board) => board.colors = board.colors.map(square),
+        }
+    }
+    scene
+}
