@@ -58,6 +58,9 @@ pub enum Command {
     /// Compare two pictures, or a picture with a scene's exact one
     #[command(after_help = DIFF_EXAMPLES)]
     Diff(DiffArgs),
+    /// Judge a class's pictures of a scene
+    #[command(after_help = GRADE_EXAMPLES)]
+    Grade(GradeArgs),
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
@@ -94,6 +97,7 @@ impl Command {
             #[cfg(feature = "preview")]
             Self::Watch(args) => args.threads,
             Self::Diff(args) => args.threads,
+            Self::Grade(args) => args.threads,
             Self::Report(args) => args.threads,
             _ => None,
         };
@@ -168,6 +172,19 @@ share of the squared difference, 0 to 1, sure whether that share is a half or mo
 off: its middle, and its outline, away from there. Of pictures of different sizes rmse, largest, beyond and undecided are null.
 
 Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
+
+const GRADE_EXAMPLES: &str = "\
+Examples:
+  pinhole grade figure.scn anna.png ben.png
+  pinhole grade figure.scn handed_in/ -o graded  also writes graded/index.html, grade.csv and grade.jsonl
+  pinhole grade figure.scn handed_in/ --format json
+
+Each picture is compared with the scene's exact one, as diff does it, and has a line: its name, the verdict, the root mean \
+square of its differences in linear light, and the samples in a pixel that make as much noise.
+
+JSON, an object a line: what diff prints, with file in front; error instead of the rest where a picture cannot be compared.
+
+Exit status: 0 all are right, but for noise; 1 one is wrong, or the scene has errors; 2 one could not be compared, or other trouble.";
 
 const REPORT_USAGE: &str = "\
 pinhole report [OPTIONS] <SCENE>...
@@ -381,7 +398,7 @@ pub struct DiffArgs {
     pub a: PathBuf,
     /// Another picture, or a scene whose exact picture A is compared with
     pub b: PathBuf,
-    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, logarithmic
+    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, linear in steps of sRGB
     #[arg(short, long = "output", value_name = "HEATMAP")]
     pub output: Option<PathBuf>,
     /// How much a pixel may differ, in steps of 8-bit sRGB
@@ -390,9 +407,26 @@ pub struct DiffArgs {
     /// nothing, always comes on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
-    /// Let the tolerance alone judge, so that sampling noise is wrong, too; --tolerance implies it
-    #[arg(long)]
-    pub strict: bool,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// Arguments of `grade`.
+#[derive(Debug, clap::Args)]
+pub struct GradeArgs {
+    /// The scene: a .scn file, or a PNG that Pinhole wrote
+    pub scene: PathBuf,
+    /// The pictures, or folders of them
+    #[arg(required = true, value_name = "PICTURE")]
+    pub pictures: Vec<PathBuf>,
+    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: Option<PathBuf>,
     #[command(flatten)]
     pub overrides: Overrides,
     /// How many threads to use [default: one for each processor]

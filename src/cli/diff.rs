@@ -10,7 +10,7 @@ use pinhole::{
     area::Area,
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grading::{self, Kind, Verdict},
+    grade::{self, Grade},
     numbers::{grouped, short},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
@@ -80,20 +80,14 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let comparison = film::compare(&a.film, other.film(), tolerance);
     let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
-    let verdict = match (&other, &comparison) {
-        (Other::Scene(scene, exact), Ok(comparison)) => {
-            let part = Area::whole(scene.image.width, scene.image.height);
-            match grading::judge(&a.film, part, scene, &exact.film, comparison, &control) {
-                Ok(verdict) => Some(verdict),
-                Err(error) => return ended(error),
-            }
-        }
-        _ => None,
+    let grade = match (&other, is_equal) {
+        (_, true) => Ok(Grade::default()),
+        (Other::Picture(b), false) => Ok(grade::pictures(&a.film, &b.film)),
+        (Other::Scene(scene, exact), false) => grade::scene(&a.film, scene, &exact.film, &control),
     };
-    let is_strict = args.strict || args.tolerance.is_some();
-    let is_accepted = match &verdict {
-        Some(verdict) if !is_strict => matches!(verdict.kind, Kind::Right | Kind::Noise),
-        _ => is_equal,
+    let grade = match grade {
+        Ok(grade) => grade,
+        Err(error) => return ended(error),
     };
     let report = Report {
         names: [shown(&args.a), shown(&args.b)],
@@ -101,7 +95,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         is_scene: matches!(other, Other::Scene(..)),
         comparison,
         tolerance: steps,
-        verdict,
+        grade,
     };
     match args.format.format {
         Format::Human => output::to_people(&report.human()),
@@ -116,7 +110,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             Err(error) => return Err(Trouble(error.to_string())),
         }
     }
-    Ok(match is_accepted {
+    Ok(match is_equal {
         true => Status::Done,
         false => Status::SceneErrors,
     })
@@ -175,7 +169,7 @@ fn ended(error: RenderError) -> Result<Status, Trouble> {
     }
 }
 
-fn exact(scene: &Scene, cancel: &AtomicBool) -> Result<Exact, RenderError> {
+pub(super) fn exact(scene: &Scene, cancel: &AtomicBool) -> Result<Exact, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     progress::watched(whole.pixels(), |done| {
         let control = Control {
@@ -240,7 +234,7 @@ struct Report {
     is_scene: bool,
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    verdict: Option<Verdict>,
+    grade: Grade,
 }
 
 impl Report {
@@ -260,9 +254,6 @@ impl Report {
             1.0 => "1 step".to_owned(),
             steps => format!("{} steps", short(steps)),
         };
-        if let Some(verdict) = &self.verdict {
-            write_verdict(verdict, out)?;
-        }
         match &self.comparison {
             Err(SizesDiffer([w, h], [other_w, other_h])) => {
                 writeln!(out, "{a} and {b} differ in size")?;
@@ -325,6 +316,56 @@ impl Report {
                 )?;
             }
         }
+        for (place, verdict) in self.grade.likely.iter().enumerate() {
+            let word = match (place, verdict.is_sure()) {
+                (0, true) => "likely",
+                (0, false) => "perhaps",
+                _ => "or",
+            };
+            writeln!(out)?;
+            writeln!(out, "{word:<9} {}", verdict.message)?;
+            if let Some(explains) = verdict.explains {
+                writeln!(
+                    out,
+                    "          explains {} % of the squared difference{}",
+                    percent(explains),
+                    match verdict.is_sure() {
+                        true => "",
+                        false => "; the rest is more, and something else",
+                    }
+                )?;
+            }
+            writeln!(out, "          help: {}", verdict.help)?;
+        }
+        let differs = self
+            .comparison
+            .as_ref()
+            .is_ok_and(|found| !found.is_equal());
+        if self.grade.may_be_noise && self.grade.is_thin {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "Sampling noise would explain it, though so few pixels differ that they do not say that it is noise."
+            )?;
+        } else if self.grade.may_be_noise {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "Samples at the same places in all pixels may explain it: it is wrong only where colours meet, and nothing says what else it is."
+            )?;
+        } else if self.grade.is_thin {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "A simple mistake would explain it, but so few pixels tell of it that chance would, too."
+            )?;
+        } else if self.grade.likely.is_empty() && self.is_scene && differs {
+            writeln!(out)?;
+            writeln!(
+                out,
+                "No simple mistake explains it; `-o HEATMAP` shows where the pictures differ."
+            )?;
+        }
         Ok(())
     }
 
@@ -341,7 +382,22 @@ impl Report {
                 "b": plain(largest.b),
             })
         });
-        let mut value = json!({
+        let likely = self.grade.likely.iter().map(|verdict| {
+            json!({
+                "mistake": verdict.mistake,
+                "message": verdict.message,
+                "help": verdict.help,
+                "rmse": verdict.rmse,
+                "explains": verdict.explains,
+                "sure": verdict.is_sure(),
+                "off": verdict.off.map(|off| json!({
+                    "right": off.right,
+                    "down": off.down,
+                    "outwards": off.outwards,
+                })),
+            })
+        });
+        json!({
             "a": self.names[0],
             "b": self.names[1],
             "width": self.sizes[0][0],
@@ -353,66 +409,10 @@ impl Report {
             "undecided": found.map(|found| found.undecided),
             "tolerance": self.tolerance,
             "equal": found.is_some_and(Comparison::is_equal),
-        });
-        if let (Some(verdict), Some(object)) = (&self.verdict, value.as_object_mut()) {
-            object.extend(grading::json(verdict));
-        }
-        value
-    }
-}
-
-/// The verdict in one line, then mistake by mistake and object by object.
-fn write_verdict(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
-    writeln!(out, "{}", verdict.line())?;
-    for mistake in &verdict.mistakes {
-        writeln!(out)?;
-        writeln!(out, "mistake   {}", mistake.message)?;
-        let explains = percent(mistake.explains);
-        writeln!(
-            out,
-            "          explains {explains} % of the squared difference beyond noise"
-        )?;
-        writeln!(out, "          help: {}", mistake.help)?;
-        for set in &mistake.set {
-            writeln!(out, "          --set {}", quoted(set))?;
-        }
-    }
-    if let Some(rest) = verdict.rest {
-        writeln!(out)?;
-        writeln!(out, "rest      {} % is something else", percent(rest))?;
-    }
-    if verdict.is_cut {
-        writeln!(out)?;
-        writeln!(
-            out,
-            "limit     the scene has so much in it that not all mistakes were tried"
-        )?;
-    }
-    if !verdict.mistakes.is_empty() {
-        let objects = verdict.objects.iter().map(|object| {
-            let name = object.name.as_deref().unwrap_or(&object.title);
-            match (object.is_right, object.off >= 0.5) {
-                (true, _) => format!("{name} right"),
-                (false, true) => format!("{name} off by {} pixels", short(object.off.round())),
-                (false, false) => format!("{name} wrong"),
-            }
-        });
-        let background = match verdict.is_background_right {
-            true => "background right",
-            false => "background wrong",
-        };
-        let objects: Vec<_> = objects.chain([background.to_owned()]).collect();
-        writeln!(out)?;
-        writeln!(out, "objects   {}", objects.join(", "))?;
-    }
-    writeln!(out)
-}
-
-/// An argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    match argument.split_once('=') {
-        Some((target, value)) if value.contains(['(', ' ', '#']) => format!("{target}='{value}'"),
-        _ => argument.to_owned(),
+            "likely": likely.collect::<Vec<_>>(),
+            "thin": self.grade.is_thin,
+            "may_be_noise": self.grade.may_be_noise,
+        })
     }
 }
 

@@ -17,6 +17,8 @@ mod select;
 mod textbook;
 mod words;
 
+use std::sync::OnceLock;
+
 use serde_json::{Map, Value, json};
 
 use crate::{
@@ -114,32 +116,60 @@ pub struct Verdict {
     pub is_cut: bool,
 }
 
-/// Judges a picture of a part of a scene's. `comparison` is that with the exact picture.
-pub fn judge(
-    film: &Film,
+/// What pictures of a part of a scene's are judged by: made once, for a whole class.
+pub struct Reference<'a> {
+    scene: &'a Scene,
     part: Area,
-    scene: &Scene,
-    exact: &Film,
-    comparison: &Comparison,
-    control: &Control,
-) -> Result<Verdict, RenderError> {
-    if comparison.is_equal() {
-        return Ok(Verdict::of(Kind::Right, scene));
+    exact: &'a Film,
+    /// The mean of squares, made when it is asked for.
+    squares: OnceLock<Film>,
+}
+
+impl<'a> Reference<'a> {
+    /// From the exact picture of the part.
+    pub fn new(scene: &'a Scene, part: Area, exact: &'a Film) -> Self {
+        Self {
+            scene,
+            part,
+            exact,
+            squares: OnceLock::new(),
+        }
     }
-    let squares = exact_part(&squared(scene), part, control)?;
-    threads::install(control.threads, || {
-        judged(film, part, scene, exact, &squares, control)
-    })?
+
+    /// Judges a picture; `comparison` is that with the exact one.
+    ///
+    /// # Errors
+    ///
+    /// There is no memory for another picture, or it is not wanted any more.
+    pub fn judge(
+        &self,
+        film: &Film,
+        comparison: &Comparison,
+        control: &Control,
+    ) -> Result<Verdict, RenderError> {
+        if comparison.is_equal() {
+            return Ok(Verdict::of(Kind::Right, self.scene));
+        }
+        let squares = match self.squares.get() {
+            Some(squares) => squares,
+            None => {
+                let squares = exact_part(&squared(self.scene), self.part, control)?;
+                self.squares.get_or_init(|| squares)
+            }
+        };
+        threads::install(control.threads, || judged(film, self, squares, control))?
+    }
 }
 
 fn judged(
     film: &Film,
-    part: Area,
-    scene: &Scene,
-    exact: &Film,
+    reference: &Reference,
     squares: &Film,
     control: &Control,
 ) -> Result<Verdict, RenderError> {
+    let Reference {
+        scene, part, exact, ..
+    } = *reference;
     let variance = |(mean, square): (&[f64; 3], &[f64; 3])| {
         [0, 1, 2].map(|i| (square[i] - mean[i] * mean[i]).max(0.0))
     };
@@ -190,7 +220,8 @@ fn of_edges(search: &Search, right: Candidate) -> Result<Option<Found>, RenderEr
     let rows = ROWS.iter().filter(|row| row.is_of_edges);
     let judged = rows.filter_map(|row| search.judged(right.with(row.named())?));
     let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
-    Ok(best.filter(|best| best.cost < null.cost))
+    // What explains nothing of the squared difference explains the tails of noise.
+    Ok(best.filter(|best| best.cost < null.cost && best.score.squares < null.score.squares))
 }
 
 /// How many pixels of one colour have another, and how many of these have none of several colours beside them: an edge that is off by less than half a pixel
@@ -221,9 +252,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
     let named = &found.candidate.named;
     let beyond = |score: &Score| (score.squares - score.noise).max(0.0);
     let mut before = Candidate::right(scene);
-    let all = search
-        .judged(before.clone())
-        .map_or(f64::INFINITY, |found| found.score.squares);
+    let all = search.judge(before.clone()).score.squares;
     let all = (all - found.score.noise).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
@@ -234,7 +263,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         let is_last = after.named.len() == named.len();
         let score = match is_last {
             true => Some(found.score.clone()),
-            false => search.judged(after.clone()).map(|found| found.score),
+            false => Some(search.judge(after.clone()).score),
         };
         let now = score.map_or(left, |score| (score.squares - found.score.noise).max(0.0));
         let set = parameters::arguments(&before.scene, &after.scene);

@@ -183,7 +183,7 @@ impl Model {
     }
 
     /// The difference in light of what is seen from what is expected.
-    fn difference(&self, seen: f64, mean: f64, variance: [f64; 3]) -> f64 {
+    pub fn difference(&self, seen: f64, mean: f64, variance: [f64; 3]) -> f64 {
         if self.cut == 0.0 {
             return seen - mean;
         }

@@ -4,7 +4,7 @@
 //! few samples at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
 //! can be wrong in the ways in which a program can.
 
-use glam::{DVec2, DVec3};
+use glam::{BVec3, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::grid::Grid;
@@ -22,6 +22,16 @@ pub enum Visible {
     /// The farthest.
     Farthest,
 }
+
+/// A cell that shows one colour in these places, near its corners and in its middle, shows no other: an edge that passes between them cuts off a corner
+/// of a thousandth of it.
+const PROBES: [DVec2; 5] = [
+    DVec2::new(0.5, 0.5),
+    DVec2::new(0.04, 0.04),
+    DVec2::new(0.96, 0.96),
+    DVec2::new(0.96, 0.04),
+    DVec2::new(0.04, 0.96),
+];
 
 /// How a program behaves.
 #[derive(Clone, Debug)]
@@ -135,7 +145,8 @@ impl Axes {
 enum Prepared {
     Sphere {
         to: DVec3,
-        squared: f64,
+        /// The square of the distance less that of the radius.
+        power: f64,
     },
     /// A plane n·p = h, and for each edge a normal in it and its value.
     Triangle {
@@ -160,6 +171,8 @@ pub struct Textbook {
     near: f64,
     far: f64,
     shapes: Vec<Prepared>,
+    /// The part of the picture that each lies in, where that is known.
+    bounds: Vec<[DVec2; 2]>,
     /// For each object what its first and second colour count as in an average, the background's last.
     colors: Vec<[[f64; 3]; 2]>,
 }
@@ -173,9 +186,10 @@ impl Textbook {
         let shapes = scene.objects.iter().map(|object| match object.shape {
             Shape::Sphere(sphere) => {
                 colors.push([light(sphere.color); 2]);
+                let to = sphere.center - eye;
                 Prepared::Sphere {
-                    to: sphere.center - eye,
-                    squared: sphere.radius * sphere.radius,
+                    to,
+                    power: to.length_squared() - sphere.radius * sphere.radius,
                 }
             }
             Shape::Triangle(triangle) => {
@@ -208,13 +222,20 @@ impl Textbook {
             }
         });
         let shapes = shapes.collect();
+        let axes = Axes::new(&scene.camera, &scene.image);
+        let bounds = scene.objects.iter().map(|object| match behaviour.behind {
+            true => EVERYWHERE,
+            false => bounds(&object.shape, &axes).unwrap_or(EVERYWHERE),
+        });
+        let bounds = bounds.collect();
         colors.push([light(scene.image.background); 2]);
         Self {
-            axes: Axes::new(&scene.camera, &scene.image),
+            axes,
             behaviour,
             near: scene.camera.near,
             far: scene.camera.far.unwrap_or(f64::INFINITY),
             shapes,
+            bounds,
             colors,
         }
     }
@@ -227,6 +248,11 @@ impl Textbook {
             .into_par_iter()
             .map(|y| {
                 let cell = |x| {
+                    let first = self.color(grid.place(x, y, PROBES[0]));
+                    let is_flat = |probe: &DVec2| self.color(grid.place(x, y, *probe)) == first;
+                    if PROBES[1..].iter().all(is_flat) {
+                        return [first, [0.0; 3]];
+                    }
                     let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
                     for &place in &places {
                         let color = self.color(grid.place(x, y, place));
@@ -255,7 +281,7 @@ impl Textbook {
     pub fn labels(&self, grid: &Grid) -> Vec<Option<usize>> {
         let cell = |at: usize| {
             let (x, y) = (at % grid.width, at / grid.width);
-            self.seen(self.axes.ray(grid.place(x, y, DVec2::splat(0.5))))
+            self.seen(grid.place(x, y, DVec2::splat(0.5)))
                 .map(|(object, _)| object)
         };
         (0..grid.cells()).map(cell).collect()
@@ -268,16 +294,20 @@ impl Textbook {
             .places
             .iter()
             .fold(place, |place, to| to(place, size));
-        match self.seen(self.axes.ray(moved)) {
+        match self.seen(moved) {
             Some((object, second)) => self.colors[object][usize::from(second)],
             None => self.colors[self.shapes.len()][0],
         }
     }
 
-    /// The object that a ray of depth 1 sees, and whether it is a board's second colour.
-    fn seen(&self, ray: DVec3) -> Option<(usize, bool)> {
+    /// The object that is seen at a place, and whether it is a board's second colour.
+    fn seen(&self, place: DVec2) -> Option<(usize, bool)> {
+        let ray = self.axes.ray(place);
         let mut best: Option<(usize, f64)> = None;
-        for (object, shape) in self.shapes.iter().enumerate() {
+        for (object, (shape, [least, most])) in self.shapes.iter().zip(&self.bounds).enumerate() {
+            if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
+                continue;
+            }
             let Some(t) = self.crossing(shape, ray) else {
                 continue;
             };
@@ -308,9 +338,9 @@ impl Textbook {
             is_ahead || (self.behaviour.behind && t < 0.0)
         };
         match *shape {
-            Prepared::Sphere { to, squared } => {
+            Prepared::Sphere { to, power } => {
                 let (a, b) = (ray.length_squared(), ray.dot(to));
-                let root = b * b - a * (to.length_squared() - squared);
+                let root = b * b - a * power;
                 if root <= 0.0 {
                     return None;
                 }
@@ -345,6 +375,31 @@ impl Textbook {
             }
         }
     }
+}
+
+/// Bounds of what may be seen anywhere.
+const EVERYWHERE: [DVec2; 2] = [DVec2::NEG_INFINITY, DVec2::INFINITY];
+
+/// The rectangle of the picture that a shape lies in, if all of it lies before the eye.
+fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
+    let (min, max) = match shape {
+        Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
+        Shape::Box(cuboid) => (cuboid.min, cuboid.max),
+        Shape::Triangle(triangle) => {
+            let [a, b, c] = vertices(&triangle.outline);
+            (a.min(b).min(c), a.max(b).max(c))
+        }
+        Shape::Checkerboard(_) => return None,
+    };
+    let mut bounds = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    for corner in 0..8 {
+        let is_max = |bit: u32| corner >> bit & 1 == 1;
+        let corner = DVec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), max, min);
+        let place = axes.place(corner)?;
+        bounds = [bounds[0].min(place), bounds[1].max(place)];
+    }
+    // Room for roundings.
+    Some([bounds[0] - 1e-6, bounds[1] + 1e-6])
 }
 
 /// The vertices of a triangle: left and right base end, apex.

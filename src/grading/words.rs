@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     candidate::{Candidate, Cause, Named},
-    parameters::{Owner, Parameter},
+    parameters::Parameter,
     select::HALF_PIXEL,
     textbook::{Axes, vertices},
 };
