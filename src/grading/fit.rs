@@ -126,8 +126,9 @@ fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
         }
         for j in i + 1..count {
             let factor = rows[j][i] / rows[i][i];
-            for k in i..count {
-                rows[j][k] -= factor * rows[i][k];
+            let (above, below) = rows.split_at_mut(j);
+            for (to, from) in below[0][i..].iter_mut().zip(&above[i][i..]) {
+                *to -= factor * from;
             }
             right[j] -= factor * right[i];
         }

@@ -33,10 +33,10 @@ use crate::{
 const MOST_MISTAKES: usize = 4;
 
 /// So many are fitted and judged at a time, of those that explain most on the coarse grid.
-const FINALISTS: usize = 5;
+const FINALISTS: usize = 3;
 
 /// Of so many parameters numbers are fitted on the coarse grid.
-const FITTED: usize = 10;
+const FITTED: usize = 8;
 
 /// A move of less than this, in pixels, is not named.
 pub const HALF_PIXEL: f64 = 0.5;
@@ -48,7 +48,7 @@ const MIDDLE: (u32, usize) = (160, 8);
 const FINE: (u32, usize) = (640, 21);
 
 /// Rays times objects: for any picture, and for each of its pixels. Measured: 4 to 8 nanoseconds each.
-const WORK: f64 = 9e7;
+const WORK: f64 = 1.3e8;
 const WORK_OF_A_PIXEL: f64 = 200.0;
 
 /// A grid, and what a picture shows in it.
@@ -175,12 +175,25 @@ impl<'a> Search<'a> {
         tried.sort_by(|one, other| one.0.total_cmp(&other.0));
         let finalists = tried.into_iter().take(FINALISTS);
         let fitted = finalists.filter_map(|(_, candidate)| {
-            let candidate = self.fitted(candidate, &self.middle, 4)?.0;
+            let candidate = self.fitted(candidate, &self.middle, 2)?.0;
             self.may(&self.middle)
                 .then(|| self.judge_on(&self.middle, candidate))
         });
         let mut fitted: Vec<Found> = fitted.collect();
-        fitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+        // Something too many would explain anything; it is thought of where nothing else explains more than before.
+        let rank = |found: &Found| {
+            let is_patch = matches!(
+                found.candidate.named.last().map(|named| &named.cause),
+                Some(Cause::Patch(_))
+            );
+            (is_patch, found.cost)
+        };
+        let before = self.judge_on(&self.middle, from.candidate.clone()).cost;
+        fitted.retain(|found| found.cost < before);
+        fitted.sort_by(|one, other| {
+            let (one, other) = (rank(one), rank(other));
+            one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
+        });
         let best = self.refined(fitted.into_iter().next()?.candidate)?;
         let is_better = best.cost < from.cost;
         (is_better && words::is_seen(self.scene, &from.candidate, &best.candidate)).then_some(best)
@@ -249,7 +262,7 @@ impl<'a> Search<'a> {
             .into_iter()
             .take(FITTED)
             .filter_map(|(_, parameter, start)| {
-                let fitted = self.fit_one(candidate, &parameter, &self.coarse, start, 6)?;
+                let fitted = self.fit_one(candidate, &parameter, &self.coarse, start, 4)?;
                 let named = words::numbers(self.scene, &parameter, fitted.numbers);
                 Some((fitted.left, candidate.with(named)?))
             });
@@ -412,7 +425,7 @@ impl<'a> Search<'a> {
     /// A candidate with its numbers fitted on the finest grid, and with as few digits as do.
     fn refined(&self, candidate: Candidate) -> Option<Found> {
         let (candidate, errors) = self
-            .fitted(candidate.clone(), &self.fine, 2)
+            .fitted(candidate.clone(), &self.fine, 1)
             .unwrap_or((candidate, Vec::new()));
         let (named, numbers) = (candidate.named.clone(), joined(&candidate.named));
         let fitted = self.judged(candidate)?;
