@@ -72,7 +72,6 @@ fn main() {
         ("rename", json!({ "position": name, "newName": "other" })),
         ("documentSymbol", json!({})),
         ("foldingRange", json!({})),
-        ("selectionRange", json!({ "positions": [middle] })),
         ("inlayHint", json!({ "range": everything })),
         ("documentColor", json!({})),
         (
@@ -88,7 +87,6 @@ fn main() {
             json!({ "options": { "tabSize": 2, "insertSpaces": true } }),
         ),
         ("semanticTokens/full", json!({})),
-        ("diagnostic", json!({})),
     ];
     for (method, params) in questions {
         show(method, ROUNDS, || {
@@ -168,7 +166,6 @@ fn in_one_line(line: &str, rounds: u32) {
     let requests = [
         ("completion", json!({ "position": middle })),
         ("hover", json!({ "position": middle })),
-        ("selectionRange", json!({ "positions": [middle] })),
         ("documentSymbol", json!({})),
         ("documentColor", json!({})),
         (

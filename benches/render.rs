@@ -73,12 +73,16 @@ fn main() {
         overrides: Vec::new(),
         crop: None,
     };
+    let whole = Area::whole(WIDTH, HEIGHT);
     let [plain, png, exr] = least([
         &mut || {
             black_box(plain(&scene));
         },
         &mut || write_png(&film, &recipe, &mut Vec::new()).expect("a list takes all bytes"),
-        &mut || write_exr(&film, Cursor::new(Vec::new())).expect("a list takes all bytes"),
+        &mut || {
+            write_exr(&film, whole, whole, Cursor::new(Vec::new()))
+                .expect("a list takes all bytes");
+        },
     ]);
     println!(
         "its files, part of the time of random on the plain path: PNG {:.3}, EXR {:.3}",

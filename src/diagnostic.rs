@@ -9,13 +9,13 @@ mod report;
 #[cfg(feature = "cli")]
 mod visible;
 
-pub use fix::{Edit, Fix, apply, with_comments};
+pub use fix::{Edit, Fix, apply};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 #[cfg(feature = "cli")]
 pub use visible::visible;
 
-use std::fmt::Write;
+use serde_json::{Value, json};
 
 use crate::source::{Source, SourceId, Sources, Span};
 
@@ -87,96 +87,53 @@ pub fn sort(diagnostics: &mut [Diagnostic]) {
 
 /// Every diagnostic as a line of JSON, as the command line's contract says.
 pub fn json_lines(diagnostics: &[Diagnostic], sources: &Sources) -> String {
-    let mut lines = String::new();
-    for diagnostic in diagnostics {
-        push_json(&mut lines, diagnostic, sources);
-        lines.push('\n');
-    }
-    lines
+    let lines = diagnostics
+        .iter()
+        .map(|diagnostic| to_json(diagnostic, sources));
+    lines.map(|line| format!("{line}\n")).collect()
 }
 
 /// A diagnostic as a JSON value.
-pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> serde_json::Value {
-    let mut line = String::new();
-    push_json(&mut line, diagnostic, sources);
-    serde_json::from_str(&line).unwrap_or_default()
+pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
+    let labels = diagnostic.labels.iter().map(|label| {
+        let source = sources.get(label.span.source);
+        let span = clamp(label.span, source);
+        let (start, end) = (source.place(span.start), source.place(span.end));
+        let mut json = place(span, source);
+        json["line"] = start.line.into();
+        json["column"] = start.column.into();
+        json["end_line"] = end.line.into();
+        json["end_column"] = end.column.into();
+        json["message"] = label.message.as_str().into();
+        json
+    });
+    let fixes = diagnostic.fixes.iter().map(|fix| {
+        let edits = fix.edits.iter().map(|edit| {
+            let source = sources.get(edit.span.source);
+            let mut json = place(clamp(edit.span, source), source);
+            json["text"] = edit.text.as_str().into();
+            json
+        });
+        json!({ "title": fix.title, "edits": edits.collect::<Vec<_>>() })
+    });
+    json!({
+        "file": sources.file.name(),
+        "severity": diagnostic.severity.word(),
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "help": diagnostic.help,
+        "labels": labels.collect::<Vec<_>>(),
+        "fixes": fixes.collect::<Vec<_>>(),
+    })
 }
 
-// The objects are written field by field: a megabyte of garbage has hundreds of thousands of them.
-fn push_json(line: &mut String, diagnostic: &Diagnostic, sources: &Sources) {
-    push_field(line, "{\"file\":", sources.file.name());
-    push_field(line, ",\"severity\":", diagnostic.severity.word());
-    push_field(line, ",\"code\":", &diagnostic.code);
-    push_field(line, ",\"message\":", &diagnostic.message);
-    match &diagnostic.help {
-        Some(help) => push_field(line, ",\"help\":", help),
-        None => line.push_str(",\"help\":null"),
+/// A place in the text; of an argument, with its name.
+fn place(span: Span, source: &Source) -> Value {
+    let (offset, length) = (span.start, span.end - span.start);
+    match span.source {
+        SourceId::File => json!({ "offset": offset, "length": length }),
+        SourceId::Set(_) => json!({ "file": source.name(), "offset": offset, "length": length }),
     }
-    line.push_str(",\"labels\":[");
-    for (index, label) in diagnostic.labels.iter().enumerate() {
-        if index > 0 {
-            line.push(',');
-        }
-        push_label(line, label, sources);
-    }
-    line.push_str("],\"fixes\":[");
-    for (index, fix) in diagnostic.fixes.iter().enumerate() {
-        if index > 0 {
-            line.push(',');
-        }
-        push_fix(line, fix, sources);
-    }
-    line.push_str("]}");
-}
-
-fn push_fix(line: &mut String, fix: &Fix, sources: &Sources) {
-    push_field(line, "{\"title\":", &fix.title);
-    line.push_str(",\"edits\":[");
-    for (index, edit) in fix.edits.iter().enumerate() {
-        line.push_str(if index > 0 { ",{" } else { "{" });
-        let source = sources.get(edit.span.source);
-        let span = clamp(edit.span, source);
-        if span.source != SourceId::File {
-            push_field(line, "\"file\":", source.name());
-            line.push(',');
-        }
-        // Writing to a string does not fail.
-        let (start, length) = (span.start, span.end - span.start);
-        let _ = write!(line, "\"offset\":{start},\"length\":{length}");
-        push_field(line, ",\"text\":", &edit.text);
-        line.push('}');
-    }
-    line.push_str("]}");
-}
-
-fn push_label(line: &mut String, label: &Label, sources: &Sources) {
-    let source = sources.get(label.span.source);
-    let span = clamp(label.span, source);
-    let (start, end) = (source.place(span.start), source.place(span.end));
-    line.push('{');
-    if span.source != SourceId::File {
-        push_field(line, "\"file\":", source.name());
-        line.push(',');
-    }
-    // Writing to a string does not fail.
-    let _ = write!(
-        line,
-        "\"offset\":{},\"length\":{},\"line\":{},\"column\":{},\"end_line\":{},\"end_column\":{}",
-        span.start,
-        span.end - span.start,
-        start.line,
-        start.column,
-        end.line,
-        end.column
-    );
-    push_field(line, ",\"message\":", &label.message);
-    line.push('}');
-}
-
-fn push_field(line: &mut String, name: &str, text: &str) {
-    line.push_str(name);
-    // A text is always JSON.
-    line.push_str(&serde_json::to_string(text).unwrap_or_default());
 }
 
 /// A span that lies in its source, between characters: whatever a stage says, no printer reaches past the text.

@@ -55,81 +55,35 @@ impl Page {
     }
 }
 
-/// A list of pages by their codes.
-macro_rules! pages {
-    ($($code:ident)*) => {
-        &[$(Page {
-            code: stringify!($code),
-            text: include_str!(concat!("../grammar/codes/", stringify!($code), ".md")),
-        }),*]
+/// A line for each subject, with the codes of its pages.
+macro_rules! groups {
+    ($($name:literal: $($code:ident)*;)*) => {
+        /// Every page, by subject.
+        pub const GROUPS: &[Group] = &[$(Group {
+            name: $name,
+            pages: &[$(Page {
+                code: stringify!($code),
+                text: include_str!(concat!("../grammar/codes/", stringify!($code), ".md")),
+            }),*],
+        }),*];
     };
 }
 
-/// Every page, by subject.
-pub const GROUPS: &[Group] = &[
-    Group {
-        name: "The text",
-        pages: pages! { foreign_file not_in_language invalid_utf8 odd_space comment_sign unclosed_comment nested_comment quoted unexpected },
-    },
-    Group {
-        name: "Definitions",
-        pages: pages! {
-            missing_let missing_equals missing_name bad_name missing_value misplaced_let duplicate_let predefined_name
-            used_before_definition unknown_name
-        },
-    },
-    Group {
-        name: "Blocks",
-        pages: pages! {
-            missing_kind unknown_kind bad_head unopened_block unclosed_block nested_braces stray_closing outside_block
-            duplicate_block unexpected_name reserved_name duplicate_name missing_camera no_objects
-        },
-    },
-    Group {
-        name: "Fields",
-        pages: pages! {
-            unknown_field missing_field missing_field_name missing_space duplicate_field conflicting_fields needless_equals
-            needless_separator wrong_type out_of_range
-        },
-    },
-    Group {
-        name: "Numbers and angles",
-        pages: pages! {
-            bad_number decimal_comma plus_sign spaced_unit bare_angle number_too_large number_underflow
-        },
-    },
-    Group {
-        name: "Colours",
-        pages: pages! { unknown_color bad_color_code color_range unit_color },
-    },
-    Group {
-        name: "Vectors",
-        pages: pages! {
-            missing_parentheses brackets missing_comma needless_comma unclosed_parenthesis part_count part_type
-        },
-    },
-    Group {
-        name: "Calculations",
-        pages: pages! {
-            missing_operator missing_operand unknown_operator operand_types unknown_function foreign_function
-            function_without_arguments
-            argument_count argument_type not_finite too_deep
-        },
-    },
-    Group {
-        name: "The camera",
-        pages: pages! { view_undefined up_parallel empty_depth nothing_seen },
-    },
-    Group {
-        name: "Triangles and boxes",
-        pages: pages! { not_a_triangle on_one_line empty_box box_too_large },
-    },
-    Group {
-        name: "Samples",
-        pages: pages! { unknown_method few_samples too_many_samples },
-    },
-    Group {
-        name: "Overrides with --set",
-        pages: pages! { bad_set bad_target no_such_target },
-    },
-];
+groups! {
+    "The text": foreign_file not_in_language invalid_utf8 odd_space comment_sign unclosed_comment nested_comment quoted unexpected;
+    "Definitions": missing_let missing_equals missing_name bad_name missing_value misplaced_let duplicate_let predefined_name used_before_definition
+        unknown_name;
+    "Blocks": missing_kind unknown_kind bad_head unopened_block unclosed_block nested_braces stray_closing outside_block duplicate_block
+        unexpected_name reserved_name duplicate_name missing_camera no_objects;
+    "Fields": unknown_field missing_field missing_field_name missing_space duplicate_field conflicting_fields needless_equals needless_separator
+        wrong_type out_of_range;
+    "Numbers and angles": bad_number decimal_comma plus_sign spaced_unit bare_angle number_too_large number_underflow;
+    "Colours": unknown_color bad_color_code color_range unit_color;
+    "Vectors": missing_parentheses brackets missing_comma needless_comma unclosed_parenthesis part_count part_type;
+    "Calculations": missing_operator missing_operand unknown_operator operand_types unknown_function foreign_function function_without_arguments
+        argument_count argument_type not_finite too_deep;
+    "The camera": view_undefined up_parallel empty_depth nothing_seen;
+    "Triangles and boxes": not_a_triangle on_one_line empty_box box_too_large;
+    "Samples": unknown_method few_samples too_many_samples;
+    "Overrides with --set": bad_set bad_target no_such_target;
+}

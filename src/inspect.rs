@@ -240,39 +240,14 @@ fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
 /// The same for people.
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let camera = &self.camera;
         let [width, height] = self.size;
         writeln!(f, "image     {width} x {height} pixels")?;
         writeln!(f)?;
-        writeln!(f, "camera    looks {}", camera.looks)?;
-        let vectors = [
-            ("eye", camera.eye, ""),
-            ("u", camera.u, "  the picture's right"),
-            ("v", camera.v, "  the picture's top"),
-            ("w", camera.w, "  against the view direction"),
-        ];
-        for (name, vector, meaning) in vectors {
-            writeln!(f, "  {name:<7} {}{meaning}", short_vector(vector))?;
-        }
         writeln!(
             f,
-            "  d       {}, view height {}: a field of view of {} degrees, {} across",
-            short(camera.d),
-            short(camera.view_height),
-            short(camera.fov_deg),
-            short(camera.hfov_deg)
+            "{}",
+            camera_summary(&self.camera, &self.vanishing_points)
         )?;
-        let far = camera.far.map_or("endless".to_owned(), short);
-        writeln!(f, "  depth   from {} to {far}", short(camera.near))?;
-        writeln!(f)?;
-        writeln!(f, "vanishing points, in pixels from the top left corner")?;
-        for (axis, pixel) in AXES.iter().zip(&self.vanishing_points) {
-            match pixel {
-                Some([x, y]) => writeln!(f, "  {axis}       ({}, {})", short(*x), short(*y))?,
-                None => writeln!(f, "  {axis}       none: parallel to the view plane")?,
-            }
-        }
-        writeln!(f)?;
         let (method, total, seed) = (self.method.name(), grouped(self.total), self.seed);
         match (self.method, self.per_pixel) {
             (Method::Exact, _) => writeln!(f, "sampler   {method}: no samples")?,
@@ -299,6 +274,35 @@ impl fmt::Display for Inspection {
         }
         Ok(())
     }
+}
+
+/// A camera for people: its axes, its field of view, and where the parallels of each axis meet.
+pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>; 3]) -> String {
+    let mut text = format!("camera    looks {}\n", camera.looks);
+    let vectors = [
+        ("eye", camera.eye, ""),
+        ("u", camera.u, "  the picture's right"),
+        ("v", camera.v, "  the picture's top"),
+        ("w", camera.w, "  against the view direction"),
+    ];
+    for (name, vector, meaning) in vectors {
+        text += &format!("  {name:<7} {}{meaning}\n", short_vector(vector));
+    }
+    let [d, height] = [camera.d, camera.view_height].map(short);
+    let [fov, hfov] = [camera.fov_deg, camera.hfov_deg].map(short);
+    let far = camera.far.map_or("endless".to_owned(), short);
+    text += &format!(
+        "  d       {d}, view height {height}: a field of view of {fov} degrees, {hfov} across\n"
+    );
+    text += &format!("  depth   from {} to {far}\n\n", short(camera.near));
+    text += "vanishing points, in pixels from the top left corner\n";
+    for (axis, pixel) in AXES.iter().zip(vanishing_points) {
+        text += &match pixel {
+            Some([x, y]) => format!("  {axis}       ({}, {})\n", short(*x), short(*y)),
+            None => format!("  {axis}       none: parallel to the view plane\n"),
+        };
+    }
+    text
 }
 
 /// A shape in one line.

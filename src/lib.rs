@@ -15,7 +15,7 @@
 //! let cancel = AtomicBool::new(false);
 //! let control = render::Control { threads: None, progress: &|_| {}, cancel: &cancel };
 //! let film = render::render(&world, &sampling, Area::whole(64, 36), &control)?;
-//! film::write_exr(&film, std::io::Cursor::new(Vec::new()))?;
+//! film::write_exr(&film, Area::whole(64, 36), Area::whole(64, 36), std::io::Cursor::new(Vec::new()))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

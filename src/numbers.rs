@@ -28,6 +28,12 @@ pub fn short(x: f64) -> String {
     trimmed(&format!("{x:.decimals$}")).to_owned()
 }
 
+/// A number rounded to so many significant digits.
+pub fn significant(x: f64, digits: usize) -> f64 {
+    let after = digits.saturating_sub(1);
+    format!("{x:.after$e}").parse().unwrap_or(x)
+}
+
 /// A bound with two significant digits that is no less.
 pub fn at_most(bound: f64) -> String {
     if bound == 0.0 {

@@ -55,13 +55,12 @@ pub fn nearest<'c>(
 }
 
 /// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
-pub fn is_among(written: &str, words: &[&str]) -> bool {
-    let letters = |word: &'_ str| -> String {
-        let letters = word.chars().filter(|letter| *letter != '_');
-        letters.map(|letter| letter.to_ascii_lowercase()).collect()
-    };
+pub fn is_among(written: &str, words: &str) -> bool {
+    let letters = |word: &str| word.replace('_', "").to_ascii_lowercase();
     let written = letters(written);
-    words.iter().any(|word| letters(word) == written)
+    words
+        .split_whitespace()
+        .any(|word| letters(word) == written)
 }
 
 /// The words that a name is made of: `near_clip` and `nearClip` are near and clip.
@@ -101,29 +100,4 @@ fn join<'n>(names: impl IntoIterator<Item = &'n str>, word: &str) -> String {
         return last.to_owned();
     }
     format!("{} {word} {last}", names.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn near_names_only() {
-        let fields = ["center", "radius", "color", "d", "up"];
-        assert_eq!(nearest("radus", fields), Some("radius"));
-        assert_eq!(nearest("colour", fields), Some("color"));
-        assert_eq!(nearest("centre", fields), Some("center"));
-        assert_eq!(nearest("UP", fields), Some("up"));
-        assert_eq!(nearest("D", fields), Some("d"));
-        assert_eq!(nearest("x", fields), None);
-        assert_eq!(nearest("transparency", fields), None);
-        assert_eq!(nearest("", fields), None);
-    }
-
-    #[test]
-    fn lists() {
-        assert_eq!(list(["a"]), "a");
-        assert_eq!(list(["a", "b"]), "a and b");
-        assert_eq!(choice(["a", "b", "c"]), "a, b or c");
-    }
 }

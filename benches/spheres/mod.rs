@@ -2,6 +2,9 @@
 
 use std::fmt::Write;
 
+use pinhole::sampling::CounterRng;
+use rand::{Rng, RngExt, SeedableRng};
+
 /// How a block is laid out.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +33,7 @@ pub fn spheres(count: usize, layout: Layout) -> String {
         Layout::Blocks => ("\n  ", "\n  ", "\n}\n\n"),
         Layout::Lines => (" ", "  ", " }\n"),
     };
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut text = String::from(
         "// Many small spheres.\nlet unit = 0.05\nimage { width 1280  height 720 }\n\
          camera { eye (0, 40, 120)  lookat (0, 0, 0)  d 2.75 }\nsampler { method jittered  per_pixel 4 }\n\n",
@@ -84,7 +87,7 @@ pub fn crowd(count: usize) -> String {
     let (width, height, d) = (1280.0, 720.0, 2.75);
     let pitch = 2.0 / height / d;
     let radius = (COVERED * width * height / count as f64 / std::f64::consts::PI).sqrt();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut text = format!(
         "// Spheres all over the picture.\nimage {{ width {width}  height {height} }}\n\
          camera {{ eye (0, 0, 0)  direction (0, 0, -1)  d {d} }}\nsampler {{ method jittered  per_pixel 4 }}\n\n",
@@ -110,7 +113,7 @@ pub fn cube(count: usize) -> String {
     const COVERED: f64 = 1.5;
     const SIDE: f64 = 16.0;
     let radius = SIDE * (COVERED / count as f64 / std::f64::consts::PI).sqrt();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut text = String::from(
         "// Spheres in a cube.\nimage { width 1280  height 720 }\n\
          camera { eye (0, 0, 0)  direction (0, 0, -1)  d 2.75 }\nsampler { method jittered  per_pixel 4 }\n\n",
@@ -128,18 +131,19 @@ pub fn cube(count: usize) -> String {
     text
 }
 
-/// Vigna's splitmix64, so that the scene is the same everywhere.
-pub struct Random(pub u64);
+/// Numbers that are the same everywhere.
+pub struct Random(CounterRng);
 
 impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(CounterRng::seed_from_u64(seed))
+    }
+
     pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 }

@@ -192,7 +192,7 @@ pinhole report [OPTIONS] <SCENE>...
 
 const REPORT_EXAMPLES: &str = "\
 Renders the scenes by every method with more and more samples, several times and in mixed order, compares \
-the pictures with the exact one, and tells times, errors, and what an error takes. How many samples and \
+the pictures with the exact one, and tells which method comes to an error in the least CPU time. How many samples and \
 runs there are follows from the time that --budget gives, unless --samples and --runs say it.
 
 Examples:
@@ -201,7 +201,9 @@ Examples:
   pinhole report figure.scn --set image.width=640 --set image.height=360 --methods sobol,halton,exact
   pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
   pinhole report --numerics
-  pinhole report --numerics --inputs 1000000     the full count: half an hour of a processor";
+  pinhole report --numerics --inputs 1000000     the full count: half an hour of a processor
+
+In CSV and JSON, times are CPU times in seconds, unless they are called wall; errors (rmse) are in linear light.";
 
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
@@ -350,7 +352,7 @@ pub struct ReportArgs {
     /// The methods [default: all]
     #[arg(long, value_delimiter = ',', value_parser = method())]
     pub methods: Vec<Method>,
-    /// Samples per pixel [default: 1,4,16 and so on up to 1024, as far as the time goes, and once as many as an error should take]
+    /// Samples per pixel [default: 1,4,16 and so on, until all methods have come to the errors or the time is up]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
     /// Runs of each method with each number of samples [default: up to 9, as the time goes]
@@ -393,8 +395,8 @@ pub struct FmtArgs {
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
 pub struct DiffArgs {
-    /// A picture, PNG or EXR, or `-` for standard input; its numbers count as sRGB in a PNG and as linear
-    /// light in an EXR, and what is transparent is seen on black
+    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input; whole numbers
+    /// count as sRGB and floats as linear light, and what is transparent is seen on black
     pub a: PathBuf,
     /// Another picture, or a scene whose exact picture A is compared with
     pub b: PathBuf,

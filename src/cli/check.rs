@@ -12,6 +12,7 @@ use pinhole::{
 use super::{
     Status, Trouble,
     args::{CheckArgs, Format},
+    each,
     input::{Input, check_standard, is_standard, shown},
     interrupt::Interrupt,
     output,
@@ -30,18 +31,9 @@ pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             "--fix and --format json do not go together here: {hint}"
         )));
     }
-    let mut status = Status::Done;
-    for path in &args.scenes {
-        let found = one(path, args, interrupt).unwrap_or_else(|trouble| {
-            output::error(&trouble);
-            Status::Trouble
-        });
-        status = status.max(found);
-        if interrupt.pressed() {
-            return Ok(Status::Interrupted);
-        }
-    }
-    Ok(status)
+    Ok(each(&args.scenes, interrupt, |path| {
+        one(path, args, interrupt)
+    }))
 }
 
 fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {

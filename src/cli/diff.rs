@@ -11,7 +11,7 @@ use pinhole::{
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
     grade::{self, Grade},
-    numbers::{grouped, short},
+    numbers::{grouped, short, significant},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
     tracer::World,
@@ -42,7 +42,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             shown(&args.a)
         )));
     }
-    let a = film::read_picture(&a).map_err(|error| unreadable(&args.a, &error))?;
+    let a = read(&args.a, &a)?;
     let b = input::whole(&args.b).map_err(|error| unreadable(&args.b, &error))?;
     let cancel = interrupt.watch();
     let control = Control {
@@ -58,8 +58,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             );
             return Err(Trouble(message));
         }
-        let picture = film::read_picture(&b).map_err(|error| unreadable(&args.b, &error))?;
-        Other::Picture(picture)
+        Other::Picture(read(&args.b, &b)?)
     } else {
         let input = Input::of(&args.b, b, &args.overrides);
         let Some(scene) = input.scene().scene else {
@@ -145,6 +144,15 @@ impl Other {
     }
 }
 
+/// Reads a picture, and warns of what its format does to colours.
+fn read(path: &Path, bytes: &[u8]) -> Result<Picture, Trouble> {
+    let picture = film::read_picture(bytes).map_err(|error| unreadable(path, &error))?;
+    if let Some(warning) = picture.coding.warning() {
+        output::warning(&format!("{}: {warning}", shown(path)));
+    }
+    Ok(picture)
+}
+
 fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot read {}: {error}", shown(path)))
 }
@@ -156,9 +164,12 @@ fn is_scene(path: &Path) -> bool {
 /// Whether a file's ending is that of a picture, so that it is one, however broken.
 fn is_named_as_picture(path: &Path) -> bool {
     path.extension().is_some_and(|ending| {
-        ["png", "exr"]
-            .iter()
-            .any(|own| ending.eq_ignore_ascii_case(own))
+        [
+            "png", "exr", "ppm", "pgm", "pbm", "pam", "bmp", "tif", "tiff", "webp", "gif", "jpg",
+            "jpeg",
+        ]
+        .iter()
+        .any(|own| ending.eq_ignore_ascii_case(own))
     })
 }
 
@@ -312,7 +323,7 @@ impl Report {
                 writeln!(
                     out,
                     "rmse      {} in linear light, where white is 1",
-                    short(significant(found.rmse))
+                    short(significant(found.rmse, 3))
                 )?;
             }
         }
@@ -431,7 +442,7 @@ fn percent(share: f64) -> String {
 
 fn round(steps: f64) -> String {
     match steps < 0.1 {
-        true => short(significant(steps)),
+        true => short(significant(steps, 3)),
         false => short((100.0 * steps).round() / 100.0),
     }
 }
@@ -439,9 +450,4 @@ fn round(steps: f64) -> String {
 /// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
-}
-
-/// Three significant digits.
-fn significant(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
 }

@@ -13,6 +13,7 @@ use pinhole::{
 use super::{
     Status, Trouble,
     args::{FmtArgs, Overrides},
+    each,
     input::{Input, check_standard, is_standard, shown},
     interrupt::Interrupt,
     output,
@@ -22,18 +23,9 @@ use super::{
 pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let act = if args.check { compare } else { write };
-    let mut status = Status::Done;
-    for path in &args.scenes {
-        let found = one(path, act, interrupt).unwrap_or_else(|trouble| {
-            output::error(&trouble);
-            Status::Trouble
-        });
-        status = status.max(found);
-        if interrupt.pressed() {
-            return Ok(Status::Interrupted);
-        }
-    }
-    Ok(status)
+    Ok(each(&args.scenes, interrupt, |path| {
+        one(path, act, interrupt)
+    }))
 }
 
 /// What is done with a text and its layout; a long write ends when it is interrupted.

@@ -34,6 +34,7 @@ use std::{
     borrow::Cow,
     fmt::{Display, Formatter},
     io,
+    path::{Path, PathBuf},
     process::ExitCode,
 };
 
@@ -99,6 +100,26 @@ fn tell(answer: &clap::Error) -> ExitCode {
         }
         _ => status.into(),
     }
+}
+
+/// Does the same with each scene in turn. The status is the gravest one.
+fn each(
+    scenes: &[PathBuf],
+    interrupt: &Interrupt,
+    one: impl Fn(&Path) -> Result<Status, Trouble>,
+) -> Status {
+    let mut status = Status::Done;
+    for path in scenes {
+        let found = one(path).unwrap_or_else(|trouble| {
+            output::error(&trouble);
+            Status::Trouble
+        });
+        status = status.max(found);
+        if interrupt.pressed() {
+            return Status::Interrupted;
+        }
+    }
+    status
 }
 
 /// How a command ends.

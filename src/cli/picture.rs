@@ -236,7 +236,13 @@ impl Output {
     }
 
     /// Writes the picture, of which as much was kept as it takes, unless `cancel` is set.
-    pub fn write(&self, picture: &Picture, recipe: &Recipe, cancel: &AtomicBool) -> io::Result<()> {
+    pub fn write(
+        &self,
+        picture: &Picture,
+        recipe: &Recipe,
+        whole: Area,
+        cancel: &AtomicBool,
+    ) -> io::Result<()> {
         match self {
             Self::Standard => film::write_stream(output::Programs::new(), cancel, |out| {
                 write_png(picture, recipe, out)
@@ -245,7 +251,7 @@ impl Output {
                 film::write_whole(path, cancel, |out| match (format, picture) {
                     (Format::Png, _) => write_png(picture, recipe, out),
                     (Format::Exr, Picture::Sampled(film) | Picture::Exact(Exact { film, .. })) => {
-                        film::write_exr(film, out)
+                        film::write_exr(film, recipe.crop.unwrap_or(whole), whole, out)
                     }
                     // `keep` asks for light where it goes into an EXR.
                     (Format::Exr, Picture::Bytes(_) | Picture::ExactBytes(_)) => {
@@ -261,7 +267,7 @@ impl Output {
         let carries = !matches!(self, Self::File(_, Format::Exr));
         match carries && !recipe.fits() {
             true => output::worded_warning(&format!(
-                "the scene and its overrides have more than 1 MiB of text, so {self} does not carry them"
+                "the scene and its overrides have more than 1 MiB of text or 1000 overrides, so {self} does not carry them"
             )),
             false => String::new(),
         }

@@ -48,7 +48,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         Err(error) => return Err(Trouble(error.to_string())),
     };
     let recipe = input.recipe(crop);
-    if let Err(error) = output.write(&picture, &recipe, cancel) {
+    if let Err(error) = output.write(&picture, &recipe, whole, cancel) {
         if interrupt.pressed() {
             return Ok(Status::Interrupted);
         }

@@ -11,8 +11,7 @@ use pinhole::{
     film,
     render::{Control, RenderError},
     report::speed::{
-        self, Measurement, Plan, Request, Subject, Tries, against_samples, against_time, to_csv,
-        to_json,
+        self, Measurement, Request, Subject, against_samples, against_time, to_csv, to_json,
     },
     scene::{Method, Scene},
 };
@@ -21,10 +20,25 @@ use serde_json::json;
 use super::{
     Status, Trouble,
     args::{Format, ReportArgs, methods},
-    input::{Input, check_standard, is_standard, shown},
+    input::{Input, check_standard, is_same_file, is_standard, shown},
     interrupt::Interrupt,
     output, progress,
 };
+
+/// The progress bar has so many steps.
+const STEPS: u64 = 1000;
+
+/// The page on everything.
+const INDEX: &str = "index.html";
+
+/// What a folder holds, the page at the end.
+const FILES: [&str; 5] = [
+    "report.csv",
+    "report.json",
+    "error-against-time.svg",
+    "error-against-samples.svg",
+    INDEX,
+];
 
 /// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
@@ -33,7 +47,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     check_methods(&request)?;
     if let Some(folder) = &args.output {
         make_folder(folder)?;
-        let index = folder.join("index.html");
+        let index = folder.join(INDEX);
         film::check_writable(&index).map_err(|error| cannot_write(&index, &error))?;
     }
     let mut subjects = Vec::new();
@@ -55,6 +69,11 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if status != Status::Done {
         return Ok(status);
     }
+    let folders = args
+        .output
+        .as_deref()
+        .map(|folder| folders(folder, &args.scenes));
+    let folders = folders.transpose()?;
     let mut measured = Vec::new();
     for (subject, scene) in &subjects {
         let Some(found) = measure(subject, scene, &request, interrupt)? else {
@@ -62,7 +81,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         };
         if args.format.format == Format::Human {
             let gap = if measured.is_empty() { "" } else { "\n" };
-            output::to_people(&format!("{gap}{}", speed::table(&found)));
+            output::to_people(&format!("{gap}{}", speed::text(&found)));
         }
         measured.push(found);
         if interrupt.pressed() {
@@ -70,8 +89,13 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         }
     }
     // What was measured is kept, so Ctrl-C does not end the writing of it.
-    if let (Some(folder), false) = (&args.output, measured.is_empty()) {
-        write(folder, &args.scenes, &measured)?;
+    if let (Some(folder), Some(folders), false) = (&args.output, folders, measured.is_empty()) {
+        for (folder, measured) in folders.iter().zip(&measured) {
+            write_one(folder, measured)?;
+        }
+        if args.scenes.len() > 1 {
+            write_page(folder, &measured)?;
+        }
     }
     if args.format.format == Format::Json && !measured.is_empty() {
         let all = measured.iter().all(|measured| !measured.interrupted);
@@ -149,84 +173,68 @@ fn measure(
     request: &Request,
     interrupt: &Interrupt,
 ) -> Result<Option<Measurement>, Trouble> {
-    let cancel = interrupt.watch();
     let control = Control {
         threads: request.threads,
         progress: &|_| {},
-        cancel,
+        cancel: interrupt.watch(),
     };
-    let plan = counted(request.preparations(scene), &control, |control| {
-        Plan::new(subject, scene, request, control)
-    });
-    let measured = plan.and_then(|plan| {
-        let mut measured = counted(plan.total(), &control, |control| {
-            speed::measure(&plan, control)
-        })?;
-        let (runs, nanoseconds) = speed::further(&plan, &measured);
-        counted(nanoseconds, &control, |control| {
-            speed::measure_further(runs, &plan, control, &mut measured)
-        })?;
-        let tries = Tries::new(&plan, &measured);
-        counted(tries.total(), &control, |control| {
-            tries.run(&mut measured, control)
-        })?;
-        Ok(measured)
+    let measured = progress::watched(STEPS, |done| {
+        let tell = |share| done.store((share * STEPS as f64) as u64, Ordering::Relaxed);
+        speed::measure(subject, scene, request, &control, &tell)
     });
     match measured {
-        Ok(measured) if measured.rounds() == 0 => Ok(None),
+        Ok(measured) if measured.runs() == 0 => Ok(None),
         Ok(measured) => Ok(Some(measured)),
         Err(RenderError::Cancelled) => Ok(None),
         Err(error) => Err(Trouble(error.to_string())),
     }
 }
 
-/// Does work that tells its progress, and shows it.
-fn counted<T>(total: u64, control: &Control, work: impl FnOnce(&Control) -> T) -> T {
-    progress::watched(total, |done| {
-        let progress = |more| {
-            done.fetch_add(more, Ordering::Relaxed);
-        };
-        work(&Control {
-            threads: control.threads,
-            progress: &progress,
-            cancel: control.cancel,
-        })
-    })
-}
-
-/// Writes everything: of one scene into the folder itself, of several each into a folder there, under a page on all.
-fn write(folder: &Path, scenes: &[PathBuf], measured: &[Measurement]) -> Result<(), Trouble> {
-    if let [one] = measured
-        && scenes.len() == 1
-    {
-        return write_one(folder, one);
+/// Where the report of each scene goes: of one into the folder itself, of several each into a folder there, under a page on all. What cannot be
+/// written, or would write over a scene, is refused before anything is measured.
+fn folders(folder: &Path, scenes: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
+    let mut names = Vec::new();
+    if scenes.len() > 1 {
+        for scene in scenes {
+            names.push(name(scene, &names));
+        }
     }
-    let mut names: Vec<String> = Vec::new();
-    for (scene, measured) in scenes.iter().zip(measured) {
-        let name = name(scene, &names);
-        let folder = folder.join(&name);
-        make_folder(&folder)?;
-        write_one(&folder, measured)?;
-        names.push(name);
+    let mut folders: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
+    folders.iter().try_for_each(|folder| check_folder(folder))?;
+    if folders.is_empty() {
+        folders.push(folder.to_owned());
     }
-    write_page(folder, measured)
+    let files = folders
+        .iter()
+        .flat_map(|folder| FILES.map(|file| folder.join(file)));
+    for file in files.chain([folder.join(INDEX)]) {
+        if let Some(scene) = scenes.iter().find(|scene| is_same_file(&file, scene)) {
+            return Err(Trouble(format!(
+                "the report would write over the scene {}",
+                shown(scene)
+            )));
+        }
+    }
+    Ok(folders)
 }
 
 fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
-    let files = [
-        ("report.csv", to_csv(measured)),
-        ("report.json", format!("{:#}\n", to_json(measured))),
-        ("error-against-time.svg", against_time(measured)),
-        ("error-against-samples.svg", against_samples(measured)),
+    make_folder(folder)?;
+    let csv = folder.join("report.csv");
+    let texts = [
+        to_csv(measured).map_err(|error| cannot_write(&csv, &error))?,
+        format!("{:#}\n", to_json(measured)),
+        against_time(measured),
+        against_samples(measured),
     ];
-    for (name, text) in files {
+    for (name, text) in FILES.into_iter().zip(texts) {
         write_file(&folder.join(name), &text)?;
     }
     write_page(folder, std::slice::from_ref(measured))
 }
 
 fn write_page(folder: &Path, measured: &[Measurement]) -> Result<(), Trouble> {
-    let path = folder.join("index.html");
+    let path = folder.join(INDEX);
     let page = speed::page(measured).map_err(|error| cannot_write(&path, &error))?;
     write_file(&path, &page)
 }
@@ -237,13 +245,18 @@ fn write_file(path: &Path, text: &str) -> Result<(), Trouble> {
         .map_err(|error| cannot_write(path, &error))
 }
 
-fn make_folder(folder: &Path) -> Result<(), Trouble> {
-    if folder.is_file() {
-        return Err(Trouble(format!(
+fn check_folder(folder: &Path) -> Result<(), Trouble> {
+    match folder.is_file() {
+        true => Err(Trouble(format!(
             "{} is a file, and the report is a folder of files",
             shown(folder)
-        )));
+        ))),
+        false => Ok(()),
     }
+}
+
+fn make_folder(folder: &Path) -> Result<(), Trouble> {
+    check_folder(folder)?;
     fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
 }
 
@@ -251,13 +264,25 @@ fn cannot_write(path: &Path, error: &io::Error) -> Trouble {
     Trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
-/// A scene's folder: its file's name without the ending, with a number if another one has that.
+/// A scene's folder: its file's name without the ending, with a number if another one has that, or the page. It is a name within the report's
+/// folder, whatever the file is called: no dots at its ends, and nothing but letters, digits and what is usual between them.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
-        _ => "scene".to_owned(),
+        _ => String::new(),
+    };
+    let is_usual = |letter: char| letter.is_alphanumeric() || " .-_()+=,".contains(letter);
+    let stem = stem.replace(|letter| !is_usual(letter), "_");
+    let stem = match stem.trim_matches(['.', ' ']) {
+        "" => "scene",
+        stem => stem,
+    };
+    // There are file systems that do not tell capital letters from small ones.
+    let is_taken = |name: &String| {
+        let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
+        is_same(INDEX) || taken.iter().any(|other| is_same(other))
     };
     let numbered = (2..).map(|number| format!("{stem}-{number}"));
-    let mut names = [stem.clone()].into_iter().chain(numbered);
-    names.find(|name| !taken.contains(name)).unwrap_or(stem)
+    let mut names = [stem.to_owned()].into_iter().chain(numbered);
+    names.find(|name| !is_taken(name)).unwrap_or_default()
 }

@@ -136,16 +136,16 @@ fn make(
         Err(error) => return Err(Trouble(error.to_string())),
     };
     let recipe = input.recipe(None);
+    let whole = Area::whole(scene.image.width, scene.image.height);
     // The picture must not take the place of the scene, should a link lead there by now.
     let written = output.check(Some(&args.scene)).and_then(|()| {
-        let written = output.write(&picture, &recipe, is_stale);
+        let written = output.write(&picture, &recipe, whole, is_stale);
         written.map_err(|error| Trouble(format!("cannot write to {output}: {error}")))
     });
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
         return Ok(None);
     }
     let done = Instant::now();
-    let whole = Area::whole(scene.image.width, scene.image.height);
     let notes = picture.notes(whole, output);
     // Also one that cannot be written can be seen.
     if let Some(film) = picture.into_film() {

@@ -42,75 +42,41 @@ impl Fix {
         Self::new(title, [Edit::remove(span, sources)])
     }
 
-    /// Takes away fields or items, each as a whole: with the comments on its lines where nothing else stands on them, as they
+    /// Takes away a field or an item as a whole: with the comments on its lines where nothing else stands on them, as they
     /// speak of it.
-    pub fn remove_whole(
-        title: impl Into<String>,
-        spans: impl IntoIterator<Item = Span>,
-        sources: &Sources,
-    ) -> Self {
-        let mut title = title.into();
-        let mut commented = 0;
-        let edits: Vec<Edit> = spans
-            .into_iter()
-            .map(|span| {
-                let whole = with_comments(span, sources);
-                commented += usize::from(whole != span);
-                Edit::remove(whole, sources)
-            })
-            .collect();
-        title.push_str(match commented {
-            0 => "",
-            1 => ", with its comment",
-            _ => ", with their comments",
-        });
-        Self::new(title, edits)
+    pub fn remove_whole(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
+        let whole = with_comments(span, sources);
+        let title = match whole == span {
+            true => title.into(),
+            false => title.into() + ", with its comment",
+        };
+        Self::remove(title, whole, sources)
     }
 }
 
-/// A place with the comments that stand beside it on its first and its last line, if there is nothing else on these.
-pub fn with_comments(span: Span, sources: &Sources) -> Span {
+/// A place with the comments behind it, if there is nothing else on its lines.
+fn with_comments(span: Span, sources: &Sources) -> Span {
     let text = sources.get(span.source).text();
-    let (before, after) = (
-        text.get(..span.start).unwrap_or_default(),
-        text.get(span.end..).unwrap_or_default(),
-    );
-    let Some(in_front) = comments_in_front(before) else {
-        return span;
-    };
+    let after = text.get(span.end..).unwrap_or_default();
     let rest = past_comments(after);
-    if !(rest.is_empty() || rest.starts_with(['\n', '\r'])) {
+    if !starts_line(text.get(..span.start).unwrap_or_default()) || !ends_line(rest) {
         return span;
     }
     let behind = after.get(..after.len() - rest.len()).unwrap_or_default();
-    Span::new(
-        span.source,
-        span.start - in_front,
-        span.end + behind.trim_end().len(),
-    )
+    Span::new(span.source, span.start, span.end + behind.trim_end().len())
 }
 
-/// How long the comments are, with the blanks behind them, that a line starts with; none if it starts with something else.
-fn comments_in_front(before: &str) -> Option<usize> {
-    /// A line may be a megabyte, with a thousand things in it to ask this of.
-    const FAR: usize = 1000;
-    let outer = before.trim_end_matches([' ', '\t']);
-    if outer.is_empty() || outer.ends_with(['\n', '\u{feff}']) {
-        return Some(0);
-    }
-    if !outer.ends_with("*/") {
-        return None;
-    }
-    let near = before.as_bytes().iter().rev().take(FAR);
-    let length = match near.clone().position(|&byte| byte == b'\n') {
-        Some(length) => length,
-        None if near.len() == before.len() => before.trim_start_matches('\u{feff}').len(),
-        None => return None,
-    };
-    let line = before.get(before.len() - length..)?;
-    past_comments(line)
-        .is_empty()
-        .then(|| line.trim_start().len())
+const BLANK: [char; 2] = [' ', '\t'];
+
+/// Whether nothing stands in a line before what follows this text.
+fn starts_line(before: &str) -> bool {
+    let outer = before.trim_end_matches(BLANK);
+    outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
+}
+
+/// Whether nothing stands in a line before this rest of the text.
+fn ends_line(rest: &str) -> bool {
+    rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
 /// What follows the comments and blanks at the start of a text, up to the end of their line.
@@ -157,13 +123,11 @@ impl Edit {
             text.get(..start).unwrap_or_default(),
             text.get(end..).unwrap_or_default(),
         );
-        let blank = [' ', '\t'];
         let (outer, rest) = (
-            before.trim_end_matches(blank),
-            after.trim_start_matches(blank),
+            before.trim_end_matches(BLANK),
+            after.trim_start_matches(BLANK),
         );
-        let line_starts = outer.is_empty() || outer.ends_with(['\n', '\u{feff}']);
-        let line_ends = rest.is_empty() || rest.starts_with(['\n', '\r']);
+        let (line_starts, line_ends) = (starts_line(before), ends_line(rest));
         if line_starts && line_ends {
             let line_end = rest.find('\n').map_or(rest.len(), |at| at + 1);
             let to = text.len() - rest.len() + line_end;
@@ -195,79 +159,4 @@ pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     }
     applied.push_str(text.get(at..).unwrap_or_default());
     applied
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::source::Source;
-
-    #[test]
-    fn what_is_alone_on_its_line_goes_with_its_comments() {
-        let cases = [
-            (
-                "a\n  [b 1] // why\nc",
-                "a\nc",
-                "remove it, with its comment",
-            ),
-            (
-                "a\r\n  [b 1] // why\r\nc",
-                "a\r\nc",
-                "remove it, with its comment",
-            ),
-            (
-                "\u{feff}[b 1] /* x */ // y",
-                "\u{feff}",
-                "remove it, with its comment",
-            ),
-            (
-                "a\n /* x */ [b 1] /* y\n z */\nc",
-                "a\nc",
-                "remove it, with its comment",
-            ),
-            (
-                "a\n  // above\n  [b 1]\n  // below\nc",
-                "a\n  // above\n  // below\nc",
-                "remove it",
-            ),
-            ("a 1  [b 1] // both\nc", "a 1 // both\nc", "remove it"),
-            ("[b 1] /* c */ c 1\nd", "/* c */ c 1\nd", "remove it"),
-            ("/* a\n a */ [b 1] // c", "/* a\n a */ // c", "remove it"),
-            ("{ [b 1] // c\n}", "{ // c\n}", "remove it"),
-        ];
-        for (text, expected, title) in cases {
-            let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
-            let text = text.replace(['[', ']'], "");
-            let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
-            let span = Span::new(SourceId::File, start, end);
-            let fix = Fix::remove_whole("remove it", [span], &sources);
-            assert_eq!(apply(&fix, SourceId::File, &text), expected);
-            assert_eq!(fix.title, title);
-        }
-    }
-
-    #[test]
-    fn what_is_removed_leaves_no_gap() {
-        let cases = [
-            ("a\n  [b 1]\nc", "a\nc"),
-            ("a\n  [b 1]", "a\n"),
-            ("\u{feff}[b 1]\r\nc", "\u{feff}c"),
-            ("{ a 1  [b 1]  c 1 }", "{ a 1  c 1 }"),
-            ("{ [b 1]  c 1 }", "{ c 1 }"),
-            ("{ a 1  [b 1] }", "{ a 1 }"),
-            ("a 1[;]b 2", "a 1 b 2"),
-            ("a [=] 2", "a 2"),
-            ("a[=]2", "a 2"),
-            ("(1, 2[,])", "(1, 2)"),
-            ("  [b 1]  // why\nc", "  // why\nc"),
-        ];
-        for (text, expected) in cases {
-            let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
-            let text = text.replace(['[', ']'], "");
-            let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
-            let span = Span::new(SourceId::File, start, end);
-            let fix = Fix::remove("remove it", span, &sources);
-            assert_eq!(apply(&fix, SourceId::File, &text), expected);
-        }
-    }
 }

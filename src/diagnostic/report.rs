@@ -12,7 +12,7 @@ use miette::{
 
 use super::{
     Diagnostic, Label, Severity, clamp, summary,
-    visible::{is_invisible, push_visible, visible},
+    visible::{push_visible, visible},
 };
 use crate::{
     explain::short,
@@ -246,16 +246,8 @@ struct ExcerptLine {
     start: usize,
     /// Where it ends in the excerpt, without its line feed.
     end: usize,
-    /// The pieces of the source that it shows.
-    pieces: Vec<Piece>,
-}
-
-#[derive(Debug)]
-struct Piece {
-    /// Where it starts in the excerpt.
-    start: usize,
-    /// What it shows of the source.
-    shown: Range<usize>,
+    /// Where the characters that it shows stand, in the source and in the excerpt, and where they end.
+    shown: Vec<(usize, usize)>,
 }
 
 /// A line up to this length is shown whole.
@@ -326,17 +318,19 @@ impl<'s> Excerpt<'s> {
             self.text.push('\n');
         }
         let start = self.text.len();
-        let mut pieces = Vec::new();
-        for shown in shown_pieces(self.source, range.clone(), labels) {
-            if shown.start > range.start {
+        let mut shown = Vec::new();
+        for piece in shown_pieces(self.source, range.clone(), labels) {
+            if piece.start > range.start {
                 self.text.push('…');
             }
-            self.push_pieces(shown.clone(), &mut pieces);
+            for (at, character) in self.source.slice(piece.clone()).char_indices() {
+                shown.push((piece.start + at, self.text.len()));
+                // A control character takes more than its own bytes.
+                push_visible(&mut self.text, character);
+            }
+            shown.push((piece.end, self.text.len()));
         }
-        if pieces
-            .last()
-            .is_some_and(|piece| piece.shown.end < range.end)
-        {
+        if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
         // A label at the end of the line needs something to stand under.
@@ -345,56 +339,20 @@ impl<'s> Excerpt<'s> {
             number,
             start,
             end: self.text.len(),
-            pieces,
+            shown,
         });
         self.text.push('\n');
-    }
-
-    /// Adds a part of a line. What is shown as its code is a piece of its own, as it takes more than its own bytes.
-    fn push_pieces(&mut self, shown: Range<usize>, pieces: &mut Vec<Piece>) {
-        let mut is_alone = true;
-        for (at, character) in self.source.slice(shown.clone()).char_indices() {
-            let at = shown.start + at;
-            let is_code = is_invisible(character);
-            if is_alone || is_code {
-                pieces.push(Piece {
-                    start: self.text.len(),
-                    shown: at..at,
-                });
-            }
-            is_alone = is_code;
-            push_visible(&mut self.text, character);
-            if let Some(piece) = pieces.last_mut() {
-                piece.shown.end = at + character.len_utf8();
-            }
-        }
-        if pieces.is_empty() {
-            pieces.push(Piece {
-                start: self.text.len(),
-                shown,
-            });
-        }
     }
 
     /// Where an offset of the source stands in the excerpt.
     fn offset_of(&self, offset: usize) -> usize {
         let number = self.source.line(offset);
-        let Some(line) = self.lines.iter().find(|line| line.number == number) else {
-            return 0;
-        };
-        let piece = line
-            .pieces
-            .iter()
-            .rev()
-            .find(|piece| piece.shown.start <= offset)
-            .or(line.pieces.first());
-        match piece {
-            Some(piece) => {
-                let within = offset.clamp(piece.shown.start, piece.shown.end) - piece.shown.start;
-                (piece.start + within).min(line.end - 1)
-            }
-            None => line.start,
-        }
+        let line = self.lines.iter().find(|line| line.number == number);
+        let mut shown = line.into_iter().flat_map(|line| line.shown.iter().rev());
+        let found = shown.find(|(at, _)| *at <= offset);
+        // A byte order mark is not shown.
+        let start = line.map_or(0, |line| line.start);
+        found.map_or(start, |(_, place)| *place)
     }
 
     fn line_at(&self, offset: usize) -> Option<(usize, &ExcerptLine)> {
@@ -424,12 +382,9 @@ impl SourceCode for Excerpt<'_> {
         }
         let data = self.text.as_bytes();
         let data = data.get(first.start..last.end).unwrap_or_default();
-        let real = first
-            .pieces
-            .iter()
-            .rev()
-            .find(|piece| piece.start <= span.offset())
-            .map_or(0, |piece| piece.shown.start + (span.offset() - piece.start));
+        let mut shown = first.shown.iter().rev();
+        let real = shown.find(|(_, place)| *place <= span.offset());
+        let real = real.map_or(0, |(at, _)| *at);
         Ok(Box::new(MietteSpanContents::new_named(
             visible(self.source.name()).into_owned(),
             data,
@@ -443,17 +398,15 @@ impl SourceCode for Excerpt<'_> {
 
 /// The part of a label that is drawn.
 fn shorten(span: Span, source: &Source) -> Span {
-    let span = clamp(span, source);
-    let (first, last) = (source.line(span.start), source.line(span.end));
-    let mut span = span;
-    if last - first >= MOST_LINES {
-        span.end = source.line_range(first).end.max(span.start);
+    let mut span = clamp(span, source);
+    let first = source.line(span.start);
+    let line = source.line_range(first);
+    if source.line(span.end) - first >= MOST_LINES {
+        span.end = line.end.max(span.start);
     }
-    if first == last || last - first >= MOST_LINES {
+    if source.line(span.end) == first && line.len() > LONG_LINE {
         let long = source.floor_char_boundary(span.start + LONG_LABEL);
-        if source.line_range(first).len() > LONG_LINE {
-            span.end = span.end.min(long);
-        }
+        span.end = span.end.min(long);
     }
     span
 }

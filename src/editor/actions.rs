@@ -1,8 +1,9 @@
-//! Quick fixes: the ways out of a diagnostic that are edits.
+//! Changes of the text: the ways out of diagnostics, and the canonical layout.
 
 use super::{Analysis, tokens::file};
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix},
+    format::format_parsed,
     scene,
     source::{SourceId, Span},
 };
@@ -32,11 +33,21 @@ pub fn fixes<'a>(
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
     let fixed = scene::fix_all(analysis.model.sources());
     let edit = change(analysis.text(), &fixed.text);
-    (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed", [edit]))
+    (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed", edit))
 }
 
-/// What has to take the place of what for a text to become another one.
-fn change(text: &str, new: &str) -> Edit {
+/// What leads to the canonical layout; none if the text has mistakes of syntax.
+pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<Edit>> {
+    let formatted = format_parsed(analysis.source(), &analysis.model.parsed)?;
+    let edit = change(analysis.text(), &formatted);
+    Some(edit.into_iter().collect())
+}
+
+/// What has to take the place of what for a text to become another one; none if it is the same.
+fn change(text: &str, new: &str) -> Option<Edit> {
+    if text == new {
+        return None;
+    }
     let same = |(a, b): &(char, char)| a == b;
     let width = |(c, _): (char, char)| c.len_utf8();
     let start: usize = text
@@ -50,5 +61,5 @@ fn change(text: &str, new: &str) -> Edit {
     let end: usize = backwards.take_while(same).map(width).sum();
     let place = file(start, text.len() - end);
     let written = new.get(..new.len() - end).unwrap_or_default();
-    Edit::new(place, written)
+    Some(Edit::new(place, written))
 }

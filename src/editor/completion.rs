@@ -82,6 +82,25 @@ pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     completions
 }
 
+/// A word of the language, or a name, that is put in as it is.
+fn word(
+    situation: &Situation,
+    word: &str,
+    kind: CompletionKind,
+    [detail, help]: [String; 2],
+    rank: u8,
+) -> Completion {
+    Completion {
+        label: word.to_owned(),
+        kind,
+        detail,
+        help,
+        insert: vec![text(word)],
+        replaces: situation.word,
+        rank,
+    }
+}
+
 fn text(text: impl Into<String>) -> Piece {
     Piece::Text(text.into())
 }
@@ -144,7 +163,7 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
             pieces.push(text(between));
         }
         pieces.push(text(format!("{:width$} ", field.name)));
-        pieces.extend(value_to_type_over(&field.example()));
+        pieces.extend(value_to_type_over(field.example));
     }
     if least.is_empty() {
         pieces.push(hole(""));
@@ -207,11 +226,7 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         Completion {
             label: field.name.to_owned(),
             kind: CompletionKind::Field,
-            detail: match field.preset {
-                Preset::Value(literal) => format!("{}, {literal} by default", field.takes.word()),
-                Preset::Required => format!("{}, required", field.takes.word()),
-                Preset::Alternative | Preset::Nothing => field.takes.word().to_owned(),
-            },
+            detail: describe::kind_and_preset(field).replace('`', ""),
             help: describe::about_field(row, field),
             insert,
             replaces: situation.word,
@@ -250,14 +265,9 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
 
 fn methods(situation: &Situation) -> Vec<Completion> {
     let methods = schema::METHODS.iter();
-    let methods = methods.map(|(method, help)| Completion {
-        label: method.name().to_owned(),
-        kind: CompletionKind::Method,
-        detail: (*help).to_owned(),
-        help: (*help).to_owned(),
-        insert: vec![text(method.name())],
-        replaces: situation.word,
-        rank: 0,
+    let methods = methods.map(|(method, help)| {
+        let about = [*help; 2].map(str::to_owned);
+        word(situation, method.name(), CompletionKind::Method, about, 0)
     });
     methods.collect()
 }
@@ -308,18 +318,14 @@ fn definitions(
         if !fits {
             continue;
         }
-        completions.push(Completion {
-            label: name.text.to_owned(),
-            kind: match value {
-                Some(Value::Color(color)) => CompletionKind::Color(color),
-                _ => CompletionKind::Definition,
-            },
-            detail: value.map(|value| value.to_string()).unwrap_or_default(),
-            help: hover::about_definition(analysis, definition),
-            insert: vec![text(name.text)],
-            replaces: situation.word,
-            rank: rank(situation, kind),
-        });
+        let rank = rank(situation, kind);
+        let kind = match value {
+            Some(Value::Color(color)) => CompletionKind::Color(color),
+            _ => CompletionKind::Definition,
+        };
+        let detail = value.map(|value| value.to_string()).unwrap_or_default();
+        let about = [detail, hover::about_definition(analysis, definition)];
+        completions.push(word(situation, name.text, kind, about, rank));
     }
     completions
 }
@@ -331,48 +337,38 @@ fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
         Some(is_color) => gives_color(function) == is_color,
         None => true,
     });
-    let functions = functions.map(|function| Completion {
-        label: function.name.to_owned(),
-        kind: CompletionKind::Function,
-        detail: describe::signature(function).0,
-        help: describe::about_function(function),
-        insert: match situation.goes_on {
-            true => vec![text(function.name)],
-            false => {
-                let open = format!("{}(", function.name);
-                list_to_type_over(&open, function.example().iter().copied())
-            }
-        },
-        replaces: situation.word,
-        rank: rank(situation, Some(function.gives)) + 2,
+    let functions = functions.map(|function| {
+        let about = [
+            describe::signature(function).0,
+            describe::about_function(function),
+        ];
+        let rank = rank(situation, Some(function.gives)) + 2;
+        let kind = CompletionKind::Function;
+        let mut completion = word(situation, function.name, kind, about, rank);
+        if !situation.goes_on {
+            let open = format!("{}(", function.name);
+            completion.insert = list_to_type_over(&open, function.example().iter().copied());
+        }
+        completion
     });
     functions.collect()
 }
 
 fn constants(situation: &Situation) -> Vec<Completion> {
     let constants = schema::CONSTANTS.iter();
-    let constants = constants.map(|(name, help)| Completion {
-        label: (*name).to_owned(),
-        kind: CompletionKind::Constant,
-        detail: (*help).to_owned(),
-        help: (*help).to_owned(),
-        insert: vec![text(*name)],
-        replaces: situation.word,
-        rank: 5,
+    let constants = constants.map(|(name, _, help)| {
+        let about = [*help; 2].map(str::to_owned);
+        word(situation, name, CompletionKind::Constant, about, 5)
     });
     constants.collect()
 }
 
 fn colors(situation: &Situation) -> Vec<Completion> {
     let colors = css::names().filter_map(|name| Some((name, css::color(name)?)));
-    let colors = colors.map(|(name, color)| Completion {
-        label: name.to_owned(),
-        kind: CompletionKind::Color(color),
-        detail: color.to_string(),
-        help: hover::about_color(color),
-        insert: vec![text(name)],
-        replaces: situation.word,
-        rank: if situation.wanted.is_some() { 2 } else { 6 },
+    let colors = colors.map(|(name, color)| {
+        let about = [color.to_string(), hover::about_color(color)];
+        let rank = if situation.wanted.is_some() { 2 } else { 6 };
+        word(situation, name, CompletionKind::Color(color), about, rank)
     });
     colors.collect()
 }

@@ -6,6 +6,7 @@ use crate::{
     math::Angle,
     numbers::{grouped, short},
     scene::{Count, Method, Value, css, schema},
+    schema::Type,
     syntax::tree::{self, Block, Field, ValueKind},
 };
 
@@ -57,7 +58,8 @@ pub fn hints(analysis: &Analysis<'_>, within: std::ops::Range<usize>) -> Vec<Hin
 /// What a field's expression comes to.
 fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<String> {
     let row = schema::block(block.kind?.text)?.field(field.name.text)?;
-    if !is_computed(&field.value) {
+    // The words of methods are none of the text's names, whatever these are called.
+    if row.takes == Type::Method || !is_computed(&field.value) {
         return None;
     }
     let value = analysis.model.value(&field.value, Some(row.takes))?;
@@ -78,12 +80,10 @@ fn is_computed(value: &tree::Value<'_>) -> bool {
 
 /// What follows from a field together with others.
 fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Option<String> {
-    if !counts(analysis, block, field) {
-        return None;
-    }
     let parts = &analysis.model.parts;
     let image = parts.image?;
     match (block.kind?.text, field.name.text) {
+        ("camera" | "sampler", _) if is_disputed(analysis, block, field) => None,
         ("camera", "d") => {
             let (camera, _) = inspect::inspect_camera(&parts.camera?, &image);
             Some(format!(
@@ -110,22 +110,9 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     }
 }
 
-/// Whether the scene has this field's value: its block is the first of its kind, and no other field stands against it.
-fn counts(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
-    let Some(kind) = block.kind else {
-        return false;
-    };
-    let row = schema::block(kind.text);
-    let is_against = |other: &&Field<'_>| {
-        let name = other.name.text;
-        let is_excluded = row.is_some_and(|row| {
-            row.excludes(field.name.text)
-                .any(|excluded| excluded == name)
-        });
-        other.span != field.span && (name == field.name.text || is_excluded)
-    };
-    let mut blocks = analysis.blocks();
-    let first = blocks.find(|other| other.kind.is_some_and(|other| other.text == kind.text));
-    first.is_some_and(|first| first.span == block.span)
-        && !block.fields.iter().any(|f| is_against(&f))
+/// Whether the field or its block stands against another one, which is reported.
+fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
+    let diagnostics = analysis.diagnostics().iter();
+    let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);
+    labels.any(|label| label.span == field.name.span || label.span == block.keyword())
 }

@@ -9,7 +9,7 @@ use crate::{
     color::Color,
     explain, inspect,
     math::Angle,
-    numbers::{short, short_vector},
+    numbers::short,
     scene::{
         Value, css,
         describe::{ABOUT_LET, about_block, about_field, about_function},
@@ -140,34 +140,8 @@ fn kind(analysis: &Analysis<'_>, row: &Block) -> String {
 fn camera(analysis: &Analysis<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
-    let mut text = format!(
-        "looks {}; a field of view of {} degrees, `d {}`, `view_height {}`\n",
-        camera.looks,
-        short(camera.fov_deg),
-        short(camera.d),
-        short(camera.view_height)
-    );
-    let axes = [
-        ("u", camera.u, "the picture's right"),
-        ("v", camera.v, "the picture's top"),
-        ("w", camera.w, "against the view direction"),
-    ];
-    for (name, axis, meaning) in axes {
-        text += &format!("\n- `{name}` {}, {meaning}", short_vector(axis));
-    }
-    for (axis, point) in ["x", "y", "z"].into_iter().zip(points) {
-        text += &match point {
-            Some([x, y]) => format!(
-                "\n- vanishing point of {axis}: pixel ({}, {})",
-                short(x),
-                short(y)
-            ),
-            None => {
-                format!("\n- vanishing point of {axis}: none, it is parallel to the view plane")
-            }
-        };
-    }
-    Some(text)
+    let summary = inspect::camera_summary(&camera, &points);
+    Some(format!("```text\n{summary}```"))
 }
 
 /// An object, as `inspect` shows it.
@@ -185,22 +159,18 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     })
 }
 
-/// Which of the values around a place there is something to say of: the smallest one; or what a number or a vector that says all
-/// itself is an operand or an argument of.
+/// Which of the values around a place there is something to say of: the smallest one; or what a number, a list or a sign is an operand or an
+/// argument of.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
+    use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
-    let says_all = match value.kind {
-        ValueKind::Number(_)
-        | ValueKind::Tuple(_)
-        | ValueKind::Parentheses(_)
-        | ValueKind::Negation { .. } => is_literal(value),
-        _ => false,
-    };
-    let is_computed = |value: &&tree::Value<'_>| {
-        matches!(value.kind, ValueKind::Chain { .. } | ValueKind::Call(_))
-    };
+    let is_part = matches!(
+        value.kind,
+        Number(_) | Tuple(_) | Parentheses(_) | Negation { .. }
+    );
+    let is_computed = |value: &&tree::Value<'_>| matches!(value.kind, Chain { .. } | Call(_));
     let computed = around.iter().rposition(is_computed);
-    Some(computed.filter(|_| says_all).unwrap_or(around.len()))
+    Some(computed.filter(|_| is_part).unwrap_or(around.len()))
 }
 
 /// What a value comes to.
@@ -222,7 +192,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
                 return about(value.span, format!("`{name}` is {}", described(found?)));
             }
             let mut constants = schema::CONSTANTS.iter();
-            let (name, help) = constants.find(|(constant, _)| constant == name)?;
+            let (name, _, help) = constants.find(|(constant, ..)| constant == name)?;
             about(value.span, format!("`{name}`: {help}"))
         }
         ValueKind::Call(call) if token.role == Role::Function => {

@@ -69,7 +69,7 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
             format!("`{word}` is a word of the language")
         }
         Role::Name | Role::Defined => match predefined(word) {
-            Some(what) => format!("`{word}` is {what} of the language"),
+            Some(what) => format!("`{word}` is {} of the language", what.noun()),
             None => format!("`{word}` is not defined"),
         },
         _ => "no name stands here".to_owned(),
@@ -95,7 +95,9 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
     }
     let is_reserved = |name: &str| schema::block(name).is_some_and(|row| !row.is_object);
     match (space, predefined(new)) {
-        (Space::Lets, Some(what)) => return Err(format!("`{new}` is {what} of the language")),
+        (Space::Lets, Some(what)) => {
+            return Err(format!("`{new}` is {} of the language", what.noun()));
+        }
         (Space::Objects, _) if is_reserved(new) => {
             return Err(format!("`{new}` is the name of the {new} block"));
         }

@@ -96,5 +96,5 @@ fn classified(analysis: &Analysis<'_>, token: &Token) -> Option<SemanticToken> {
 }
 
 fn is_constant(word: &str) -> bool {
-    schema::CONSTANTS.iter().any(|&(name, _)| name == word)
+    schema::CONSTANTS.iter().any(|&(name, ..)| name == word)
 }

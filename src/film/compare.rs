@@ -31,6 +31,14 @@ pub struct Tolerance<'a> {
     pub bounds: Option<&'a [f32]>,
 }
 
+impl Tolerance<'_> {
+    /// What comes on top in one pixel, in steps.
+    fn open(&self, at: usize) -> f64 {
+        let bound = self.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
+        bound * STEEPEST
+    }
+}
+
 /// The answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
@@ -92,32 +100,22 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
     check_sizes(a, b)?;
     let mut largest = Largest::default();
     let (mut beyond, mut undecided) = (0, 0);
-    for (at, (p, q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
-        let bound = tolerance.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
-        if p == q && bound == 0.0 {
+    for (at, (&p, &q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+        let (limit, open) = (tolerance.steps + SLACK, tolerance.open(at));
+        if p == q && open == 0.0 {
             continue;
         }
-        let (x, y) = (
-            (at % a.width as usize) as u32,
-            (at / a.width as usize) as u32,
-        );
-        let mut most = 0.0;
-        for channel in 0..3 {
-            let (a, b) = (steps(p[channel]), steps(q[channel]));
-            let difference = (a - b).abs();
-            most = f64::max(most, difference);
-            if difference > largest.steps {
-                largest = Largest {
-                    steps: difference,
-                    x,
-                    y,
-                    channel,
-                    a,
-                    b,
-                };
-            }
+        let (channel, most) = difference(p, q);
+        if most > largest.steps {
+            largest = Largest {
+                steps: most,
+                x: (at % a.width as usize) as u32,
+                y: (at / a.width as usize) as u32,
+                channel,
+                a: steps(p[channel]),
+                b: steps(q[channel]),
+            };
         }
-        let (limit, open) = (tolerance.steps + SLACK, bound * STEEPEST);
         let is_beyond = most > limit + open;
         beyond += u64::from(is_beyond);
         undecided += u64::from(!is_beyond && most + open > limit);
@@ -129,6 +127,17 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
         largest,
         beyond,
         undecided,
+    })
+}
+
+/// The channel in which two pixels differ most, the first one of equal ones, and by how many steps.
+fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
+    let differences = [0, 1, 2].map(|channel| (steps(p[channel]) - steps(q[channel])).abs());
+    (0..3).fold((0, 0.0), |most, channel| {
+        match differences[channel] > most.1 {
+            true => (channel, differences[channel]),
+            false => most,
+        }
     })
 }
 
@@ -146,12 +155,9 @@ pub fn rmse(a: &Film, b: &Film) -> f64 {
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, HeatError> {
     check_sizes(a, b)?;
     let mut map = Film::new(a.width, a.height)?;
-    for (at, (p, q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
-        let most = (0..3)
-            .map(|channel| (steps(p[channel]) - steps(q[channel])).abs())
-            .fold(0.0, f64::max);
-        let bound = tolerance.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
-        if most > tolerance.steps + SLACK + bound * STEEPEST {
+    for (at, (&p, &q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+        let (_, most) = difference(p, q);
+        if most > tolerance.steps + SLACK + tolerance.open(at) {
             map.pixels[at] = heat(most);
         }
     }

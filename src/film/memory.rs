@@ -55,71 +55,29 @@ fn machine() -> Option<u64> {
 
 /// What is left of the limits of this process's control group and of the groups around it.
 fn control_group() -> Option<u64> {
+    const ROOT: &str = "/sys/fs/cgroup";
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
-    groups
-        .lines()
-        .filter_map(|line| {
-            // A line is a number, the controllers and the group's path.
-            let mut fields = line.splitn(3, ':').skip(1);
-            let (controllers, group) = (fields.next()?, fields.next()?);
-            let interface = match controllers {
-                "" => &SECOND,
-                "memory" => &FIRST,
-                _ => return None,
-            };
-            interface.left(group)
-        })
+    let group = groups.lines().find_map(|line| line.strip_prefix("0::/"))?;
+    Path::new(ROOT)
+        .join(group)
+        .ancestors()
+        .take_while(|folder| folder.starts_with(ROOT))
+        .filter_map(left)
         .min()
 }
 
-/// Where a version of the control groups' interface keeps its numbers.
-struct Interface {
-    root: &'static str,
-    limit: &'static str,
-    usage: &'static str,
-    /// What of the usage gives way on demand: copies of files.
-    cache: &'static str,
-}
-
-const FIRST: Interface = Interface {
-    root: "/sys/fs/cgroup/memory",
-    limit: "memory.limit_in_bytes",
-    usage: "memory.usage_in_bytes",
-    cache: "total_inactive_file",
-};
-
-const SECOND: Interface = Interface {
-    root: "/sys/fs/cgroup",
-    limit: "memory.max",
-    usage: "memory.current",
-    cache: "inactive_file",
-};
-
-impl Interface {
-    fn left(&self, group: &str) -> Option<u64> {
-        let folder = Path::new(self.root).join(group.trim_start_matches('/'));
-        folder
-            .ancestors()
-            .take_while(|folder| folder.starts_with(self.root))
-            .filter_map(|folder| self.left_in(folder))
-            .min()
-    }
-
-    fn left_in(&self, folder: &Path) -> Option<u64> {
-        let read = |name| fs::read_to_string(folder.join(name)).ok();
-        // Without a limit there is a word here, or a huge number.
-        let limit: u64 = read(self.limit)?.trim().parse().ok()?;
-        let usage: u64 = read(self.usage)?.trim().parse().ok()?;
-        let cache: u64 = read("memory.stat")
-            .and_then(|table| {
-                let line = table
-                    .lines()
-                    .find(|line| line.split(' ').next() == Some(self.cache))?;
-                line.split(' ').nth(1)?.parse().ok()
-            })
-            .unwrap_or(0);
-        Some(limit.saturating_sub(usage.saturating_sub(cache)))
-    }
+/// What a group may still take. Copies of files, which it is charged for, give way on demand.
+fn left(group: &Path) -> Option<u64> {
+    let read = |name| fs::read_to_string(group.join(name)).ok();
+    // Without a limit there is a word here.
+    let limit: u64 = read("memory.max")?.trim().parse().ok()?;
+    let usage: u64 = read("memory.current")?.trim().parse().ok()?;
+    let table = read("memory.stat").unwrap_or_default();
+    let cache = table
+        .lines()
+        .find_map(|line| line.strip_prefix("inactive_file "));
+    let cache: u64 = cache.and_then(|cache| cache.parse().ok()).unwrap_or(0);
+    Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
 /// A number of bytes for people.

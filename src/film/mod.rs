@@ -1,12 +1,13 @@
 //! Pixels, and the files they go to.
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, and a picture file: `png` with the scene that made
-//! it, or `exr`. A file format is a file here; `write` sees to it that a file is written whole or not at all. `read` makes films of
-//! picture files, also of other programs', and `compare` says how far two films are apart.
+//! it, or `exr`. `write` sees to it that a file is written whole or not at all. `read` makes a `picture` of a file, also of another
+//! program's, and `compare` says how far two films are apart.
 
 mod compare;
 mod exr;
 mod memory;
+mod picture;
 mod png;
 mod read;
 mod srgb;
@@ -19,8 +20,12 @@ pub use self::{
     },
     exr::write_exr,
     memory::TooLarge,
-    png::{NotOurs, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png, write_png},
-    read::{Picture, Rounding, Unreadable, is_picture, read_picture},
+    picture::{Coding, Picture, Rounding, Unreadable},
+    png::{
+        NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png,
+        write_png,
+    },
+    read::{is_picture, read_picture},
     srgb::Encoder,
     write::{Sink, check_writable, write_stream, write_whole},
 };
@@ -161,21 +166,25 @@ impl<P: Pixel> Film<P> {
 /// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::new();
-    let is_certain = |(light, bound): &(&[f64; 3], &f32)| {
-        <[u8; 3]>::is_certain(**light, f64::from(**bound), &encoder)
-    };
-    film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
+    count_certain(film, bounds, |light, bound| {
+        <[u8; 3]>::is_certain(light, bound, &encoder)
+    })
 }
 
 /// The same of the 32-bit floats of an EXR file.
 pub fn certified_floats(film: &Film, bounds: &[f32]) -> u64 {
     let round = |light: f64| light.clamp(0.0, 1.0) as f32;
-    let is_certain = |(pixel, bound): &(&[f64; 3], &f32)| {
-        let bound = f64::from(**bound);
-        let same = |&light: &f64| round(light - bound) == round(light + bound);
-        bound == 0.0 || pixel.iter().all(same)
-    };
-    film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
+    count_certain(film, bounds, |light, bound| {
+        let same = |light: f64| round(light - bound) == round(light + bound);
+        bound == 0.0 || light.into_iter().all(same)
+    })
+}
+
+fn count_certain(film: &Film, bounds: &[f32], is_certain: impl Fn([f64; 3], f64) -> bool) -> u64 {
+    let pixels = film.pixels.iter().zip(bounds);
+    pixels
+        .filter(|&(&light, &bound)| is_certain(light, bound.into()))
+        .count() as u64
 }
 
 /// The mean of a pixel's samples: Σ count · colour / n, n being the sum of the counts, rounded once.
@@ -215,8 +224,10 @@ fn quotient(sum: &Double, count: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::{Rng, SeedableRng};
+
     use super::*;
-    use crate::color::Color;
+    use crate::{color::Color, sampling::CounterRng};
 
     #[test]
     fn a_colour_alone_is_its_own_mean() {
@@ -230,11 +241,8 @@ mod tests {
 
     #[test]
     fn the_short_division_is_the_long_one() {
-        let mut bits = 1_u64;
-        let mut next = || {
-            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            bits >> 11
-        };
+        let mut rng = CounterRng::seed_from_u64(1);
+        let mut next = || rng.next_u64() >> 11;
         for round in 0..200_000 {
             let count = (next() >> (next() % 53)).max(1) as f64;
             let hi = next() as f64 / (1_u64 << 53) as f64 * count;

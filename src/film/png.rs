@@ -4,12 +4,10 @@
 //! for each override in their order, and `pinhole:crop` as `X,Y,W,H`. There is no date and nothing of the machine, so that the same
 //! scene makes the same file.
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, Write};
 
-use png::{
-    BitDepth, ColorType, DecodeOptions, Decoder, DeflateCompression, Encoder, Filter, Limits,
-    SrgbRenderingIntent,
-};
+use fdeflate::BoundedDecompressionError;
+use png::{BitDepth, ColorType, DeflateCompression, Encoder, Filter, SrgbRenderingIntent};
 use thiserror::Error;
 
 use super::{Film, Pixel, srgb};
@@ -20,6 +18,9 @@ pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
 /// A recipe with more bytes of text than this is not kept in a picture.
 pub const TEXT_LIMIT: usize = 1 << 20;
+
+/// Nor is one with more overrides.
+pub const OVERRIDES_LIMIT: usize = 1000;
 
 const SOFTWARE: &str = "Software";
 const SCENE: &str = "pinhole:scene";
@@ -42,7 +43,7 @@ pub struct Recipe {
 pub enum NotOurs {
     /// It does not follow the format.
     #[error("it begins as a PNG does, but is damaged or no picture")]
-    Damaged(#[from] png::DecodingError),
+    Damaged,
     /// It has no scene in it.
     #[error(
         "the picture carries no scene: another program wrote it, or its scene had more than 1 MiB of text"
@@ -51,6 +52,12 @@ pub enum NotOurs {
     /// It has more text than Pinhole puts in.
     #[error("the picture carries more than 1 MiB of text")]
     TooMuchText,
+    /// It has more overrides than Pinhole puts in.
+    #[error("the picture carries more than 1000 overrides")]
+    TooManyOverrides,
+    /// A text of it is none.
+    #[error("the picture carries a scene or an override that is not UTF-8 text")]
+    NotUtf8,
     /// Its crop makes no sense.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
@@ -61,7 +68,7 @@ impl Recipe {
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         let crop = self.crop.map_or(0, |crop| crop.to_string().len());
-        self.scene.len() + overrides + crop <= TEXT_LIMIT
+        self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides + crop <= TEXT_LIMIT
     }
 
     fn chunks(&self) -> impl Iterator<Item = (&'static str, String)> {
@@ -121,48 +128,85 @@ fn write(
 
 /// Reads what a picture was made from. Only what precedes the pixels is looked at, and no more than [`TEXT_LIMIT`] is unpacked.
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
-    // The decoder reserves a few rows of at most 2^20 pixels of up to 8 bytes, besides the packed text.
-    let limits = Limits { bytes: 64 << 20 };
-    // A chunk with a wrong checksum may have been an override, so it must not be passed over.
-    let mut options = DecodeOptions::default();
-    options.set_skip_ancillary_crc_failures(false);
-    options.set_ignore_iccp_chunk(true);
-    let mut decoder = Decoder::new_with_options(Cursor::new(picture), options);
-    decoder.set_limits(limits);
-    let reader = decoder.read_info()?;
-
-    let mut recipe = Recipe {
-        scene: String::new(),
-        overrides: Vec::new(),
-        crop: None,
-    };
-    let mut has_scene = false;
+    let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
+    let (mut scene, mut overrides, mut crop) = (None, Vec::new(), None);
     let mut left = TEXT_LIMIT;
-    for chunk in &reader.info().utf8_text {
-        if ![SCENE, SET, CROP].contains(&chunk.keyword.as_str()) {
-            continue;
-        }
-        let mut chunk = chunk.clone();
-        if chunk.decompress_text_with_limit(left).is_err() {
-            // Too long, packed wrongly, or not UTF-8.
-            chunk
-                .decompress_text_with_limit(0)
-                .map_err(|_| NotOurs::TooMuchText)?;
-        }
-        let text = chunk.get_text()?;
-        left = left.checked_sub(text.len()).ok_or(NotOurs::TooMuchText)?;
-        match chunk.keyword.as_str() {
-            SCENE => {
-                has_scene = true;
-                recipe.scene = text;
-            }
-            SET => recipe.overrides.push(text),
-            _ => recipe.crop = Some(text.parse().map_err(|_| NotOurs::Crop(text))?),
+    loop {
+        let (kind, content);
+        (kind, content, rest) = chunk(rest).ok_or(NotOurs::Damaged)?;
+        let (keyword, text) = match kind {
+            b"IDAT" => break,
+            b"iTXt" => international_text(content).ok_or(NotOurs::Damaged)?,
+            _ => continue,
+        };
+        let keyword = [SCENE, SET, CROP]
+            .into_iter()
+            .find(|ours| ours.as_bytes() == keyword);
+        let Some(keyword) = keyword else { continue };
+        let text = unpacked(text, left)?;
+        left -= text.len();
+        let text = String::from_utf8(text).map_err(|_| NotOurs::NotUtf8)?;
+        match keyword {
+            SCENE => scene = Some(text),
+            SET if overrides.len() == OVERRIDES_LIMIT => return Err(NotOurs::TooManyOverrides),
+            SET => overrides.push(text),
+            _ => crop = Some(text.parse().map_err(|_| NotOurs::Crop(text))?),
         }
     }
-    if has_scene {
-        Ok(recipe)
-    } else {
-        Err(NotOurs::NoScene)
+    Ok(Recipe {
+        scene: scene.ok_or(NotOurs::NoScene)?,
+        overrides,
+        crop,
+    })
+}
+
+/// A chunk's kind and content, and what follows it; nothing if it is cut off or its checksum is wrong.
+fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
+    if rest.starts_with(b"IDAT") {
+        // The pixels may be longer than what was read of the file.
+        return Some((&rest[..4], &[], &[]));
+    }
+    let (checked, rest) = rest.split_at_checked(length.checked_add(4)?)?;
+    let (checksum, rest) = rest.split_first_chunk::<4>()?;
+    let (kind, content) = checked.split_at(4);
+    (crc32fast::hash(checked) == u32::from_be_bytes(*checksum)).then_some((kind, content, rest))
+}
+
+/// A text's bytes.
+enum Text<'a> {
+    Plain(&'a [u8]),
+    Packed(&'a [u8]),
+}
+
+/// The keyword and the text of an iTXt chunk.
+fn international_text(content: &[u8]) -> Option<(&[u8], Text<'_>)> {
+    let (keyword, rest) = before_zero(content)?;
+    let (&[is_packed, _method], rest) = rest.split_first_chunk()?;
+    let (_language, rest) = before_zero(rest)?;
+    let (_translated, text) = before_zero(rest)?;
+    let text = match is_packed {
+        0 => Text::Plain(text),
+        _ => Text::Packed(text),
+    };
+    Some((keyword, text))
+}
+
+fn before_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let end = bytes.iter().position(|&byte| byte == 0)?;
+    Some((&bytes[..end], &bytes[end + 1..]))
+}
+
+fn unpacked(text: Text, limit: usize) -> Result<Vec<u8>, NotOurs> {
+    match text {
+        Text::Plain(text) if text.len() > limit => Err(NotOurs::TooMuchText),
+        Text::Plain(text) => Ok(text.to_owned()),
+        Text::Packed(text) => {
+            fdeflate::decompress_to_vec_bounded(text, limit).map_err(|error| match error {
+                BoundedDecompressionError::OutputTooLarge { .. } => NotOurs::TooMuchText,
+                BoundedDecompressionError::DecompressionError { .. } => NotOurs::Damaged,
+            })
+        }
     }
 }

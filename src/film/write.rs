@@ -19,7 +19,8 @@ impl<T: Write + Seek> Sink for T {}
 /// The content goes into a temporary file in the same folder, which then takes the place of the old one, with its permissions and,
 /// where that is allowed, its owner; but it never runs as its owner (setuid). A hard link is cut: its other names keep the old content. Of a
 /// symbolic link the target is replaced, not the link. What is not a file (a device, a pipe) gets the content once it is complete.
-/// When `cancel` is set, or an error occurs, the temporary file is removed.
+/// When `cancel` is set, or an error occurs, the temporary file is removed; where this process is killed, the next one that writes the
+/// file does it.
 pub fn write_whole(
     path: &Path,
     cancel: &AtomicBool,
@@ -28,9 +29,12 @@ pub fn write_whole(
     match place(path)? {
         Place::File(path, found) => {
             let temporary = temporary(&path, found.as_ref())?;
-            let mut out = BufWriter::with_capacity(1 << 16, Checked::new(temporary, cancel));
+            // Not the temporary file itself, whose errors would name it.
+            let mut out =
+                BufWriter::with_capacity(1 << 16, Checked::new(temporary.as_file(), cancel));
             write(&mut out)?;
-            let temporary = out.into_inner().map_err(|error| error.into_error())?.sink;
+            out.flush()?;
+            drop(out);
             // Only now it is known that there was room for all of it.
             temporary.as_file().sync_all()?;
             check(cancel)?;
@@ -111,19 +115,55 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
+/// What the name of a temporary file ends in.
+const SUFFIX: &str = ".tmp";
+
+/// A temporary file, locked as long as it is open: what is not locked belongs to nobody.
 fn temporary(path: &Path, found: Option<&Metadata>) -> io::Result<NamedTempFile> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // In most systems a name has at most 255 bytes, of which each character may take four.
+    let name: String = name.chars().take(50).collect();
+    let prefix = format!(".pinhole-{name}-");
+    remove_leftovers(folder(path), &prefix);
     let mut builder = Builder::new();
-    builder.prefix(".pinhole-").suffix(".tmp");
+    builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() {
         // The usual permissions of a new file: the system takes the mask off.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
-    let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
+    let temporary = loop {
+        let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
+        // Where the file system has no locks, nobody finds one that is free.
+        let _ = temporary.as_file().lock();
+        // Before that, another process may have taken it for a leftover.
+        if temporary.path().exists() {
+            break temporary;
+        }
+    };
     if let Some(found) = found {
         keep_owner(temporary.as_file(), found)?;
     }
     Ok(temporary)
+}
+
+/// Removes temporary files of processes that were killed. It is no matter if that fails.
+fn remove_leftovers(folder: &Path, prefix: &str) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_temporary = name
+            .to_str()
+            .and_then(|name| name.strip_prefix(prefix)?.strip_suffix(SUFFIX))
+            .is_some_and(|random| random.len() == 6);
+        // Opening something else, a pipe for example, might wait for ever.
+        if is_temporary
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Gives a file the owner and the permissions of another one.

@@ -12,7 +12,7 @@ use super::{
 use crate::scene::schema;
 
 /// Parts that differ in their widths by more than this do not share a column.
-pub const SLACK: usize = 20;
+const SLACK: usize = 20;
 
 /// Decides the columns of a file's entries.
 pub fn align(entries: &mut [Entry<'_>]) {
@@ -108,7 +108,7 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Class) -> Vec<Vec<usize>
 }
 
 /// The longest parts of a list whose widths differ by no more than the slack. What has no width belongs to any.
-fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
+pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
     for (index, &item) in list.iter().enumerate() {
@@ -139,55 +139,42 @@ fn starts(entries: &mut [Entry<'_>], run: &[usize]) {
 }
 
 fn settings(entries: &mut [Entry<'_>]) {
-    let aligned: Vec<usize> = (0..entries.len())
-        .filter(|&index| match &entries[index].what {
-            What::Block(block) => {
-                is_setting(block) && is_plain(&entries[index], block) && block.name.is_none()
-            }
-            _ => false,
-        })
-        .collect();
+    let is_aligned = |entry: &Entry<'_>| {
+        block(entry).is_some_and(|it| is_setting(it) && is_plain(entry, it) && it.name.is_none())
+    };
+    let aligned = (0..entries.len()).filter(|&index| is_aligned(&entries[index]));
+    let aligned: Vec<usize> = aligned.collect();
     starts(entries, &aligned);
+}
+
+fn block<'e, 's>(entry: &'e Entry<'s>) -> Option<&'e Block<'s>> {
+    match &entry.what {
+        What::Block(block) => Some(block),
+        _ => None,
+    }
 }
 
 /// Aligns the names and braces of objects, and the fields of those that are alike.
 fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
-    let natural = |index: usize| match &entries[index].what {
-        What::Block(block) if !block.is_empty() => Some(width(&block.head)),
-        _ => None,
-    };
-    for (part, _) in shared(run, natural) {
-        let mut name_column = 0;
-        for &index in part {
-            if let What::Block(block) = &entries[index].what
-                && block.name.is_some()
-            {
-                name_column = name_column.max(block.kind.len() + 1);
-            }
-        }
-        let mut column = 0;
-        for &index in part {
-            if let What::Block(block) = &mut entries[index].what {
-                block.name_column = name_column;
-                if !block.is_empty() {
-                    column = column.max(block.head_width() + 1);
-                }
-            }
-        }
+    let filled = |index: usize| block(&entries[index]).filter(|block| !block.is_empty());
+    let parts = shared(run, |index| Some(width(&filled(index)?.head)));
+    for (part, _) in parts {
+        let blocks = part.iter().filter_map(|&index| block(&entries[index]));
+        let named = blocks.clone().filter(|block| block.name.is_some());
+        let name_column = named.map(|block| block.kind.len() + 1).max().unwrap_or(0);
+        let head = |block: &Block<'_>| match block.name {
+            Some(name) => name_column + name.len(),
+            None => block.kind.len(),
+        };
+        let filled = blocks.filter(|block| !block.is_empty());
+        let column = filled.map(|block| head(block) + 1).max().unwrap_or(0);
         for &index in part {
             entries[index].column = column;
+            if let What::Block(block) = &mut entries[index].what {
+                block.name_column = name_column;
+            }
         }
         table(entries, part, 0);
-    }
-}
-
-impl Block<'_> {
-    /// The width of kind and name, the name in its column.
-    fn head_width(&self) -> usize {
-        match self.name {
-            Some(name) => self.name_column.max(self.kind.len() + 1) + name.len(),
-            None => self.kind.len(),
-        }
     }
 }
 
@@ -217,9 +204,7 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
 
 /// The kind of an object, and name and width of a field of it, if another field follows.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
-    let What::Block(block) = &entry.what else {
-        return None;
-    };
+    let block = block(entry)?;
     block.entries.get(field + 1)?;
     let field = block.entries.get(field)?;
     let What::Field(name, _) = field.what else {

@@ -6,7 +6,7 @@
 //!
 //! Of the white space that was there, only the ends of lines tell something: whether a block stands on one line, where blank
 //! lines separate groups, and which line a comment belongs to. Blanks tell nothing, so that two texts that differ in them
-//! alone are laid out alike. On the way, `words` reads tokens and comments from tree and text, `entries` makes lines of
+//! alone are laid out alike. On the way, `token_stream` reads tokens and comments from tree and text, `entries` makes lines of
 //! them, `columns` decides what stands under what, and `page` writes it all.
 
 mod columns;
@@ -14,15 +14,13 @@ mod entries;
 mod page;
 mod token_stream;
 
-use std::collections::HashSet;
-
 use crate::{
-    diagnostic::{self, Diagnostic},
-    scene,
+    diagnostic::Diagnostic,
+    scene::{self, SemanticModel},
     source::{Source, SourceId, Sources},
     syntax::{
         self, Parsed,
-        tree::{Item, Name, Tree, ValueKind},
+        tree::{Item, Tree, ValueKind},
     },
 };
 
@@ -51,50 +49,36 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     Some(formatted)
 }
 
-/// Whether every field has a value: where it is missing, nothing was reported yet.
+/// Whether every item was understood, and every field has a value: where it is missing, nothing was reported yet.
 fn is_whole(tree: &Tree<'_>) -> bool {
-    let is_bad = |item: &Item<'_>| matches!(item, Item::Bad(_));
-    without_value(tree).next().is_none() && !tree.items.iter().any(is_bad)
+    tree.items.iter().all(|item| match item {
+        Item::Definition(_) => true,
+        Item::Block(block) => {
+            let mut fields = block.fields.iter();
+            fields.all(|field| field.value.kind != ValueKind::Missing)
+        }
+        Item::Bad(_) => false,
+    })
 }
 
 /// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what a field without a value is
-/// called. What else is wrong with the scene is left out; and what `check` leaves out, as a field that the block does not know
-/// is mistake enough, is told here, where that field is none.
+/// called. What else is wrong with the scene is left out.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
-    let survey = scene::analyze(&sources);
-    let found = survey.diagnostics.iter();
-    let of_syntax = found.filter(|diagnostic| diagnostic.is_of_syntax);
-    let mut mistakes: Vec<_> = of_syntax.cloned().collect();
-    // Bytes that are not UTF-8 are told in place of what they led to.
-    if source.invalid_utf8().is_empty() {
-        let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| label.span);
-        let told: HashSet<_> = mistakes.iter().map(place).collect();
-        let problems = survey.parsed.problems.iter();
-        mistakes.extend(
-            problems
-                .filter(|found| !told.contains(&place(found)))
-                .cloned(),
-        );
-        diagnostic::sort(&mut mistakes);
-    }
-    if mistakes.is_empty() {
-        // A field that its block does not know is reported for that alone; so is one for a word that belongs to its neighbour.
-        let missing = without_value(&survey.parsed.tree);
-        mistakes.extend(missing.map(|name| syntax::field_without_value(name.text, name.span)));
-    }
-    mistakes
-}
-
-/// The names of the fields without a value.
-fn without_value<'t, 's>(tree: &'t Tree<'s>) -> impl Iterator<Item = &'t Name<'s>> {
-    let blocks = tree.items.iter().filter_map(|item| match item {
-        Item::Block(block) => Some(block),
-        Item::Definition(_) | Item::Bad(_) => None,
-    });
-    let fields = blocks.flat_map(|block| &block.fields);
-    let missing = fields.filter(|field| field.value.kind == ValueKind::Missing);
-    missing.map(|field| &field.name)
+    let SemanticModel {
+        parsed,
+        diagnostics,
+        ..
+    } = scene::analyze(&sources);
+    let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
+    // A field that its block does not know is mistake enough for `check`, however its value is written.
+    let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
+    let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
+    let unknown = diagnostics.iter().filter(is_unknown);
+    let unknown = unknown.cloned().collect();
+    let lists = [of_syntax.cloned().collect(), parsed.problems, unknown];
+    let mut lists = lists.into_iter().filter(|list| !list.is_empty());
+    lists.next().unwrap_or_default()
 }
 
 /// The page with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with

@@ -2,7 +2,7 @@
 
 use super::{
     WIDTH,
-    columns::SLACK,
+    columns::shared,
     entries::{Block, Entry, What},
     token_stream::{Before, Word, column_after, ends_line, is_comment, width},
 };
@@ -161,24 +161,17 @@ impl Page {
     /// Writes the lines that wait, their comments in columns.
     fn flush(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
-        let widths: Vec<usize> = waiting.iter().map(|(l, _)| column_after(0, l)).collect();
-        let mut from = 0;
-        while from < waiting.len() {
-            let (mut to, mut least, mut most) = (from, usize::MAX, 0);
-            while let Some(&width) = widths.get(to)
-                && width.max(most) - width.min(least) <= SLACK
-            {
-                (least, most) = (width.min(least), width.max(most));
-                to += 1;
-            }
-            for (line, comments) in &waiting[from..to] {
+        let lines: Vec<usize> = (0..waiting.len()).collect();
+        let width = |index: usize| column_after(0, &waiting[index].0);
+        for (part, most) in shared(&lines, |index| Some(width(index))) {
+            for &index in part {
+                let (line, comments) = &waiting[index];
                 self.text.push_str(line);
-                let blanks = most + 2 - column_after(0, line);
+                let blanks = most + 2 - width(index);
                 self.text.extend(std::iter::repeat_n(' ', blanks));
                 self.text.push_str(comments);
                 self.text.push('\n');
             }
-            from = to;
         }
     }
 }

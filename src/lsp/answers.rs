@@ -8,94 +8,107 @@ use super::{
     convert::{self, Page},
     params::{Answer, Refusal, parsed, written},
 };
-use crate::editor::{self, Analysis};
+use crate::{
+    diagnostic::Edit,
+    editor::{self, Analysis},
+};
 
 /// The answer to a request about a document.
 pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Answer {
-    let params = request.params;
-    let known = known.ok_or_else(|| {
-        Refusal(
-            ErrorCode::InvalidParams,
-            "the document is not open".to_owned(),
-        )
-    });
-    match request.method.as_str() {
-        "textDocument/completion" => completion(known?, parsed(params)?),
-        "textDocument/hover" => hover(known?, parsed(params)?),
-        "textDocument/signatureHelp" => signature(known?, parsed(params)?),
-        "textDocument/definition" => definition(known?, parsed(params)?),
-        "textDocument/references" => references(known?, parsed(params)?),
-        "textDocument/documentHighlight" => highlights(known?, parsed(params)?),
-        "textDocument/prepareRename" => prepare_rename(known?, parsed(params)?),
-        "textDocument/rename" => rename(known?, parsed(params)?),
-        "textDocument/documentSymbol" => symbols(known?),
-        "textDocument/foldingRange" => folds(known?),
-        "textDocument/inlayHint" => hints(known?, parsed(params)?),
-        "textDocument/documentColor" => colors(known?),
-        "textDocument/colorPresentation" => presentations(known?, parsed(params)?),
-        "textDocument/codeAction" => code_actions(known?, parsed(params)?),
-        "textDocument/formatting" => formatting(known?),
-        "textDocument/semanticTokens/full" => semantic_tokens(known?),
-        method => Err(Refusal(
-            ErrorCode::MethodNotFound,
-            format!("`{method}` is not known here"),
-        )),
+    let Request { method, params, .. } = request;
+    let unknown = || {
+        let refusal = format!("`{method}` is not known here");
+        Err(Refusal(ErrorCode::MethodNotFound, refusal))
+    };
+    let Some(about) = method.strip_prefix("textDocument/") else {
+        return unknown();
+    };
+    let Some((page, analysis)) = known else {
+        let refusal = "the document is not open".to_owned();
+        return Err(Refusal(ErrorCode::InvalidParams, refusal));
+    };
+    let at = || {
+        let position = params.get("position").cloned().unwrap_or_default();
+        parsed(position).map(|position| page.offset(position))
+    };
+    let range = || {
+        let range = params.get("range").cloned().unwrap_or_default();
+        parsed(range).map(|range| page.span(range))
+    };
+    match about {
+        "completion" => {
+            let completions = editor::completions(analysis, at()?).into_iter().enumerate();
+            list(completions.map(|(index, completion)| page.completion(index, completion)))
+        }
+        "hover" => written(&editor::hover(analysis, at()?).map(|it| page.hover(it))),
+        "signatureHelp" => {
+            written(&editor::signature(analysis, at()?).map(|it| page.signature(it)))
+        }
+        "definition" => written(&editor::definition(analysis, at()?).map(|it| page.location(it))),
+        "references" => {
+            let context = params.get("context").cloned().unwrap_or_default();
+            let context: lsp::ReferenceContext = parsed(context)?;
+            let all = context.include_declaration;
+            let found = editor::occurrences(analysis, at()?).into_iter();
+            let found = found.filter(|found| all || !found.is_definition);
+            list(found.map(|found| page.location(found.span)))
+        }
+        "documentHighlight" => {
+            let found = editor::occurrences(analysis, at()?).into_iter();
+            list(found.map(|found| page.highlight(found)))
+        }
+        "prepareRename" => {
+            let span = editor::renamable(analysis, at()?).map_err(refused)?;
+            written(&json!({ "range": page.range(span), "placeholder": analysis.slice(span) }))
+        }
+        "rename" => {
+            let new: String = parsed(params.get("newName").cloned().unwrap_or_default())?;
+            let spans = editor::rename(analysis, at()?, &new).map_err(refused)?;
+            let edits = spans.into_iter().map(|span| Edit::new(span, &*new));
+            written(&page.edit(edits))
+        }
+        "documentSymbol" => {
+            let symbols = editor::symbols(analysis).into_iter();
+            list(symbols.map(|symbol| page.symbol(symbol)))
+        }
+        "foldingRange" => list(
+            editor::folds(analysis)
+                .into_iter()
+                .map(|fold| page.fold(fold)),
+        ),
+        "inlayHint" => {
+            let hints = editor::hints(analysis, range()?.range()).into_iter();
+            list(hints.map(|hint| page.hint(hint)))
+        }
+        "documentColor" => {
+            let swatches = editor::swatches(analysis).into_iter();
+            list(swatches.map(|swatch| page.swatch(swatch)))
+        }
+        "colorPresentation" => {
+            let color: lsp::Color = parsed(params.get("color").cloned().unwrap_or_default())?;
+            let span = range()?;
+            let labels = editor::presentations(analysis, span, convert::color(&color));
+            list(
+                labels
+                    .into_iter()
+                    .map(|label| page.presentation(span, label)),
+            )
+        }
+        "codeAction" => code_actions(page, analysis, parsed(params)?),
+        // Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not
+        // complain each time.
+        "formatting" => {
+            let edits = editor::formatting(analysis);
+            let edits = edits.map(|edits| page.text_edits(edits).collect::<Vec<_>>());
+            written(&edits)
+        }
+        "semanticTokens/full" => written(&page.semantic_tokens(&editor::semantic_tokens(analysis))),
+        _ => unknown(),
     }
 }
 
-type Known<'a, 's> = (Page<'a>, &'a Analysis<'s>);
-
-fn completion((page, analysis): Known<'_, '_>, params: lsp::CompletionParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    let completions = editor::completions(analysis, at).into_iter().enumerate();
-    let items = completions.map(|(index, completion)| page.completion(index, completion));
-    let items: Vec<_> = items.collect();
-    written(&items)
-}
-
-fn hover((page, analysis): Known<'_, '_>, params: lsp::HoverParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    written(&editor::hover(analysis, at).map(|hover| page.hover(hover)))
-}
-
-fn signature((page, analysis): Known<'_, '_>, params: lsp::SignatureHelpParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    written(&editor::signature(analysis, at).map(|signature| page.signature(signature)))
-}
-
-fn definition((page, analysis): Known<'_, '_>, params: lsp::DefinitionParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    written(&editor::definition(analysis, at).map(|span| page.location(span)))
-}
-
-fn references((page, analysis): Known<'_, '_>, params: lsp::ReferenceParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    let found = editor::occurrences(analysis, at).into_iter();
-    let found = found.filter(|found| params.context.include_declaration || !found.is_definition);
-    let locations: Vec<_> = found.map(|found| page.location(found.span)).collect();
-    written(&locations)
-}
-
-fn highlights((page, analysis): Known<'_, '_>, params: lsp::DocumentHighlightParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    let found = editor::occurrences(analysis, at).into_iter();
-    let highlights: Vec<_> = found.map(|found| page.highlight(found)).collect();
-    written(&highlights)
-}
-
-fn prepare_rename((page, analysis): Known<'_, '_>, params: lsp::PrepareRenameParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    let span = editor::renamable(analysis, at).map_err(refused)?;
-    written(&json!({ "range": page.range(span), "placeholder": analysis.slice(span) }))
-}
-
-fn rename((page, analysis): Known<'_, '_>, params: lsp::RenameParams) -> Answer {
-    let at = page.offset(params.text_document_position_params.position);
-    let spans = editor::rename(analysis, at, &params.new_name).map_err(refused)?;
-    let edits = spans
-        .into_iter()
-        .map(|span| (span, params.new_name.clone()));
-    written(&page.edit(edits))
+fn list<T: serde::Serialize>(items: impl Iterator<Item = T>) -> Answer {
+    written(&items.collect::<Vec<T>>())
 }
 
 /// A request that was right, and cannot be done; editors show the reason.
@@ -103,48 +116,7 @@ fn refused(reason: String) -> Refusal {
     Refusal(ErrorCode::RequestFailed, reason)
 }
 
-fn symbols((page, analysis): Known<'_, '_>) -> Answer {
-    let symbols = editor::symbols(analysis).into_iter();
-    let symbols: Vec<_> = symbols.map(|symbol| page.symbol(symbol)).collect();
-    written(&symbols)
-}
-
-fn folds((page, analysis): Known<'_, '_>) -> Answer {
-    let folds = editor::folds(analysis).into_iter();
-    let folds: Vec<_> = folds.map(|fold| page.fold(fold)).collect();
-    written(&folds)
-}
-
-fn hints((page, analysis): Known<'_, '_>, params: lsp::InlayHintParams) -> Answer {
-    let within = page.span(params.range).range();
-    let hints = editor::hints(analysis, within).into_iter();
-    let hints: Vec<_> = hints.map(|hint| page.hint(hint)).collect();
-    written(&hints)
-}
-
-fn colors((page, analysis): Known<'_, '_>) -> Answer {
-    let swatches = editor::swatches(analysis).into_iter();
-    let colors: Vec<_> = swatches.map(|swatch| page.swatch(swatch)).collect();
-    written(&colors)
-}
-
-fn presentations((page, analysis): Known<'_, '_>, params: lsp::ColorPresentationParams) -> Answer {
-    let span = page.span(params.range);
-    let color = convert::color(&params.color);
-    let labels = editor::presentations(analysis, span, color).into_iter();
-    let presentations = labels.map(|label| lsp::ColorPresentation {
-        text_edit: Some(lsp::TextEdit {
-            range: page.range(span),
-            new_text: label.clone(),
-        }),
-        label,
-        additional_text_edits: None,
-    });
-    let presentations: Vec<_> = presentations.collect();
-    written(&presentations)
-}
-
-fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) -> Answer {
+fn code_actions(page: Page<'_>, analysis: &Analysis<'_>, params: lsp::CodeActionParams) -> Answer {
     use lsp::CodeActionKind as Kind;
     let only = params.context.only;
     let is_wanted = |wanted: &[Kind]| {
@@ -163,18 +135,6 @@ fn code_actions((page, analysis): Known<'_, '_>, params: lsp::CodeActionParams) 
         actions.extend(editor::fix_all(analysis).map(|fix| page.action(&fix, None)));
     }
     written(&actions)
-}
-
-/// Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not complain
-/// each time.
-fn formatting((page, analysis): Known<'_, '_>) -> Answer {
-    let changes = editor::formatting(analysis);
-    let edits: Option<Vec<_>> = changes.map(|changes| page.text_edits(changes).collect());
-    written(&edits)
-}
-
-fn semantic_tokens((page, analysis): Known<'_, '_>) -> Answer {
-    written(&page.semantic_tokens(&editor::semantic_tokens(analysis)))
 }
 
 /// What is wrong with a document.

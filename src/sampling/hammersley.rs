@@ -6,8 +6,8 @@
 use std::ops::Range;
 
 use super::{
-    hash::{self, Key},
     lattice::{self, Strata, Stratum},
+    rng::{Key, scale},
 };
 
 /// The columns.
@@ -24,11 +24,10 @@ impl Hammersley {
     /// The points of a set of `n`.
     pub fn new(n: u64) -> Self {
         let columns = Strata::new(n);
+        let stored = (0..n).take_while(|_| columns.stored().is_some());
         Self {
-            turned: columns.stored().repeat(2),
-            heights: (0..columns.stored().len() as u64)
-                .map(u64::reverse_bits)
-                .collect(),
+            heights: stored.map(|i| i.reverse_bits()).collect(),
+            turned: columns.stored().unwrap_or_default().repeat(2),
             n,
             columns,
         }
@@ -38,7 +37,7 @@ impl Hammersley {
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [columns, within, shift] = [0, 1, 2].map(|index| key.bits(index));
-        let columns = hash::scale(columns, self.n);
+        let columns = scale(columns, self.n);
         if self.turned.is_empty() {
             for (i, (x, y)) in range.zip(x.iter_mut().zip(y)) {
                 let to_the_edge = self.n - columns;
@@ -53,9 +52,9 @@ impl Hammersley {
             return;
         }
         let least = self.columns.least();
-        let place = hash::scale(within, least);
+        let place = scale(within, least);
         // In a longer column the place is the same or the next one.
-        let more = hash::scale(within, least + 1) - place;
+        let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {
             *x = lattice::offset(column.start() + place + (column.more() & more));

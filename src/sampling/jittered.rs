@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::{
     bricks::Bricks,
-    hash::Key,
     lattice::{self, Strata},
+    rng::Key,
 };
 
 /// The cells, and the strata that bound them.

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::hash::{scale, scale_by_parts};
+use super::rng::{scale, scale_by_parts};
 
 /// How many offsets there are.
 const PLACES: u64 = 1 << 53;
@@ -44,9 +44,9 @@ pub fn choose(places: Range<u64>, bits: u64) -> f64 {
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
-    /// The first place of each stratum, and then 2^53; empty where n is large.
-    starts: Vec<u64>,
-    /// The same in words of their own.
+    /// How many places each stratum has at least; some have one more.
+    least: u64,
+    /// All of them, and what would follow; nothing where n is large.
     stored: Vec<Stratum>,
 }
 
@@ -77,46 +77,52 @@ impl Stratum {
 impl Strata {
     /// The cut into `n` strata, 1 ≤ n ≤ 2^53.
     pub fn new(n: u64) -> Self {
-        let starts: Vec<_> = if n <= STORED {
-            (0..=n).map(|i| start(i, n)).collect()
-        } else {
-            Vec::new()
-        };
-        let least = PLACES / n;
-        let stratum = |bounds: &[u64]| Stratum(2 * bounds[0] + (bounds[1] - bounds[0] - least));
+        let stored = (0..=n).take_while(|_| n <= STORED);
         Self {
             n,
-            stored: starts.windows(2).map(stratum).collect(),
-            starts,
+            least: PLACES / n,
+            stored: stored.map(|i| stratum(i, n)).collect(),
         }
     }
 
-    /// The places in the strata from `first` to before `end`.
+    /// The stratum with this index.
     #[inline(always)]
-    pub fn places(&self, first: u64, end: u64) -> Range<u64> {
-        if self.starts.is_empty() {
-            start(first, self.n)..start(end, self.n)
-        } else {
-            self.starts[first as usize]..self.starts[end as usize]
+    pub fn get(&self, i: u64) -> Stratum {
+        match self.stored.get(i as usize) {
+            Some(&stored) => stored,
+            None => stratum(i, self.n),
         }
     }
 
     /// All strata, where they are stored.
     #[inline(always)]
-    pub fn stored(&self) -> &[Stratum] {
-        &self.stored
+    pub fn stored(&self) -> Option<&[Stratum]> {
+        (!self.stored.is_empty()).then(|| &self.stored[..self.n as usize])
+    }
+
+    /// The places in the strata from `first` to before `end`.
+    #[inline(always)]
+    pub fn places(&self, first: u64, end: u64) -> Range<u64> {
+        self.get(first).start()..self.get(end).start()
     }
 
     /// How many places each stratum has at least; some have one more.
     pub fn least(&self) -> u64 {
-        PLACES / self.n
+        self.least
     }
 
     /// An offset chosen in one stratum by random bits.
     #[inline(always)]
-    pub fn choose(&self, stratum: u64, bits: u64) -> f64 {
-        choose(self.places(stratum, stratum + 1), bits)
+    pub fn choose(&self, i: u64, bits: u64) -> f64 {
+        let stratum = self.get(i);
+        offset(stratum.start() + scale(bits, self.least + stratum.more()))
     }
+}
+
+/// Stratum i of n, or for i = n what would follow.
+fn stratum(i: u64, n: u64) -> Stratum {
+    let more = start(i + 1, n) - start(i, n) - PLACES / n;
+    Stratum(2 * start(i, n) + more)
 }
 
 /// The first place in stratum i of n: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
@@ -127,7 +133,7 @@ fn start(i: u64, n: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::rng::Key, *};
 
     #[test]
     fn offsets_are_symmetric_and_inside() {
@@ -137,7 +143,7 @@ mod tests {
         assert_eq!(offset(PLACES / 2), -offset(PLACES / 2 - 1));
         assert_eq!(offset_of_bits(u64::MAX), offset(PLACES - 1));
         for i in 0..100_000_u64 {
-            let place = i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11;
+            let place = Key::new(i, 0).bits(0) >> 11;
             let expected = (2 * place as i64 + 1 - PLACES as i64) as f64 * (0.5 / PLACES as f64);
             assert_eq!(offset(place), expected, "{place}");
         }
@@ -152,12 +158,10 @@ mod tests {
                 assert!(!places.is_empty());
                 let more = places.end - places.start - strata.least();
                 assert!(more <= 1);
-                if let Some(stratum) = strata.stored().get(i as usize) {
-                    assert_eq!((stratum.start(), stratum.more()), (places.start, more));
-                    for bits in [0, u64::MAX / 3, u64::MAX] {
-                        let chosen = stratum.choose(strata.least(), bits);
-                        assert_eq!(chosen, strata.choose(i, bits));
-                    }
+                let stratum = strata.get(i);
+                assert_eq!((stratum.start(), stratum.more()), (places.start, more));
+                for bits in [0, u64::MAX / 3, u64::MAX] {
+                    assert_eq!(strata.choose(i, bits), choose(places.clone(), bits));
                 }
                 // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for their neighbours.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;

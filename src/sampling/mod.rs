@@ -2,7 +2,7 @@
 //!
 //! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and where in the pixel they lie. What is
 //! seen there is the tracer's business. A sample is a pure function of method, seed, pixel, index, the pixel's count and the picture's
-//! size: there is no generator whose state would depend on what was asked before. So any part of a picture can be
+//! size: no generator has a state that would depend on what was asked before. So any part of a picture can be
 //! rendered in any order, on any number of threads, and comes out the same.
 //!
 //! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2). A file per method:
@@ -22,7 +22,6 @@ mod binomial;
 mod bricks;
 mod halton;
 mod hammersley;
-pub(crate) mod hash;
 mod jittered;
 mod lattice;
 mod multi_jittered;
@@ -30,6 +29,7 @@ mod order;
 mod points;
 mod random;
 mod regular;
+pub(crate) mod rng;
 mod scatter;
 mod shuffle;
 mod sobol;
@@ -39,12 +39,11 @@ use std::ops::Range;
 use glam::DVec2;
 use multiversion::multiversion;
 
-pub(crate) use self::halton::radical_inverse_3;
-pub use self::points::Points;
 use self::{
-    bricks::Bricks, halton::Halton, hammersley::Hammersley, hash::Key, jittered::Jittered,
-    multi_jittered::MultiJittered, order::Order, scatter::Scatter, sobol::Sobol,
+    bricks::Bricks, halton::Halton, hammersley::Hammersley, jittered::Jittered,
+    multi_jittered::MultiJittered, order::Order, rng::Key, scatter::Scatter, sobol::Sobol,
 };
+pub use self::{points::Points, rng::CounterRng};
 use crate::{
     area::Area,
     math::SimdWidth,

@@ -10,8 +10,8 @@
 use std::ops::Range;
 
 use super::{
-    hash::Key,
     lattice::{Strata, Stratum},
+    rng::Key,
     shuffle::Shuffle,
 };
 
@@ -55,84 +55,59 @@ impl MultiJittered {
         }
         let sigma = Shuffle::new(self.rows, key.part(0));
         let tau = Shuffle::new(self.columns, key.part(1));
-        let strata = self.strata.stored();
-        match (sigma.stored(), tau.stored()) {
-            (Some(sigma), Some(tau)) if !strata.is_empty() => {
-                self.place_in_rows(key, range.start, sigma, tau, strata, out);
+        match (sigma.stored(), tau.stored(), self.strata.stored()) {
+            (Some(sigma), Some(tau), Some(strata)) => {
+                let in_row = |j: u64| u64::from(sigma[j as usize]);
+                let in_column = |i: u64| u64::from(tau[i as usize]);
+                let stratum = |i: u64| strata[i as usize];
+                self.place_with(key, range.start, in_row, in_column, stratum, out);
             }
-            _ => self.place_singly(key, range.start, &sigma, &tau, out),
+            _ => {
+                let (in_row, in_column) = (|j| sigma.get(j), |i| tau.get(i));
+                let stratum = |i| self.strata.get(i);
+                self.place_with(key, range.start, in_row, in_column, stratum, out);
+            }
         }
     }
 
-    /// The same where everything is stored.
     #[inline(always)]
-    fn place_in_rows(
+    fn place_with(
         &self,
         key: Key,
         start: u64,
-        sigma: &[u16],
-        tau: &[u16],
-        strata: &[Stratum],
+        sigma: impl Fn(u64) -> u64,
+        tau: impl Fn(u64) -> u64,
+        stratum: impl Fn(u64) -> Stratum,
         [x, y]: [&mut [f64]; 2],
     ) {
-        let [columns, rows] = [self.columns, self.rows].map(|number| number as usize);
-        let (mut i, mut j) = (start as usize % columns, start as usize / columns);
         let least = self.strata.least();
+        let (mut i, mut j) = (start % self.columns, start / self.columns);
         let mut index = 2 * start;
         let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
             // First the strata, which are looked up one by one.
-            let mut point = 0;
-            while point < x.len() {
-                let end = x.len().min(point + columns - i);
-                let fine_columns = strata[i * rows + usize::from(sigma[j])..]
-                    .iter()
-                    .step_by(rows);
-                let fine_rows = &strata[j * columns..][..columns];
-                let [a, b] = chosen.each_mut().map(|chosen| &mut chosen[point..end]);
-                for ((a, &column), (b, &row)) in a
-                    .iter_mut()
-                    .zip(fine_columns)
-                    .zip(b.iter_mut().zip(&tau[i..]))
-                {
-                    (*a, *b) = (column, fine_rows[usize::from(row)]);
+            let [columns, rows] = &mut chosen;
+            let mut points = columns.iter_mut().zip(rows).take(x.len());
+            while points.len() > 0 {
+                let first_column = sigma(j);
+                let first_row = j * self.columns;
+                let part = points.len().min((self.columns - i) as usize);
+                for (column, row) in points.by_ref().take(part) {
+                    *column = stratum(i * self.rows + first_column);
+                    *row = stratum(first_row + tau(i));
+                    i += 1;
                 }
-                i += end - point;
-                if i == columns {
+                if i == self.columns {
                     (i, j) = (0, j + 1);
                 }
-                point = end;
             }
-            // Then a place in each.
+            // Then a place in each, by vectors.
             for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
                 for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
                     *out = stratum.choose(least, key.bits(index + axis + 2 * point));
                 }
             }
             index += 2 * BATCH as u64;
-        }
-    }
-
-    /// The same where they are too many.
-    #[inline(always)]
-    fn place_singly(
-        &self,
-        key: Key,
-        start: u64,
-        sigma: &Shuffle,
-        tau: &Shuffle,
-        [x, y]: [&mut [f64]; 2],
-    ) {
-        let (mut i, mut j) = (start % self.columns, start / self.columns);
-        for (index, (x, y)) in (start..).zip(x.iter_mut().zip(y)) {
-            let column = i * self.rows + sigma.get(j);
-            let row = j * self.columns + tau.get(i);
-            *x = self.strata.choose(column, key.bits(2 * index));
-            *y = self.strata.choose(row, key.bits(2 * index + 1));
-            i += 1;
-            if i == self.columns {
-                (i, j) = (0, j + 1);
-            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{hash::Key, lattice};
+use super::{lattice, rng::Key};
 
 /// Places the points with these indices.
 #[inline(always)]

@@ -6,7 +6,7 @@
 //! greatest power of two below it, so that nearly all cuts are into halves, whose draws count random bits. Where in its pixel a point
 //! lies is then uniform.
 
-use super::{binomial, hash::Key};
+use super::{binomial, rng::Key};
 use crate::area::Area;
 
 /// How `total` points fall into the pixels of a picture.
@@ -63,46 +63,26 @@ impl Scatter {
 
     fn split(&self, node: Node) -> [Node; 2] {
         let area = node.area;
-        let (first, second) = if area.width >= area.height {
-            let width = area.width.next_power_of_two() / 2;
-            let (x, rest) = (area.x + width, area.width - width);
-            (
-                Area { width, ..area },
-                Area {
-                    x,
-                    width: rest,
-                    ..area
-                },
-            )
+        let mut halves = [area; 2];
+        if area.width >= area.height {
+            halves[0].width = area.width.next_power_of_two() / 2;
+            halves[1].width -= halves[0].width;
+            halves[1].x += halves[0].width;
         } else {
-            let height = area.height.next_power_of_two() / 2;
-            let (y, rest) = (area.y + height, area.height - height);
-            (
-                Area { height, ..area },
-                Area {
-                    y,
-                    height: rest,
-                    ..area
-                },
-            )
-        };
+            halves[0].height = area.height.next_power_of_two() / 2;
+            halves[1].height -= halves[0].height;
+            halves[1].y += halves[0].height;
+        }
         let fallen = binomial::draw(
-            self.key.part(node.path),
+            &mut self.key.part(node.path).rng(),
             node.points,
-            first.pixels(),
+            halves[0].pixels(),
             area.pixels(),
         );
-        [
-            Node {
-                path: 2 * node.path,
-                area: first,
-                points: fallen,
-            },
-            Node {
-                path: 2 * node.path + 1,
-                area: second,
-                points: node.points - fallen,
-            },
-        ]
+        [(0, fallen), (1, node.points - fallen)].map(|(half, points)| Node {
+            path: 2 * node.path + half,
+            area: halves[half as usize],
+            points,
+        })
     }
 }

@@ -12,7 +12,7 @@
 
 use std::ops::Range;
 
-use super::{hash::Key, lattice};
+use super::{lattice, rng::Key};
 
 /// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
 const LEVELS: u32 = 6;

@@ -3,7 +3,7 @@
 use std::{fmt::Write, ops::Range};
 
 use super::{
-    css, example_call,
+    css,
     schema::{self, Block, Field, Function, Preset, Type},
 };
 use crate::suggest;
@@ -21,17 +21,11 @@ pub fn word(word: &str) -> Option<String> {
         parts.push(ABOUT_LET.to_owned() + &example("let middle = (0, 1, 0)"));
     }
     if let Some(row) = schema::block(word) {
-        let fields = row.least_fields();
-        let fields: Vec<String> = fields.iter().map(|field| written(field)).collect();
-        let block = match fields.is_empty() {
-            true => format!("{} {{}}", row.name),
-            false => format!("{} {{ {} }}", row.name, fields.join("  ")),
-        };
-        parts.push(block_page(row) + &example(&block));
+        parts.push(block_page(row) + &example(&row.example()));
     }
     for row in schema::BLOCKS {
         if let Some(field) = row.field(word) {
-            parts.push(about_field(row, field) + &example(&written(field)));
+            parts.push(about_field(row, field) + &example(&format!("{word} {}", field.example)));
         }
     }
     for (method, help) in schema::METHODS {
@@ -44,10 +38,10 @@ pub fn word(word: &str) -> Option<String> {
         }
     }
     if let Some(function) = schema::function(word) {
-        let call = format!("let value = {}", example_call(function));
+        let call = format!("let value = {}", function.call());
         parts.push(about_function(function) + &example(&call));
     }
-    for (name, help) in schema::CONSTANTS {
+    for (name, _, help) in schema::CONSTANTS {
         if *name == word {
             parts.push(format!("`{name}`: {help}"));
         }
@@ -63,17 +57,13 @@ pub fn word(word: &str) -> Option<String> {
 pub fn words() -> impl Iterator<Item = &'static str> {
     let fields = schema::BLOCKS.iter().flat_map(Block::field_names);
     let functions = schema::FUNCTIONS.iter().map(|function| function.name);
-    let constants = schema::CONSTANTS.iter().map(|(name, _)| *name);
+    let constants = schema::CONSTANTS.iter().map(|(name, ..)| *name);
     let blocks = ["let"].into_iter().chain(schema::block_names());
     blocks
         .chain(fields)
         .chain(schema::method_names())
         .chain(functions)
         .chain(constants)
-}
-
-fn written(field: &Field) -> String {
-    format!("{} {}", field.name, field.example())
 }
 
 fn block_page(row: &Block) -> String {
@@ -94,7 +84,7 @@ pub fn about_block(row: &Block) -> String {
     for field in row.fields {
         let _ = write!(
             text,
-            "\n- `{}` {}: {}",
+            "\n- `{}` ({}): {}",
             field.name,
             kind_and_preset(field),
             field.help
@@ -106,7 +96,7 @@ pub fn about_block(row: &Block) -> String {
 /// A field: what it is, what it takes, what it is if not given, and what it must be.
 pub fn about_field(row: &Block, field: &Field) -> String {
     let mut text = format!(
-        "`{}` of {}: {}\n\n{}",
+        "`{}` of {}: {}\n\n({})",
         field.name,
         row.noun,
         field.help,
@@ -137,12 +127,13 @@ pub fn about_field(row: &Block, field: &Field) -> String {
     text
 }
 
-fn kind_and_preset(field: &Field) -> String {
+/// What a field takes, and what it is if not given.
+pub fn kind_and_preset(field: &Field) -> String {
     let kind = field.takes.word();
     match field.preset {
-        Preset::Value(literal) => format!("({kind}, `{literal}` by default)"),
-        Preset::Required => format!("({kind}, required)"),
-        Preset::Alternative | Preset::Nothing => format!("({kind})"),
+        Preset::Value(literal) => format!("{kind}, `{literal}` by default"),
+        Preset::Required => format!("{kind}, required"),
+        Preset::Alternative | Preset::Nothing => kind.to_owned(),
     }
 }
 

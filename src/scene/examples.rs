@@ -5,56 +5,49 @@
 
 use glam::DVec3;
 
-use super::{schema::Field, value::Value};
+use super::{eval::literal, schema::Field, value::Value};
 use crate::{math::predicates, numbers};
 
 /// A value that a field can have, given the values of the others in its block. Where none that is tried fits, it is the field's own
 /// example.
 pub fn example_beside(field: &Field, given: &dyn Fn(&str) -> Option<Value>) -> String {
-    let example = field.example();
+    const POINTS: [&str; 7] = ["max", "min", "lookat", "eye", "v0", "v1", "v2"];
+    const STEPS: [DVec3; 6] = [
+        DVec3::NEG_Z,
+        DVec3::X,
+        DVec3::Y,
+        DVec3::Z,
+        DVec3::NEG_ONE,
+        DVec3::ONE,
+    ];
+    let others = POINTS.iter().filter_map(|name| match given(name)? {
+        // A direction is none from a point.
+        _ if matches!(field.name, "direction" | "up") || *name == field.name => None,
+        Value::Vector(point) => Some(point),
+        _ => None,
+    });
+    // An eye looks along −z, and stands before what it looks at.
+    let sign = if field.name == "eye" { -1.0 } else { 1.0 };
+    let beside = others.chain([DVec3::ZERO]);
+    let beside = beside.flat_map(|point| STEPS.map(|step| point + step * sign));
+    let mut all =
+        std::iter::once(field.example.to_owned()).chain(beside.map(numbers::short_vector));
+    let fits = |text: &String| {
+        let new = literal(text, field.takes);
+        new.is_some() && fits(&|name| if name == field.name { new } else { given(name) })
+    };
+    match (field.name, given("near")) {
+        ("far", Some(Value::Number(near))) if near >= 100.0 => numbers::short(near * 2.0),
+        _ => all.find(fits).unwrap_or_else(|| field.example.to_owned()),
+    }
+}
+
+/// Whether vectors of a block do not contradict each other, as far as they are known.
+fn fits(given: &dyn Fn(&str) -> Option<Value>) -> bool {
     let vector = |name: &str| match given(name)? {
         Value::Vector(vector) => Some(vector),
         _ => None,
     };
-    let first_of = |names: &[&str]| names.iter().find_map(|name| vector(name));
-    // Beside what it can lie, and where.
-    let (from, offsets) = match field.name {
-        "far" => {
-            return match given("near") {
-                Some(Value::Number(near)) if near >= 100.0 => numbers::short(near * 2.0),
-                _ => example,
-            };
-        }
-        "min" => (vector("max"), [DVec3::NEG_ONE; 2]),
-        "max" => (vector("min"), [DVec3::ONE; 2]),
-        "eye" => (vector("lookat"), [DVec3::Z, DVec3::X]),
-        "lookat" => (vector("eye"), [DVec3::NEG_Z, DVec3::X]),
-        "direction" | "up" => (Some(DVec3::ZERO), [DVec3::NEG_Z, DVec3::X]),
-        "v0" => (first_of(&["v1", "v2"]), [DVec3::Z, DVec3::X]),
-        "v1" => (first_of(&["v0", "v2"]), [DVec3::X, DVec3::Y]),
-        "v2" => (first_of(&["v0", "v1"]), [DVec3::Y, DVec3::Z]),
-        _ => return example,
-    };
-    let Some(from) = from else { return example };
-    let others = offsets.map(|offset| numbers::short_vector(from + offset));
-    let fits = |text: &&String| {
-        let with = |new| {
-            move |name: &str| {
-                if name == field.name {
-                    Some(new)
-                } else {
-                    vector(name)
-                }
-            }
-        };
-        parsed(text).is_some_and(|new| fits(&with(new)))
-    };
-    let mut all = std::iter::once(&example).chain(&others);
-    all.find(fits).unwrap_or(&example).clone()
-}
-
-/// Whether vectors of a block do not contradict each other, as far as they are known.
-fn fits(vector: &dyn Fn(&str) -> Option<DVec3>) -> bool {
     if let (Some(min), Some(max)) = (vector("min"), vector("max")) {
         return min.cmplt(max).all();
     }
@@ -73,12 +66,4 @@ fn fits(vector: &dyn Fn(&str) -> Option<DVec3>) -> bool {
         [a, b, c] => !predicates::are_on_one_line([a, b, c]),
         _ => true,
     }
-}
-
-/// A vector of three numbers, as examples are written.
-fn parsed(text: &str) -> Option<DVec3> {
-    let inner = text.strip_prefix('(')?.strip_suffix(')')?;
-    let mut parts = inner.split(", ").map(|part| part.parse().ok());
-    let vector = DVec3::new(parts.next()??, parts.next()??, parts.next()??);
-    vector.is_finite().then_some(vector)
 }

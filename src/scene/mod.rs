@@ -18,7 +18,6 @@ pub mod describe;
 mod error;
 mod eval;
 mod examples;
-mod fix;
 mod fix_all;
 mod lower;
 mod model;
@@ -27,8 +26,7 @@ mod semantic_model;
 mod unseen;
 mod value;
 
-pub use crate::schema::{self, Method, Value, css, predefined};
-pub use eval::example_call;
+pub use crate::schema::{self, Method, Predefined, Value, css, predefined};
 pub use examples::example_beside;
 pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{analyze, read, read_in_parts, read_unless};

@@ -1,7 +1,7 @@
 //! `--set TARGET=VALUE`.
 //!
-//! In: the arguments as they were typed. Out: what each names, and the tree of its value. Whether there is such a target,
-//! and what the value is there, is for lowering to find out.
+//! In: the arguments as they were typed, and the tree of the file. Out: the tree with their values in it. What a value is in its place is for lowering to find
+//! out.
 
 use super::{error::error, schema};
 use crate::{
@@ -10,15 +10,13 @@ use crate::{
     suggest::{self, Budget},
     syntax::{
         self, shorten,
-        tree::{Name, Value},
+        tree::{Block, Field, Item, Name, Value},
     },
 };
 
 /// One argument.
 #[derive(Clone, Debug)]
 pub struct Override<'s> {
-    /// Which argument it is.
-    pub id: SourceId,
     /// The block, of `BLOCK.FIELD`.
     pub block: Option<Name<'s>>,
     /// The field, or the name of a `let`.
@@ -36,12 +34,7 @@ pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
                 diagnostics.extend(problems);
-                overrides.push(Override {
-                    id,
-                    block,
-                    name,
-                    value,
-                });
+                overrides.push(Override { block, name, value });
             }
         }
     }
@@ -105,8 +98,87 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     })
 }
 
+/// Puts the values of the arguments into the items of a file, in the place of what stands there. Of several things of one name the first is meant.
+pub fn apply<'s>(
+    overrides: Vec<Override<'s>>,
+    items: &mut Vec<Item<'s>>,
+    budget: &Budget,
+) -> Vec<Diagnostic> {
+    let mut problems = Vec::new();
+    for Override { block, name, value } in overrides {
+        let Some(target) = block else {
+            let found = items.iter_mut().find_map(|item| match item {
+                Item::Definition(it) if it.name.is_some_and(|it| it.text == name.text) => Some(it),
+                _ => None,
+            });
+            match found {
+                Some(definition) => definition.value = value,
+                None => problems.push(no_such_let(&name, items, budget)),
+            }
+            continue;
+        };
+        let setting = schema::block(target.text).filter(|row| !row.is_object);
+        let has_target = |item: &Item<'s>| is_target(item, target.text, setting);
+        let mut found = items.iter().position(has_target);
+        if found.is_none() && setting.is_some() {
+            found = Some(items.len());
+            items.push(Item::Block(Block {
+                kind: Some(target),
+                open: Some(target.span),
+                close: Some(target.span),
+                ..Block::empty(target.span)
+            }));
+        }
+        match found.and_then(|index| items.get_mut(index)) {
+            Some(Item::Block(block)) => set_field(block, name, value),
+            _ => problems.push(no_such_block(&target, items, budget)),
+        }
+    }
+    problems
+}
+
+/// The row of a block; for a mistyped kind that of the nearest one.
+fn row(block: &Block<'_>) -> Option<&'static schema::Block> {
+    let kind = block.kind?.text;
+    schema::block(kind).or_else(|| schema::nearest_block(kind))
+}
+
+fn is_target(item: &Item<'_>, target: &str, setting: Option<&schema::Block>) -> bool {
+    let Item::Block(block) = item else {
+        return false;
+    };
+    match (row(block), setting) {
+        (Some(row), Some(setting)) => row.kind == setting.kind,
+        (Some(row), None) => row.is_object && block.name.is_some_and(|name| name.text == target),
+        _ => false,
+    }
+}
+
+/// Gives a block a field, in the place of the same one and of those that it excludes.
+fn set_field<'s>(block: &mut Block<'s>, name: Name<'s>, value: Value<'s>) {
+    let excluded = row(block)
+        .into_iter()
+        .flat_map(|row| row.excludes(name.text));
+    let excluded: Vec<&str> = excluded.collect();
+    let stays =
+        |field: &Field<'_>| field.name.text != name.text && !excluded.contains(&field.name.text);
+    block.fields.retain(stays);
+    let span = name.span;
+    block.fields.push(Field { name, value, span });
+}
+
+/// The names of the objects, in order.
+fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
+    let names = items.iter().filter_map(|item| match item {
+        Item::Block(block) if row(block)?.is_object => Some(block.name?.text),
+        _ => None,
+    });
+    names.collect()
+}
+
 /// What is wrong with a target whose block is neither in the file nor one that can be added.
-pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Diagnostic {
+fn no_such_block(block: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnostic {
+    let objects = objects(items);
     let blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let names = objects
         .iter()
@@ -131,14 +203,21 @@ pub fn no_such_block(block: &Name<'_>, objects: &[&str], budget: &Budget) -> Dia
 }
 
 /// What is wrong with a target that is no `let` of the file, but may be a block.
-pub fn no_such_let(name: &Name<'_>, lets: &[&str], is_block: bool, budget: &Budget) -> Diagnostic {
+fn no_such_let(name: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnostic {
+    let lets = items.iter().filter_map(|item| match item {
+        Item::Definition(definition) => Some(definition.name?.text),
+        Item::Block(_) | Item::Bad(_) => None,
+    });
+    let is_unnamed = |block: &schema::Block| !block.is_object;
+    let is_block =
+        schema::block(name.text).is_some_and(is_unnamed) || objects(items).contains(&name.text);
     let mut blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = blocks.find(|block| block.field(name.text).is_some());
-    let near = || suggest::nearest(name.text, lets.iter().copied()).map(str::to_owned);
+    let near = || suggest::nearest(name.text, lets).map(str::to_owned);
     let meant = match of_block {
         _ if is_block => None,
         Some(block) => Some(format!("{}.{}", block.name, name.text)),
-        None => budget.spend(lets.len()).then(near).flatten(),
+        None => budget.spend(items.len()).then(near).flatten(),
     };
     let message = format!("the scene defines no `{}`", name.text);
     error("no_such_target", message)

@@ -9,11 +9,10 @@ use super::{
 };
 use crate::{
     diagnostic::Diagnostic,
-    schema::predefined,
     source::Sources,
     syntax::{
         Parsed,
-        tree::{self, Definition, Item, ValueKind},
+        tree::{self, Definition, Item},
     },
 };
 
@@ -91,9 +90,6 @@ impl<'s> SemanticModel<'s> {
     /// What a value of the tree is; `wanted` is the type that would fit, if one is known. None if it failed, or means nothing by itself, such as
     /// the word of a method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
-        if !self.is_defined(value) {
-            return None;
-        }
         let mut problems = Vec::new();
         let mut evaluator = Evaluator {
             sources: self.sources,
@@ -101,16 +97,5 @@ impl<'s> SemanticModel<'s> {
             problems: &mut problems,
         };
         evaluator.value(value, wanted)
-    }
-
-    /// Whether every name in a value is defined where it stands: evaluation knows the names of the end of the file.
-    fn is_defined(&self, value: &tree::Value<'s>) -> bool {
-        match &value.kind {
-            ValueKind::Name(name) => {
-                predefined(name).is_some() || self.definition_at(name, value.span.start).is_some()
-            }
-            ValueKind::Missing | ValueKind::Bad => false,
-            _ => value.parts().iter().all(|part| self.is_defined(part)),
-        }
     }
 }

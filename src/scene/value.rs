@@ -61,7 +61,7 @@ fn in_radians(angle: Angle) -> f64 {
     angle.degrees.to_radians() + angle.radians
 }
 
-/// What a function gives, if the arguments have its types. `rgb` is not among them: it can refuse a value.
+/// What a function gives, if the arguments have its types. The parts of `rgb` may be out of range.
 pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     use Value::{Number, Vector};
     Some(match (function, arguments) {

@@ -4,7 +4,7 @@ use crate::suggest::{self, is_among};
 
 /// A row for each technique: what it is in the program, its word, what it is, and other words that people try for it.
 macro_rules! methods {
-    ($($method:ident $name:literal $help:literal [$($tried:literal)*])*) => {
+    ($($method:ident $name:literal $help:literal $tried:literal)*) => {
         /// A sampling technique.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Method {
@@ -24,21 +24,21 @@ macro_rules! methods {
         pub const METHODS: &[(Method, &str)] = &[$((Method::$method, $help)),*];
 
         /// Other words that people try for methods.
-        const ALSO_TRIED: &[(Method, &[&str])] = &[$((Method::$method, &[$($tried),*])),*];
+        const ALSO_TRIED: &[(Method, &str)] = &[$((Method::$method, $tried)),*];
     };
 }
 
 methods! {
-    Regular "regular" "an even grid, centred" ["grid" "uniform_grid" "centered"]
-    Random "random" "independent and uniform" ["monte_carlo" "independent" "white_noise"]
-    Jittered "jittered" "one at random in each cell of a grid" ["stratified"]
-    NRooks "n_rooks" "one in each row and each column" ["latin_hypercube" "lhs" "rooks"]
-    MultiJittered "multi_jittered" "jittered and n_rooks at once" ["cmj" "correlated_multi_jittered"]
-    Hammersley "hammersley" "the Hammersley points, shifted per pixel" []
-    Halton "halton" "the Halton points, shifted per pixel" []
-    Sobol "sobol" "Sobol' points with Owen scrambling, per pixel" ["owen" "low_discrepancy"]
-    Scatter "scatter" "points uniform over the whole picture" []
-    Exact "exact" "no samples: the mean itself, computed" ["analytic" "analytical"]
+    Regular "regular" "an even grid, centred" "grid uniform_grid centered"
+    Random "random" "independent and uniform" "monte_carlo independent white_noise"
+    Jittered "jittered" "one at random in each cell of a grid" "stratified"
+    NRooks "n_rooks" "one in each row and each column" "latin_hypercube lhs rooks"
+    MultiJittered "multi_jittered" "jittered and n_rooks at once" "cmj correlated_multi_jittered"
+    Hammersley "hammersley" "the Hammersley points, shifted per pixel" ""
+    Halton "halton" "the Halton points, shifted per pixel" ""
+    Sobol "sobol" "Sobol' points with Owen scrambling, per pixel" "owen low_discrepancy"
+    Scatter "scatter" "points uniform over the whole picture" ""
+    Exact "exact" "no samples: the mean itself, computed" "analytic analytical"
 }
 
 impl Method {

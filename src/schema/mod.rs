@@ -3,7 +3,7 @@
 //! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought among them, and the
 //! language's reference is tested against them.
 //!
-//! `types` has what a value can be, `rows` what a row says; the rows stand in `blocks`, `methods` and `builtins`, the colours' names in `css`, and here they are looked up.
+//! `types` has what a value can be, `row_types` what a row says; the rows stand in `blocks`, `methods` and `builtins`, the colours' names in `css`, and here they are looked up.
 
 mod blocks;
 mod builtins;
@@ -15,7 +15,7 @@ mod types;
 pub use blocks::BLOCKS;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
 pub use methods::{METHODS, Method, method, method_names, nearest_method};
-pub use row_types::{Block, Choice, Condition, Field, Kind, Preset, Spread};
+pub use row_types::{Block, Choice, Condition, Field, Kind, Preset, Several};
 
 pub use types::{Type, Value};
 
@@ -24,6 +24,21 @@ use crate::suggest::{self, is_among};
 /// A block's row, found by its word.
 pub fn block(name: &str) -> Option<&'static Block> {
     BLOCKS.iter().find(|block| block.name == name)
+}
+
+/// The row of a kind of block.
+pub fn of_kind(kind: Kind) -> &'static Block {
+    const {
+        let mut at = 0;
+        while at < BLOCKS.len() {
+            assert!(
+                BLOCKS[at].kind as usize == at,
+                "rows stand in the order of their kinds"
+            );
+            at += 1;
+        }
+    }
+    &BLOCKS[kind as usize]
 }
 
 /// The words that blocks start with.
@@ -39,18 +54,31 @@ pub fn nearest_block(written: &str) -> Option<&'static Block> {
     tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
 }
 
-/// What a predefined name is, if it is one.
-pub fn predefined(name: &str) -> Option<&'static str> {
-    if css::color(name).is_some() {
-        Some("a colour")
-    } else if function(name).is_some() {
-        Some("a function")
-    } else {
-        let constant = CONSTANTS.iter().any(|&(constant, _)| constant == name);
-        match name {
-            "pi" if constant => Some("a number"),
-            _ if constant => Some("a unit"),
-            _ => None,
+/// What a predefined name stands for.
+#[derive(Clone, Copy, Debug)]
+pub enum Predefined {
+    /// A colour or a constant.
+    Value(Value),
+    /// A function.
+    Function(&'static Function),
+}
+
+impl Predefined {
+    /// What it is, for messages.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Self::Function(_) => "a function",
+            Self::Value(Value::Angle(_)) => "a unit",
+            Self::Value(value) => value.kind().noun(),
         }
     }
+}
+
+/// What a predefined name stands for, if it is one.
+pub fn predefined(name: &str) -> Option<Predefined> {
+    let color = css::color(name).map(Value::Color);
+    let constant = || CONSTANTS.iter().find(|(constant, ..)| *constant == name);
+    let value = color.or_else(|| constant().map(|&(_, value, _)| value));
+    let value = value.map(Predefined::Value);
+    value.or_else(|| function(name).map(Predefined::Function))
 }

@@ -49,9 +49,9 @@ pub struct Block {
     /// Conditions between fields, each by its name.
     pub together: &'static [&'static str],
     /// Other words that people try for several of its fields.
-    pub spreads: &'static [Spread],
+    pub several: &'static [Several],
     /// Other words that people try for it.
-    pub also_tried: &'static [&'static str],
+    pub also_tried: &'static str,
 }
 
 /// Ways to say the same thing, of which a block takes one.
@@ -65,9 +65,9 @@ pub struct Choice {
 
 /// A word that people try for several fields at once, with a list of their values.
 #[derive(Debug)]
-pub struct Spread {
+pub struct Several {
     /// The words.
-    pub words: &'static [&'static str],
+    pub words: &'static str,
     /// The fields.
     pub fields: &'static [&'static str],
 }
@@ -86,65 +86,39 @@ pub struct Field {
     /// What it is, in a line.
     pub help: &'static str,
     /// Other words that people try for it.
-    pub also_tried: &'static [&'static str],
+    pub also_tried: &'static str,
     /// Words that people try for twice its value.
-    pub doubled: &'static [&'static str],
-    /// A value that it can have, if neither its default nor any of its type will do.
+    pub doubled: &'static str,
+    /// A value that it can have, as it is written: for messages, and to type over.
     pub example: &'static str,
 }
 
 impl Field {
-    /// A field that must be given; any value of its type will do.
-    pub(super) const fn new(name: &'static str, takes: Type) -> Self {
+    /// A field for which any value of its type will do. Its example is its default.
+    pub(super) const fn new(
+        name: &'static str,
+        takes: Type,
+        preset: Preset,
+        help: &'static str,
+    ) -> Self {
         Self {
             name,
             takes,
-            preset: Preset::Required,
+            preset,
             must: &[],
-            help: "",
-            also_tried: &[],
-            doubled: &[],
-            example: "",
+            help,
+            also_tried: "",
+            doubled: "",
+            example: match preset {
+                Preset::Value(written) => written,
+                _ => "",
+            },
         }
     }
 
-    pub(super) const fn help(self, help: &'static str) -> Self {
-        Self { help, ..self }
-    }
-
-    pub(super) const fn preset(self, preset: Preset) -> Self {
-        Self { preset, ..self }
-    }
-
-    pub(super) const fn must(self, must: &'static [Condition]) -> Self {
-        Self { must, ..self }
-    }
-
-    pub(super) const fn tried(self, also_tried: &'static [&'static str]) -> Self {
-        Self { also_tried, ..self }
-    }
-
-    pub(super) const fn doubled(self, doubled: &'static [&'static str]) -> Self {
-        Self { doubled, ..self }
-    }
-
-    pub(super) const fn like(self, example: &'static str) -> Self {
-        Self { example, ..self }
-    }
-
-    /// A value that it can have: for messages, and to type over.
-    pub fn example(&self) -> String {
-        let example = match (self.preset, self.takes) {
-            _ if !self.example.is_empty() => self.example,
-            (Preset::Value(written), _) if written != "0deg" => written,
-            (_, Type::Number) => "100",
-            (_, Type::Angle) => "30deg",
-            (_, Type::Vector) => "(0, 1, 0)",
-            (_, Type::Color) => "olive",
-            (_, Type::Colors) => "(gray, white)",
-            (_, Type::Method) => "jittered",
-        };
-        example.to_owned()
+    /// Whether a value keeps its conditions; one of another type has no say in it.
+    pub fn allows(&self, value: Value) -> bool {
+        self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
@@ -229,17 +203,16 @@ impl Block {
         self.fields.iter().map(|field| field.name)
     }
 
+    /// The choice that a field is one of the ways of.
+    fn choice(&self, field: &str) -> Option<&'static Choice> {
+        let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
+        self.choices.iter().find(holds)
+    }
+
     /// The fields that a field excludes: those of the other ways to say the same.
     pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
-        let choices = self.choices.iter().map(|choice| choice.ways);
-        let holds = |way: &&&[&str]| way.contains(&field);
-        let choice = choices
-            .into_iter()
-            .find(|ways| ways.iter().any(|way| holds(&way)));
-        let others = choice
-            .into_iter()
-            .flatten()
-            .filter(move |way| !way.contains(&field));
+        let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
+        let others = ways.filter(move |way| !way.contains(&field));
         others.flat_map(|way| way.iter().copied())
     }
 
@@ -254,59 +227,55 @@ impl Block {
 
     /// The fields without which there is no such block: those that have no default, and of alternatives the first.
     pub fn least_fields(&self) -> Vec<&'static Field> {
-        let mut least: Vec<&Field> = Vec::new();
-        for field in self.fields {
-            let is_excluded = least
-                .iter()
-                .any(|other| self.excludes(other.name).any(|name| name == field.name));
-            let is_needed = matches!(field.preset, Preset::Required | Preset::Alternative);
-            if is_needed && !is_excluded {
-                least.push(field);
-            }
+        let is_needed = |field: &&Field| match field.preset {
+            Preset::Required => true,
+            Preset::Alternative => self
+                .choice(field.name)
+                .and_then(|choice| choice.ways.first())
+                .is_some_and(|first| first.contains(&field.name)),
+            Preset::Nothing | Preset::Value(_) => false,
+        };
+        self.fields.iter().filter(is_needed).collect()
+    }
+
+    /// A block with the fields that it needs, as it is written.
+    pub fn example(&self) -> String {
+        let fields = self.least_fields().into_iter();
+        let fields = fields.map(|field| format!("{} {}", field.name, field.example));
+        let fields: Vec<String> = fields.collect();
+        match fields.is_empty() {
+            true => format!("{} {{}}", self.name),
+            false => format!("{} {{ {} }}", self.name, fields.join("  ")),
         }
-        least
     }
 
     /// The field that is written like this but for capitals and `_`, or that people try this word for.
     pub fn field_tried(&self, written: &str) -> Option<&'static Field> {
-        let mut fields = self.fields.iter();
-        let same = fields.find(|field| is_among(written, &[field.name]));
-        same.or_else(|| {
-            self.fields
-                .iter()
-                .find(|field| is_among(written, field.also_tried))
-        })
+        let find = |words: fn(&Field) -> &'static str| {
+            let mut fields = self.fields.iter();
+            fields.find(|field| is_among(written, words(field)))
+        };
+        find(|field| field.name).or_else(|| find(|field| field.also_tried))
     }
 
     /// The field that was probably meant, if any is near: by its letters, or by a word within what was written, as in `near_clip` and
     /// `eyepoint`.
     pub fn nearest_field(&self, written: &str) -> Option<&'static Field> {
-        if let Some(name) = suggest::nearest(written, self.field_names()) {
-            return self.field(name);
-        }
         let words = suggest::words(written);
-        let named = |word: &&str| {
-            self.fields
-                .iter()
-                .find(|field| field.name.eq_ignore_ascii_case(word))
-        };
-        if let Some(field) = words.iter().find_map(named) {
-            return Some(field);
-        }
-        let tried = words.iter().rev().find_map(|word| self.field_tried(word));
-        tried.or_else(|| {
-            let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);
-            self.fields
-                .iter()
-                .filter(starts)
-                .max_by_key(|field| field.name.len())
-        })
-    }
-}
-
-impl Field {
-    /// Whether a value keeps its conditions; one of another type has no say in it.
-    pub fn allows(&self, value: Value) -> bool {
-        self.must.iter().all(|condition| condition.holds(value))
+        let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);
+        suggest::nearest(written, self.field_names())
+            .and_then(|name| self.field(name))
+            .or_else(|| {
+                words
+                    .iter()
+                    .find_map(|word| self.field(&word.to_ascii_lowercase()))
+            })
+            .or_else(|| words.iter().rev().find_map(|word| self.field_tried(word)))
+            .or_else(|| {
+                self.fields
+                    .iter()
+                    .filter(starts)
+                    .max_by_key(|field| field.name.len())
+            })
     }
 }

@@ -43,15 +43,20 @@ impl Type {
         noun.split_once(' ').map_or(noun, |(_, word)| word)
     }
 
-    /// Two of the type.
-    pub fn two(self) -> &'static str {
+    /// Several of the type.
+    pub fn plural(self) -> String {
         match self {
-            Self::Number => "two numbers",
-            Self::Angle => "two angles",
-            Self::Vector => "two vectors",
-            Self::Color => "two colours",
-            Self::Colors => "two pairs of colours",
-            Self::Method => "two methods",
+            Self::Colors => "pairs of colours".to_owned(),
+            _ => format!("{}s", self.word()),
+        }
+    }
+
+    /// What a value is a list of, and of how many: a vector of three numbers, a pair of two colours.
+    pub fn parts(self) -> Option<(Self, usize)> {
+        match self {
+            Self::Vector => Some((Self::Number, 3)),
+            Self::Colors => Some((Self::Color, 2)),
+            _ => None,
         }
     }
 }

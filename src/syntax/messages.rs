@@ -30,7 +30,6 @@ pub const NEEDLESS_SEPARATOR: Message = Message::new("needless_separator", "no `
 pub const STRAY_CLOSING: Message = Message::new("stray_closing", "this `{0}` closes nothing", "nothing is open here", "write the parenthesis that opens it, or take it away");
 pub const UNEXPECTED: Message = Message::new("unexpected", "expected {0}, found `{1}`", "not here", "");
 // Fields.
-pub const FIELD_WITHOUT_VALUE: Message = Message::new("missing_value", "`{0}` has no value", "a value should follow this", "write a value after it");
 pub const NEEDLESS_EQUALS: Message = Message::new("needless_equals", "a field takes its value without `{0}`{1}", "not needed", "");
 pub const TWO_WORDS: Message = Message::new("bad_name", "`{0}` is one word", "the name of a field", "");
 pub const MISSING_SPACE: Message = Message::new("missing_space", "a space is missing between `{0}` and `{1}`", "a field and its value", "");
@@ -65,7 +64,28 @@ pub fn utf16(span: Span) -> Diagnostic {
     UTF16.at(span, &[], None)
 }
 
-/// A field has no value.
-pub fn field_without_value(name: &str, span: Span) -> Diagnostic {
-    FIELD_WITHOUT_VALUE.at(span, &[name], None)
+/// What other languages say: the words that start it, what it is, and what to do instead.
+const STATEMENTS: &[[&str; 3]] = &[
+    ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
+    ["for while loop repeat foreach", "loops", "write each object by itself, or write the file by a program"],
+    ["import include require use #include", "including of other files", "write all of a scene into one file"],
+    ["#version #declare #local #macro #define #if #end", "directives", "name a value with `let NAME = VALUE`; a comment begins with `//`"],
+    ["print echo printf console", "output", "take it away; `pinhole inspect` shows what a scene's values are"],
+    ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
+];
+
+/// What a statement of another language is, and what to do instead.
+pub fn statement(word: &str) -> Option<[&'static str; 2]> {
+    let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
+    STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
+
+/// Files of other programs: how they are called, how they start, what marks them and how often at least, and what they have not.
+pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[
+    ("XML", "<?xml", "<", 1, ""),
+    ("XML", "<", "</", 1, ""),
+    ("JSON", "{\" [{ [\"", "\"", 2, ""),
+    ("a scene of POV-Ray", "", "light_source|#declare|#version|#include|pigment|global_settings|location <|look_at <", 3, ""),
+    ("a scene of pbrt", "", "LookAt |WorldBegin|Shape \"|Film \"|Integrator \"|Sampler \"|AttributeBegin|Camera \"", 2, ""),
+    ("YAML", "", ":\n|: ", 3, "{="),
+];

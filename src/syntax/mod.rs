@@ -28,7 +28,7 @@ pub mod tokens;
 pub mod tree;
 mod vocabulary;
 
-pub use messages::{field_without_value, invalid_utf8, utf16};
+pub use messages::{invalid_utf8, utf16};
 pub use parallel::parse_in_parts;
 pub use parser::{parse, parse_unless, parse_value};
 pub use problem::shorten;

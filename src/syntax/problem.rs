@@ -29,6 +29,11 @@ impl Message {
         }
     }
 
+    /// Whether it is about something that is only too much.
+    pub fn is_needless(&self) -> bool {
+        self.code.starts_with("needless") || self.code == "plus_sign"
+    }
+
     /// The problem at a place; the words go where the message names something. A fix says what to do.
     pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
         let filled = |text: &str| {
@@ -55,7 +60,7 @@ impl Message {
                 message: filled(self.label),
             }],
             fixes,
-            is_needless: self.code.starts_with("needless") || self.code == "plus_sign",
+            is_needless: self.is_needless(),
             is_of_syntax: true,
         }
     }

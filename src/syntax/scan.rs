@@ -126,14 +126,7 @@ impl Scan {
         }
         let comments = self.comments.into_iter();
         let comments = comments.map(|comment| Span::new(id, comment.start, comment.end));
-        let foreign = std::mem::take(&mut parsed.comments);
-        parsed.comments = comments
-            .filter(|comment| !is_within(*comment, &foreign))
-            .collect();
-        if !foreign.is_empty() {
-            parsed.comments.extend(foreign);
-            parsed.comments.sort_unstable();
-        }
+        parsed.comments = comments.collect();
     }
 
     /// One report for each sort of character, at the first one.
@@ -213,11 +206,4 @@ fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
         found.fixes.push(fix);
     }
     found
-}
-
-fn is_within(span: Span, places: &[Span]) -> bool {
-    let next = places.partition_point(|place| place.end <= span.start);
-    places
-        .get(next)
-        .is_some_and(|place| place.start <= span.start)
 }

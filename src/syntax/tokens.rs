@@ -195,6 +195,11 @@ pub fn is_name_char(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
+/// Whether these are the digits of a colour.
+pub fn is_color_code(digits: &str) -> bool {
+    matches!(digits.len(), 3 | 6) && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
+}
+
 /// Whether a character cannot be seen and is no white space of the language.
 fn is_odd_space(c: char) -> bool {
     let other = c.is_whitespace() && !matches!(c, ' ' | '\t' | '\r' | '\n');

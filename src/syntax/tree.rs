@@ -70,11 +70,6 @@ impl Definition<'_> {
             span: keyword,
         }
     }
-
-    /// Whether it stands for a part of something that cannot be a name: it keeps uses of that from being reported, and nothing else.
-    pub fn is_part_of_name(&self) -> bool {
-        self.name.is_some_and(|name| name.span == self.span)
-    }
 }
 
 /// `KIND NAME? { FIELD VALUE … }`
@@ -322,7 +317,6 @@ pub(super) fn chain<'s>(
     sign: Span,
     operand: Value<'s>,
 ) -> Value<'s> {
-    let is_sum = |operator| matches!(operator, Operator::Add | Operator::Subtract);
     let span = left.span.to(operand.span);
     let step = Step {
         operator,
@@ -333,7 +327,7 @@ pub(super) fn chain<'s>(
         ValueKind::Chain { first, mut rest }
             if rest
                 .last()
-                .is_some_and(|last| is_sum(last.operator) == is_sum(operator)) =>
+                .is_some_and(|last| last.operator.is_of_product() == operator.is_of_product()) =>
         {
             rest.push(step);
             ValueKind::Chain { first, rest }

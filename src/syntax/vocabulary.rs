@@ -4,7 +4,7 @@
 //! which of them are known: in `radius color olive` a value is missing. They are looked up in the schema
 //! and among the names that the text defines.
 
-use std::{collections::HashMap, ops::RangeInclusive, sync::OnceLock};
+use std::{collections::HashMap, sync::OnceLock};
 
 use super::{
     tokens::{Lexer, TokenKind, numeric_part},
@@ -94,21 +94,7 @@ impl<'s> Vocabulary<'s> {
 
     /// Whether a name is that of a colour.
     pub fn is_color(&self, name: &str) -> bool {
-        predefined(name) == Some("a colour")
-    }
-
-    /// Whether a name is that of a function.
-    pub fn is_function(&self, name: &str) -> bool {
-        predefined(name) == Some("a function")
-    }
-
-    /// How many arguments a function takes; of one that is not known, none that can be told.
-    pub fn arguments(&self, name: &str) -> RangeInclusive<usize> {
-        match schema::function(name) {
-            Some(function) if function.more => function.takes.len()..=usize::MAX,
-            Some(function) => function.takes.len()..=function.takes.len(),
-            None => 0..=0,
-        }
+        schema::css::color(name).is_some()
     }
 
     /// Whether a name is surely that of a number: pi, or one that is defined so.

@@ -24,7 +24,7 @@ pub enum Curve {
     Conic(Conic),
 }
 
-/// The line ax + by + c = 0, the greater of |a| and |b| being about 1.
+/// The line ax + by + c = 0, the greater of |a| and |b| being 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
     /// a, b and c.
@@ -201,16 +201,32 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Curve {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// A linear form's zero line.
+/// A linear form's zero line. Its greater slope becomes 1, so that forms of one line, as those of the horizons of parallel planes are, have the
+/// same factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Curve {
-    let size = factors[0].magnitude().max(factors[1].magnitude());
+    let [a, b, _] = factors;
+    let greatest = match a.magnitude() < b.magnitude() {
+        true => b,
+        false => a,
+    };
     // A form without slope has no zero line; any power of two will do.
-    let exponent = -size.exponent();
-    let factors = factors.each_ref().map(|x| x.scaled(exponent).to_f64());
-    let rounding = f64::UNIT * (factors[0].abs() + factors[1].abs() + factors[2].abs());
+    let exponent = -greatest.magnitude().exponent();
+    let greatest = greatest.scaled(exponent);
+    let slope = match greatest.is_zero() {
+        true => T::from_f64(1.0),
+        false => greatest,
+    };
+    let factors = factors
+        .each_ref()
+        .map(|x| x.scaled(exponent).over(&slope).to_f64());
+    // Of the quotients, and of these in `f64`.
+    let unit = f64::UNIT + 8.0 * T::UNIT;
+    let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
+    // Its own quotient, and that of the slope in `f64`, are rounded, too.
+    let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Curve::Line(Line {
         factors,
-        rad: rad.scaled(exponent).to_f64() + rounding,
+        rad: rad + rounding,
     })
 }
 

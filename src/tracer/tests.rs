@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
+use rand::{Rng, RngExt, SeedableRng};
 
 use super::{
     Candidate, World,
@@ -16,26 +17,24 @@ use crate::{
     area::Area,
     math::{Ball, Big, Double},
     report::numerics::scenes::{SIZE, board, camera, cuboid, scene, sphere, spun, triangle},
+    sampling::CounterRng,
     scene::{self, Camera, Scene, Shape},
 };
 
-/// Vigna's splitmix64.
-struct Random(u64);
+/// Numbers that are the same in each run.
+struct Random(CounterRng);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    fn new(seed: u64) -> Self {
+        Self(CounterRng::seed_from_u64(seed))
     }
 
     fn below(&mut self, end: usize) -> usize {
-        (self.bits() % end as u64) as usize
+        (self.0.next_u64() % end as u64) as usize
     }
 
     fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 
     fn vector(&mut self, size: f64) -> DVec3 {
@@ -140,7 +139,7 @@ fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
 #[test]
 fn the_quadtree_changes_nothing() {
     for seed in 0..60 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
@@ -182,7 +181,7 @@ fn f64_alone_decides_nearly_everything() {
         spun(DVec3::ZERO, dvec3(1.0, 2.0, 3.0), DVec3::splat(6.0), 0.0),
         spun(DVec3::ZERO, dvec3(3.0, 6.0, 9.0), DVec3::splat(6.0), 180.0),
     ];
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for shapes in [&figure[..], &in_one_plane] {
         let camera = camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0));
         let world = World::new(&scene(camera, shapes));
@@ -199,7 +198,7 @@ fn f64_alone_decides_nearly_everything() {
 fn what_a_ray_meets_is_within_bounds() {
     let mut met = 0;
     for seed in 1000..1040 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let scene = random.scene(40);
         let world = World::new(&scene);
         let extents = extents(&world, &scene);
@@ -254,7 +253,7 @@ fn bounds_are_tight() {
 fn what_is_seen_in_a_part_is_a_candidate_there() {
     let mut seen = 0;
     for seed in 2000..2060 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let world = World::new(&random.scene(3 + (seed as usize - 2000) * 4));
         let camera = &world.geometry.fast.camera;
         let (mut some, mut all) = (Vec::new(), Vec::new());
@@ -300,7 +299,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
         board(0.0, 0.25),
         cuboid(dvec3(-2.0, -1.0, -1.0), dvec3(2.0, 0.0, 1.0)),
     ];
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..80 {
         // In y = 0, y = −z and z = 0.3 x, as whole numbers of 64ths and with normals of several lengths.
         let [a, b] = [0, 1].map(|_| (random.below(256) as f64 - 128.0) / 64.0);
@@ -329,7 +328,7 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
 #[test]
 fn very_many_objects() {
     // Enough that several threads prepare them, all over the picture and many in one place.
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);
     let template = stage.objects.remove(0);

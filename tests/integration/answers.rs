@@ -175,7 +175,7 @@ fn points_outside_the_picture_are_probed_too() {
 
 #[test]
 fn distances_and_points_are_right_to_the_last_bit() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for _ in 0..60 {
         let eye = random.vector(5.0);
         let mut camera = camera(eye, random.vector(1.0));

@@ -81,7 +81,7 @@ fn tilting_down_or_up_ends_in_the_straight_view() {
 
 #[test]
 fn axes_are_orthonormal_however_nearly_up_is_parallel_to_the_view() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for exponent in 1..40 {
         for _ in 0..20 {
             let view = random.vector(1.0);
@@ -141,7 +141,7 @@ fn a_quarter_roll_turns_the_picture_exactly() {
         World::new(&scene(upright, &shapes)),
         World::new(&scene(rolled, &shapes)),
     );
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for y in 0..64 {
         for x in 0..64 {
             let offset = random.offset();

@@ -174,7 +174,7 @@ fn bytes_are_those_of_the_light() {
 
 #[test]
 fn scenes_of_all_kinds() {
-    let mut random = Random(2024);
+    let mut random = Random::new(2024);
     let mut colors = 0;
     for index in 0..150 {
         let scene = random_scene(&mut random, index % 2 == 0);
@@ -189,7 +189,7 @@ fn scenes_of_all_kinds() {
 /// Triangles that lie in one tilted plane or on the board and overlap, more than are kept in higher precisions.
 #[test]
 fn very_many_in_one_plane() {
-    let mut random = Random(141);
+    let mut random = Random::new(141);
     let mut place = || (random.bits() % 512) as f64 / 64.0 - 4.0;
     // Of each plane by several normals. The tilted one is y = −z/3, the other the board's.
     let mut shapes: Vec<_> = (0..4000)
@@ -228,7 +228,7 @@ fn very_many_in_one_plane() {
 
 #[test]
 fn crowds_of_all_kinds() {
-    let mut random = Random(31);
+    let mut random = Random::new(31);
     let (mut dense, mut open) = (0, 0);
     for index in 0..6 {
         let mut all = random_scene(&mut random, index % 2 == 0);
@@ -302,7 +302,7 @@ fn layers_near_and_far() {
 #[test]
 fn objects_as_small_as_pixels() {
     // Of so many nothing is known before they are traced one by one, and few of them are in the way of all samples of a pixel.
-    let mut random = Random(12);
+    let mut random = Random::new(12);
     for (index, roll) in [0.0, 0.0, 30.0, 45.0].into_iter().enumerate() {
         let shapes: Vec<_> = (0..3000)
             .map(|count| {
@@ -342,7 +342,7 @@ fn objects_as_small_as_pixels() {
 
 #[test]
 fn parts_cover_each_pixel_once() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for index in 0..40 {
         let mut all = random_scene(&mut random, index % 2 == 0);
         let more = (0..index).flat_map(|_| random_scene(&mut random, true).objects);
@@ -369,7 +369,7 @@ fn parts_cover_each_pixel_once() {
 sampled_and_exhaustive!(scenes_full_of_ties);
 
 fn scenes_full_of_ties(effort: Effort) {
-    let mut random = Random(77);
+    let mut random = Random::new(77);
     for _ in effort.first(60, 0..300) {
         let scene = scene_full_of_ties(&mut random);
         // Offsets of odd eighths, and with one sample the centres: on edges and in planes.
@@ -427,7 +427,7 @@ fn extreme_cameras(effort: Effort) {
 
 #[test]
 fn spheres_of_extreme_sizes() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut tiny: Vec<_> = (0..1500)
         .map(|_| {
             let center = random.vector(3.0);

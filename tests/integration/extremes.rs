@@ -41,7 +41,7 @@ struct Numbers {
 
 impl Numbers {
     fn new(seed: u64) -> Self {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let wild = [0, 5, 30, 100][random.bits() as usize % 4];
         let mut numbers = Self {
             random,

@@ -5,8 +5,8 @@ use std::{fs, io, io::Cursor, sync::atomic::AtomicBool};
 use pinhole::{
     area::Area,
     film::{
-        Film, NotOurs, Recipe, TEXT_LIMIT, check_writable, read_recipe, write_exr, write_png,
-        write_whole,
+        Coding, Film, NotOurs, OVERRIDES_LIMIT, Recipe, Rounding, SIGNATURE, TEXT_LIMIT,
+        check_writable, read_picture, read_recipe, write_exr, write_png, write_whole,
     },
 };
 
@@ -127,10 +127,7 @@ fn pictures_of_others_are_told_from_ours() {
     let png = png_bytes(&film(3, 2), &recipe());
     let idat = png.windows(4).position(|four| four == b"IDAT").unwrap();
     for length in 0..idat {
-        assert!(matches!(
-            read_recipe(&png[..length]),
-            Err(NotOurs::Damaged(_))
-        ));
+        assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
     // Whatever byte is wrong, it is no panic; nor is anything behind the scene looked at.
     for at in 0..png.len() {
@@ -145,7 +142,96 @@ fn pictures_of_others_are_told_from_ours() {
     // A bit of the header flipped is found by its checksum; a header of a huge picture is not believed.
     let mut flipped = png.clone();
     flipped[18] ^= 1;
-    assert!(matches!(read_recipe(&flipped), Err(NotOurs::Damaged(_))));
+    assert!(matches!(read_recipe(&flipped), Err(NotOurs::Damaged)));
+}
+
+/// The beginning of a PNG with such texts.
+fn carrying<'a>(texts: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<u8> {
+    let mut png = SIGNATURE.to_vec();
+    for (keyword, text) in texts {
+        let chunk = [b"iTXt", keyword.as_bytes(), &[0; 5], text].concat();
+        png.extend((chunk.len() as u32 - 4).to_be_bytes());
+        png.extend(&chunk);
+        png.extend(crc32fast::hash(&chunk).to_be_bytes());
+    }
+    png.extend(b"\0\0\0\0IDAT");
+    png
+}
+
+#[test]
+fn what_is_wrong_with_a_text_is_told() {
+    let scene = ("pinhole:scene", &b"sphere {}"[..]);
+    let with = |count, text| {
+        let set = ("pinhole:set", text);
+        read_recipe(&carrying([scene].into_iter().chain([set].repeat(count))))
+    };
+    assert_eq!(with(OVERRIDES_LIMIT, b"h=1").unwrap().overrides.len(), 1000);
+    let refused = with(100_000, b"h=1").unwrap_err().to_string();
+    assert_eq!(refused, "the picture carries more than 1000 overrides");
+    let refused = with(1, b"h=\xff").unwrap_err().to_string();
+    assert_eq!(
+        refused,
+        "the picture carries a scene or an override that is not UTF-8 text"
+    );
+    let many = Recipe {
+        overrides: vec![String::new(); 1001],
+        ..recipe()
+    };
+    assert!(!many.fits());
+    // What others wrote may be anything.
+    let foreign = ("Comment", &b"\xff"[..]);
+    assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
+}
+
+#[test]
+fn pictures_in_all_formats_are_read() {
+    let picture =
+        image::RgbImage::from_fn(5, 3, |x, y| image::Rgb([x as u8 * 60, y as u8 * 100, 40]));
+    let expected = png_bytes(&read_of(&picture, image::ImageFormat::Png).film, &recipe());
+    for (format, coding) in [
+        (image::ImageFormat::Png, Coding::Exact),
+        (image::ImageFormat::Pnm, Coding::Exact),
+        (image::ImageFormat::Bmp, Coding::Exact),
+        (image::ImageFormat::Tiff, Coding::Exact),
+        (image::ImageFormat::WebP, Coding::Exact),
+        (image::ImageFormat::Gif, Coding::Palette),
+        (image::ImageFormat::Jpeg, Coding::Lossy),
+    ] {
+        let read = read_of(&picture, format);
+        assert_eq!((read.rounding, read.coding), (Rounding::Byte, coding));
+        assert_eq!((read.film.width(), read.film.height()), (5, 3));
+        // 15 colours have room in a palette.
+        let is_equal = png_bytes(&read.film, &recipe()) == expected;
+        assert_eq!(is_equal, coding != Coding::Lossy, "{format:?}");
+    }
+    let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";
+    assert_eq!(read_picture(webp).unwrap().coding, Coding::Lossy);
+    assert_eq!(
+        read_picture(b"P2 2 1 4 0 4").unwrap().film.pixel(1, 0),
+        [1.0; 3]
+    );
+    assert!(read_picture(b"P2let = 1").is_err());
+}
+
+fn read_of(picture: &image::RgbImage, format: image::ImageFormat) -> pinhole::film::Picture {
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format).unwrap();
+    read_picture(bytes.get_ref()).unwrap()
+}
+
+#[test]
+fn a_small_file_of_a_huge_picture_is_refused() {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 20_000, 20_000);
+    encoder.set_depth(png::BitDepth::One);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&vec![0; 2500 * 20_000]).unwrap();
+    writer.finish().unwrap();
+    assert!(bytes.len() < 1 << 20);
+    assert_eq!(
+        read_picture(&bytes).unwrap_err().to_string(),
+        "it has 20000 × 20000 pixels, and pictures of more than 67108864 are not read"
+    );
 }
 
 #[test]
@@ -169,7 +255,8 @@ fn a_text_that_unpacks_without_end_is_refused() {
 fn exr_holds_the_means_as_floats() {
     let film = film(33, 70);
     let mut bytes = Cursor::new(Vec::new());
-    write_exr(&film, &mut bytes).unwrap();
+    let whole = Area::whole(33, 70);
+    write_exr(&film, whole, whole, &mut bytes).unwrap();
     let read = image::load_from_memory_with_format(bytes.get_ref(), image::ImageFormat::OpenExr);
     let image::DynamicImage::ImageRgb32F(read) = read.unwrap() else {
         panic!("not RGB of floats")
@@ -178,8 +265,36 @@ fn exr_holds_the_means_as_floats() {
         assert_eq!(pixel.0, film.pixel(x, y).map(|light| light as f32));
     }
     let mut again = Cursor::new(Vec::new());
-    write_exr(&film, &mut again).unwrap();
+    write_exr(&film, whole, whole, &mut again).unwrap();
     assert_eq!(bytes, again);
+    assert_eq!(read_picture(bytes.get_ref()).unwrap().crop, None);
+}
+
+#[test]
+fn a_crop_as_exr_has_a_data_and_a_display_window() {
+    let part = Area {
+        x: 7,
+        y: 5,
+        width: 33,
+        height: 70,
+    };
+    let mut bytes = Cursor::new(Vec::new());
+    write_exr(&film(33, 70), part, Area::whole(64, 90), &mut bytes).unwrap();
+    let meta = exr::meta::MetaData::read_from_buffered(&bytes.get_ref()[..], true).unwrap();
+    let header = &meta.headers[0];
+    let display = header.shared_attributes.display_window;
+    assert_eq!(
+        (display.position, display.size),
+        ((0, 0).into(), (64, 90).into())
+    );
+    assert_eq!(header.own_attributes.layer_position, (7, 5).into());
+    assert_eq!(header.layer_size, (33, 70).into());
+    let read = read_picture(bytes.get_ref()).unwrap();
+    assert_eq!(read.crop, Some(part));
+    let light = film(33, 70)
+        .pixel(3, 60)
+        .map(|light| f64::from(light as f32));
+    assert_eq!(read.film.pixel(3, 60), light);
 }
 
 fn write(path: &std::path::Path, content: &[u8]) -> io::Result<()> {
@@ -209,6 +324,24 @@ fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
         .map(|entry| entry.unwrap().file_name())
         .collect();
     assert_eq!(names, ["a.png"], "something was left behind");
+}
+
+#[test]
+fn a_temporary_file_that_is_being_written_is_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let left = folder.path().join(".pinhole-a.png-abcdef.tmp");
+    write_whole(&path, &AtomicBool::new(false), |out| {
+        fs::write(&left, b"")?;
+        write(&path, b"inner")?;
+        assert!(!left.exists());
+        out.write_all(b"outer")
+    })
+    .unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"outer");
+    let long = folder.path().join("ä".repeat(125) + ".png");
+    write(&long, b"long").unwrap();
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
 #[test]

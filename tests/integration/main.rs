@@ -40,6 +40,7 @@ mod report;
 mod robustness;
 mod sampling;
 mod syntax;
+mod texts;
 #[cfg(target_os = "linux")]
 mod threads;
 mod tracer;

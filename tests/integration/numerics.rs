@@ -57,9 +57,7 @@ fn no_hard_case_is_decided_wrongly(effort: Effort) {
 #[test]
 fn numbers_are_within_the_bounds_that_are_claimed() {
     for row in &table().rows {
-        let Some(bound) = row.claim.bound() else {
-            continue;
-        };
+        let (bound, _) = row.claim.bound();
         // Rays parallel to the board meet it nowhere.
         let Some(error) = row.tally.error[1] else {
             assert_eq!(row.id, "P2");
@@ -120,12 +118,12 @@ fn it_can_be_watched_and_cancelled() {
 
 #[test]
 fn the_catalogue_names_every_case_once() {
-    let mut ids: Vec<_> = numerics::cases().map(|case| case.id).collect();
+    let mut ids: Vec<_> = numerics::cases().map(|(_, case)| case.id).collect();
     let count = ids.len();
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(ids.len(), count);
-    for letter in ["S", "P", "B", "T", "C", "K", "M", "F"] {
+    for letter in ["S", "P", "B", "T", "C", "K"] {
         assert!(ids.iter().any(|id| id.starts_with(letter)), "{letter}");
     }
 }
@@ -150,6 +148,4 @@ fn the_table_fits_a_terminal_and_a_program() {
     assert!(first["textbook"]["wrong"].as_u64().unwrap() > 0);
     let axes = rows.iter().find(|row| row["case"] == "C1").unwrap();
     assert!(axes["pinhole"]["wrong"].is_null());
-    let mirror = rows.iter().find(|row| row["case"] == "C6").unwrap();
-    assert!(mirror["pinhole"]["error"].is_null() && mirror["bound"].is_null());
 }

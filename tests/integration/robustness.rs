@@ -11,9 +11,11 @@ use std::{
 use crate::effort::{Effort, sampled_and_exhaustive};
 use pinhole::{
     diagnostic::{self, Drawing, Report, Style},
+    sampling::CounterRng,
     scene,
     source::{Source, Sources},
 };
+use rand::{Rng, SeedableRng};
 
 const MEGABYTE: usize = 1 << 20;
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
@@ -86,15 +88,16 @@ fn examples() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// A small generator, so that the garbage is the same everywhere (Vigna's splitmix64).
-struct Garbage(u64);
+/// Garbage that is the same everywhere.
+struct Garbage(CounterRng);
 
 impl Garbage {
+    fn new(seed: u64) -> Self {
+        Self(CounterRng::seed_from_u64(seed))
+    }
+
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
     fn of(&mut self, length: usize, letters: &[u8]) -> Vec<u8> {
@@ -114,7 +117,7 @@ fn empty_texts() {
 
 #[test]
 fn garbage() {
-    let mut garbage = Garbage(1);
+    let mut garbage = Garbage::new(1);
     let bytes: Vec<u8> = (0..=255).collect();
     assert!(!read(garbage.of(MEGABYTE, &bytes)));
     assert!(!read(
@@ -325,7 +328,7 @@ fn every_example_with_windows_line_ends_and_a_byte_order_mark() {
 #[test]
 fn random_changes_of_an_example() {
     let example = examples().swap_remove(0);
-    let mut garbage = Garbage(2);
+    let mut garbage = Garbage::new(2);
     let letters = b"(){}[]-+*/,.;:=\"'#a1 \n\xff";
     for _ in 0..2000 {
         let mut bytes = example.clone();

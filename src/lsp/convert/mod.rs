@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Fix, Severity},
+    diagnostic::{Diagnostic, Edit, Fix, Severity},
     editor::{Fold, FoldKind, Hint, Hover, Occurrence, Signature, Swatch, Symbol, SymbolKind},
     source::{SourceId, Span},
 };
@@ -153,16 +153,16 @@ impl Page<'_> {
     /// Texts that take the place of others.
     pub fn text_edits(
         &self,
-        edits: impl IntoIterator<Item = (Span, String)>,
+        edits: impl IntoIterator<Item = Edit>,
     ) -> impl Iterator<Item = lsp::TextEdit> {
-        edits.into_iter().map(|(span, new_text)| lsp::TextEdit {
-            range: self.range(span),
-            new_text,
+        edits.into_iter().map(|edit| lsp::TextEdit {
+            range: self.range(edit.span),
+            new_text: edit.text,
         })
     }
 
     /// The same as one change of the document.
-    pub fn edit(&self, edits: impl IntoIterator<Item = (Span, String)>) -> lsp::WorkspaceEdit {
+    pub fn edit(&self, edits: impl IntoIterator<Item = Edit>) -> lsp::WorkspaceEdit {
         let edits = self.text_edits(edits);
         if !self.client.versioned_edits {
             let changes = [(self.uri.clone(), edits.collect())];
@@ -189,7 +189,6 @@ impl Page<'_> {
 
     /// A way out of a diagnostic, or of all of them.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> lsp::CodeAction {
-        let edits = fix.edits.iter().map(|edit| (edit.span, edit.text.clone()));
         lsp::CodeAction {
             title: fix.title.clone(),
             kind: Some(match of {
@@ -199,7 +198,7 @@ impl Page<'_> {
             diagnostics: of.map(|diagnostic| vec![self.diagnostic(diagnostic)]),
             // The only way out is the one to take without asking.
             is_preferred: of.map(|diagnostic| diagnostic.fixes.len() == 1),
-            edit: Some(self.edit(edits)),
+            edit: Some(self.edit(fix.edits.iter().cloned())),
             ..Default::default()
         }
     }
@@ -259,6 +258,15 @@ impl Page<'_> {
                 blue,
                 alpha: 1.0,
             },
+        }
+    }
+
+    pub fn presentation(&self, span: Span, label: String) -> lsp::ColorPresentation {
+        let mut edits = self.text_edits([Edit::new(span, &*label)]);
+        lsp::ColorPresentation {
+            text_edit: edits.next(),
+            label,
+            additional_text_edits: None,
         }
     }
 }

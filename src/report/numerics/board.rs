@@ -3,83 +3,49 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    Case, Claim,
+    case::{Case, Input, case},
     inputs::Random,
-    oracle::USUAL_SIZES,
+    oracle::ALL_SIZES,
     scenes::{SIZE, along, board, camera, cuboid, scene, sphere, spun, triangle},
-    trial::{Tally, Trial},
 };
 
 /// The cases.
 pub const CASES: &[Case] = &[
-    Case::new(
-        "P1",
-        "up to 1e-13 pixels below the horizon",
-        Claim::Ulps(2.0),
-        horizon,
-    ),
-    Case::new(
+    case("P1", "up to 1e-13 pixels below the horizon", horizon),
+    case(
         "P2",
         "rays parallel to the board, and next to it",
-        Claim::Ulps(2.0),
         parallels,
     ),
-    Case::new("P3", "planes through the eye", Claim::Ulps(2.0), edge_on),
-    Case::new(
-        "P4",
-        "the eye 1e-9 … 5e-324 m above the board",
-        Claim::Ulps(2.0),
-        low,
-    ),
-    Case::new(
-        "P5",
-        "the eye 1e9 … 1e15 squares above it",
-        Claim::Ulps(2.0),
-        high,
-    ),
-    Case::new(
-        "P6a",
-        "1e9 … 4e15 squares from the origin",
-        Claim::Ulps(2.0),
-        displaced,
-    ),
-    Case::new(
-        "P6b",
-        "exact corners of squares, and next to them",
-        Claim::Ulps(2.0),
-        corners,
-    ),
-    Case::new(
+    case("P3", "planes through the eye", edge_on),
+    case("P4", "the eye 1e-9 … 5e-324 m above the board", low),
+    case("P5", "the eye 1e9 … 1e15 squares above it", high),
+    case("P6a", "1e9 … 4e15 squares from the origin", displaced),
+    case("P6b", "exact corners of squares, and next to them", corners),
+    case(
         "P7",
         "boxes and triangles on the board, from below",
-        Claim::Ulps(2.0),
         from_below,
     ),
-    Case::new(
-        "P8",
-        "two boards or two triangles in one plane",
-        Claim::Ulps(2.0),
-        coincident,
-    ),
+    case("P8", "two boards or two triangles in one plane", coincident),
 ];
 
-fn horizon(random: &mut Random, count: u64, tally: &mut Tally) {
+fn horizon(random: &mut Random) -> Input {
     let eye = dvec3(
         random.within(-9.0, 9.0),
         random.within(0.5, 4.0),
         random.within(-9.0, 9.0),
     );
     let level = dvec3(random.within(-1.0, 1.0), 0.0, -1.0);
-    let trial = Trial::new(scene(along(eye, level), &[board(0.0, 1.0)]), USUAL_SIZES);
-    for _ in 0..count {
+    Input::new(scene(along(eye, level), &[board(0.0, 1.0)])).at(move |random| {
         let column = random.below(u64::from(SIZE)) as u32;
         let below = random.power(-13.0, -0.01);
         let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
-        trial.decide(column, SIZE / 2, offset, tally);
-    }
+        (column, SIZE / 2, offset)
+    })
 }
 
-fn parallels(random: &mut Random, count: u64, tally: &mut Tally) {
+fn parallels(random: &mut Random) -> Input {
     let height = random.power(-3.0, 3.0) * random.sign();
     let eye = dvec3(random.within(-9.0, 9.0), height, random.within(-9.0, 9.0));
     let level = dvec3(
@@ -89,8 +55,7 @@ fn parallels(random: &mut Random, count: u64, tally: &mut Tally) {
     );
     let mut camera = along(eye, level);
     camera.up = random.pick(&[DVec3::Y, DVec3::NEG_Y]);
-    let trial = Trial::new(scene(camera, &[board(0.0, 1.0)]), USUAL_SIZES);
-    for _ in 0..count {
+    Input::new(scene(camera, &[board(0.0, 1.0)])).at(move |random| {
         let column = random.below(u64::from(SIZE)) as u32;
         let x = random.within(-0.5, 0.5);
         let (row, y) = random.pick(&[
@@ -98,12 +63,12 @@ fn parallels(random: &mut Random, count: u64, tally: &mut Tally) {
             (SIZE / 2, (-0.5_f64).next_up()),
             (SIZE / 2 - 1, 0.5_f64.next_down()),
         ]);
-        trial.decide(column, row, dvec2(x, y), tally);
-    }
+        (column, row, dvec2(x, y))
+    })
 }
 
 /// A board, a triangle, and the top of a box at the height of the eye.
-fn edge_on(random: &mut Random, count: u64, tally: &mut Tally) {
+fn edge_on(random: &mut Random) -> Input {
     let eye = random.vector(3.0);
     let ahead = dvec3(random.within(-0.5, 0.5), random.within(-0.3, 0.3), -1.0);
     let at = eye + dvec3(0.0, 0.0, -4.0);
@@ -114,11 +79,10 @@ fn edge_on(random: &mut Random, count: u64, tally: &mut Tally) {
         cuboid(low, dvec3(high.x, eye.y, high.z)),
         sphere(at, 0.5),
     ];
-    let trial = Trial::new(scene(along(eye, ahead), &shapes), USUAL_SIZES);
-    trial.boundaries(random, count, tally);
+    Input::new(scene(along(eye, ahead), &shapes))
 }
 
-fn low(random: &mut Random, count: u64, tally: &mut Tally) {
+fn low(random: &mut Random) -> Input {
     let height = random.power(-323.0, -9.0);
     let eye = dvec3(random.within(-9.0, 9.0), height, random.within(-9.0, 9.0));
     let shapes = [
@@ -129,10 +93,10 @@ fn low(random: &mut Random, count: u64, tally: &mut Tally) {
         eye,
         dvec3(random.within(-1.0, 1.0), random.within(-0.5, 0.0), -1.0),
     );
-    Trial::new(scene(camera, &shapes), super::oracle::ALL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &shapes)).bits(ALL_SIZES)
 }
 
-fn high(random: &mut Random, count: u64, tally: &mut Tally) {
+fn high(random: &mut Random) -> Input {
     let height = random.power(9.0, 15.0);
     let eye = dvec3(random.within(-9.0, 9.0), height, random.within(-9.0, 9.0));
     let camera = along(
@@ -140,21 +104,21 @@ fn high(random: &mut Random, count: u64, tally: &mut Tally) {
         dvec3(random.within(-1.0, 1.0), random.within(-1.0, -0.2), -1.0),
     );
     let shapes = [board(0.0, random.power(0.0, 3.0))];
-    Trial::new(scene(camera, &shapes), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &shapes))
 }
 
-fn displaced(random: &mut Random, count: u64, tally: &mut Tally) {
+fn displaced(random: &mut Random) -> Input {
     let distance = |random: &mut Random| random.sign() * random.power(9.0, 15.6);
     let eye = dvec3(distance(random), random.within(0.5, 4.0), distance(random));
     let camera = along(
         eye,
         dvec3(random.within(-1.0, 1.0), random.within(-1.0, -0.2), -1.0),
     );
-    Trial::new(scene(camera, &[board(0.0, 1.0)]), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &[board(0.0, 1.0)]))
 }
 
 /// From a height of 64 squares, with the slope of a 64th from pixel to pixel, a pixel's upper left corner shows that of a square.
-fn corners(random: &mut Random, count: u64, tally: &mut Tally) {
+fn corners(random: &mut Random) -> Input {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = dvec3(
         random.whole(-reach, reach),
@@ -163,8 +127,7 @@ fn corners(random: &mut Random, count: u64, tally: &mut Tally) {
     ) * size;
     let mut camera = along(eye, DVec3::NEG_Y);
     camera.up = random.pick(&[DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z]);
-    let trial = Trial::new(scene(camera, &[board(0.0, size)]), USUAL_SIZES);
-    for _ in 0..count {
+    Input::new(scene(camera, &[board(0.0, size)])).at(move |random| {
         let [x, y] = [0, 0].map(|_: u32| {
             let pixel = random.below(u64::from(SIZE)) as u32;
             let beside = random.pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 1e5]) * f64::EPSILON / 4.0;
@@ -173,11 +136,11 @@ fn corners(random: &mut Random, count: u64, tally: &mut Tally) {
                 _ => (pixel, 0.5_f64.next_down() - beside),
             }
         });
-        trial.decide(x.0, y.0, dvec2(x.1, y.1), tally);
-    }
+        (x.0, y.0, dvec2(x.1, y.1))
+    })
 }
 
-fn from_below(random: &mut Random, count: u64, tally: &mut Tally) {
+fn from_below(random: &mut Random) -> Input {
     let y = random.within(-2.0, 2.0);
     let at = |random: &mut Random| dvec3(random.within(-1.5, 1.5), y, random.within(-1.5, 1.5));
     let eye = at(random) - DVec3::Y * random.within(1.0, 5.0);
@@ -193,12 +156,10 @@ fn from_below(random: &mut Random, count: u64, tally: &mut Tally) {
         cuboid(other - dvec3(0.5, 0.2, 0.5), other + dvec3(0.5, 0.0, 0.5)),
     ];
     shapes.rotate_left(random.below(4) as usize);
-    let trial = Trial::new(scene(camera(eye, at(random)), &shapes), USUAL_SIZES);
-    trial.anywhere(random, count / 2, tally);
-    trial.boundaries(random, count - count / 2, tally);
+    Input::new(scene(camera(eye, at(random)), &shapes)).mixed()
 }
 
-fn coincident(random: &mut Random, count: u64, tally: &mut Tally) {
+fn coincident(random: &mut Random) -> Input {
     let y = random.within(-2.0, 2.0);
     let (eye, at) = (random.vector(3.0) + DVec3::Y * 6.0, random.vector(1.0));
     let normal = dvec3(random.whole(-9, 9), random.whole(1, 9), random.whole(-9, 9));
@@ -218,7 +179,5 @@ fn coincident(random: &mut Random, count: u64, tally: &mut Tally) {
             ),
         ],
     };
-    let trial = Trial::new(scene(camera(eye, at), &shapes), USUAL_SIZES);
-    trial.anywhere(random, count / 2, tally);
-    trial.boundaries(random, count - count / 2, tally);
+    Input::new(scene(camera(eye, at), &shapes)).mixed()
 }

@@ -3,28 +3,20 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    Case, Claim,
+    case::{Case, Input, case},
     inputs::Random,
-    oracle::USUAL_SIZES,
     scenes::{along, board, camera, cuboid, scene, sphere, triangle},
-    trial::{Tally, Trial},
 };
 
 /// The cases.
 pub const CASES: &[Case] = &[
-    Case::new(
+    case(
         "K2",
         "surfaces exactly at the near or the far plane",
-        Claim::Ulps(2.0),
         exactly_there,
     ),
-    Case::new("K3", "objects cut by both planes", Claim::Ulps(2.0), cut),
-    Case::new(
-        "K4",
-        "the near plane within objects",
-        Claim::Ulps(2.0),
-        within,
-    ),
+    case("K3", "objects cut by both planes", cut),
+    case("K4", "the near plane within objects", within),
 ];
 
 /// View directions with a length that is a whole number, so that depths can be.
@@ -36,15 +28,11 @@ const WHOLE: [(DVec3, f64); 4] = [
 ];
 
 /// A wall across the view, at a depth that is one of the two planes' or a neighbouring f64.
-fn exactly_there(random: &mut Random, count: u64, tally: &mut Tally) {
+fn exactly_there(random: &mut Random) -> Input {
     let (direction, length) = random.pick(&WHOLE);
     let steps = random.whole(1, 1 << 20) / 1024.0;
     let depth = length * steps;
-    let eye = dvec3(
-        random.whole(-9, 9),
-        random.whole(-9, 9),
-        random.whole(-9, 9),
-    ) / 4.0;
+    let eye = random.wholes(-9, 9) / 4.0;
     let wall = eye + direction * steps;
     let shape = triangle(wall, direction * random.sign(), DVec3::splat(8.0 * depth));
     let mut camera = along(eye, direction);
@@ -53,10 +41,10 @@ fn exactly_there(random: &mut Random, count: u64, tally: &mut Tally) {
         0 => camera.near = at,
         _ => camera.far = Some(at),
     }
-    Trial::new(scene(camera, &[shape]), USUAL_SIZES).anywhere(random, count, tally);
+    Input::new(scene(camera, &[shape])).anywhere()
 }
 
-fn cut(random: &mut Random, count: u64, tally: &mut Tally) {
+fn cut(random: &mut Random) -> Input {
     let at = random.vector(1.0);
     let eye = at + random.unit() * random.within(4.0, 8.0);
     let distance = (at - eye).length();
@@ -70,10 +58,10 @@ fn cut(random: &mut Random, count: u64, tally: &mut Tally) {
         cuboid(corner, corner + DVec3::ONE),
         triangle(at + random.vector(0.5), random.unit(), dvec3(2.0, 2.0, 1.0)),
     ];
-    Trial::new(scene(camera, &shapes), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &shapes))
 }
 
-fn within(random: &mut Random, count: u64, tally: &mut Tally) {
+fn within(random: &mut Random) -> Input {
     let at = random.vector(1.0);
     let eye = at + random.unit() * random.within(4.0, 8.0);
     let mut camera = camera(eye, at);
@@ -86,7 +74,5 @@ fn within(random: &mut Random, count: u64, tally: &mut Tally) {
             at + other * 0.5 + DVec3::splat(0.7),
         ),
     ];
-    let trial = Trial::new(scene(camera, &shapes), USUAL_SIZES);
-    trial.anywhere(random, count / 2, tally);
-    trial.boundaries(random, count - count / 2, tally);
+    Input::new(scene(camera, &shapes)).mixed()
 }

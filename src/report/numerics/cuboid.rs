@@ -3,51 +3,33 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    Case, Claim,
+    case::{Case, Input, case},
     inputs::Random,
-    oracle::USUAL_SIZES,
     scenes::{SIZE, along, camera, cuboid, scene, sphere},
-    trial::{Tally, Trial},
 };
 use crate::math::Angle;
 
 /// The cases.
 pub const CASES: &[Case] = &[
-    Case::new(
+    case(
         "B1",
         "rays in the planes of faces, and along edges",
-        Claim::Ulps(2.0),
         in_planes,
     ),
-    Case::new(
-        "B2",
-        "the eye inside, on a face, an edge, a corner",
-        Claim::Ulps(2.0),
-        inside,
-    ),
-    Case::new("B3", "boxes an ulp thick", Claim::Ulps(2.0), thin),
-    Case::new(
-        "B4",
-        "rays that graze edges, 1 … 1e9 m away",
-        Claim::Ulps(2.0),
-        silhouettes,
-    ),
-    Case::new(
-        "B5",
-        "the seam of two boxes that share a face",
-        Claim::Ulps(2.0),
-        neighbours,
-    ),
+    case("B2", "the eye inside, on a face, an edge, a corner", inside),
+    case("B3", "boxes an ulp thick", thin),
+    case("B4", "rays that graze edges, 1 … 1e9 m away", silhouettes),
+    case("B5", "the seam of two boxes that share a face", neighbours),
 ];
 
 /// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.
-fn in_planes(random: &mut Random, count: u64, tally: &mut Tally) {
+fn in_planes(random: &mut Random) -> Input {
     let min = dvec3(
         random.whole(-9, 9),
         random.whole(-9, 9),
         random.whole(-40, -9),
     ) / 4.0;
-    let max = min + dvec3(random.whole(1, 9), random.whole(1, 9), random.whole(1, 9)) / 4.0;
+    let max = min + random.wholes(1, 9) / 4.0;
     let middle = (min + max) / 2.0;
     let mut place = |axis: usize| random.pick(&[min[axis], max[axis], middle[axis]]);
     let eye = dvec3(
@@ -57,8 +39,7 @@ fn in_planes(random: &mut Random, count: u64, tally: &mut Tally) {
     );
     let mut camera = along(eye, DVec3::NEG_Z);
     camera.roll = Angle::from_degrees(90.0 * random.whole(-3, 3));
-    let trial = Trial::new(scene(camera, &[cuboid(min, max)]), USUAL_SIZES);
-    for _ in 0..count {
+    Input::new(scene(camera, &[cuboid(min, max)])).at(move |random| {
         let middle = [
             (SIZE / 2, -0.5),
             (SIZE / 2, -0.5),
@@ -73,18 +54,13 @@ fn in_planes(random: &mut Random, count: u64, tally: &mut Tally) {
             ),
         };
         let (x, y) = random.pick(&[(in_plane, other), (other, in_plane)]);
-        trial.decide(x.0, y.0, dvec2(x.1, y.1), tally);
-    }
+        (x.0, y.0, dvec2(x.1, y.1))
+    })
 }
 
-fn inside(random: &mut Random, count: u64, tally: &mut Tally) {
+fn inside(random: &mut Random) -> Input {
     let min = random.vector(2.0);
-    let max = min
-        + dvec3(
-            random.within(0.5, 3.0),
-            random.within(0.5, 3.0),
-            random.within(0.5, 3.0),
-        );
+    let max = min + random.withins(0.5, 3.0);
     let mut place = |axis: usize| {
         let between = random.within(min[axis], max[axis]);
         random.pick(&[min[axis], max[axis], between])
@@ -98,11 +74,10 @@ fn inside(random: &mut Random, count: u64, tally: &mut Tally) {
         cuboid(wall - DVec3::splat(0.4), wall),
     ];
     shapes.rotate_left(random.below(3) as usize);
-    let trial = Trial::new(scene(camera(eye, wall), &shapes), USUAL_SIZES);
-    trial.boundaries(random, count, tally);
+    Input::new(scene(camera(eye, wall), &shapes))
 }
 
-fn thin(random: &mut Random, count: u64, tally: &mut Tally) {
+fn thin(random: &mut Random) -> Input {
     let min = random.vector(2.0);
     let mut max = min + random.within(0.5, 2.0);
     let axis = random.below(3) as usize;
@@ -111,27 +86,20 @@ fn thin(random: &mut Random, count: u64, tally: &mut Tally) {
     // Steep or nearly along the plane.
     eye[axis] = min[axis] + random.sign() * random.power(-15.0, 0.5);
     let shapes = [cuboid(min, max), sphere((min + max) / 2.0, 0.3)];
-    let trial = Trial::new(scene(camera(eye, (min + max) / 2.0), &shapes), USUAL_SIZES);
-    trial.boundaries(random, count, tally);
+    Input::new(scene(camera(eye, (min + max) / 2.0), &shapes))
 }
 
-fn silhouettes(random: &mut Random, count: u64, tally: &mut Tally) {
+fn silhouettes(random: &mut Random) -> Input {
     let place = random.unit() * random.power(0.0, 9.0);
     let min = place + random.vector(1.0);
-    let max = min
-        + dvec3(
-            random.within(0.5, 2.0),
-            random.within(0.5, 2.0),
-            random.within(0.5, 2.0),
-        );
+    let max = min + random.withins(0.5, 2.0);
     let eye = place + random.unit() * random.within(4.0, 8.0);
     let shapes = [cuboid(min, max)];
-    let trial = Trial::new(scene(camera(eye, (min + max) / 2.0), &shapes), USUAL_SIZES);
-    trial.boundaries(random, count, tally);
+    Input::new(scene(camera(eye, (min + max) / 2.0), &shapes))
 }
 
 /// The eye is beside the shared face's plane or in it.
-fn neighbours(random: &mut Random, count: u64, tally: &mut Tally) {
+fn neighbours(random: &mut Random) -> Input {
     let seam = random.within(-1.0, 1.0);
     let mut shapes = [
         cuboid(dvec3(seam - 1.3, -1.0, -3.0), dvec3(seam, 1.0, -2.0)),
@@ -144,15 +112,15 @@ fn neighbours(random: &mut Random, count: u64, tally: &mut Tally) {
         random.within(-0.5, 1.5),
         random.within(1.0, 3.0),
     );
-    let trial = Trial::new(scene(along(eye, DVec3::NEG_Z), &shapes), USUAL_SIZES);
-    let end = tally.inputs + count;
-    if beside == 0.0 {
-        for _ in 0..count / 2 {
-            let row = random.below(u64::from(SIZE)) as u32;
-            let middle = [(SIZE / 2, -0.5), (SIZE / 2 - 1, 0.5_f64.next_down())];
-            let (column, x) = random.pick(&middle);
-            trial.decide(column, row, dvec2(x, random.within(-0.5, 0.5)), tally);
-        }
+    let input = Input::new(scene(along(eye, DVec3::NEG_Z), &shapes));
+    if beside != 0.0 {
+        return input;
     }
-    trial.boundaries(random, end - tally.inputs, tally);
+    let in_plane = |random: &mut Random| {
+        let row = random.below(u64::from(SIZE)) as u32;
+        let middle = [(SIZE / 2, -0.5), (SIZE / 2 - 1, 0.5_f64.next_down())];
+        let (column, x) = random.pick(&middle);
+        (column, row, dvec2(x, random.within(-0.5, 0.5)))
+    };
+    input.at(in_plane).mixed()
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
-use crate::sampling::hash::{Key, scale};
+use crate::sampling::rng::{Key, scale};
 
 /// Numbers that are a function of a case and a block of its inputs.
 #[derive(Clone, Debug)]
@@ -59,10 +59,21 @@ impl Random {
         self.pick(&[-1.0, 1.0])
     }
 
+    /// Three numbers between two others, evenly.
+    pub fn withins(&mut self, low: f64, high: f64) -> DVec3 {
+        let mut one = || self.within(low, high);
+        dvec3(one(), one(), one())
+    }
+
+    /// Three whole numbers from `low` to `high`.
+    pub fn wholes(&mut self, low: i64, high: i64) -> DVec3 {
+        let mut one = || self.whole(low, high);
+        dvec3(one(), one(), one())
+    }
+
     /// A point of a cube about the origin.
     pub fn vector(&mut self, half: f64) -> DVec3 {
-        let mut one = || self.within(-half, half);
-        dvec3(one(), one(), one())
+        self.withins(-half, half)
     }
 
     /// A vector of length 1.

@@ -2,23 +2,22 @@
 //!
 //! A case makes inputs around a singularity: tangents, horizons, shared edges, eyes on surfaces, numbers of all sizes. What is
 //! seen there is decided three times: by the [`oracle`] in hundreds of bits, by the formulas of a [`textbook`] in `f64`, and by
-//! the tracer that renders pictures, one ray at a time: many at a time, in vectors, make the same pictures to the bit, which tests compare. Decisions that differ from the oracle's are counted, distances and points measured at one
+//! the tracer that renders pictures, one ray at a time. (Rays in vectors give the same pictures to the bit, as tests see to.) Decisions that differ from the oracle's are counted, distances and points measured at one
 //! input of 16. Inputs lie at the neighbouring `f64`s on both sides of a boundary and at distances from it that are spread evenly on a
 //! logarithmic scale, or where the case says.
 //!
 //! Inputs are a function of the case and their number alone, so the same ones come out of any number of threads.
 //!
-//! Not here: what the tests of the samplers measure over many pixels at once (M5 and the slopes of errors), and what the language
-//! rejects before it could become a picture (S6, K1 and F3: negative sizes, empty clip ranges, numbers that are not finite).
+//! Not here: what the tests of the samplers and of the film ask, and what the language rejects before it could become a picture (S6, K1 and F3:
+//! negative sizes, empty clip ranges, numbers that are not finite).
 
 mod board;
 mod camera;
+mod case;
 mod clip;
 mod cuboid;
-mod film;
 mod inputs;
 pub mod oracle;
-mod samplers;
 pub mod scenes;
 mod sphere;
 mod table;
@@ -32,54 +31,26 @@ use rayon::{ThreadPoolBuildError, prelude::*};
 
 use self::inputs::Random;
 pub use self::{
+    case::Case,
     table::{Claim, Row, Table},
     trial::Tally,
 };
 use crate::{render::Control, threads};
 
-/// A hard case.
-#[derive(Clone, Copy, Debug)]
-pub struct Case {
-    /// Its name in the catalogue.
-    pub id: &'static str,
-    /// What is hard about it.
-    pub title: &'static str,
-    /// What is claimed of it.
-    pub claim: Claim,
-    /// Asks so many questions.
-    ask: fn(&mut Random, u64, &mut Tally),
-}
-
-impl Case {
-    const fn new(
-        id: &'static str,
-        title: &'static str,
-        claim: Claim,
-        ask: fn(&mut Random, u64, &mut Tally),
-    ) -> Self {
-        Self {
-            id,
-            title,
-            claim,
-            ask,
-        }
-    }
-}
-
-/// The catalogue.
-pub fn cases() -> impl Iterator<Item = &'static Case> {
-    [
-        sphere::CASES,
-        board::CASES,
-        cuboid::CASES,
-        triangle::CASES,
-        camera::CASES,
-        clip::CASES,
-        samplers::CASES,
-        film::CASES,
-    ]
-    .into_iter()
-    .flatten()
+/// The catalogue, each case with what is claimed of it.
+pub fn cases() -> impl Iterator<Item = (Claim, &'static Case)> {
+    let families = [
+        (Claim::Ulps(1.0), sphere::CASES),
+        (Claim::Ulps(2.0), board::CASES),
+        (Claim::Ulps(2.0), cuboid::CASES),
+        (Claim::Ulps(2.0), triangle::CASES),
+        (Claim::Roundings(4.0), camera::AXES),
+        (Claim::Ulps(2.0), camera::CASES),
+        (Claim::Ulps(2.0), clip::CASES),
+    ];
+    let rows =
+        |(claim, cases): (Claim, &'static [Case])| cases.iter().map(move |case| (claim, case));
+    families.into_iter().flat_map(rows)
 }
 
 /// So many inputs of a case share a scene.
@@ -102,7 +73,9 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolB
                     let (block, at) = (index / count, (index % count) as usize);
                     let count = BLOCK.min(inputs_per_case - block * BLOCK);
                     let mut tally = Tally::default();
-                    (cases[at].ask)(&mut Random::new(cases[at].id, block), count, &mut tally);
+                    let case = cases[at].1;
+                    let random = &mut Random::new(case.id, block);
+                    case.ask(random, count, &mut tally);
                     tallies[at] = tallies[at].plus(tally);
                     (control.progress)(count);
                     tallies
@@ -113,10 +86,10 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolB
                 |a, b| a.into_iter().zip(b).map(|(a, b)| a.plus(b)).collect(),
             )
     })?;
-    let rows = cases.iter().zip(tallies).map(|(case, tally)| Row {
+    let rows = cases.iter().zip(tallies).map(|((claim, case), tally)| Row {
         id: case.id,
         title: case.title,
-        claim: case.claim,
+        claim: *claim,
         tally,
     });
     Ok(Table {

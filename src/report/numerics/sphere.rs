@@ -3,77 +3,47 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    Case, Claim,
+    case::{Case, Input, case},
     inputs::Random,
-    oracle::USUAL_SIZES,
     scenes::{SIZE, along, camera, cuboid, scene, sphere},
-    trial::{Tally, Trial},
 };
 
 /// The cases.
 pub const CASES: &[Case] = &[
-    Case::new(
-        "S1a",
-        "rays that nearly touch a sphere",
-        Claim::Ulps(1.0),
-        silhouettes,
-    ),
-    Case::new(
-        "S1b",
-        "rays that touch it exactly: they miss",
-        Claim::Ulps(1.0),
-        touches,
-    ),
-    Case::new(
-        "S2",
-        "small and far, 1e6 … 1e15 radii away",
-        Claim::Ulps(1.0),
-        far_and_small,
-    ),
-    Case::new("S3", "the eye inside", Claim::Ulps(1.0), inside),
-    Case::new(
+    case("S1a", "rays that nearly touch a sphere", silhouettes),
+    case("S1b", "rays that touch it exactly: they miss", touches),
+    case("S2", "small and far, 1e6 … 1e15 radii away", far_and_small),
+    case("S3", "the eye inside", inside),
+    case(
         "S4",
         "the eye on the surface, and 1e-16 … 1e-3 off",
-        Claim::Ulps(1.0),
         at_the_surface,
     ),
-    Case::new(
+    case(
         "S5",
         "a globe of 1e6 … 1e15 m, the eye 1 m above it",
-        Claim::Ulps(1.0),
         globes,
     ),
-    Case::new(
-        "S6",
-        "scenes of 1e±160 … 1e±300 m",
-        Claim::Ulps(1.0),
-        out_of_range,
-    ),
-    Case::new(
-        "S7",
-        "equal spheres, and radii an ulp apart",
-        Claim::Ulps(1.0),
-        concentric,
-    ),
-    Case::new(
+    case("S6", "scenes of 1e±160 … 1e±300 m", out_of_range),
+    case("S7", "equal spheres, and radii an ulp apart", concentric),
+    case(
         "S8",
         "centre and eye 1e9 … 1e300 m from the origin",
-        Claim::Ulps(1.0),
         displaced,
     ),
 ];
 
-fn silhouettes(random: &mut Random, count: u64, tally: &mut Tally) {
+fn silhouettes(random: &mut Random) -> Input {
     let center = random.vector(2.0);
     let eye = center + random.unit() * random.within(3.0, 8.0);
     let camera = camera(eye, center + random.vector(0.2));
     let shape = sphere(center, random.within(0.5, 2.0));
-    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &[shape]))
 }
 
 /// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z): of the rays in that plane, which
 /// are those of the middle of the picture, none meets the sphere, and of those on the other side of it one next to it does.
-fn touches(random: &mut Random, count: u64, tally: &mut Tally) {
+fn touches(random: &mut Random) -> Input {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.below(u64::from(SIZE)) as u32;
     let depth = random.whole(16, 400);
@@ -82,18 +52,17 @@ fn touches(random: &mut Random, count: u64, tally: &mut Tally) {
     let radius = random.whole(1, 80) / 8.0;
     let side = random.sign();
     let shape = sphere(dvec3(side * radius, y, -depth), radius);
-    let trial = Trial::new(scene(camera, &[shape]), USUAL_SIZES);
-    for _ in 0..count {
+    Input::new(scene(camera, &[shape])).at(move |random| {
         let steps = random.pick(&[0.0, 0.0, 1.0, 2.0, 64.0, 1e6]) * f64::EPSILON / 4.0;
         let (column, offset) = match random.below(2) {
             0 => (SIZE / 2, -0.5 + steps),
             _ => (SIZE / 2 - 1, 0.5_f64.next_down() - steps),
         };
-        trial.decide(column, row, dvec2(offset, -0.5), tally);
-    }
+        (column, row, dvec2(offset, -0.5))
+    })
 }
 
-fn far_and_small(random: &mut Random, count: u64, tally: &mut Tally) {
+fn far_and_small(random: &mut Random) -> Input {
     let eye = random.vector(1.0);
     let radius = random.power(-3.0, 3.0);
     let distance = radius * random.power(6.0, 15.0);
@@ -101,11 +70,10 @@ fn far_and_small(random: &mut Random, count: u64, tally: &mut Tally) {
     let mut camera = camera(eye, center);
     camera.lens = crate::scene::Lens::Distance(distance);
     camera.view_height = 3.0 * radius;
-    Trial::new(scene(camera, &[sphere(center, radius)]), USUAL_SIZES)
-        .boundaries(random, count, tally);
+    Input::new(scene(camera, &[sphere(center, radius)]))
 }
 
-fn inside(random: &mut Random, count: u64, tally: &mut Tally) {
+fn inside(random: &mut Random) -> Input {
     let (center, radius) = (random.vector(2.0), random.within(1.0, 3.0));
     let eye = center + random.unit() * radius * random.within(0.0, 0.999);
     let wall = center + random.unit() * radius;
@@ -115,10 +83,10 @@ fn inside(random: &mut Random, count: u64, tally: &mut Tally) {
         sphere(wall, radius / 2.0),
         cuboid(corner, corner + DVec3::splat(radius)),
     ];
-    Trial::new(scene(camera(eye, wall), &shapes), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera(eye, wall), &shapes))
 }
 
-fn at_the_surface(random: &mut Random, count: u64, tally: &mut Tally) {
+fn at_the_surface(random: &mut Random) -> Input {
     // 3, 4 and 5: the eye is on the surface exactly, but for what is added.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
@@ -131,10 +99,10 @@ fn at_the_surface(random: &mut Random, count: u64, tally: &mut Tally) {
     let ahead = eye + tangent * random.within(0.5, 2.0);
     let shapes = [sphere(DVec3::ZERO, 5.0), sphere(ahead, 0.4)];
     let camera = along(eye, tangent - on * random.within(-0.05, 0.1));
-    Trial::new(scene(camera, &shapes), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &shapes))
 }
 
-fn globes(random: &mut Random, count: u64, tally: &mut Tally) {
+fn globes(random: &mut Random) -> Input {
     let radius = random.power(6.0, 15.0);
     let camera = camera(
         dvec3(random.within(-1.0, 1.0), 1.0, 0.2),
@@ -144,10 +112,10 @@ fn globes(random: &mut Random, count: u64, tally: &mut Tally) {
         sphere(dvec3(0.0, -radius, 0.0), radius),
         sphere(dvec3(3.0, random.within(0.2, 0.7), -4.0), 0.8),
     ];
-    Trial::new(scene(camera, &shapes), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &shapes))
 }
 
-fn out_of_range(random: &mut Random, count: u64, tally: &mut Tally) {
+fn out_of_range(random: &mut Random) -> Input {
     let exponent = random.within(160.0, 300.0) * random.sign();
     let size = random.power(exponent, exponent);
     let center = random.vector(2.0) * size;
@@ -156,10 +124,10 @@ fn out_of_range(random: &mut Random, count: u64, tally: &mut Tally) {
         sphere(center, size),
         sphere(center + random.unit() * size, size / 2.0),
     ];
-    Trial::new(scene(camera(eye, center), &shapes), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera(eye, center), &shapes))
 }
 
-fn concentric(random: &mut Random, count: u64, tally: &mut Tally) {
+fn concentric(random: &mut Random) -> Input {
     let center = random.vector(2.0);
     let radius = random.within(0.5, 2.0);
     let radii = random.pick(&[
@@ -169,21 +137,13 @@ fn concentric(random: &mut Random, count: u64, tally: &mut Tally) {
     ]);
     let eye = center + random.unit() * random.within(0.0, 8.0);
     let shapes = radii.map(|radius| sphere(center, radius));
-    Trial::new(
-        scene(camera(eye, center + random.vector(0.3)), &shapes),
-        USUAL_SIZES,
-    )
-    .anywhere(random, count, tally);
+    Input::new(scene(camera(eye, center + random.vector(0.3)), &shapes)).anywhere()
 }
 
-fn displaced(random: &mut Random, count: u64, tally: &mut Tally) {
+fn displaced(random: &mut Random) -> Input {
     let distance = random.power(9.0, 300.0);
     let center = random.unit() * distance;
     let radius = distance * random.power(-12.0, -2.0);
     let eye = center + random.unit() * (4.0 * radius);
-    Trial::new(
-        scene(along(eye, center - eye), &[sphere(center, radius)]),
-        USUAL_SIZES,
-    )
-    .boundaries(random, count, tally);
+    Input::new(scene(along(eye, center - eye), &[sphere(center, radius)]))
 }

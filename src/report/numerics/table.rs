@@ -10,12 +10,8 @@ use crate::numbers::grouped;
 /// What is claimed of a case besides that no decision is wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Claim {
-    /// Nothing.
-    Decisions,
-    /// Numbers are right up to so many units in the last place.
+    /// Distances and points are right up to so many units in the last place.
     Ulps(f64),
-    /// The same, and nothing is decided.
-    UlpsAlone(f64),
     /// Components of unit vectors are right up to so many times 2^−53, and nothing is decided.
     Roundings(f64),
 }
@@ -23,23 +19,14 @@ pub enum Claim {
 impl Claim {
     /// Whether something is decided, and not only computed.
     pub fn decides(self) -> bool {
-        matches!(self, Self::Decisions | Self::Ulps(_))
+        matches!(self, Self::Ulps(_))
     }
 
-    /// The greatest error that is claimed, if numbers are.
-    pub fn bound(self) -> Option<f64> {
+    /// The greatest error that is claimed, and its unit.
+    pub fn bound(self) -> (f64, &'static str) {
         match self {
-            Self::Decisions => None,
-            Self::Ulps(bound) | Self::UlpsAlone(bound) | Self::Roundings(bound) => Some(bound),
-        }
-    }
-
-    /// Its unit.
-    pub fn unit(self) -> Option<&'static str> {
-        match self {
-            Self::Decisions => None,
-            Self::Ulps(_) | Self::UlpsAlone(_) => Some("ulp"),
-            Self::Roundings(_) => Some("u"),
+            Self::Ulps(bound) => (bound, "ulp"),
+            Self::Roundings(bound) => (bound, "u"),
         }
     }
 }
@@ -91,10 +78,11 @@ impl Table {
                 wrong,
                 error,
             } = row.tally;
+            let (bound, unit) = row.claim.bound();
             let side = |i: usize| {
                 json!({
                     "wrong": row.claim.decides().then_some(wrong[i]),
-                    "error": row.claim.bound().and(error[i]),
+                    "error": error[i],
                 })
             };
             json!({
@@ -103,8 +91,8 @@ impl Table {
                 "inputs": inputs,
                 "textbook": side(0),
                 "pinhole": side(1),
-                "bound": row.claim.bound(),
-                "unit": row.claim.unit(),
+                "bound": bound,
+                "unit": unit,
             })
         });
         json!({ "complete": self.is_complete(), "numerics": rows.collect::<Vec<_>>() })
@@ -135,10 +123,8 @@ impl fmt::Display for Table {
                 true => [share(wrong[0], inputs), grouped(wrong[1])],
                 false => [String::new(), String::new()],
             };
-            let (errors, bound) = match (row.claim.bound(), row.claim.unit()) {
-                (Some(bound), Some(unit)) => (error.map(size), format!("{bound} {unit}")),
-                _ => ([String::new(), String::new()], String::new()),
-            };
+            let (errors, (bound, unit)) = (error.map(size), row.claim.bound());
+            let bound = format!("{bound} {unit}");
             let cells = [
                 row.id, row.title, &wrong[0], &wrong[1], &errors[0], &errors[1], &bound,
             ];

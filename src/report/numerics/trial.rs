@@ -5,12 +5,14 @@ use glam::{DVec2, DVec3, dvec2};
 
 use super::{
     inputs::Random,
-    oracle::{N, Oracle, V, length},
-    textbook::Textbook,
+    oracle::{ALL_SIZES, N, Oracle, V, length},
+    scenes::scene,
+    textbook::{self, Textbook},
 };
 use crate::{
-    scene::{Scene, Shape},
-    tracer::{World, ray},
+    math::Real,
+    scene::{Camera, Scene, Shape},
+    tracer::{Basis, World, ray},
 };
 
 /// What was counted and measured, of the textbook's formulas and of ours.
@@ -49,9 +51,34 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 /// What is seen: an object, and whether in its second colour.
 type Answer = Option<(usize, bool)>;
 
+/// A pixel's column and row, and an offset from its centre.
+pub(super) type Point = (u32, u32, DVec2);
+
+/// The axes of a camera: their errors in units of 2^−53.
+pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
+    let scene = scene(*camera, &[]);
+    let oracle = Oracle::new(&scene, ALL_SIZES);
+    let basis = Basis::new(camera, &scene.image);
+    let ours = [&basis.u, &basis.v, &basis.w].map(|v| v.each_ref().map(Real::to_f64));
+    let theirs = textbook::axes(camera).map(|v| v.to_array());
+    let errors = [theirs, ours].map(|axes| {
+        let mut greatest = 0.0_f64;
+        for (x, truth) in axes.iter().flatten().zip(oracle.axes().iter().flatten()) {
+            if !x.is_finite() {
+                return f64::INFINITY;
+            }
+            let error = (oracle.exact(*x) - truth).to_f64().value().abs();
+            greatest = greatest.max(error / (f64::EPSILON / 2.0));
+        }
+        greatest
+    });
+    tally.inputs += 1;
+    tally.errors(errors.map(Some));
+}
+
 /// A scene as the oracle, the textbook and we see it.
 #[derive(Debug)]
-pub struct Trial {
+pub(super) struct Trial {
     scene: Scene,
     world: World,
     textbook: Textbook,
@@ -87,7 +114,7 @@ impl Trial {
     }
 
     /// Asks all three what is seen at a sample point.
-    pub fn decide(&self, x: u32, y: u32, offset: DVec2, tally: &mut Tally) {
+    pub fn decide(&self, (x, y, offset): Point, tally: &mut Tally) {
         let truth = self.truth(x, y, offset);
         let textbook = self.textbook.seen(x, y, offset);
         let textbook = textbook.map(|seen| (seen.object, seen.odd));
@@ -159,16 +186,12 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Asks at some points anywhere in the picture.
-    pub fn anywhere(&self, random: &mut Random, count: u64, tally: &mut Tally) {
+    /// A point anywhere in the picture.
+    pub fn anywhere(&self, random: &mut Random) -> Point {
         let size = self.scene.image;
-        for _ in 0..count {
-            let (x, y) = (
-                random.below(size.width.into()),
-                random.below(size.height.into()),
-            );
-            self.decide(x as u32, y as u32, random.offset(), tally);
-        }
+        let mut below = |pixels: u32| random.below(pixels.into()) as u32;
+        let (x, y) = (below(size.width), below(size.height));
+        (x, y, random.offset())
     }
 
     /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s on both sides of each, and
@@ -189,7 +212,9 @@ impl Trial {
                 self.beside(random, boundary, end - tally.inputs, tally);
             }
         }
-        self.anywhere(random, end - tally.inputs, tally);
+        while tally.inputs < end {
+            self.decide(self.anywhere(random), tally);
+        }
     }
 
     /// A place where what is seen changes along a row (axis 0) or column (axis 1): a pixel, and the last offset before.
@@ -264,36 +289,7 @@ impl Trial {
             };
             let mut near = offset;
             near[axis] = (at + step * unit).clamp(-0.5, 0.5_f64.next_down());
-            self.decide(x, y, near, tally);
-        }
-    }
-
-    /// Asks the textbook and us what is seen at points close to boundaries and at their mirror images. `mirror` has for each
-    /// object the one that it becomes.
-    pub fn symmetry(&self, random: &mut Random, mirror: &[usize], count: u64, tally: &mut Tally) {
-        let end = tally.inputs + count;
-        while tally.inputs < end {
-            let axis = random.below(2) as usize;
-            let ours = |x, y, offset| self.ours(x, y, offset);
-            let Some((axis, [x, y], offset)) = self.boundary(random, axis, ours) else {
-                continue;
-            };
-            for step in [0.0, 1.0, -1.0, 1e3, -1e3] {
-                let mut near = offset;
-                near[axis] += step * (offset[axis].abs().next_up() - offset[axis].abs());
-                if near.abs().max_element() >= 0.5 || tally.inputs == end {
-                    continue;
-                }
-                let (other_x, other) = (self.scene.image.width - 1 - x, dvec2(-near.x, near.y));
-                let textbook = |x, offset| self.textbook.seen(x, y, offset).map(|s| s.object);
-                let ours = |x, offset| ours(x, y, offset).map(|(object, _)| object);
-                let differs = |a: Option<usize>, b: Option<usize>| {
-                    u64::from(a.map(|object| mirror[object]) != b)
-                };
-                tally.inputs += 1;
-                tally.wrong[0] += differs(textbook(x, near), textbook(other_x, other));
-                tally.wrong[1] += differs(ours(x, near), ours(other_x, other));
-            }
+            self.decide((x, y, near), tally);
         }
     }
 }

@@ -3,72 +3,46 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    Case, Claim,
+    case::{Case, Input, case},
     inputs::Random,
-    oracle::USUAL_SIZES,
     scenes::{SIZE, along, camera, scene, spun, triangle},
-    trial::{Tally, Trial},
 };
 use crate::scene::Lens;
 
 /// The cases.
 pub const CASES: &[Case] = &[
-    Case::new("T1", "triangles of 1e-3 … 1e-9 m", Claim::Ulps(2.0), tiny),
-    Case::new(
-        "T2",
-        "the eye 1e-3 … 1e-15 m off the plane",
-        Claim::Ulps(2.0),
-        slivers,
-    ),
-    Case::new(
+    case("T1", "triangles of 1e-3 … 1e-9 m", tiny),
+    case("T2", "the eye 1e-3 … 1e-15 m off the plane", slivers),
+    case(
         "T3a",
         "close to an edge that two triangles share",
-        Claim::Ulps(2.0),
         shared_edges,
     ),
-    Case::new(
-        "T3b",
-        "exactly on such an edge",
-        Claim::Ulps(2.0),
-        lattice_points,
-    ),
-    Case::new(
-        "T4",
-        "needles of 1 to 1e3 … 1e12, and flat ones",
-        Claim::Ulps(2.0),
-        needles,
-    ),
-    Case::new(
+    case("T3b", "exactly on such an edge", lattice_points),
+    case("T4", "needles of 1 to 1e3 … 1e12, and flat ones", needles),
+    case(
         "T5",
         "normals of 1e±307, nearly or wholly vertical",
-        Claim::Ulps(2.0),
         normals,
     ),
-    Case::new(
-        "T6",
-        "1e6 … 1e15 m from the origin",
-        Claim::Ulps(2.0),
-        displaced,
-    ),
-    Case::new("T7", "vertices behind the eye", Claim::Ulps(2.0), around),
+    case("T6", "1e6 … 1e15 m from the origin", displaced),
+    case("T7", "vertices behind the eye", around),
 ];
 
 /// The sides of the assignment's triangle.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
-fn tiny(random: &mut Random, count: u64, tally: &mut Tally) {
+fn tiny(random: &mut Random) -> Input {
     let size = random.power(-9.0, -3.0);
     let normal = random.unit();
     let eye = (normal + random.unit() * 0.5) * 3.0;
     let mut camera = camera(eye, DVec3::ZERO);
     camera.lens = Lens::Distance(5.0 / size);
     let shape = spun(DVec3::ZERO, normal, SIDES * size, random.within(0.0, 360.0));
-    let trial = Trial::new(scene(camera, &[shape]), USUAL_SIZES);
-    trial.anywhere(random, count / 2, tally);
-    trial.boundaries(random, count - count / 2, tally);
+    Input::new(scene(camera, &[shape])).mixed()
 }
 
-fn slivers(random: &mut Random, count: u64, tally: &mut Tally) {
+fn slivers(random: &mut Random) -> Input {
     let height = random.power(-15.0, -3.0);
     let (centroid, normal) = (random.vector(2.0), random.unit());
     let aside = normal.cross(random.unit()).normalize();
@@ -77,7 +51,7 @@ fn slivers(random: &mut Random, count: u64, tally: &mut Tally) {
     camera.up = normal;
     camera.lens = Lens::Distance(3.0 / height);
     let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
-    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &[shape]))
 }
 
 /// Two triangles, the second one the first turned by 180° about the middle of one of its edges. With these sides the vertices
@@ -106,7 +80,7 @@ const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ),
 ];
 
-fn shared_edges(random: &mut Random, count: u64, tally: &mut Tally) {
+fn shared_edges(random: &mut Random) -> Input {
     let normal = random.pick(&[DVec3::X, DVec3::Y, DVec3::Z]) * random.sign();
     let size = libm::exp2(random.whole(-8, 8));
     let (right, top) = match normal.y {
@@ -123,12 +97,11 @@ fn shared_edges(random: &mut Random, count: u64, tally: &mut Tally) {
     shapes.rotate_left(random.below(2) as usize);
     let middle = (centroid + other) / 2.0;
     let eye = middle + (normal * random.sign() + random.unit() * 0.7) * (30.0 * size);
-    let trial = Trial::new(scene(camera(eye, middle), &shapes), USUAL_SIZES);
-    trial.boundaries(random, count, tally);
+    Input::new(scene(camera(eye, middle), &shapes))
 }
 
 /// Seen from a distance of 64 the corners of pixels are the points of the lattice.
-fn lattice_points(random: &mut Random, count: u64, tally: &mut Tally) {
+fn lattice_points(random: &mut Random) -> Input {
     let size = libm::exp2(random.whole(-8, 8));
     let (other, points) = random.pick(&SHARED);
     let place = [random.whole(-8, 8), random.whole(-8, 8)];
@@ -144,12 +117,8 @@ fn lattice_points(random: &mut Random, count: u64, tally: &mut Tally) {
         ),
     ];
     shapes.rotate_left(random.below(2) as usize);
-    let trial = Trial::new(
-        scene(along(DVec3::ZERO, DVec3::NEG_Z), &shapes),
-        USUAL_SIZES,
-    );
     let half = f64::from(SIZE) / 2.0;
-    for _ in 0..count {
+    Input::new(scene(along(DVec3::ZERO, DVec3::NEG_Z), &shapes)).at(move |random| {
         let [x, y] = random.pick(points);
         let (column, row) = (half + place[0] + x, half - place[1] - y);
         let beside = |random: &mut Random| match random.below(3) {
@@ -157,11 +126,11 @@ fn lattice_points(random: &mut Random, count: u64, tally: &mut Tally) {
             _ => -0.5,
         };
         let offset = dvec2(beside(random), beside(random));
-        trial.decide(column as u32, row as u32, offset, tally);
-    }
+        (column as u32, row as u32, offset)
+    })
 }
 
-fn needles(random: &mut Random, count: u64, tally: &mut Tally) {
+fn needles(random: &mut Random) -> Input {
     let width = random.power(-12.0, -3.0);
     let normal = random.unit();
     let eye = (normal + random.unit() * 0.3) * 3.0;
@@ -172,10 +141,10 @@ fn needles(random: &mut Random, count: u64, tally: &mut Tally) {
     };
     camera.lens = Lens::Distance(3.0 / height);
     let shape = spun(DVec3::ZERO, normal, sides, random.within(0.0, 360.0));
-    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &[shape]))
 }
 
-fn normals(random: &mut Random, count: u64, tally: &mut Tally) {
+fn normals(random: &mut Random) -> Input {
     let tilt = random.pick(&[0.0, 1.0, 1.0]) * random.power(-300.0, -1.0);
     let nearly_vertical = dvec3(tilt * random.within(-1.0, 1.0), random.sign(), tilt);
     let exponent = random.pick(&[1.0, -1.0]) * random.within(150.0, 307.0);
@@ -186,22 +155,20 @@ fn normals(random: &mut Random, count: u64, tally: &mut Tally) {
     let centroid = random.vector(2.0);
     let eye = centroid + dvec3(random.within(-2.0, 2.0), 3.0, random.within(-2.0, 2.0));
     let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
-    Trial::new(scene(camera(eye, centroid), &[shape]), USUAL_SIZES)
-        .boundaries(random, count, tally);
+    Input::new(scene(camera(eye, centroid), &[shape]))
 }
 
-fn displaced(random: &mut Random, count: u64, tally: &mut Tally) {
+fn displaced(random: &mut Random) -> Input {
     let distance = random.power(6.0, 15.0);
     let centroid = random.unit() * distance;
     let size = (distance * 1e-14).max(1.0);
     let normal = random.unit();
     let eye = centroid + (normal + random.unit() * 0.4) * (4.0 * size);
     let shape = triangle(centroid, normal, SIDES * size);
-    Trial::new(scene(camera(eye, centroid), &[shape]), USUAL_SIZES)
-        .boundaries(random, count, tally);
+    Input::new(scene(camera(eye, centroid), &[shape]))
 }
 
-fn around(random: &mut Random, count: u64, tally: &mut Tally) {
+fn around(random: &mut Random) -> Input {
     let (centroid, normal) = (random.vector(2.0), random.unit());
     let aside = normal.cross(random.unit()).normalize();
     let eye = centroid + aside * random.within(0.0, 9.0) + normal * random.power(-6.0, 0.5);
@@ -212,5 +179,5 @@ fn around(random: &mut Random, count: u64, tally: &mut Tally) {
     camera.up = normal;
     let sides = dvec3(70.0, 60.0, random.within(15.0, 90.0));
     let shape = spun(centroid, normal, sides, random.within(0.0, 360.0));
-    Trial::new(scene(camera, &[shape]), USUAL_SIZES).boundaries(random, count, tally);
+    Input::new(scene(camera, &[shape]))
 }

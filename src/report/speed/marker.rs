@@ -4,12 +4,15 @@ use plotters::{
     coord::Shift,
     element::DashedPathElement,
     prelude::{
-        Circle, Color, DrawingArea, DrawingBackend, PathElement, Polygon, RGBColor, ShapeStyle,
+        Circle, Color, DrawingArea, DrawingAreaErrorKind, DrawingBackend, PathElement, Polygon,
+        RGBColor, ShapeStyle,
     },
 };
 
-use super::chart::Drawn;
 use crate::scene::Method;
+
+/// What drawing yields.
+pub type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 /// A place in pixels.
 pub type Place = (i32, i32);

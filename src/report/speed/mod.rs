@@ -1,38 +1,31 @@
 //! Speed against error, method by method.
 //!
-//! In: a scene, the methods, how many samples and runs. A [`Plan`] decides what fits into the time there is, [`measure()`] times the
-//! renders and compares them with the exact picture, and [`Tries`] take about as many samples as an error should take. Out: a
-//! [`Measurement`], plain data, of which `table` makes text for a terminal, `export` CSV and JSON, `chart` SVG and `page` HTML, which
-//! shows the crops of `picture`.
+//! In: a scene and a [`Request`]: the methods, how many samples and runs. [`measure()`] times renders and compares them with the exact picture. Out:
+//! a [`Measurement`], plain data. [`text()`] makes a table of it for a terminal, [`to_csv`] and [`to_json`] make files for
+//! programs, [`against_time`] and [`against_samples`] charts, and [`page()`] makes HTML with all of that and pictures.
 
-mod account;
 mod chart;
 mod export;
-pub mod fit;
-mod ladder;
 mod machine;
 mod marker;
 mod measure;
+mod measurement;
 mod needed;
-mod notes;
 mod page;
 mod picture;
-mod plan;
-mod table;
-mod ticks;
-mod tried;
-mod tries;
+pub mod statistics;
+mod summary;
+mod text;
+mod units;
 
 pub use self::{
     chart::{against_samples, against_time},
     export::{to_csv, to_json},
     machine::Machine,
-    measure::{Computed, Measurement, Point, Series, Subject, further, measure, measure_further},
-    needed::{Fastest, Needed},
-    notes::{NOISY, notes},
+    measure::measure,
+    measurement::{Measurement, Point, Request, Series, Shown, Subject, Times},
+    needed::Needed,
     page::page,
-    plan::{Plan, Request},
-    table::table,
-    tried::Try,
-    tries::Tries,
+    summary::verdict,
+    text::text,
 };

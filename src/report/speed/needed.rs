@@ -1,149 +1,109 @@
-//! What an error takes: samples and time, how far they can be trusted, and which method is the fastest.
+//! What an error takes of each method, and which method takes the least time.
 
-use super::{
-    fit::median,
-    ladder::Found,
-    measure::{Measurement, Point, Series},
-    tried::FEWEST_TRIES,
-};
+use super::measurement::{Measurement, Point, Series};
 use crate::scene::Method;
 
 /// What an error takes of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Needed {
-    /// Samples per pixel.
-    pub per_pixel: f64,
-    /// How far it may be off as a factor, 1 or more: 19 times of 20, a render with so many times as many samples leaves no more than
-    /// the error, and renders with so many times as few leave no less, in the mean of squares. 1 where these very samples were measured, are
-    /// not enough by luck, and one fewer are too few or none; none where nothing is known of that.
-    pub factor: Option<f64>,
-    /// Seconds.
-    pub seconds: f64,
-    /// How far the measured times spread from which these seconds are: (greatest − least) / median; infinite if that is not known.
-    pub spread: f64,
+    /// Samples per pixel; none of the exact method.
+    pub per_pixel: Option<f64>,
+    /// CPU time in seconds.
+    pub cpu: f64,
+    /// Wall time in seconds.
+    pub wall: f64,
     /// Whether it lies beyond what was measured.
     pub is_extrapolated: bool,
-    /// Whether fewer may do: of fewer none were measured, or none between those that leave an error and these, which leave none.
-    pub is_at_most: bool,
-    /// On how many tries it rests; 0 if on the line between the planned points.
-    pub tries: usize,
 }
 
-/// Which method is the fastest.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Fastest {
-    /// With the fewest samples that were measured every method comes there: nothing is known of fewer.
-    All,
-    /// These, the one with the least time first: those whose times cannot be told apart from its.
-    Of(Vec<(Method, Needed)>),
-}
+impl Measurement {
+    /// What an error takes of a sampled method. None if more samples do not help, or if the reference is not known well enough to tell such an error
+    /// from none: by the root of the mean of its bounds' squares, since errors are such means.
+    pub fn needed(&self, series: &Series, error: f64) -> Option<Needed> {
+        self.tells(error).then(|| series.needed(error)).flatten()
+    }
 
-impl Needed {
-    /// What was measured at a point that is enough.
-    pub(super) fn of_point(
-        series: &Series,
-        point: &Point,
-        is_at_most: bool,
-        is_sure: bool,
-    ) -> Self {
-        Self {
-            per_pixel: point.per_pixel as f64,
-            factor: (is_sure && !is_at_most).then_some(1.0),
-            seconds: point.seconds(),
-            spread: series.time_spread(point),
+    /// The same of the exact method, if that was measured.
+    pub fn exact_needed(&self, error: f64) -> Option<Needed> {
+        let exact = self.exact.as_ref().filter(|_| self.tells(error))?;
+        Some(Needed {
+            per_pixel: None,
+            cpu: exact.cpu(),
+            wall: exact.wall(),
             is_extrapolated: false,
-            is_at_most,
-            tries: 0,
-        }
+        })
     }
 
-    /// The time may be so many times as long or as short: the samples' factor and half of the spread.
-    fn doubt(&self) -> f64 {
-        self.factor.unwrap_or(f64::INFINITY) * (1.0 + self.spread / 2.0)
+    fn tells(&self, error: f64) -> bool {
+        error > self.reference.root_mean_square_bound()
     }
 
-    /// Whether nothing is known of how far it may be off: it was computed from points that do not tell, was measured too seldom, or fewer were not.
-    pub(super) fn is_unknown(&self) -> bool {
-        self.factor.is_none()
+    /// The methods that come to an error, the one with the least CPU time first.
+    pub fn fastest(&self, error: f64) -> Vec<(Method, Needed)> {
+        let sampled = self.series.iter();
+        let sampled = sampled.filter_map(|it| Some((it.method, self.needed(it, error)?)));
+        let exact = self
+            .exact_needed(error)
+            .map(|needed| (Method::Exact, needed));
+        let mut all: Vec<_> = sampled.chain(exact).collect();
+        // Where the system does not tell the CPU time, no method has the least.
+        all.retain(|(_, needed)| needed.cpu.is_finite());
+        all.sort_by(|(_, a), (_, b)| a.cpu.total_cmp(&b.cpu));
+        all
     }
 }
 
 impl Series {
-    /// What an error takes; none if more samples do not help.
-    ///
-    /// If it was tried, that is where the tries near it say. If not, it is where the straight line through the logarithms of samples and error comes
-    /// down to it: between the planned points on either side of the error, and beyond the last one through that and another with at
-    /// most half its samples. Fewer samples than were measured are not asked for: they would not take less than the pixel's share of the rest.
+    /// Errors are taken to fall as a power of the samples: by the line in logarithms through the two numbers of samples that were measured on either
+    /// side, or the last two of them. Times are taken to grow evenly with the samples. Where the least number is enough, it is that.
     pub fn needed(&self, error: f64) -> Option<Needed> {
-        let line = match self.by_points(error)? {
-            Found::Point(needed) => return Some(needed),
-            Found::Line(line) => line,
+        let points = &self.points;
+        // From here on no error that was measured is greater.
+        let enough = points.iter().rposition(|point| point.error() > error);
+        let enough = enough.map_or(0, |last| last + 1);
+        let (samples, is_extrapolated) = if enough == 0 {
+            // Fewer may be enough, too, but nobody has tried.
+            (points.first()?.per_pixel as f64, false)
+        } else {
+            let pair = enough.min(points.len().saturating_sub(1).max(1));
+            let (few, many) = (points.get(pair - 1)?, points.get(pair)?);
+            let falls = libm::log(few.error() / many.error());
+            let samples = [few, many].map(|point| point.per_pixel as f64);
+            // Without any error, these are enough for whatever is asked for.
+            let share = libm::log(few.error() / error) / falls;
+            let share = if many.error() == 0.0 { 1.0 } else { share };
+            let is_falling = falls > 0.0;
+            let samples = samples[0] * libm::pow(samples[1] / samples[0], share);
+            (is_falling.then_some(samples)?, enough != pair)
         };
-        let tried = self.tried(error, &line);
-        let tries = tried.near.len();
-        let is_extrapolated = line.is_extrapolated && tries < FEWEST_TRIES;
-        let (x, doubt) = match tries {
-            0 => (line.x, line.doubt),
-            _ => (tried.x, self.doubt(&tried, &line)),
-        };
-        let per_pixel = libm::exp(x).ceil();
-        if !per_pixel.is_finite() {
-            return None;
-        }
-        let (seconds, spread) = match tries {
-            0 => self.seconds_at(per_pixel)?,
-            _ => self.seconds_by(&tried.near, per_pixel),
-        };
-        Some(Needed {
-            per_pixel,
-            factor: doubt.map(libm::exp).filter(|factor| factor.is_finite()),
-            seconds,
-            spread,
+        let per_pixel = samples.ceil().max(1.0);
+        per_pixel.is_finite().then(|| Needed {
+            per_pixel: Some(per_pixel),
+            cpu: self.time_at(per_pixel, |point| point.times.cpu()),
+            wall: self.time_at(per_pixel, |point| point.times.wall()),
             is_extrapolated,
-            is_at_most: false,
-            tries,
         })
     }
-}
 
-impl Measurement {
-    /// What an error takes of a method; none if more samples do not help, or if that error cannot be told from none.
-    pub fn needed(&self, series: &Series, error: f64) -> Option<Needed> {
-        series.needed(error).filter(|_| self.tells(error))
-    }
-
-    /// Whether the reference is known well enough to tell such an error from none: by the root of the mean of its bounds' squares, since errors
-    /// are such means.
-    pub(super) fn tells(&self, error: f64) -> bool {
-        error > self.reference.root_mean_square_bound()
-    }
-
-    /// How long the exact method takes for an error, if it was measured and is known to come there.
-    pub(super) fn exact_seconds(&self, error: f64) -> Option<f64> {
-        let exact = self.exact.as_ref().filter(|_| self.tells(error));
-        exact.map(|exact| median(&exact.times))
-    }
-
-    /// The sampled methods that need the least time for an error; none if none comes there, or if that error cannot be told from none.
-    pub fn fastest(&self, error: f64) -> Option<Fastest> {
-        if !self.tells(error) {
-            return None;
-        }
-        let is_first = |series: &Series| {
-            let first = series.points.first();
-            first.is_some_and(|point| series.keeps(point, error))
+    /// The time that so many samples take, no fewer than the first point's: by the line between the points on either side, or between the first and the last.
+    fn time_at(&self, per_pixel: f64, time: fn(&Point) -> f64) -> f64 {
+        let points = &self.points;
+        let [first, .., last] = points.as_slice() else {
+            return points.first().map_or(f64::NAN, time);
         };
-        if self.series.len() > 1 && self.series.iter().all(is_first) {
-            return Some(Fastest::All);
+        let around = |pair: &&[Point]| {
+            (pair[0].per_pixel as f64..=pair[1].per_pixel as f64).contains(&per_pixel)
+        };
+        let slope = |a: &Point, b: &Point| (time(b) - time(a)) / (b.per_pixel - a.per_pixel) as f64;
+        let along = |a: &Point, slope: f64| time(a) + slope * (per_pixel - a.per_pixel as f64);
+        if let Some([a, b]) = points.windows(2).find(around) {
+            return along(a, slope(a, b));
         }
-        let needs = self.series.iter();
-        let needs = needs.filter_map(|series| Some((series.method, self.needed(series, error)?)));
-        let mut needs: Vec<_> = needs.collect();
-        needs.sort_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds));
-        let (_, best) = *needs.first()?;
-        needs.retain(|(_, other)| {
-            other.seconds / other.doubt() <= best.seconds * best.doubt() || *other == best
-        });
-        Some(Fastest::Of(needs))
+        // More samples take no less time.
+        let slope = match slope(first, last) {
+            falling if falling < 0.0 => 0.0,
+            slope => slope,
+        };
+        along(last, slope)
     }
 }

@@ -123,7 +123,7 @@ impl<'s> Evaluator<'_, 's> {
             }
             _ => None,
         };
-        let shown = meant.clone().unwrap_or_else(|| example(row));
+        let shown = meant.clone().unwrap_or_else(|| row.call());
         self.problems.push(
             error("argument_count", message)
                 .at(span, format!("{found} given"))
@@ -146,13 +146,13 @@ impl<'s> Evaluator<'_, 's> {
             }
             _ => {
                 let all = match row.takes {
-                    [_, _] => takes.two(),
-                    [_, _, _] => "three numbers",
-                    _ => takes.noun(),
+                    [_, _] => format!("two {}", takes.plural()),
+                    [_, _, _] => format!("three {}", takes.plural()),
+                    _ => takes.noun().to_owned(),
                 };
                 let (written, found) = (self.quoted(argument.span), found.kind());
                 let message = format!("`{name}` takes {all}, and {written} is {}", found.noun());
-                let help = format!("call it with {}, such as `{}`", takes.noun(), example(row));
+                let help = format!("call it with {}, such as `{}`", takes.noun(), row.call());
                 error("argument_type", message)
                     .at(argument.span, self.described(argument, found))
                     .help(help)
@@ -253,9 +253,4 @@ impl<'s> Evaluator<'_, 's> {
 /// The part from 0 to 255 that stands for one from 0 to 1.
 pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
-}
-
-/// How a function is called.
-pub fn example(function: &Function) -> String {
-    format!("{}({})", function.name, function.example().join(", "))
 }

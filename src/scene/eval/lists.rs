@@ -19,111 +19,108 @@ impl<'s> Evaluator<'_, 's> {
         span: Span,
         wanted: Option<Type>,
     ) -> Option<Value> {
-        let part = match wanted {
-            Some(Type::Colors) => Some(Type::Color),
-            Some(Type::Vector) => Some(Type::Number),
-            _ if elements.len() == 3 => Some(Type::Number),
-            _ => None,
+        let part = match wanted.and_then(Type::parts) {
+            Some((part, _)) => Some(part),
+            None if elements.len() == 3 => Some(Type::Number),
+            None => None,
         };
-        let mut values = Vec::with_capacity(elements.len());
-        for element in elements {
-            values.push(self.value(&element.value, part));
-        }
-        if let &[
-            Some(Value::Number(x)),
-            Some(Value::Number(y)),
-            Some(Value::Number(z)),
-        ] = values.as_slice()
-        {
-            return Some(Value::Vector(DVec3::new(x, y, z)));
-        }
-        if let &[Some(Value::Color(first)), Some(Value::Color(second))] = values.as_slice() {
-            return Some(Value::Colors([first, second]));
+        let values = elements.iter().map(|it| self.value(&it.value, part));
+        let values: Vec<Option<Value>> = values.collect();
+        match values[..] {
+            [
+                Some(Value::Number(x)),
+                Some(Value::Number(y)),
+                Some(Value::Number(z)),
+            ] => {
+                return Some(Value::Vector(DVec3::new(x, y, z)));
+            }
+            [Some(Value::Color(first)), Some(Value::Color(second))] => {
+                return Some(Value::Colors([first, second]));
+            }
+            _ => {}
         }
         let is_color = |value: &Value| value.kind() == Type::Color;
-        let is_pair = wanted == Some(Type::Colors)
-            || (elements.len() == 2 && values.iter().flatten().any(is_color));
-        let takes = if is_pair { Type::Color } else { Type::Number };
-        let mut wrong = values.iter().zip(elements);
-        let wrong = wrong.find_map(|(value, element)| {
-            let value = value.filter(|value| value.kind() != takes)?;
+        let is_pair = elements.len() == 2 && values.iter().flatten().any(is_color);
+        let list = match wanted {
+            _ if is_pair => Type::Colors,
+            Some(Type::Colors) => Type::Colors,
+            _ => Type::Vector,
+        };
+        let (part, _) = list.parts()?;
+        let mut found = values.iter().zip(elements);
+        let wrong = found.find_map(|(value, element)| {
+            let value = value.filter(|value| value.kind() != part)?;
             Some((&element.value, value.kind()))
         });
-        if let Some((part, found)) = wrong {
-            self.wrong_part(part, found, is_pair);
+        if let Some((written, found)) = wrong {
+            self.wrong_part(list, written, found);
         } else if values.iter().all(Option::is_some) {
-            self.part_count(elements, span, wanted, is_pair);
+            self.part_count(list, elements, span, wanted);
         }
         None
     }
 
     /// Reports a part of a vector that is no number, or of a pair that is no colour.
-    fn wrong_part(&mut self, part: &tree::Value<'s>, found: Type, is_pair: bool) {
-        let (parts, help) = match (is_pair, found) {
-            (true, _) => (
-                "a pair of colours are colours",
-                "write two colours, such as `(gray, white)`",
-            ),
-            (false, Type::Angle) => (
-                "a vector are numbers",
-                "an angle divided by `1deg` is a number",
-            ),
-            (false, _) => (
-                "a vector are numbers",
-                "write three numbers, such as `(0, 1, 0)`",
-            ),
-        };
-        let written = self.quoted(part.span);
-        let message = format!("the parts of {parts}, and {written} is {}", found.noun());
+    fn wrong_part(&mut self, list: Type, part: &tree::Value<'s>, found: Type) {
+        let parts = list
+            .parts()
+            .map(|(part, _)| part.plural())
+            .unwrap_or_default();
+        let (written, noun) = (self.quoted(part.span), found.noun());
+        let message = format!(
+            "the parts of {} are {parts}, and {written} is {noun}",
+            list.noun()
+        );
         self.problems.push(
             error("part_type", message)
                 .at(part.span, self.described(part, found))
-                .help(help),
+                .help(match (list, found) {
+                    (Type::Vector, Type::Angle) => "an angle divided by `1deg` is a number",
+                    _ => such_as(list),
+                }),
         );
     }
 
     fn part_count(
         &mut self,
+        list: Type,
         elements: &[Element<'s>],
         span: Span,
         wanted: Option<Type>,
-        is_pair: bool,
     ) {
-        let texts = elements.iter();
-        let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
-        let (whole, parts, example) = match is_pair {
-            true => (
-                "a pair of colours has 2 parts",
-                "colours",
-                "two colours, such as `(gray, white)`",
-            ),
-            false => (
-                "a vector has 3 parts",
-                "numbers",
-                "three numbers, such as `(0, 1, 0)`",
-            ),
-        };
-        let meant = match texts.as_slice() {
-            _ if is_pair => None,
-            &[x, y] if wanted == Some(Type::Vector) => {
+        let texts = elements.iter().map(|it| self.sources.text(it.value.span));
+        let texts: Vec<&str> = texts.collect();
+        let meant = match texts[..] {
+            [x, y] if list == Type::Vector && wanted == Some(list) => {
                 third(x, y).map(|z| format!("({x}, {y}, {z})"))
             }
-            [_, _, _, _] => with_decimal_comma(elements, &texts),
+            [_, _, _, _] if list == Type::Vector => with_decimal_comma(elements, &texts),
             _ => None,
         };
-        let count = elements.len();
+        let Some((part, most)) = list.parts() else {
+            return;
+        };
+        let (noun, count) = (list.noun(), elements.len());
+        let message = format!("{noun} has {most} parts, and this has {count}");
         self.problems.push(
-            error("part_count", format!("{whole}, and this has {count}"))
-                .at(span, format!("{count} {parts}"))
+            error("part_count", message)
+                .at(span, format!("{count} {}", part.plural()))
                 .help(match &meant {
-                    Some(meant) if elements.len() == 4 => {
+                    Some(meant) if count == 4 => {
                         format!("write `{}`: a decimal point is a point", shorten(meant))
                     }
                     Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
-                    None => format!("write {example}"),
+                    None => such_as(list).to_owned(),
                 })
                 .writing(span, meant),
         );
+    }
+}
+
+fn such_as(list: Type) -> &'static str {
+    match list {
+        Type::Colors => "write two colours, such as `(gray, white)`",
+        _ => "write three numbers, such as `(0, 1, 0)`",
     }
 }
 

@@ -1,13 +1,12 @@
 //! What a name stands for, and what is wrong with one that stands for nothing.
 
-use super::{Evaluator, calls::example, names::Defined};
+use super::{Evaluator, names::Defined};
 use crate::{
     diagnostic::{Diagnostic, Edit, Label},
-    math::Angle,
     scene::{
         css,
         error::error,
-        schema::{self, Type},
+        schema::{self, Predefined, Type, predefined},
         value::Value,
     },
     source::{SourceId, Span},
@@ -22,45 +21,39 @@ impl<'s> Evaluator<'_, 's> {
         span: Span,
         wanted: Option<Type>,
     ) -> Option<Value> {
-        if let Some(defined) = self.names.defined.get(name) {
+        let defined = self.names.defined.get(name);
+        // A block that an argument changes is read after all definitions.
+        let is_above =
+            |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
+        if let Some(defined) = defined.filter(is_above) {
             return defined.value;
         }
-        if let Some(color) = css::color(name) {
-            return Some(Value::Color(color));
-        }
-        match name {
-            "pi" => return Some(Value::Number(std::f64::consts::PI)),
-            "deg" => return Some(Value::Angle(Angle::from_degrees(1.0))),
-            "rad" => return Some(Value::Angle(Angle::from_radians(1.0))),
-            _ => {}
-        }
-        if let Some(function) = schema::function(name) {
-            let message = format!("`{name}` is a function, and stands here without its arguments");
-            self.problems.push(
-                error("function_without_arguments", message)
-                    .at(span, "a function")
-                    .help(format!("write `{}`", example(function)))
-                    .writing(span, [example(function)]),
-            );
-            return None;
-        }
-        if self.names.parts.contains(name) {
-            return None;
-        }
-        let mut reported = self.names.reported.borrow_mut();
-        if let Some(&index) = reported.get(name) {
-            if let Some(problem) = self.problems.get_mut(index) {
-                and_here(problem, span);
+        match predefined(name) {
+            Some(Predefined::Value(value)) => return Some(value),
+            Some(Predefined::Function(function)) => {
+                let message =
+                    format!("`{name}` is a function, and stands here without its arguments");
+                self.problems.push(
+                    error("function_without_arguments", message)
+                        .at(span, "a function")
+                        .help(format!("write `{}`", function.call()))
+                        .writing(span, [function.call()]),
+                );
+                return None;
             }
-            return None;
+            None if self.names.parts.contains(name) => return None,
+            None => {}
         }
-        reported.insert(name, self.problems.len());
-        drop(reported);
-        let problem = match self.names.definition(name) {
-            Some(definition) => self.used_before(name, span, definition),
-            None => self.unknown_name(name, span, wanted),
-        };
-        self.problems.push(problem);
+        let mut problems = self.names.problems.borrow_mut();
+        let mut reported = self.names.reported.borrow_mut();
+        let index = *reported.entry(name).or_insert(problems.len());
+        match problems.get_mut(index) {
+            Some(problem) => and_here(problem, span),
+            None => problems.push(match self.names.definition(name) {
+                Some(definition) => self.used_before(name, span, definition),
+                None => self.unknown_name(name, span, wanted),
+            }),
+        }
         None
     }
 
@@ -83,37 +76,36 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Diagnostic {
-        let near = self.nearest(name, wanted);
-        let did_you_mean = near.as_ref().map(|near| format!("did you mean `{near}`?"));
-        if matches!(wanted, Some(Type::Color | Type::Colors)) {
-            let help = "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned();
-            return error(
+        let is_color = matches!(wanted, Some(Type::Color | Type::Colors));
+        let near = self.nearest(name, wanted, is_color);
+        let problem = match is_color {
+            true => error(
                 "unknown_color",
                 format!("there is no colour named `{name}`"),
             )
-            .at(span, "not a colour, and not defined")
-            .help(did_you_mean.unwrap_or(help))
-            .writing(span, near);
-        }
-        let problem = error("unknown_name", format!("there is nothing named `{name}`"));
-        let problem = problem.at(span, "not defined");
-        if self.names.objects.contains(name) {
-            return problem
-                .help("an object is no value: define its place with `let`, and use that in both");
-        }
-        let help = format!("define it before it is used: `let {name} = …`");
-        let help = did_you_mean.unwrap_or(help);
+            .at(span, "not a colour, and not defined"),
+            false => error("unknown_name", format!("there is nothing named `{name}`"))
+                .at(span, "not defined"),
+        };
+        let is_object = self.names.objects.contains(name);
+        let help = match &near {
+            _ if is_object && !is_color => {
+                return problem.help(
+                    "an object is no value: define its place with `let`, and use that in both",
+                );
+            }
+            Some(near) => format!("did you mean `{near}`?"),
+            None if is_color => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
+            None => format!("define it before it is used: `let {name} = …`"),
+        };
         problem.help(help).writing(span, near)
     }
 
     /// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
-    fn nearest(&self, name: &str, wanted: Option<Type>) -> Option<String> {
-        let is_color = matches!(wanted, Some(Type::Color | Type::Colors));
+    fn nearest(&self, name: &str, wanted: Option<Type>, is_color: bool) -> Option<String> {
         // `ff0000`, the code of a colour without its sign.
-        if is_color
-            && matches!(name.len(), 3 | 6)
-            && name.bytes().all(|byte| byte.is_ascii_hexdigit())
-        {
+        let is_digits = name.bytes().all(|byte| byte.is_ascii_hexdigit());
+        if is_color && matches!(name.len(), 3 | 6) && is_digits {
             return Some(format!("#{name}"));
         }
         // `olive green`: of two colours the first one.
@@ -124,17 +116,15 @@ impl<'s> Evaluator<'_, 's> {
         }
         let lets = self.names.to_compare()?.iter().copied();
         let colors = css::names().map(|name| name as &str);
+        let constants = schema::CONSTANTS.iter().map(|&(name, ..)| name);
         let near = match is_color {
             true => suggest::nearest(name, lets.chain(colors)),
-            false => {
-                let constants = schema::CONSTANTS.iter().map(|&(name, _)| name);
-                let near = suggest::nearest(name, lets.chain(constants));
-                near.or_else(|| match wanted {
-                    None => suggest::nearest(name, colors),
-                    Some(_) => None,
-                })
-            }
+            false => suggest::nearest(name, lets.chain(constants)),
         };
+        let near = near.or_else(|| match wanted {
+            None => suggest::nearest(name, css::names()),
+            Some(_) => None,
+        });
         near.map(str::to_owned)
     }
 
@@ -146,8 +136,8 @@ impl<'s> Evaluator<'_, 's> {
             _ => None,
         };
         match defined {
-            Some(Defined { set: Some(set), .. }) => {
-                format!("{noun} (from {})", self.sources.get(*set).name())
+            Some(defined) if defined.from != SourceId::File => {
+                format!("{noun} (from {})", self.sources.get(defined.from).name())
             }
             Some(defined) => {
                 let line = self.sources.file.line(defined.place.start);
@@ -162,11 +152,10 @@ impl<'s> Evaluator<'_, 's> {
 fn and_here(problem: &mut Diagnostic, span: Span) {
     // More places than these would hide the first.
     const MOST: usize = 20;
-    if problem.labels.len() > MOST {
-        return;
+    if problem.labels.len() <= MOST {
+        let message = "and here".to_owned();
+        problem.labels.push(Label { span, message });
     }
-    let message = "and here".to_owned();
-    problem.labels.push(Label { span, message });
     for fix in &mut problem.fixes {
         let text = fix.edits.first().map(|edit| edit.text.clone());
         fix.edits.extend(text.map(|text| Edit::new(span, text)));

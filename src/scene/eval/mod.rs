@@ -11,20 +11,20 @@ mod lookup;
 mod names;
 mod operators;
 
-pub use calls::{example as example_call, in_bytes};
+pub use calls::in_bytes;
 pub use names::Names;
 
 use super::{
     error::{error, warning},
-    schema::Type,
+    schema::{self, Type},
     value::Value,
 };
 use crate::{
     color::Color,
     diagnostic::Diagnostic,
-    source::{Sources, Span},
+    source::{Source, SourceId, Sources, Span},
     syntax::{
-        shorten,
+        self, shorten,
         tree::{self, Unit, ValueKind},
     },
 };
@@ -38,6 +38,21 @@ pub struct Evaluator<'a, 's> {
     pub names: &'a Names<'s>,
     /// What is wrong.
     pub problems: &'a mut Vec<Diagnostic>,
+}
+
+/// The value of a text that stands for a value by itself, such as a default of the schema.
+pub fn literal(written: &str, takes: Type) -> Option<Value> {
+    if takes == Type::Method {
+        return schema::method(written).map(Value::Method);
+    }
+    let sources = Sources::new(Source::from_text("", written));
+    let (tree, _) = syntax::parse_value(&sources.file, SourceId::File, 0);
+    let mut evaluator = Evaluator {
+        sources: &sources,
+        names: &Names::default(),
+        problems: &mut Vec::new(),
+    };
+    evaluator.value(&tree, Some(takes))
 }
 
 impl<'s> Evaluator<'_, 's> {

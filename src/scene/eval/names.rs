@@ -6,6 +6,7 @@ use std::{
 };
 
 use crate::{
+    diagnostic::Diagnostic,
     scene::value::Value,
     source::{SourceId, Span},
     suggest::Budget,
@@ -22,7 +23,7 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The same names, in order.
     order: Vec<&'s str>,
-    /// Words in what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
+    /// Words in what was reported, such as what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
     pub(super) parts: HashSet<&'s str>,
     /// Every `let` of the file, wherever.
     definitions: HashMap<&'s str, Span>,
@@ -30,6 +31,8 @@ pub struct Names<'s> {
     pub(super) objects: HashSet<&'s str>,
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
+    /// What was reported of names, apart from the other problems, some of which are dropped again.
+    pub(in crate::scene) problems: RefCell<Vec<Diagnostic>>,
     /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
     pub(super) reported: RefCell<HashMap<&'s str, usize>>,
 }
@@ -40,8 +43,8 @@ pub(super) struct Defined {
     pub value: Option<Value>,
     /// The name in the definition.
     pub place: Span,
-    /// The argument that set it, if one did.
-    pub set: Option<SourceId>,
+    /// The text that its value stands in: the file, or an argument.
+    pub from: SourceId,
 }
 
 impl<'s> Names<'s> {
@@ -63,20 +66,21 @@ impl<'s> Names<'s> {
     }
 
     /// Defines a name; a second time it keeps its value.
-    pub fn define(&mut self, name: Name<'s>, value: Option<Value>, set: Option<SourceId>) {
+    pub fn define(&mut self, name: Name<'s>, value: Option<Value>, from: SourceId) {
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
             self.order.push(name.text);
             free.insert(Defined {
                 value,
                 place: name.span,
-                set,
+                from,
             });
         }
     }
 
-    /// Knows a word of what was to be a name and cannot be one.
-    pub fn know_part(&mut self, word: &'s str) {
-        self.parts.insert(word);
+    /// Knows the words of what cannot be told, such as what was to be a name and cannot be one.
+    pub fn know_words(&mut self, text: &'s str) {
+        let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        self.parts.extend(text.split(is_other));
     }
 
     /// Where a name was defined, if it was.
@@ -104,10 +108,5 @@ impl<'s> Names<'s> {
     /// The comparisons that are left in search of the nearest name.
     pub fn budget(&self) -> &Budget {
         &self.budget
-    }
-
-    /// Every name that the file defines.
-    pub fn all(&self) -> impl Iterator<Item = &'s str> {
-        self.definitions.keys().copied()
     }
 }

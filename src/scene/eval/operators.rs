@@ -179,7 +179,7 @@ impl<'s> Evaluator<'_, 's> {
 fn cannot(operator: Operator, left: Type, right: Type) -> String {
     let (a, b) = (left.noun(), right.noun());
     let both = match left == right {
-        true => left.two().to_owned(),
+        true => format!("two {}", left.plural()),
         false => format!("{a} and {b}"),
     };
     match operator {

@@ -1,69 +1,50 @@
 //! Blocks → scene: what each part is, once all fields have their values.
 
-use super::{Block, Lowering, fields::Fields, mentions};
+use super::{Lowering, block::Block, fixes, mentions};
 use crate::{
     diagnostic::{Diagnostic, Fix},
     scene::{
-        self, Image, Object, Shape,
+        Count, Image, Method, SMALLEST, Sampler,
         error::{error, warning},
-        fix,
         schema::{self, Kind},
         semantic_model::Parts,
     },
     source::{SourceId, Span},
+    syntax::shorten,
 };
+
+/// The place of what is not there.
+const START: Span = Span {
+    source: SourceId::File,
+    start: 0,
+    end: 0,
+};
+
+/// The most samples of a picture, also where they are given by `per_pixel`.
+const MOST_SAMPLES: u64 = 1 << 53;
 
 impl<'s> Lowering<'s> {
     /// The parts of the scene; what failed is missing.
     pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
-            if !self.is_wanted() {
-                break;
-            }
             self.missing_fields(block);
         }
         let one = |kind| blocks.iter().find(|block| block.row.kind == kind);
-        let image = self.image(one(Kind::Image));
-        let sampler = self.sampler(one(Kind::Sampler), image);
-        let start = Span::new(SourceId::File, 0, 0);
-        let unknown = |name| self.cut || self.bad.iter().any(|text| mentions(text, name));
+        let empty = [Kind::Image, Kind::Sampler];
+        let [image, sampler] = &empty.map(|kind| Block::empty(schema::of_kind(kind), START));
+        let image = self.image(one(Kind::Image).unwrap_or(image));
+        let sampler = self.sampler(one(Kind::Sampler).unwrap_or(sampler), image);
         let camera = match one(Kind::Camera) {
             Some(block) => self.camera(block),
             None => {
-                if !unknown("camera") {
-                    let help = "add one, such as `camera { eye (0, 2, 8)  lookat (0, 1, 0) }`";
-                    self.problems.push(
-                        error("missing_camera", "the scene has no camera")
-                            .at(start, "no `camera` in this text")
-                            .help(help)
-                            .fixes(match self.has_items {
-                                true => self.new_block("camera"),
-                                false => Some(fix::smallest_scene(self.sources)),
-                            }),
-                    );
-                }
+                self.missing_camera();
                 None
             }
         };
-        let mut objects = std::mem::take(&mut self.objects);
-        for block in blocks.iter().filter(|block| block.row.is_object) {
-            if !self.is_wanted() {
-                break;
-            }
-            objects.extend(self.object(block));
-        }
+        let objects = std::mem::take(&mut self.objects);
         if !self.has_objects && self.bad.is_empty() && !self.cut {
-            let help = "the picture shows the background only; add one, such as `sphere { center (0, 1, 0) }`";
-            self.problems.push(
-                warning("no_objects", "the scene has no objects")
-                    .at(
-                        start,
-                        "no sphere, triangle, box or checkerboard in this text",
-                    )
-                    .help(help)
-                    .fixes(self.new_block("sphere")),
-            );
+            self.no_objects();
         }
         if let (Some(image), Some(camera)) = (&image, &camera)
             && let Some(block) = one(Kind::Camera)
@@ -82,52 +63,101 @@ impl<'s> Lowering<'s> {
 
     fn has_errors(&self) -> bool {
         let mut all = self.problems.iter().chain(&self.found);
-        all.any(Diagnostic::is_error) || !self.sources.file.invalid_utf8().is_empty()
+        // What is reported of names is always an error.
+        all.any(Diagnostic::is_error)
+            || !self.names.problems.borrow().is_empty()
+            || !self.sources.file.invalid_utf8().is_empty()
     }
 
-    /// Adds a block with the fields that it needs.
-    fn new_block(&self, name: &str) -> Option<Fix> {
-        let row = schema::block(name)?;
-        Some(fix::add_block(row, &row.least_fields(), self.sources))
+    fn missing_camera(&mut self) {
+        if self.cut || self.bad.iter().any(|text| mentions(text, "camera")) {
+            return;
+        }
+        let (example, add) = self.new_block(Kind::Camera);
+        let fix = match self.has_items {
+            true => add,
+            false => fixes::at_end("write the smallest scene", SMALLEST, self.sources),
+        };
+        self.problems.push(
+            error("missing_camera", "the scene has no camera")
+                .at(START, "no `camera` in this text")
+                .help(format!("add one, such as `{example}`"))
+                .fixes([fix]),
+        );
     }
 
-    /// Builds an object at once.
-    pub(super) fn build_object(&mut self, block: &Block<'s>) {
-        self.missing_fields(block);
-        let object = self.object(block);
-        self.objects.extend(object);
+    fn no_objects(&mut self) {
+        let (example, add) = self.new_block(Kind::Sphere);
+        let none = "no sphere, triangle, box or checkerboard in this text";
+        let help = format!("the picture shows the background only; add one, such as `{example}`");
+        self.problems.push(
+            warning("no_objects", "the scene has no objects")
+                .at(START, none)
+                .help(help)
+                .fixes([add]),
+        );
     }
 
-    fn image(&mut self, block: Option<&Block<'s>>) -> Option<Image> {
-        let row = Fields::of(block, Kind::Image);
+    /// A block with the fields that it needs, and a fix that adds it.
+    fn new_block(&self, kind: Kind) -> (String, Fix) {
+        let row = schema::of_kind(kind);
+        let (example, title) = (row.example(), format!("add {}", row.noun));
+        let fix = fixes::at_end(title, &format!("{example}\n"), self.sources);
+        (example, fix)
+    }
+
+    fn image(&mut self, block: &Block<'s>) -> Option<Image> {
         Some(Image {
-            width: row.number("width")? as u32,
-            height: row.number("height")? as u32,
-            background: row.color("background")?,
+            width: block.number("width")? as u32,
+            height: block.number("height")? as u32,
+            background: block.color("background")?,
         })
     }
 
-    fn object(&mut self, block: &Block<'s>) -> Option<Object> {
-        let fields = Fields::of(Some(block), block.row.kind);
-        let shape = match block.row.kind {
-            Kind::Sphere => Shape::Sphere(scene::Sphere {
-                center: fields.vector("center")?,
-                radius: fields.number("radius")?,
-                color: fields.color("color")?,
-            }),
-            Kind::Triangle => self.triangle(block, &fields)?,
-            Kind::Box => self.cuboid(block, &fields)?,
-            Kind::Checkerboard => Shape::Checkerboard(scene::Checkerboard {
-                y: fields.number("y")?,
-                square: fields.number("square")?,
-                colors: fields.colors("colors")?,
-            }),
-            Kind::Image | Kind::Camera | Kind::Sampler => return None,
+    fn sampler(&mut self, block: &Block<'s>, image: Option<Image>) -> Option<Sampler> {
+        let (total, per_pixel) = (block.given("total"), block.given("per_pixel"));
+        let count = match total {
+            Some(_) => Count::Total(block.number("total")? as u64),
+            None => Count::PerPixel(block.number("per_pixel")? as u64),
         };
-        Some(Object {
-            name: block.name.map(|name| name.text.to_owned()),
-            shape,
-            span: block.span,
+        let method = block.method("method");
+        let pixels = image.map(|image| u64::from(image.width) * u64::from(image.height));
+        match (count, pixels, total.xor(per_pixel)) {
+            (Count::Total(total), Some(pixels), Some(given))
+                if total < pixels && method != Some(Method::Exact) =>
+            {
+                let message = format!("{total} samples leave some of the {pixels} pixels empty");
+                let help = format!(
+                    "a pixel without a sample shows the background; give a `total` of at least {pixels}"
+                );
+                self.problems.push(
+                    warning("few_samples", message)
+                        .at(given.span, "fewer than there are pixels")
+                        .help(help)
+                        .writing(given.span, [pixels.to_string()]),
+                );
+            }
+            (Count::PerPixel(count), Some(pixels), Some(given))
+                if count > MOST_SAMPLES / pixels =>
+            {
+                let written = shorten(self.sources.text(given.span));
+                let most = MOST_SAMPLES / pixels;
+                let message = format!("{written} samples in each of {pixels} pixels are too many");
+                let help =
+                    format!("at most {most} samples per pixel keep the whole count within 2^53");
+                self.problems.push(
+                    error("too_many_samples", message)
+                        .at(given.span, "too many")
+                        .help(help)
+                        .writing(given.span, [most.to_string()]),
+                );
+            }
+            _ => {}
+        }
+        Some(Sampler {
+            method: method?,
+            count,
+            seed: block.number("seed")? as u64,
         })
     }
 }

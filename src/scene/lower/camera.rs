@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use super::{Block, Given, Lowering, fields::Fields};
+use super::{
+    Lowering,
+    block::{Block, Given},
+};
 use crate::{
     diagnostic::Fix,
     math::predicates,
@@ -11,64 +14,57 @@ use crate::{
         Camera, Image, Lens, Object, View,
         error::{error, warning},
         level_direction,
-        schema::Kind,
-        unseen::{self, LEAST_SINE, Unseen, why_unseen},
+        unseen::{LEAST_SINE, Unseen, sphere_around, why_unseen},
     },
 };
 
 impl<'s> Lowering<'s> {
     pub(super) fn camera(&mut self, block: &Block<'s>) -> Option<Camera> {
-        let fields = Fields::of(Some(block), Kind::Camera);
-        let eye = fields.vector("eye");
-        let up = fields.vector("up");
+        let (eye, up) = (block.vector("eye"), block.vector("up"));
         let direction = block.given("direction");
-        let mut view_is_defined = true;
-        let view = match direction {
-            Some(_) => fields.vector("direction").map(View::Direction),
-            None => fields.vector("lookat").map(View::Lookat),
+        let mut view = match direction {
+            Some(_) => block.vector("direction").map(View::Direction),
+            None => block.vector("lookat").map(View::Lookat),
         };
         let seen = block.given("lookat").or(direction);
-        if let (Some(eye), Some(view), Some(seen)) = (eye, view, seen) {
-            match view {
-                View::Lookat(point) if point == eye => {
-                    let eye = block.given("eye").map_or(block.keyword, |given| given.span);
-                    let message = "the camera stands on the point that it looks at";
-                    let help = "move one of them, or give a `direction` instead of `lookat`";
-                    self.problems.push(
-                        error("view_undefined", message)
-                            .at(seen.span, "the same point as the eye")
-                            .at(eye, "the eye")
-                            .help(help),
-                    );
-                    // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
-                    view_is_defined = false;
-                }
-                _ => self.up_parallel(block, eye, view, up, seen),
+        match (eye, view, seen) {
+            (Some(eye), Some(View::Lookat(point)), Some(seen)) if point == eye => {
+                let message = "the camera stands on the point that it looks at";
+                self.problems.push(
+                    error("view_undefined", message)
+                        .at(seen.span, "the same point as the eye")
+                        .at(block.place("eye"), "the eye")
+                        .help("move one of them, or give a `direction` instead of `lookat`"),
+                );
+                // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
+                view = None;
             }
+            (Some(eye), Some(view), Some(seen)) => {
+                self.up_parallel(block, view.ends(eye), up, seen)
+            }
+            _ => {}
         }
-        let near = fields.number("near");
-        let far = block
-            .given("far")
-            .map(|given| (given, fields.number("far")));
+        let near = block.number("near");
+        let far = block.given("far").map(|given| (given, block.number("far")));
         if let (Some(near), Some((given, Some(far)))) = (near, far)
             && near >= far
         {
             self.empty_depth(block, near, far, given);
         }
         let lens = if block.given("fov").is_some() {
-            fields.angle("fov").map(Lens::Fov)
+            block.angle("fov").map(Lens::Fov)
         } else if block.given("hfov").is_some() {
-            fields.angle("hfov").map(Lens::HorizontalFov)
+            block.angle("hfov").map(Lens::HorizontalFov)
         } else {
-            fields.number("d").map(Lens::Distance)
+            block.number("d").map(Lens::Distance)
         };
         Some(Camera {
             eye: eye?,
-            view: view.filter(|_| view_is_defined)?,
+            view: view?,
             up: up?,
-            roll: fields.angle("roll")?,
+            roll: block.angle("roll")?,
             lens: lens?,
-            view_height: fields.number("view_height")?,
+            view_height: block.number("view_height")?,
             near: near?,
             far: match far {
                 Some((_, far)) => Some(far?),
@@ -80,13 +76,11 @@ impl<'s> Lowering<'s> {
     fn up_parallel(
         &mut self,
         block: &Block<'s>,
-        eye: DVec3,
-        view: View,
+        (from, to): (DVec3, DVec3),
         up: Option<DVec3>,
         seen: Given,
     ) {
         let Some(up) = up else { return };
-        let (from, to) = view.ends(eye);
         let is_parallel = predicates::cross_is_zero(up, from, to);
         let sine = up.normalize().cross((to - from).normalize()).length();
         // What is not a number is not less.
@@ -107,10 +101,10 @@ impl<'s> Lowering<'s> {
                 "less than a millionth of a radian off the view direction".to_owned()
             }
             Some(_) => "parallel to the view direction".to_owned(),
-            None => format!(
-                "parallel to up, which is {} if not given",
-                numbers::short_vector(up)
-            ),
+            None => {
+                let up = numbers::short_vector(up);
+                format!("parallel to up, which is {up} if not given")
+            }
         };
         let fix = match given {
             Some(given) => Some(Fix::write(given.span, &top)),
@@ -129,16 +123,15 @@ impl<'s> Lowering<'s> {
                 "which way is up hangs on the last digits of these numbers".to_owned(),
             ),
         };
-        let help = format!("{why}; write `up {top}` to say so yourself");
         self.problems.push(
             warning("up_parallel", message)
                 .at(given.map_or(seen.span, |given| given.span), label)
-                .help(help)
+                .help(format!("{why}; write `up {top}` to say so yourself"))
                 .fixes(fix),
         );
     }
 
-    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, far_given: Given) {
+    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, given: Given) {
         let (near, far) = (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
         let problem = error("empty_depth", "`far` must be more than `near`")
             .help(format!(
@@ -146,16 +139,16 @@ impl<'s> Lowering<'s> {
             ))
             .fixes([Fix::remove_whole(
                 "leave `far` out",
-                [far_given.field()],
+                given.field(),
                 self.sources,
             )]);
         self.problems.push(match block.given("near") {
             Some(near_given) => problem
-                .at(far_given.span, format!("{far} is not more"))
+                .at(given.span, format!("{far} is not more"))
                 .at(near_given.span, format!("than {near}")),
             None => {
                 let label = format!("not more than `near`, which is {near} if not given");
-                problem.at(far_given.span, label)
+                problem.at(given.span, label)
             }
         });
     }
@@ -171,51 +164,44 @@ impl<'s> Lowering<'s> {
         let Some(why) = why_unseen(camera, image, objects) else {
             return;
         };
-        let given = |names: [&str; 2]| names.into_iter().find_map(|name| block.given(name));
-        let (message, label, place) = match why {
+        let looks = match camera.view {
+            View::Lookat(_) => "lookat",
+            View::Direction(_) => "direction",
+        };
+        let (message, label, field) = match why {
             Unseen::Behind => (
                 "everything is behind the camera",
                 "away from everything",
-                given(["lookat", "direction"]),
+                looks,
             ),
             Unseen::Outside => (
                 "the camera sees nothing of the scene",
                 "past everything",
-                given(["lookat", "direction"]),
+                looks,
             ),
-            Unseen::Clipped => (
-                "nothing of the scene is between `near` and `far`",
-                "depths count along the view direction",
-                given(["near", "far"]),
-            ),
+            Unseen::Clipped(field) => {
+                let message = "nothing of the scene is between `near` and `far`";
+                (message, "depths count along the view direction", field)
+            }
         };
-        let span = place.map_or(block.keyword, |given| given.span);
-        let problem = warning("nothing_seen", message).at(span, label);
-        let middle = objects
-            .iter()
-            .find_map(|object| unseen::middle(&object.shape));
-        let towards = middle.and_then(|middle| towards(camera, middle));
+        let Some(given) = block.given(field) else {
+            return;
+        };
+        let problem = warning("nothing_seen", message).at(given.span, label);
+        let mut objects = objects.iter();
+        let middle = objects.find_map(|object| sphere_around(&object.shape));
+        let towards = middle.and_then(|(middle, _)| towards(camera, middle));
         self.problems.push(match (why, towards) {
-            (Unseen::Clipped, _) => {
-                let both = ["near", "far"].into_iter();
-                let both = both.filter_map(|name| block.given(name));
-                problem
-                    .help("change `near` or `far`, or leave them out")
-                    .fixes([Fix::remove_whole(
-                        "leave `near` and `far` out",
-                        both.map(|given| given.field()),
-                        self.sources,
-                    )])
-            }
-            (_, Some(towards)) => {
-                let field = match camera.view {
-                    View::Lookat(_) => "lookat",
-                    View::Direction(_) => "direction",
-                };
-                problem
-                    .help(format!("look at an object, such as `{field} {towards}`"))
-                    .writing(span, [towards])
-            }
+            (Unseen::Clipped(_), _) => problem
+                .help(format!("change `{field}`, or leave it out"))
+                .fixes([Fix::remove_whole(
+                    format!("leave `{field}` out"),
+                    given.field(),
+                    self.sources,
+                )]),
+            (_, Some(towards)) => problem
+                .help(format!("look at an object, such as `{field} {towards}`"))
+                .writing(given.span, [towards]),
             (_, None) => problem.help("turn the camera, or move it"),
         });
     }

@@ -16,7 +16,7 @@ use crate::{
     suggest,
     syntax::{
         shorten,
-        tree::{self, Element, ValueKind},
+        tree::{self, Element, Unit, ValueKind},
     },
 };
 
@@ -43,8 +43,10 @@ impl<'s> Lowering<'s> {
             return Some(value);
         };
         // That a number rounds to 0 is why it does not hold.
-        let is_rounded = self.problems.len() > before;
-        self.problems.truncate(before);
+        let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
+        if is_rounded {
+            self.problems.truncate(before);
+        }
         let written = shorten(self.sources.text(tree.span));
         let found = match (&tree.kind, value) {
             _ if is_rounded => format!("{written}, which rounds to 0"),
@@ -115,17 +117,34 @@ impl<'s> Lowering<'s> {
     }
 
     fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) -> Diagnostic {
+        if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
+            let what = format!("`{}`", row.name);
+            // `fov 45rad` would be the next mistake.
+            let fits = |unit: Unit| row.allows(Value::Angle(unit.of(number)));
+            return self.evaluator().bare_angle(&what, tree, fits);
+        }
+        let meant = self.converted(row, tree, value);
+        let label = self.evaluator().described(tree, value.kind());
+        self.of_type(row, tree, value.kind().noun(), meant)
+            .at(tree.span, label)
+    }
+
+    /// How a value of another type has to be written for a field, if that can be told.
+    pub(super) fn converted(
+        &self,
+        row: &Field,
+        tree: &tree::Value<'s>,
+        value: Value,
+    ) -> Option<String> {
         let text = self.sources.text(tree.span);
-        let meant = match (row.takes, value, &tree.kind) {
-            (Type::Angle, Value::Number(number), _) => {
-                let what = format!("`{}`", row.name);
-                // `fov 45rad` would be the next mistake.
-                return self.evaluator().bare_angle(&what, tree, |unit| {
-                    row.allows(Value::Angle(unit.of(number)))
-                });
+        match (row.takes, value, &tree.kind) {
+            (Type::Angle, Value::Number(number), ValueKind::Number(_)) => {
+                let angle = Value::Angle(Unit::Degrees.of(number));
+                row.allows(angle).then(|| format!("{text}deg"))
             }
             (Type::Number, Value::Angle(_), ValueKind::Angle { number, .. }) => {
-                Some((*number).to_owned())
+                let fits = row.allows(Value::Number(number.parse().ok()?));
+                fits.then(|| (*number).to_owned())
             }
             (Type::Vector, Value::Number(_), ValueKind::Number(_))
                 if row.must.contains(&Condition::EachMoreThanZero) =>
@@ -134,10 +153,7 @@ impl<'s> Lowering<'s> {
             }
             (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
             _ => None,
-        };
-        let label = self.evaluator().described(tree, value.kind());
-        self.of_type(row, tree, value.kind().noun(), meant)
-            .at(tree.span, label)
+        }
     }
 
     /// What is wrong with a value that is not of the field's type, and what was probably meant.
@@ -156,7 +172,7 @@ impl<'s> Lowering<'s> {
         )
         .help(match &meant {
             Some(meant) => format!("write `{}`", shorten(meant)),
-            None => format!("write {takes}, such as `{}`", row.example()),
+            None => format!("write {takes}, such as `{}`", row.example),
         })
         .writing(tree.span, meant)
     }
@@ -181,7 +197,9 @@ impl<'s> Lowering<'s> {
 /// A value that keeps a condition, in the place of one that does not.
 fn allowed(row: &Field, condition: Condition, value: Value) -> String {
     match (condition, value) {
-        (Condition::Whole, Value::Number(number)) if number.abs() < 1e15 => {
+        (Condition::Whole, Value::Number(number))
+            if row.allows(Value::Number(number.round().max(1.0))) =>
+        {
             number.round().max(1.0).to_string()
         }
         (Condition::MoreThan(bound), Value::Number(number)) if number < bound => {
@@ -190,12 +208,12 @@ fn allowed(row: &Field, condition: Condition, value: Value) -> String {
         (Condition::AtLeast(bound), _) => bound.to_string(),
         (Condition::AtMostTwoTo(power), _) => (1_u64 << power).to_string(),
         (Condition::LessThanTwoTo(power), _) => ((1_u64 << power) - 1).to_string(),
-        _ => row.example(),
+        _ => row.example.to_owned(),
     }
 }
 
 /// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to 255.
-pub(super) fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<String> {
+fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<String> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;
     };

@@ -1,8 +1,9 @@
 //! Fields that a block needs and is not given.
 
 use super::{
-    Block, Lowering,
-    field_fixes::{examples, quoted},
+    Lowering,
+    block::Block,
+    fixes::{examples, quoted},
 };
 use crate::scene::{error::error, schema::Preset};
 
@@ -22,25 +23,24 @@ impl<'s> Lowering<'s> {
         let mut ways: Vec<Vec<&'static str>> = vec![required.collect()];
         for choice in row.choices {
             let is_taken = |way: &&&[&str]| way.iter().any(has);
-            let open = match choice.ways.iter().filter(is_taken).count() {
-                0 => choice.ways.iter().collect(),
-                1 => choice.ways.iter().filter(is_taken).collect(),
-                // They exclude each other, which is reported.
-                _ => Vec::new(),
-            };
-            let needs = open.into_iter().map(|way: &&[&'static str]| {
+            let taken = choice.ways.iter().filter(is_taken).count();
+            // Two that are taken exclude each other, which is reported.
+            let open = choice
+                .ways
+                .iter()
+                .filter(|way| taken == 0 || (taken == 1 && is_taken(way)));
+            let needs = open.map(|way| {
                 let names = way.iter().copied();
-                names
-                    .filter(|name| is_missing(name, Preset::Alternative))
-                    .collect()
+                let needed = names.filter(|name| is_missing(name, Preset::Alternative));
+                needed.collect()
             });
             let needs: Vec<Vec<&str>> = needs.collect();
-            if needs.is_empty() || needs.iter().any(Vec::is_empty) {
-                continue;
+            if !needs.iter().any(Vec::is_empty) && !needs.is_empty() {
+                let kept = ways.iter();
+                let longer =
+                    kept.flat_map(|kept| needs.iter().map(|need| [&kept[..], need].concat()));
+                ways = longer.collect();
             }
-            let kept = ways.iter();
-            let longer = kept.flat_map(|kept| needs.iter().map(|need| [&kept[..], need].concat()));
-            ways = longer.collect();
         }
         let Some(first) = ways.first().filter(|first| !first.is_empty()) else {
             return;
@@ -50,17 +50,17 @@ impl<'s> Lowering<'s> {
             true => " or ",
             false => ", or ",
         };
-        let message = format!("{} needs {}", row.noun, all.join(or));
         let fixes = ways.iter().filter_map(|names| {
             let title = format!("add {}", quoted(names));
             self.add_fields(block, title, &examples(block, names))
         });
-        let fixes: Vec<_> = fixes.collect();
-        self.problems.push(
-            error("missing_field", message)
-                .at(block.keyword, "not complete")
-                .help(format!("write `{}`", examples(block, first).join("  ")))
-                .fixes(fixes),
-        );
+        let problem = error(
+            "missing_field",
+            format!("{} needs {}", row.noun, all.join(or)),
+        )
+        .at(block.keyword, "not complete")
+        .help(format!("write `{}`", examples(block, first).join("  ")))
+        .fixes(fixes);
+        self.problems.push(problem);
     }
 }

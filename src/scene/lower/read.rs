@@ -9,11 +9,11 @@ use crate::{
     scene::{
         Reading,
         eval::Names,
-        overrides::{self, Override},
+        overrides,
         semantic_model::{Parts, SemanticModel},
     },
     source::{SourceId, Sources, Span},
-    syntax,
+    syntax::{self, tree::Item},
 };
 
 /// Reads a scene: parses the file and the overrides, and makes of them what they mean.
@@ -44,32 +44,25 @@ pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
 
 /// The same or, cancelled, something of no use.
 fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading {
-    let mut diagnostics = Vec::new();
-    let overrides = overrides::read(sources, &mut diagnostics);
-    let mut lowering = Lowering::new(sources, overrides.clone(), Names::default(), cancel);
-    if !lowering.sets_by_name {
+    if sources.sets.is_empty() {
         let file = &sources.file;
+        let mut lowering = Lowering::new(sources, Names::default(), cancel);
         let all = syntax::parse_in_parts(file, SourceId::File, bytes, cancel, |items| {
             lowering.items(&items);
-            lowering.problems.is_empty()
+            lowering.is_right()
         });
-        lowering.override_blocks();
-        if all && lowering.problems.is_empty() {
-            lowering.found = diagnostics;
+        if all && lowering.is_right() {
             return lowering.reading();
         }
     }
     let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
-    whole(sources, &parsed, overrides, diagnostics, cancel).reading()
+    whole(sources, &parsed, cancel).reading()
 }
 
 /// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
 pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
-    let mut diagnostics = Vec::new();
-    let overrides = overrides::read(sources, &mut diagnostics);
     let parsed = syntax::parse(&sources.file, SourceId::File);
-    let lowering = whole(sources, &parsed, overrides, diagnostics, &cancel::NEVER);
-    let (parts, diagnostics, names) = lowering.finish();
+    let (parts, diagnostics, names) = whole(sources, &parsed, &cancel::NEVER).finish();
     SemanticModel {
         sources,
         parsed,
@@ -79,23 +72,28 @@ pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     }
 }
 
-/// Makes sense of the tree of a whole file; `diagnostics` are those of the overrides' syntax.
+/// Makes sense of the tree of a whole file.
 fn whole<'s>(
     sources: &'s Sources,
     parsed: &syntax::Parsed<'s>,
-    overrides: Vec<Override<'s>>,
-    diagnostics: Vec<Diagnostic>,
     cancel: &'s AtomicBool,
 ) -> Lowering<'s> {
-    let tree = &parsed.tree;
-    let names = Names::of(tree);
-    let mut lowering = Lowering::new(sources, overrides, names, cancel);
+    let mut lowering = Lowering::new(sources, Names::of(&parsed.tree), cancel);
     let wanted = parsed.problems.iter().take_while(|_| lowering.is_wanted());
     lowering.found = wanted.cloned().collect();
-    lowering.found.extend(diagnostics);
     lowering.cut = parsed.cut.is_some();
-    lowering.items(&tree.items);
-    lowering.override_blocks();
+    if sources.sets.is_empty() {
+        lowering.items(&parsed.tree.items);
+        return lowering;
+    }
+    let mut items = parsed.tree.items.clone();
+    let overrides = overrides::read(sources, &mut lowering.found);
+    lowering.problems = overrides::apply(overrides, &mut items, lowering.names.budget());
+    // The value of a field that is set sees all names.
+    let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
+    let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
+    lowering.items(&definitions);
+    lowering.items(&others);
     lowering
 }
 
@@ -110,14 +108,20 @@ impl<'s> Lowering<'s> {
         }
     }
 
+    /// Whether nothing was reported so far.
+    fn is_right(&self) -> bool {
+        self.problems.is_empty() && self.names.problems.borrow().is_empty()
+    }
+
     /// What there is of a scene, errors or not, and the names that were defined.
     fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
         let parts = self.build();
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
+        let of_names = self.names.problems.take();
         let found = std::mem::take(&mut self.problems).into_iter();
-        diagnostics.extend(found.take_while(|_| self.is_wanted()));
+        diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)

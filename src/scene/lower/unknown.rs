@@ -3,33 +3,29 @@
 //! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
 //! or can be made to be.
 
-use super::{Block, Lowering, field_fixes::quoted, field_value::rgb};
+use super::{Lowering, block::Block, fixes::quoted};
 use crate::{
     diagnostic::{Diagnostic, Fix},
-    math::Angle,
     scene::{
         css,
         error::error,
         example_beside,
-        schema::{self, Field, Spread, Type},
+        schema::{self, Field, Type},
         value::Value,
     },
-    source::SourceId,
+    source::{SourceId, Span},
     suggest,
     syntax::tree::{self, Name, ValueKind},
 };
 
 /// What a word that is no field of a block was to be.
-#[derive(Clone, Copy)]
-enum Meant {
-    /// This field.
-    Field(&'static Field),
-    /// This field, with half of the value.
-    Half(&'static Field),
-    /// Several fields, each with a part of the value.
-    Spread(&'static Spread),
-    /// The value of this field, whose name was left out.
-    Value(&'static Field),
+struct Meant {
+    /// The fields.
+    fields: Vec<&'static str>,
+    /// The same in words.
+    shown: String,
+    /// Writes them, where that will do.
+    fix: Option<Fix>,
 }
 
 impl<'s> Lowering<'s> {
@@ -38,102 +34,117 @@ impl<'s> Lowering<'s> {
         if field.value.span.source == SourceId::File {
             self.unknown.push(field.value.span);
         }
-        let meant = meant(block.row, &field.name, &field.value);
-        match meant {
-            Some(Meant::Field(row) | Meant::Half(row) | Meant::Value(row)) => {
-                block.meant.push(row.name);
-            }
-            Some(Meant::Spread(spread)) => block.meant.extend(spread.fields),
-            None => {}
+        let meant = self.unknown(block, &field.name, &field.value);
+        block.meant.extend(meant);
+    }
+
+    /// Reports it, also of a `--set` argument, and tells what was probably meant.
+    pub(super) fn unknown(
+        &mut self,
+        block: &Block<'s>,
+        name: &Name<'s>,
+        value: &tree::Value<'s>,
+    ) -> Vec<&'static str> {
+        let meant = self.meant(block, name, value);
+        if meant.is_none() {
+            self.tried(value, None);
         }
-        let problem = self.unknown(block, &field.name, &field.value, meant);
-        self.problems.push(problem);
-    }
-
-    /// The same of a `--set` argument.
-    pub(super) fn unknown_target(
-        &mut self,
-        block: &Block<'s>,
-        name: &Name<'s>,
-        value: &tree::Value<'s>,
-    ) {
-        let meant = meant(block.row, name, value);
-        let meant = meant.filter(|meant| matches!(meant, Meant::Field(_)));
-        let problem = self.unknown(block, name, value, meant);
-        self.problems.push(problem);
-    }
-
-    fn unknown(
-        &mut self,
-        block: &Block<'s>,
-        name: &Name<'s>,
-        value: &tree::Value<'s>,
-        meant: Option<Meant>,
-    ) -> Diagnostic {
-        let whole = match name.span.source == value.span.source && value.span.end > name.span.end {
-            true => name.span.to(value.span),
-            false => name.span,
-        };
-        // Looks for mistakes in the value, whatever it is for. What type is wanted is not known; only a name is wrong in any.
-        let wanted = match meant {
-            Some(Meant::Field(row)) => Some(row.takes),
-            _ => None,
-        };
-        let found = self.tried(value, wanted);
-        let text = self.sources.text(value.span);
-        let (shown, fix) = match meant {
-            None => (None, None),
-            Some(Meant::Field(row)) => {
-                let fix = match self.fitting(block, row, value, found) {
-                    Some(written) if written == text => Some(Fix::write(name.span, row.name)),
-                    Some(written) => Some(Fix::write(whole, format!("{} {written}", row.name))),
-                    None => None,
-                };
-                (Some(format!("`{}`", row.name)), fix)
-            }
-            Some(Meant::Half(row)) => match (found, &value.kind) {
-                (Some(Value::Number(number)), ValueKind::Number(_)) => {
-                    let written = format!("{} {}", row.name, number / 2.0);
-                    let fits = has_place(block, row) && row.allows(Value::Number(number));
-                    let fix = fits.then(|| Fix::write(whole, &written));
-                    (Some(format!("`{written}`")), fix)
-                }
-                _ => (Some(format!("`{}` with half of it", row.name)), None),
-            },
-            Some(Meant::Spread(spread)) => {
-                let written = self.spread(block, spread, value);
-                let fix = written.map(|written| Fix::write(whole, written));
-                (Some(quoted(spread.fields)), fix)
-            }
-            Some(Meant::Value(row)) => {
-                let (shown, written) = match (&value.kind, found) {
-                    (ValueKind::Missing, _) => (name.text.to_owned(), Some(name.text.to_owned())),
-                    (_, Some(Value::Vector(parts))) => {
-                        (format!("{}(…)", name.text), rgb(parts, value, text))
-                    }
-                    _ => (format!("{}(…)", name.text), None),
-                };
-                let written = written.filter(|_| has_place(block, row));
-                let fix = written.map(|it| Fix::write(whole, format!("{} {it}", row.name)));
-                (Some(format!("`{} {shown}`", row.name)), fix)
-            }
-        };
         let noun = block.row.noun;
-        let all = suggest::list(block.row.field_names());
-        error(
+        let takes = format!("{noun} takes {}", suggest::list(block.row.field_names()));
+        let problem = error(
             "unknown_field",
             format!("{noun} has no field `{}`", name.text),
         )
-        .at(name.span, format!("not a field of {noun}"))
-        .help(match shown {
-            Some(shown) => {
-                let article = noun.split_at(1);
-                let noun = article.0.to_ascii_uppercase() + article.1;
-                format!("did you mean {shown}? {noun} takes {all}.")
+        .at(name.span, format!("not a field of {noun}"));
+        let (help, fields, fix) = match meant {
+            Some(meant) => {
+                let takes = takes.replacen('a', "A", 1);
+                let help = format!("did you mean {}? {takes}.", meant.shown);
+                (help, meant.fields, meant.fix)
             }
-            None => format!("{noun} takes {all}"),
-        })
-        .fixes(fix)
+            None => (takes, Vec::new(), None),
+        };
+        self.problems.push(problem.help(help).fixes(fix));
+        fields
+    }
+
+    fn meant(
+        &mut self,
+        block: &Block<'s>,
+        name: &Name<'s>,
+        value: &tree::Value<'s>,
+    ) -> Option<Meant> {
+        let (row, word) = (block.row, name.text);
+        let end = value.span.end.max(name.span.end);
+        let whole = Span::new(name.span.source, name.span.start, end);
+        let is_of_file = value.span.source == SourceId::File;
+        let is_tried = |words| is_of_file && suggest::is_among(word, words);
+        if let Some(field) = row.field_tried(word) {
+            return Some(self.renamed(block, field, name, value, whole));
+        }
+        if let Some(field) = row.fields.iter().find(|field| is_tried(field.doubled)) {
+            let number = match (self.fitting(block, field, value), &value.kind) {
+                (Some(number), ValueKind::Number(_)) => number.parse().ok(),
+                _ => None,
+            };
+            let written = number.map(|number: f64| format!("{} {}", field.name, number / 2.0));
+            let shown = match &written {
+                Some(written) => format!("`{written}`"),
+                None => format!("`{}` with half of it", field.name),
+            };
+            return Some(Meant::new(&[field.name], shown, whole, written));
+        }
+        if let Some(several) = row.several.iter().find(|several| is_tried(several.words)) {
+            let written = self.spread(block, several.fields, value);
+            return Some(Meant::new(
+                several.fields,
+                quoted(several.fields),
+                whole,
+                written,
+            ));
+        }
+        // A field's value by itself.
+        let takes = match value.kind {
+            ValueKind::Missing if schema::method(word).is_some() => Some(Type::Method),
+            ValueKind::Missing if css::color(word).is_some() => Some(Type::Color),
+            ValueKind::Tuple(_) if word == "rgb" => Some(Type::Color),
+            _ => None,
+        };
+        if let Some(field) = row.fields.iter().find(|field| Some(field.takes) == takes) {
+            if !matches!(value.kind, ValueKind::Missing) {
+                return Some(self.renamed(block, field, name, value, whole));
+            }
+            let written = format!("{} {word}", field.name);
+            let shown = format!("`{written}`");
+            let written = block.has_place(field).then_some(written);
+            return Some(Meant::new(&[field.name], shown, whole, written));
+        }
+        let near = row.nearest_field(word)?;
+        Some(self.renamed(block, near, name, value, whole))
+    }
+
+    /// What was meant is this field. An argument keeps the sign between its name and its value.
+    fn renamed(
+        &mut self,
+        block: &Block<'s>,
+        field: &'static Field,
+        name: &Name<'s>,
+        value: &tree::Value<'s>,
+        whole: Span,
+    ) -> Meant {
+        let written = self.fitting(block, field, value);
+        let shown = format!("`{}`", field.name);
+        match written {
+            Some(written) if written != self.sources.text(value.span) => {
+                let written = format!("{} {written}", field.name);
+                let written = Some(written).filter(|_| value.span.source == SourceId::File);
+                Meant::new(&[field.name], shown, whole, written)
+            }
+            written => {
+                let written = written.map(|_| field.name.to_owned());
+                Meant::new(&[field.name], shown, name.span, written)
+            }
+        }
     }
 
     /// What a value is. Of what is wrong with it only names are reported.
@@ -155,13 +166,13 @@ impl<'s> Lowering<'s> {
 
     /// How a value has to be written for a field, if it will do or can be made to.
     fn fitting(
-        &self,
+        &mut self,
         block: &Block<'s>,
         row: &Field,
         value: &tree::Value<'s>,
-        found: Option<Value>,
     ) -> Option<String> {
-        if !has_place(block, row) {
+        let found = self.tried(value, Some(row.takes));
+        if !block.has_place(row) {
             return None;
         }
         let text = self.sources.text(value.span);
@@ -173,11 +184,8 @@ impl<'s> Lowering<'s> {
             (Some(value), _) if value.kind() == row.takes => {
                 row.allows(value).then(|| text.to_owned())
             }
-            (Some(Value::Number(number)), ValueKind::Number(text)) if row.takes == Type::Angle => {
-                let angle = Value::Angle(Angle::from_degrees(number));
-                row.allows(angle).then(|| format!("{text}deg"))
-            }
-            _ => None,
+            (Some(found), _) => self.converted(row, value, found),
+            (None, _) => None,
         }
     }
 
@@ -185,56 +193,29 @@ impl<'s> Lowering<'s> {
     fn spread(
         &mut self,
         block: &Block<'s>,
-        spread: &Spread,
+        fields: &[&str],
         value: &tree::Value<'s>,
     ) -> Option<String> {
-        let ValueKind::Tuple(elements) = &value.kind else {
-            return None;
-        };
-        if elements.len() != spread.fields.len() {
+        let parts = value.parts();
+        if !matches!(value.kind, ValueKind::Tuple(_)) || parts.len() != fields.len() {
+            self.tried(value, None);
             return None;
         }
-        let mut written = Vec::new();
-        for (name, element) in spread.fields.iter().zip(elements) {
-            let row = block.row.field(name).filter(|row| has_place(block, row))?;
-            let value = self.tried(&element.value, Some(row.takes))?;
-            if value.kind() != row.takes || !row.allows(value) {
-                return None;
-            }
-            written.push(format!("{name} {}", self.sources.text(element.value.span)));
-        }
-        Some(written.join("  "))
+        let written = fields.iter().zip(parts).map(|(name, part)| {
+            let written = self.fitting(block, block.row.field(name)?, part);
+            Some(format!("{name} {}", written?))
+        });
+        let written: Option<Vec<String>> = written.collect();
+        written.map(|written| written.join("  "))
     }
 }
 
-fn meant(row: &'static schema::Block, name: &Name<'_>, value: &tree::Value<'_>) -> Option<Meant> {
-    let written = name.text;
-    if let Some(field) = row.field_tried(written) {
-        return Some(Meant::Field(field));
+impl Meant {
+    fn new(fields: &[&'static str], shown: String, place: Span, written: Option<String>) -> Self {
+        Self {
+            fields: fields.to_vec(),
+            shown,
+            fix: written.map(|written| Fix::write(place, written)),
+        }
     }
-    let is_tried = |words| suggest::is_among(written, words);
-    if let Some(field) = row.fields.iter().find(|field| is_tried(field.doubled)) {
-        return Some(Meant::Half(field));
-    }
-    if let Some(spread) = row.spreads.iter().find(|spread| is_tried(spread.words)) {
-        return Some(Meant::Spread(spread));
-    }
-    // A field's value by itself.
-    let takes = match value.kind {
-        ValueKind::Missing if schema::method(written).is_some() => Some(Type::Method),
-        ValueKind::Missing if css::color(written).is_some() => Some(Type::Color),
-        ValueKind::Tuple(_) if written == "rgb" => Some(Type::Color),
-        _ => None,
-    };
-    let mut fields = row.fields.iter();
-    if let Some(field) = takes.and_then(|takes| fields.find(|field| field.takes == takes)) {
-        return Some(Meant::Value(field));
-    }
-    row.nearest_field(written).map(Meant::Field)
-}
-
-/// Whether a block may still be given a field.
-fn has_place(block: &Block<'_>, row: &Field) -> bool {
-    let is_given = |name: &str| block.given(name).is_some();
-    !is_given(row.name) && !block.row.excludes(row.name).any(is_given)
 }

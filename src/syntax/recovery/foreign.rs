@@ -5,9 +5,8 @@ use crate::{
     diagnostic::{Edit, Fix, Label},
     source::Span,
     syntax::{
-        messages as say,
-        problem::shorten,
-        tokens::{Lexer, line_end},
+        messages::{self as say, FOREIGN_FILES, statement},
+        tokens::{Lexer, is_color_code, line_end},
     },
 };
 
@@ -20,51 +19,6 @@ pub(super) enum Place {
     Value,
     /// An operator, or what follows a value.
     Operator,
-}
-
-/// What other languages say: the words that start it, what it is, and what to do instead.
-const STATEMENTS: &[[&str; 3]] = &[
-    [
-        "if else switch case",
-        "conditions",
-        "write what holds; `min` and `max` choose between two numbers",
-    ],
-    [
-        "for while loop repeat foreach",
-        "loops",
-        "write each object by itself, or write the file by a program",
-    ],
-    [
-        "import include require use #include",
-        "including of other files",
-        "write all of a scene into one file",
-    ],
-    [
-        "#version #declare #local #macro #define #if #end",
-        "directives",
-        "name a value with `let NAME = VALUE`; a comment begins with `//`",
-    ],
-    [
-        "print echo printf console",
-        "output",
-        "take it away; `pinhole inspect` shows what a scene's values are",
-    ],
-    [
-        "function fn def fun lambda return class struct",
-        "functions of one's own",
-        "give each result a name with `let NAME = VALUE`",
-    ],
-];
-
-/// What a statement of another language is, and what to do instead.
-pub(super) fn statement(word: &str) -> Option<[&'static str; 2]> {
-    let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
-    STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
-}
-
-/// Whether these are the digits of a colour.
-pub(super) fn is_color_code(digits: &str) -> bool {
-    matches!(digits.len(), 3 | 6) && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
 impl Recovery<'_, '_> {
@@ -81,12 +35,30 @@ impl Recovery<'_, '_> {
         }
     }
 
-    // Comments.
-
-    /// Passes over comments of other languages.
+    /// Passes over comments of other languages. They end with their line, or before the `}` of a block that was opened in it.
     pub(super) fn comments(&mut self, place: Place) {
         while self.starts_comment(place) {
-            self.foreign_comment();
+            let start = self.here().start;
+            let line = self.text.get(start..line_end(self.text, start));
+            let line = line.unwrap_or_default();
+            let before = self.text.get(..start).unwrap_or_default();
+            let before = before.rsplit('\n').next().unwrap_or_default();
+            let kept = match before.matches('{').count() > before.matches('}').count() {
+                true => line.trim_end_matches([' ', '\t', '}']),
+                false => line,
+            };
+            let end = start + kept.len().max(1);
+            let sign = if line.starts_with('#') { 1 } else { 2 };
+            let place = Span::new(self.id, start, start + sign);
+            // A comment with the right sign would take the brace, too.
+            match kept.len() < line.len() {
+                true => {
+                    let written = self.written(place);
+                    self.report(&say::COMMENT_SIGN, place, &[written, ""], None);
+                }
+                false => self.slip(place),
+            }
+            self.seek(end);
         }
     }
 
@@ -119,60 +91,6 @@ impl Recovery<'_, '_> {
         self.is(1, "#") || (self.is_name(1) && !is_color_code(word) && !is_lone_color)
     }
 
-    /// It ends with its line, or before the `}` of a block that was opened in its line.
-    fn foreign_comment(&mut self) {
-        let start = self.here().start;
-        let line = self.text.get(start..line_end(self.text, start));
-        let line = line.unwrap_or_default();
-        let sign = if line.starts_with('#') { "#" } else { "--" };
-        let before = self.text.get(..start).unwrap_or_default();
-        let before = before.rsplit('\n').next().unwrap_or_default();
-        let is_open = before.matches('{').count() > before.matches('}').count();
-        let kept = match is_open {
-            true => line.trim_end_matches([' ', '\t', '}']),
-            false => line,
-        };
-        let end = start + kept.len().max(sign.len());
-        self.comments.push(Span::new(self.id, start, end));
-        let place = Span::new(self.id, start, start + sign.len());
-        // Within a list it may have taken the end of that.
-        match self.lists > 0 && kept.len() < line.len() {
-            true => self.report(&say::COMMENT_SIGN, place, &[sign, ""], None),
-            false => self.slip(place),
-        }
-        self.seek(end);
-    }
-
-    pub(super) fn comment_end(&self) -> usize {
-        self.comments.last().map_or(0, |comment| comment.end)
-    }
-
-    /// Gives comments their sign; those that end before the end of their line get an end.
-    pub(super) fn with_right_signs(&self, signs: &[Span]) -> Fix {
-        let mut edits = Vec::new();
-        let mut first = String::new();
-        for sign in signs {
-            let next = self
-                .comments
-                .partition_point(|comment| comment.start < sign.start);
-            let Some(comment) = self.comments.get(next) else {
-                continue;
-            };
-            let written = self.written(*comment).trim_start_matches(['#', '-']);
-            let start = Span::new(self.id, sign.start, comment.end - written.len());
-            let is_to_end = line_end(self.text, comment.end) == comment.end;
-            let (open, close) = if is_to_end { ("//", "") } else { ("/*", " */") };
-            edits.push(Edit::new(start, open));
-            if !is_to_end {
-                edits.push(Edit::insert(self.id, comment.end, close));
-            }
-            if first.is_empty() {
-                first = shorten(&format!("{open}{written}{close}"));
-            }
-        }
-        Fix::new(format!("write `{first}`"), edits)
-    }
-
     /// `/* /* */ c */`: the first `*/` ended the comment.
     pub(super) fn nested_comment(&mut self) -> bool {
         const ENOUGH: usize = 64;
@@ -198,60 +116,39 @@ impl Recovery<'_, '_> {
             message: "so this closes none".to_owned(),
         });
         self.problems.push(found);
-        while self.here().start < close.end {
-            self.bump();
-        }
+        self.seek(close.end);
         true
     }
 
     /// A whole file of another program is one mistake.
     pub(super) fn foreign_file(&mut self) -> bool {
-        let Some(what) = kind_of_file(self.text) else {
+        const ENOUGH: usize = 1 << 14;
+        let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
+        let text = text.unwrap_or_default().trim_start_matches('\u{feff}');
+        let ink: String = text
+            .chars()
+            .filter(|c| !c.is_whitespace())
+            .take(5)
+            .collect();
+        let count = |marks: &str| {
+            marks
+                .split('|')
+                .map(|mark| text.matches(mark).count())
+                .sum::<usize>()
+        };
+        let is_it = |row: &&(&str, &str, &str, usize, &str)| {
+            row.1.split(' ').any(|start| ink.starts_with(start))
+                && count(row.2) >= row.3
+                && !row.4.chars().any(|other| text.contains(other))
+        };
+        let Some((what, ..)) = FOREIGN_FILES.iter().find(is_it) else {
             return false;
         };
         let first = Lexer::past_comments(self.text, 0);
+        let place = Span::new(self.id, first.start, first.end);
         self.items.clear();
-        self.report(&say::FOREIGN_FILE, self.span_of(first), &[what], None);
+        self.report(&say::FOREIGN_FILE, place, &[what], None);
         self.cut = Some(0);
         true
-    }
-}
-
-/// The kind of file that a text looks like which is no scene at all, by its start.
-fn kind_of_file(text: &str) -> Option<&'static str> {
-    const ENOUGH: usize = 1 << 14;
-    const POV: &str = "light_source #declare #version #include pigment global_settings";
-    const PBRT: &str = "LookAt Camera WorldBegin Shape Film Integrator Sampler AttributeBegin";
-    let text = text.trim_start_matches('\u{feff}').trim_start();
-    let end = (0..=ENOUGH.min(text.len()))
-        .rev()
-        .find(|&end| text.is_char_boundary(end))?;
-    let text = text.get(..end)?;
-    let lines = || text.lines().map(str::trim_start).filter(|l| !l.is_empty());
-    let starting = |words: &str| {
-        let starts = |line: &&str| words.split(' ').any(|word| line.starts_with(word));
-        lines().filter(starts).count()
-    };
-    let mut ink = text.chars().filter(|c| !c.is_whitespace());
-    let (first, second) = (ink.next()?, ink.next()?);
-    let angular = text.matches("location <").count() + text.matches("look_at <").count();
-    let is_key = |line: &&str| {
-        let key = line.split_once(':').map_or("", |(key, _)| key);
-        let key = key.trim_start_matches("- ");
-        !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-    };
-    let keys = lines().filter(is_key).count();
-    if text.starts_with("<?xml") || (first == '<' && text.contains("</")) {
-        Some("XML")
-    } else if matches!((first, second), ('{', '"') | ('[', '{' | '"')) {
-        Some("JSON")
-    } else if starting(POV) + angular > 2 {
-        Some("a scene of POV-Ray")
-    } else if starting(PBRT) > 1 && text.contains('"') {
-        Some("a scene of pbrt")
-    } else if keys > 2 && keys * 3 >= lines().count() * 2 && !text.contains(['{', '=']) {
-        Some("YAML")
-    } else {
-        None
     }
 }

@@ -1,12 +1,12 @@
 //! Items: definitions, blocks with their heads, and lines that are neither.
 
-use super::{Recovery, foreign, foreign::Place, is_name, unquoted};
+use super::{Recovery, foreign::Place, is_name, unquoted};
 use crate::{
     diagnostic::{Edit, Fix},
     source::Span,
     suggest,
     syntax::{
-        messages as say,
+        messages::{self as say, statement},
         problem::shorten,
         tokens::TokenKind,
         tree::{Block, Definition, Item, Name, bad},
@@ -36,7 +36,7 @@ impl<'s> Recovery<'_, 's> {
                 self.block();
             }
             word => {
-                if let Some(said) = foreign::statement(word) {
+                if let Some(said) = statement(word) {
                     self.foreign_statement(said);
                 } else if !self.nested_comment() {
                     self.block_or_line();
@@ -131,12 +131,12 @@ impl<'s> Recovery<'_, 's> {
         for _ in 1..if has_equals { count } else { 1 } {
             span = span.to(self.bump());
         }
-        if is_function && let Some(said) = foreign::statement("function") {
+        if is_function && let Some(said) = statement("function") {
             self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         } else {
             self.report(&say::BAD_NAME, span, &[&self.short(span)], None);
         }
-        self.parts_of_bad_name(span);
+        self.items.push(Item::Bad(span));
         None
     }
 
@@ -147,25 +147,6 @@ impl<'s> Recovery<'_, 's> {
             count += 1;
         }
         count
-    }
-
-    /// `let my-x = 5`, `let mut x = 5`: where `my-x` or `x` is used, `my`, `mut` and `x` are names that are known.
-    fn parts_of_bad_name(&mut self, span: Span) {
-        let is_between = |c: char| !c.is_alphanumeric() && c != '_';
-        let (mut at, end) = (span.start, Span::new(self.id, span.end, span.end));
-        for word in self.written(span).split_inclusive(is_between).take(FAR) {
-            let text = word.trim_end_matches(is_between);
-            let span = Span::new(self.id, at, at + text.len());
-            at += word.len();
-            if is_name(text) {
-                self.items.push(Item::Definition(Definition {
-                    name: Some(Name { text, span }),
-                    value: bad(end),
-                    span,
-                    ..Definition::begun(Span::new(self.id, span.start, span.start))
-                }));
-            }
-        }
     }
 
     /// Whether no value can follow any more.
@@ -216,9 +197,9 @@ impl<'s> Recovery<'_, 's> {
         let what = format!("blocks stand by themselves, not within `{name}`");
         self.report(&say::NESTED_BRACES, kind.span, &[&what], None);
         while !matches!(self.word(0), "}" | "") {
-            let at = (self.last_end, self.comment_end());
+            let at = self.last_end;
             self.any_item();
-            if (self.last_end, self.comment_end()) == at {
+            if self.last_end == at {
                 self.bump();
             }
         }
@@ -408,7 +389,7 @@ impl<'s> Recovery<'_, 's> {
             if self.is_on_new_line(0) {
                 self.comments(Place::Start);
                 let word = self.word(0);
-                let is_item = word == "let" || foreign::statement(word).is_some();
+                let is_item = word == "let" || statement(word).is_some();
                 if is_item || self.is_head(0) || (self.is_name(0) && self.is(1, "=")) {
                     return;
                 }

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::{Recovery, example, foreign::Place, is_plain_number, joined::elements};
 use crate::{
     diagnostic::{Edit, Fix},
-    schema::Type,
+    schema::{self, Type},
     source::Span,
     syntax::{
         NESTING_LIMIT, messages as say,
@@ -69,7 +69,12 @@ impl<'s> Recovery<'_, 's> {
 
     /// The call of a function whose name was read.
     pub(super) fn call(&mut self, function: Name<'s>) -> Value<'s> {
-        let (told, count) = (self.problems.len(), self.words.arguments(function.text));
+        let told = self.problems.len();
+        let count = match schema::function(function.text) {
+            Some(row) if row.more => row.takes.len()..=usize::MAX,
+            Some(row) => row.takes.len()..=row.takes.len(),
+            None => 0..=0,
+        };
         let Some(list) = self.list(")", None, &count) else {
             return bad(function.span.to(self.behind()));
         };

@@ -50,8 +50,6 @@ pub struct Recovery<'w, 's> {
     pub(super) items: Vec<Item<'s>>,
     /// What was wrong so far.
     pub(super) problems: Vec<Diagnostic>,
-    /// Comments of other languages.
-    comments: Vec<Span>,
     /// Where a mistake took the rest of the text.
     cut: Option<usize>,
     /// Where the item ended that was read here last.
@@ -98,7 +96,6 @@ impl<'w, 's> Recovery<'w, 's> {
             last_end: 0,
             items: Vec::new(),
             problems: Vec::new(),
-            comments: Vec::new(),
             cut: None,
             read_to: 0,
             within: Within::default(),
@@ -116,20 +113,20 @@ impl<'w, 's> Recovery<'w, 's> {
             return self.read_to;
         }
         self.seek(start);
-        self.last_end = start;
         self.any_item();
-        if self.last_end == start && self.comment_end() <= start {
+        if self.last_end == start {
             self.bump();
         }
-        self.read_to = self.last_end.max(self.comment_end());
+        self.read_to = self.last_end;
         self.read_to
     }
 
     /// Reads an item that follows the grammar, but may have been meant otherwise; answers where it ends, if that is a better
     /// explanation: by fields that the block has, or by a comment or a function of another language.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
-        let (items, problems) = (self.items.len(), self.problems.len());
-        let (comments, read_to) = (self.comments.len(), self.read_to);
+        let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
+        let slips = |this: &Self| this.within.slips.values().map(Vec::len).sum::<usize>();
+        let slips_before = slips(self);
         let end = self.item(start);
         let is_better = match self.items.get(items..) {
             Some([Item::Block(block)]) => {
@@ -139,7 +136,7 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                let is_new = self.comments.len() > comments || self.problems.len() > problems;
+                let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
             _ => false,
@@ -149,7 +146,6 @@ impl<'w, 's> Recovery<'w, 's> {
         }
         self.items.truncate(items);
         self.problems.truncate(problems);
-        self.comments.truncate(comments);
         for places in self.within.slips.values_mut() {
             places.retain(|place| place.start < start);
         }
@@ -160,7 +156,6 @@ impl<'w, 's> Recovery<'w, 's> {
     /// Reads the text from an offset on as one value.
     pub fn whole_value(&mut self, start: usize) -> Value<'s> {
         self.seek(start);
-        self.last_end = start;
         if self.kind(0) == TokenKind::End {
             return bad(Span::new(self.id, start, start));
         }
@@ -179,9 +174,9 @@ impl<'w, 's> Recovery<'w, 's> {
         self.report_slips(self.problems.len());
         let mut parsed = Parsed {
             tree: Tree { items: self.items },
-            comments: self.comments,
             problems: self.problems,
             cut: self.cut,
+            ..Parsed::default()
         };
         scan.report(self.source, self.id, &mut parsed);
         parsed
@@ -262,6 +257,7 @@ impl<'w, 's> Recovery<'w, 's> {
     fn seek(&mut self, at: usize) {
         self.tokens.clear();
         self.next = 0;
+        self.last_end = at;
         self.lexer = Lexer::new(self.text, at);
     }
 
@@ -407,22 +403,24 @@ impl<'w, 's> Recovery<'w, 's> {
                 continue;
             };
             let it = if places.len() > 1 { "them" } else { "it" };
-            let removed = places
-                .iter()
-                .map(|place| Edit::remove_in(*place, self.text));
-            let (message, fix) = match sign {
-                "=" | ":" => (
-                    &say::NEEDLESS_EQUALS,
-                    Fix::new(format!("take {it} away"), removed),
-                ),
+            let (message, title) = match sign {
+                "=" | ":" => (&say::NEEDLESS_EQUALS, format!("take {it} away")),
                 "," | ";" => {
                     let title = format!("take {it} away; white space separates {between}");
-                    (&say::NEEDLESS_SEPARATOR, Fix::new(title, removed))
+                    (&say::NEEDLESS_SEPARATOR, title)
                 }
-                _ => (&say::COMMENT_SIGN, self.with_right_signs(&places)),
+                _ => (&say::COMMENT_SIGN, "write `//`".to_owned()),
             };
+            let edits = places.iter().map(|&place| {
+                if message.is_needless() {
+                    return Edit::remove_in(place, self.text);
+                }
+                let rest = self.text.get(place.start..).unwrap_or_default();
+                let signs = rest.len() - rest.trim_start_matches(['#', '-']).len();
+                Edit::new(Span::new(self.id, place.start, place.start + signs), "//")
+            });
             let words = [sign, &times(places.len() - 1), between];
-            let mut found = message.at(first, &words, fix);
+            let mut found = message.at(first, &words, Fix::new(title, edits));
             if is_doubtful && found.is_needless {
                 found.fixes.clear();
             }

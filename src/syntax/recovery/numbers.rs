@@ -7,7 +7,7 @@ use crate::{
     syntax::{
         messages as say,
         problem::{replace, shorten},
-        tokens::numeric_part,
+        tokens::{is_color_code, numeric_part},
         tree::{Unit, Value, ValueKind, bad, number},
     },
 };
@@ -120,14 +120,13 @@ impl<'s> Recovery<'_, 's> {
     fn odd_number(&mut self, written: &str, digits: &str, span: Span, behind: Span) -> Value<'s> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
-        let is_hex = hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
         let takes = self.within.takes;
         let tight = written.replace('_', "");
         let (label, right, place) = if self.words.is_factor(unit) {
             let takes_number = matches!(takes, None | Some(Type::Number));
             let product = takes_number.then(|| format!("{digits} * {unit}"));
             ("an operator is missing before this", product, behind)
-        } else if is_hex && takes == Some(Type::Color) {
+        } else if is_color_code(hex) && takes == Some(Type::Color) {
             let label = "the digits of a colour stand behind a `#`";
             (label, Some(format!("#{hex}")), span)
         } else if let Some(sizes) = self.sizes(written) {

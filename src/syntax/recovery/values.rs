@@ -2,19 +2,19 @@
 
 use super::{
     Recovery, example,
-    foreign::{Place, is_color_code},
+    foreign::Place,
     is_name,
     joined::{are_names, elements},
     unquoted,
 };
 use crate::{
     diagnostic::{Edit, Fix},
-    schema::Type,
+    schema::{self, Type},
     source::Span,
     syntax::{
         NESTING_LIMIT, messages as say,
         problem::{replace, shorten},
-        tokens::TokenKind,
+        tokens::{TokenKind, is_color_code},
         tree::{Call, Element, Name, Operator, Value, ValueKind, bad, chain, negation},
     },
 };
@@ -340,7 +340,7 @@ impl<'s> Recovery<'_, 's> {
         }
         let number = usize::from(self.is(0, "-"));
         let is_argument = self.kind(number) == TokenKind::Number && !self.is_on_new_line(0);
-        if self.words.is_function(name.text) && is_argument {
+        if is_argument && schema::function(name.text).is_some() {
             return self.call_without_parentheses(name);
         }
         Value {

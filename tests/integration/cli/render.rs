@@ -1,5 +1,7 @@
 //! `render`: its files, formats and pipes, and what it says.
 
+use pinhole::film;
+
 use super::*;
 
 #[test]
@@ -163,11 +165,92 @@ fn a_scene_of_a_megabyte_is_left_out_of_its_picture_with_a_warning() {
     assert_eq!(status(&output), 0);
     assert_eq!(
         errors(&output),
-        "warning: the scene and its overrides have more than 1 MiB of text, so long.png does not carry them\n"
+        "warning: the scene and its overrides have more than 1 MiB of text or 1000 overrides, so long.png does not carry them\n"
     );
     fails(&folder, &["render", "long.png", "-o", "again.png"], 2);
     // An EXR never carries one.
     done(&folder, &["render", "long.scn", "-o", "long.exr"]);
+}
+
+#[test]
+fn a_crop_as_exr_says_where_it_lies() {
+    let folder = folder();
+    done(
+        &folder,
+        &["render", "a.scn", "--crop", "5,6,20,10", "-o", "a.exr"],
+    );
+    let picture = film::read_picture(&read(&folder, "a.exr")).unwrap();
+    assert_eq!(picture.crop, Some("5,6,20,10".parse().unwrap()));
+}
+
+#[cfg(unix)]
+#[test]
+fn what_killed_runs_leave_is_removed_by_the_next_one() {
+    let folder = folder();
+    let arguments = [
+        "render",
+        "a.scn",
+        "-o",
+        "a.exr",
+        "--set",
+        "image.width=640",
+        "--set",
+        "image.height=480",
+        "--set",
+        "sampler.method=random",
+        "--set",
+        "sampler.per_pixel=1",
+    ];
+    let mut left = 0;
+    for _ in 0..10 {
+        let mut child = command(folder.path(), &arguments).spawn().unwrap();
+        let is_writing = || {
+            names(&folder)
+                .iter()
+                .any(|name| name.starts_with(".pinhole-a.exr-"))
+        };
+        while child.try_wait().unwrap().is_none() && !is_writing() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        left += u32::from(is_writing());
+    }
+    assert!(left > 0, "no run was killed while it wrote");
+    // Of another file, which is not written here.
+    fs::write(folder.path().join(".pinhole-b.exr-abcdef.tmp"), b"").unwrap();
+    done(&folder, &arguments);
+    assert_eq!(
+        names(&folder),
+        [".pinhole-b.exr-abcdef.tmp", "a.exr", "a.scn"]
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_of_the_file_that_was_asked_for() {
+    let folder = folder();
+    std::os::unix::fs::symlink("/dev/full", folder.path().join("full.png")).unwrap();
+    assert_eq!(
+        fails(&folder, &["render", "a.scn", "-o", "full.png"], 2),
+        "error: cannot write to full.png: No space left on device (os error 28)\n"
+    );
+    fs::remove_file(folder.path().join("full.png")).unwrap();
+    // A limit on the size of files ends a write as a full disk does.
+    let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" render a.scn -o a.exr --set image.width=640 --set image.height=480";
+    let output = std::process::Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_pinhole")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(
+        (status(&output), errors(&output)),
+        (
+            2,
+            "error: cannot write to a.exr: File too large (os error 27)\n".to_owned()
+        )
+    );
+    assert_eq!(names(&folder), ["a.scn"]);
 }
 
 #[test]

@@ -6,9 +6,11 @@ use std::fmt::Write;
 use glam::DVec2;
 use pinhole::{
     film::Film,
+    sampling::CounterRng,
     scene::{Lens, Scene, Shape},
     tracer::World,
 };
+use rand::{RngExt, SeedableRng};
 
 use super::{
     SCENE,
@@ -38,15 +40,10 @@ fn radical_inverse(mut index: u64, base: u64) -> f64 {
     inverse
 }
 
-/// Numbers that look like chance, between 0 and 1 (Knuth's MMIX generator).
+/// Random numbers between 0 and 1.
 fn chance(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    }
+    let mut rng = CounterRng::seed_from_u64(seed);
+    move || rng.random()
 }
 
 fn hammersley(samples: u64) -> Set {

@@ -57,6 +57,20 @@ fn pictures_of_all_kinds_are_equal(effort: Effort) {
 }
 
 #[test]
+fn a_format_that_changes_colours_is_told() {
+    let folder = folder();
+    let picture = open(&folder, "a.png");
+    for (name, words) in [
+        ("b.jpg", "warning: b.jpg: its coding is lossy"),
+        ("b.gif", "warning: b.gif: it has 256 colours at most"),
+    ] {
+        picture.save(folder.path().join(name)).unwrap();
+        let (_, text) = diff(&folder, &[name, "a.png", "--tolerance", "255"]);
+        assert!(text.starts_with(words), "{text}");
+    }
+}
+
+#[test]
 fn gray_and_transparent_pictures_are_what_is_seen() {
     let folder = folder();
     let gray = open(&folder, "a.png").to_luma8();
@@ -373,6 +387,7 @@ fn files_that_are_no_pictures_are_trouble() {
         }
     }
     write("a.jpg", b"\xff\xd8\xff\xe0");
+    write("a.hdr", b"#?RADIANCE\n");
     write("text.png", b"hello");
     save(
         &folder,
@@ -385,9 +400,12 @@ fn files_that_are_no_pictures_are_trouble() {
     write("absurd.png", &absurd);
     write("empty.EXR", b"");
     for (arguments, words) in [
-        (["a.jpg", "a.png"], "but seems to be JPEG"),
-        (["a.png", "a.jpg"], "but seems to be JPEG"),
-        (["text.png", "a.png"], "it is no picture in PNG or OpenEXR"),
+        (
+            ["a.jpg", "a.png"],
+            "it begins as a JPEG file does, but is damaged",
+        ),
+        (["a.png", "a.hdr"], "but seems to be HDR"),
+        (["text.png", "a.png"], "it is no picture in PNG, OpenEXR"),
         (
             ["nan.exr", "a.png"],
             "its pixel (0, 0) holds a value that is no finite number",
@@ -396,11 +414,11 @@ fn files_that_are_no_pictures_are_trouble() {
         (["none.png", "a.png"], "cannot read none.png"),
         (
             ["a.png", "text.png"],
-            "cannot read text.png: it is no picture in PNG or OpenEXR",
+            "cannot read text.png: it is no picture in PNG, OpenEXR",
         ),
         (
             ["a.png", "empty.EXR"],
-            "cannot read empty.EXR: it is no picture in PNG or OpenEXR",
+            "cannot read empty.EXR: it is no picture in PNG, OpenEXR",
         ),
         (
             ["a.scn", "a.png"],

@@ -149,14 +149,20 @@ fn colors_are_shown_in_every_spelling() {
 #[test]
 fn the_camera_says_what_it_comes_to() {
     let text = "ca$0mera { eye (0, 1, 5) lookat (0, 1, 0) d 1 } sphere { radius oops }";
-    let expected = "looks level; a field of view of 90 degrees, `d 1`, `view_height 2`
+    let expected = "```text
+camera    looks level
+  eye     (0, 1, 5)
+  u       (1, 0, 0)  the picture's right
+  v       (0, 1, 0)  the picture's top
+  w       (0, 0, 1)  against the view direction
+  d       1, view height 2: a field of view of 90 degrees, 121.284 across
+  depth   from 0 to endless
 
-- `u` (1, 0, 0), the picture's right
-- `v` (0, 1, 0), the picture's top
-- `w` (0, 0, 1), against the view direction
-- vanishing point of x: none, it is parallel to the view plane
-- vanishing point of y: none, it is parallel to the view plane
-- vanishing point of z: pixel (400, 225)";
+vanishing points, in pixels from the top left corner
+  x       none: parallel to the view plane
+  y       none: parallel to the view plane
+  z       (400, 225)
+```";
     assert!(markdown(text).starts_with(expected), "{}", markdown(text));
     assert!(
         markdown(text).contains("- `eye` (vector, required): the point that all rays pass through")

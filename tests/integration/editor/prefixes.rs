@@ -79,8 +79,8 @@ fn ask_of_all(analysis: &Analysis<'_>) {
     }
     if let Some(changes) = formatting(analysis) {
         let mut formatted = text.to_owned();
-        for (span, new) in changes.into_iter().rev() {
-            formatted.replace_range(span.range(), &new);
+        for edit in changes.into_iter().rev() {
+            formatted.replace_range(edit.span.range(), &edit.text);
         }
         assert_eq!(Ok(formatted), format::format(analysis.source()));
     }

@@ -156,6 +156,9 @@ fn remarks_say_what_the_text_does_not() {
         remarked("let a = 2 let b = a * 2 sphere { center (0, a + b, 0) radius -a color olive }"),
         "let a = 2 let b = a * 2‹= 4› sphere { center (0, a + b, 0)‹= (0, 6, 0)› radius -a‹= -2› color olive }"
     );
+    // The word of a method is no name of the text.
+    let sampler = "let random = 3 sampler { method random }";
+    assert_eq!(remarked(sampler), sampler);
     let view = "eye (0, 1, 5) lookat (0, 1, 0)";
     assert_eq!(
         remarked(&format!("camera {{ {view} d 1 }}")),
@@ -193,26 +196,20 @@ fn remarks_say_what_the_text_does_not() {
 }
 
 #[test]
-fn the_layout_changes_white_space_only_where_it_must() {
+fn the_layout_is_one_change_of_what_differs() {
     let changes = |text: &str| {
         let sources = sources(text);
         let found = formatting(&Analysis::new(&sources));
         found.map(|changes| {
             let changes = changes.into_iter();
-            let shown = changes.map(|(span, new)| (span.start, span.end - span.start, new));
+            let shown = changes.map(|edit| (edit.span.start, edit.span.end, edit.text));
             shown.collect::<Vec<_>>()
         })
     };
     assert_eq!(changes("let a = 1\nlet b = 2\n"), Some(Vec::new()));
     assert_eq!(
         changes("let a  =  1+1\nlet b = 2"),
-        Some(vec![
-            (6, 1, String::new()),
-            (9, 1, String::new()),
-            (11, 0, " ".to_owned()),
-            (12, 0, " ".to_owned()),
-            (23, 0, "\n".to_owned()),
-        ])
+        Some(vec![(6, 23, "= 1 + 1\nlet b = 2\n".to_owned())])
     );
     assert_eq!(changes("let a = "), None);
 }
@@ -252,6 +249,6 @@ fn a_long_line_is_laid_out_in_one_walk() {
     let text = format!("let b = {}1\n", "1+".repeat(100_000));
     let start = Instant::now();
     let changes = of_whole(&text, |analysis| formatting(analysis).map(|all| all.len()));
-    assert_eq!(changes, Some(200_000));
+    assert_eq!(changes, Some(1));
     assert!(start.elapsed() < Duration::from_secs(5));
 }

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use pinhole::{
     editor::{SemanticKind, semantic_tokens},
-    scene,
+    scene::{self, Predefined, schema},
     source::{SourceId, Span},
     syntax::{
         self,
@@ -107,13 +107,13 @@ fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, Semanti
         ValueKind::Name(name) => {
             let kind = match scene::predefined(name) {
                 _ if is_method => SemanticKind::EnumMember,
-                Some("a function") => SemanticKind::Function,
-                Some(_) => SemanticKind::EnumMember,
+                Some(Predefined::Function(_)) => SemanticKind::Function,
+                Some(Predefined::Value(_)) => SemanticKind::EnumMember,
                 None => SemanticKind::Variable,
             };
             words.insert(value.span, kind);
         }
-        ValueKind::Call(call) if scene::predefined(call.function.text) == Some("a function") => {
+        ValueKind::Call(call) if schema::function(call.function.text).is_some() => {
             words.insert(call.function.span, SemanticKind::Function);
         }
         ValueKind::Number(_) | ValueKind::Angle { .. } | ValueKind::ColorCode(_) => {

@@ -54,7 +54,7 @@ fn a_heap_in_one_pixel() {
          camera { eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }
          sampler { method exact }\n",
     );
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for color in ["olive", "teal", "orange", "red", "blue"].repeat(8) {
         let [at, more]: [DVec2; 2] = [random.offset(), random.offset()];
         let (x, y, z) = (40.0 * at.x, 40.0 * at.y, 40.0 * more.x);
@@ -66,6 +66,29 @@ fn a_heap_in_one_pixel() {
     }
     let seen = exact(&read(&text));
     assert!(seen.bound() <= 1e-9, "{:e}", seen.bound());
+}
+
+/// The horizons of parallel boards are one line, and so is the edge that the triangles of a fan share: a pixel that they pass through
+/// is not cut any further, whose pieces would be without number.
+#[test]
+fn many_lines_that_are_one() {
+    let view = "image { width 48 height 27 }
+        camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 roll 7deg }\n";
+    let (mut boards, mut fan) = (view.to_owned(), view.to_owned());
+    for index in 0..40 {
+        let index = f64::from(index);
+        let (y, square) = (-0.1 * index, 0.5 + 0.1 * index);
+        let _ = writeln!(boards, "checkerboard {{ y {y} square {square} }}");
+        let (sin, cos) = libm::sincos(0.08 * index);
+        let _ = writeln!(
+            fan,
+            "triangle {{ v0 (0, 0, 0) v1 (0, 2, 0) v2 ({cos}, 1, {sin}) color rgb({index}, 90, 40) }}"
+        );
+    }
+    for text in [boards, fan] {
+        let seen = exact(&read(&text));
+        assert!(seen.bound() <= 1e-9, "{:e}", seen.bound());
+    }
 }
 
 #[test]
@@ -102,7 +125,7 @@ fn what_is_uniform_is_its_colour() {
         .map(|color| Color::to_linear(*color))
         .collect();
     let mut uniform = 0;
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for (x, y) in Area::whole(96, 96).iter() {
         if exact.bounds[(y * 96 + x) as usize] == 0.0 {
             uniform += 1;
@@ -121,7 +144,7 @@ fn what_is_uniform_is_its_colour() {
 
 #[test]
 fn ten_thousand_objects() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut scene = random_scene(&mut random, true);
     (scene.image.width, scene.image.height) = (96, 64);
     scene.camera.near = 0.0;

@@ -23,7 +23,7 @@ fn side_by_side(random: &mut Random, rows: u32) -> String {
 
 #[test]
 fn objects_side_by_side_add_up() {
-    let mut random = Random(71);
+    let mut random = Random::new(71);
     for rows in [3, 5, 8] {
         let scene = read(&side_by_side(&mut random, rows));
         adds_up(&scene, &format!("{rows} rows of triangles"));
@@ -33,7 +33,7 @@ fn objects_side_by_side_add_up() {
 /// Planks that pierce each other along lines that end where the one or the other does.
 #[test]
 fn objects_that_pierce_each_other_in_part_add_up() {
-    let mut random = Random(72);
+    let mut random = Random::new(72);
     for which in 0..20 {
         let mut text = String::from(
             "image { width 2 height 2 background black }\ncamera { eye (0.3, 0.2, 20) lookat (0, 0, 0) d 20 }\n",

@@ -91,7 +91,7 @@ fn squares_from_above() {
 
 #[test]
 fn samples_agree_within_their_statistical_error() {
-    let mut random = Random(20);
+    let mut random = Random::new(20);
     for round in 0..24 {
         let scene = random_scene(&mut random, round % 3 != 0);
         agrees_with_samples(&scene, &exact(&scene), 1024, &format!("round {round}"));

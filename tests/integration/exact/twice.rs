@@ -12,7 +12,7 @@ fn four_quarters_are_the_pixel() {
 
 #[test]
 fn four_quarters_are_the_pixel_of_scenes_that_pierce_themselves() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for round in 0..24 {
         adds_up(
             &random_scene(&mut random, round % 2 == 0),
@@ -87,7 +87,7 @@ fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
         ))
     };
     let level = "direction (0, 0, -1) roll 45deg d 1 view_height 0.3333333333333333";
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for exponent in 6..28 {
         let height = libm::ldexp(random.within(1.0, 2.0), -2 * exponent);
         let eye = format!("({}, {height:e}, 3)", random.within(-0.5, 0.5));
@@ -116,7 +116,7 @@ fn a_quarter_turn_sweeps_the_other_way() {
         .iter()
         .map(|name| example(name, 40, 40))
         .collect();
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     scenes.extend((0..12).map(|round| {
         let mut scene = random_scene(&mut random, round % 2 == 0);
         (scene.image.width, scene.image.height) = (24, 24);

@@ -68,7 +68,7 @@ fn a_comment_goes_with_what_it_is_about() {
                 &block("  min (0, 0, 0)  // low\n  max (1, 1, 1)  // high\n"),
             ),
             (
-                "keep `center`, remove `min` and `max`, with their comments",
+                "keep `center`, remove `min` and `max`, with its comment",
                 &block("  center (0, 1, 0)\n"),
             ),
         ],

@@ -170,11 +170,11 @@ fn what_a_help_says_is_done() {
 fn comments_of_other_languages_get_their_sign() {
     offers(
         &of_scene("# a\n  ## b\nlet c = 1"),
-        &[("write `// a`", &of_scene("// a\n  // b\nlet c = 1"))],
+        &[("write `//`", &of_scene("// a\n  // b\nlet c = 1"))],
     );
     offers(
         &of_scene("let a = 1 -- big"),
-        &[("write `// big`", &of_scene("let a = 1 // big"))],
+        &[("write `//`", &of_scene("let a = 1 // big"))],
     );
     // A difference, whatever it looks like.
     for text in [

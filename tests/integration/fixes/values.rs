@@ -84,7 +84,7 @@ fn a_corner_lies_on_the_right_side_of_the_other() {
         ("max (-5, -5, -5)", "add `min`", "min (-6, -6, -6)"),
         ("min 2 * (1, 0.3, -4)", "add `max`", "max (3, 1.6, -7)"),
         // 1 is lost beside it.
-        ("max (1e20, 0, 0)", "add `min`", "min (-1, 0, -1)"),
+        ("max (1e20, 0, 0)", "add `min`", "min (-1, -1, -1)"),
     ] {
         offers(
             &format!("{camera}box {{ {given} }}"),

@@ -94,10 +94,10 @@ fn mistakes_of_syntax_are_told_and_no_others() {
         formatted("sphere { center (1, 2, 3) radius }"),
         codes(&["missing_value"])
     );
-    // So it is where the field is no field.
-    assert_eq!(formatted("sphere { radus }"), codes(&["missing_value"]));
+    // Where the field is no field, that is mistake enough.
+    assert_eq!(formatted("sphere { radus }"), codes(&["unknown_field"]));
     assert_eq!(formatted("ball { radius }"), codes(&["missing_value"]));
-    // And so it is with a value that could not be read.
+    // Not so with a value that could not be read.
     for (value, code) in [
         ("(2", "unclosed_parenthesis"),
         ("2)", "stray_closing"),

@@ -32,6 +32,7 @@ fn the_reference_has_every_row_of_the_table() {
             let noun = field.takes.noun();
             let takes_noun = noun.trim_start_matches("a ").trim_start_matches("an ");
             assert_eq!(takes, takes_noun, "{place}");
+            assert_ne!(field.example, "", "{place}");
             match field.preset {
                 schema::Preset::Value(value) => assert_eq!(preset, value.to_string(), "{place}"),
                 schema::Preset::Required => assert_eq!(preset, "required", "{place}"),
@@ -75,7 +76,7 @@ fn the_reference_has_every_method_function_and_name() {
             function.name
         );
     }
-    for (name, _) in schema::CONSTANTS {
+    for (name, ..) in schema::CONSTANTS {
         assert!(reference.contains(&format!("`{name}`")));
     }
 }

@@ -17,6 +17,7 @@ fn one_mistake_gives_one_report() {
         ),
         ("sphere { cneter (0, 0, 0) }", "unknown_field"),
         ("cube { center (0, 0, 0) size (1, 1, 1) }", "unknown_kind"),
+        ("torus { center (0, 0, 0) }", "unknown_kind"),
         ("sphere { center (0, 0, 0 }", "unclosed_parenthesis"),
         ("sphere { center (0, 0, 0) radius 2 ", "unclosed_block"),
         ("sphere { center (0, 0, 0) color \"red\" }", "quoted"),
@@ -24,6 +25,34 @@ fn one_mistake_gives_one_report() {
         ("sphere { center (1 2 3) }", "missing_comma"),
     ] {
         assert_eq!(codes(&format!("{CAMERA} {text}")), [expected], "{text}");
+    }
+}
+
+/// An unknown name is told once, at each of its places, also where the field that it is first used for is unknown, too.
+#[test]
+fn uses_of_a_name_are_places_of_its_own_report() {
+    let text = format!(
+        "{CAMERA} sphere {{ center (0, 1, 0) glow (1e999, 1e999, foo) }}
+         sphere {{ center (0, 1, 0) radius -1 }} sphere {{ center foo }}"
+    );
+    let sources = sources(&text);
+    let found = scene::read(&sources).diagnostics;
+    let of_name = found
+        .iter()
+        .find(|found| found.code == "pinhole::unknown_name");
+    let places: Vec<_> = of_name
+        .unwrap()
+        .labels
+        .iter()
+        .map(|label| label.span.start)
+        .collect();
+    let uses: Vec<_> = text.match_indices("foo").map(|(at, _)| at).collect();
+    assert_eq!(places, uses);
+    for other in found
+        .iter()
+        .filter(|found| found.code != "pinhole::unknown_name")
+    {
+        assert_eq!(other.labels.len(), 1, "{other:#?}");
     }
 }
 

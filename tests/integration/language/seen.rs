@@ -5,8 +5,10 @@ use std::sync::atomic::AtomicBool;
 use pinhole::{
     area::Area,
     render::{Control, render_exact},
+    sampling::CounterRng,
     tracer::World,
 };
+use rand::{RngExt, SeedableRng};
 
 use super::{codes, read};
 
@@ -93,17 +95,16 @@ fn what_is_hardly_seen_is_not_warned_of() {
     );
 }
 
-/// Numbers that are the same in each run (SplitMix64).
-struct Random(u64);
+/// Numbers that are the same in each run.
+struct Random(CounterRng);
 
 impl Random {
+    fn new(seed: u64) -> Self {
+        Self(CounterRng::seed_from_u64(seed))
+    }
+
     fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        low + (high - low) * (z >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 
     fn vector(&mut self, size: f64) -> String {
@@ -114,7 +115,7 @@ impl Random {
 
 #[test]
 fn a_warning_is_never_false_and_comes_often_enough() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let (mut warned, mut black) = (0, 0);
     for round in 0..1500 {
         let objects = match round % 5 {

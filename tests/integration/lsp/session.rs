@@ -289,11 +289,6 @@ fn a_conversation_begins_and_ends_as_it_should() {
     );
     let again = client.respond("initialize", json!({ "capabilities": {} }));
     assert_eq!(again["error"]["code"], -32600);
-    let unknown = client.respond(
-        "textDocument/moniker",
-        json!({ "textDocument": { "uri": URI } }),
-    );
-    assert_eq!(unknown["error"]["code"], -32601);
     let unknown = client.respond("workspace/symbol", json!({ "query": "" }));
     assert_eq!(unknown["error"]["code"], -32601);
     let wrong = client.respond(

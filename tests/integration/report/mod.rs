@@ -1,16 +1,16 @@
 //! Speed against error: the binary's tables, files and page.
 
 mod files;
-mod fit;
 #[cfg(unix)]
 mod interrupted;
-mod planned;
+mod statistics;
 
 use std::{
     fs,
     process::{Command, Output},
 };
 
+use pinhole::scene::Method;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -68,7 +68,7 @@ fn parsed(text: &str) -> roxmltree::Document<'_> {
 }
 
 #[test]
-fn people_get_a_table() {
+fn people_get_a_table_and_an_answer() {
     let folder = folder();
     let output = report(&folder, &["a.scn", "--samples", "1,4,16", "--runs", "2"]);
     let text = words(&output.stderr);
@@ -76,62 +76,70 @@ fn people_get_a_table() {
         output.status.success() && output.stdout.is_empty(),
         "{text}"
     );
-    assert!(text.starts_with("a.scn: 48 × 32 pixels, 2 runs of each, seeds from 7\n"));
-    for word in [
-        "regular",
-        "random",
-        "jittered",
-        "n_rooks",
-        "multi_jittered",
-        "hammersley",
-        "halton",
-        "sobol",
-        "scatter",
-        "exact",
-        "for 1/256",
-        "× ÷",
-        "extrapolated",
-        "note: What is extrapolated",
-        "note: scatter",
-        "the slope (*) has the errors of those in it",
-        "which sampled method is the fastest is not known",
-        "million samples/s: all samples by the time that they take, traced or not",
-        "million rays/s: those of the samples that are traced",
-        "slope: of the line through the logarithms of samples and error; ± covers",
-    ] {
-        let is_there = text.contains(word) || text.replace("\n ", " ").contains(word);
-        assert!(is_there, "{word}:\n{text}");
-    }
-    let marked = |line: &&str| line.ends_with(" *");
-    let marked: Vec<_> = text.lines().filter(marked).collect();
     assert!(
-        matches!(marked.as_slice(), [one] if one.starts_with("scatter")),
-        "{marked:?}"
+        text.starts_with("a.scn: 48 × 32 pixels, 2 runs, "),
+        "{text}"
     );
+    for method in Method::SAMPLED {
+        let mut rows = text.lines().map(str::split_whitespace);
+        let row = rows.find_map(|mut row| (row.next() == Some(method.name())).then_some(row));
+        let row: Vec<_> = row.unwrap().collect();
+        // Slope, ±, its error, samples, two times with their units.
+        assert_eq!((row.len(), row[1]), (8, "±"), "{row:?}");
+        assert!(row[0].starts_with('−'), "{row:?}");
+        // So few samples do not come to 1/256.
+        assert!(
+            row[3].starts_with('~') && row[4].starts_with('~'),
+            "{row:?}"
+        );
+    }
+    let exact = text
+        .lines()
+        .find(|line| line.trim_start().starts_with("exact "));
+    assert!(!exact.unwrap().contains('~'), "{text}");
+    assert!(
+        text.contains("samples") && text.contains("for 1/256"),
+        "{text}"
+    );
+    assert!(text.contains("~ extrapolated; – not known"), "{text}");
+    let answer = text.lines().filter(|line| line.starts_with("Use "));
+    assert_eq!(answer.count(), 1, "{text}");
     for line in text.lines() {
         assert!(line.chars().count() <= 100, "{line}");
     }
 }
 
 #[test]
+fn the_answer_is_the_method_with_the_least_time() {
+    let folder = folder();
+    let arguments = "a.scn --format json --samples 1,16,256 --runs 3 --error 0.02";
+    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = &answer["reports"][0];
+    for at in 0..2 {
+        let mut times = vec![(report["exact"]["time"]["median"].as_f64().unwrap(), "exact")];
+        for method in report["methods"].as_array().unwrap() {
+            let time = method["needed"][at]["time"].as_f64().unwrap();
+            times.push((time, method["method"].as_str().unwrap()));
+        }
+        let (_, fastest) = times
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap();
+        let verdict = report["verdicts"][at].as_str().unwrap();
+        assert!(
+            verdict.starts_with(&format!("Use {fastest}: ")),
+            "{fastest}: {verdict}"
+        );
+    }
+}
+
+#[test]
 fn programs_get_json_and_errors_fall() {
     let folder = folder();
-    let arguments = [
-        "a.scn",
-        "--format",
-        "json",
-        "--samples",
-        "64,1,16,4,16",
-        "--runs",
-        "3",
-        "--error",
-        "0.5",
-        "--error",
-        "1e-6",
-        "--threads",
-        "1",
-    ];
-    let output = report(&folder, &arguments);
+    let arguments =
+        "a.scn --format json --samples 64,1,16,4,16 --runs 3 --error 0.5 --error 1e-6 --threads 1";
+    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
     assert_eq!((output.status.code(), words(&output.stderr)), (Some(0), ""));
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(answer["complete"], true);
@@ -159,7 +167,16 @@ fn programs_get_json_and_errors_fall() {
             let [coarse, fine] = [0, 1].map(|at: usize| pair[at]["rmse"].as_f64().unwrap());
             assert!(fine < 0.75 * coarse, "{name}: {coarse} to {fine}");
             assert_eq!(pair[0]["rmse_runs"].as_array().unwrap().len(), 3);
-            assert!(pair[1]["time"]["min"].as_f64().unwrap() > 0.0);
+        }
+        for point in measured {
+            for time in ["time", "wall"] {
+                let [min, median, max] =
+                    ["min", "median", "max"].map(|key| point[time][key].as_f64().unwrap());
+                assert!(0.0 < min && min <= median && median <= max, "{name}");
+            }
+            // Neither is all of the picture in doubt, nor nothing of it.
+            let [samples, rays] = ["samples", "rays"].map(|key| point[key].as_u64().unwrap());
+            assert!(0 < rays && rays < samples, "{name}: {rays} of {samples}");
         }
         let slope = method["fit"]["slope"].as_f64().unwrap();
         let expected = match name {
@@ -169,18 +186,6 @@ fn programs_get_json_and_errors_fall() {
             _ => -0.85..-0.55,
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
-        for point in measured {
-            let [samples, rays] = ["samples", "rays"].map(|key| point[key].as_u64().unwrap());
-            // Neither is all of the picture in doubt, nor nothing of it.
-            assert!(0 < rays && rays < samples, "{name}: {rays} of {samples}");
-            let [samples_a_second, rays_a_second] =
-                ["samples_per_second", "rays_per_second"].map(|key| point[key].as_f64().unwrap());
-            let ratio = rays_a_second / samples_a_second;
-            assert!(
-                (ratio - rays as f64 / samples as f64).abs() < 1e-9,
-                "{name}"
-            );
-        }
         let needed = method["needed"].as_array().unwrap();
         // That of which everybody is told, and those that were asked for.
         let errors: Vec<_> = needed
@@ -188,68 +193,33 @@ fn programs_get_json_and_errors_fall() {
             .map(|needed| needed["error"].as_f64())
             .collect();
         assert_eq!(errors, [1.0 / 256.0, 0.5, 1e-6].map(Some));
-        // There are no fewer than one.
-        assert_eq!(needed[1]["at_most"], false, "{name}");
-        assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
-        assert_eq!(needed[1]["extrapolated"], false);
-        assert_eq!(needed[1]["factor"], 1.0, "{name}");
+        let found = (&needed[1]["per_pixel"], &needed[1]["extrapolated"]);
+        assert_eq!(found, (&1.0.into(), &false.into()), "{name}");
         assert_eq!(needed[2]["extrapolated"], true, "{name}");
-        // Untried, nothing is known of samples that know of each other.
-        let factor = needed[2]["factor"].as_f64();
-        let is_independent = ["random", "scatter"].contains(&name);
-        assert_eq!(factor.is_some(), is_independent, "{name}");
-        assert!(factor.is_none_or(|factor| factor > 2.0), "{name}");
-        // Whoever says how many samples are taken gets no others.
-        assert_eq!(needed[2]["tries"], serde_json::json!([]));
     }
-    // Independent samples: each run draws its own seed's, and the errors of the seeds differ.
-    let random = methods
-        .iter()
-        .find(|method| method["method"] == "random")
-        .unwrap();
-    let runs = random["measured"][3]["rmse_runs"].as_array().unwrap();
+    // Each run draws its own seed's samples, and the errors of the seeds differ.
+    let mut random = methods.iter().filter(|method| method["method"] == "random");
+    let runs = random.next().unwrap()["measured"][3]["rmse_runs"].clone();
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);
 }
 
 #[test]
-fn where_the_fewest_samples_are_enough_programs_are_told() {
+fn samples_go_on_until_the_error_is_reached() {
     let folder = folder();
-    let arguments = "a.scn --format json --methods random --samples 4,16 --runs 2 --error 0.5";
+    let arguments = "a.scn --format json --methods random,sobol --runs 1 --budget 600 --error 0.05";
     let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let needed = &answer["reports"][0]["methods"][0]["needed"][1];
-    assert_eq!(
-        (&needed["per_pixel"], &needed["at_most"]),
-        (&4.0.into(), &true.into())
-    );
-}
-
-#[test]
-fn single_runs_promise_nothing() {
-    let folder = folder();
-    let arguments = [
-        "a.scn",
-        "--samples",
-        "1,4",
-        "--runs",
-        "1",
-        "--methods",
-        "sobol,random",
-    ];
-    let output = report(&folder, &arguments);
-    let text = words(&output.stderr);
-    let one_line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        one_line.contains("which sampled method is the fastest is not known"),
-        "{text}"
-    );
-    let mut sobol = text.lines().filter(|line| line.starts_with("sobol"));
-    let last: Vec<_> = sobol.next_back().unwrap().split_whitespace().collect();
-    assert_eq!(
-        (last[2], *last.last().unwrap()),
-        ("?", "extrapolated"),
-        "{text}"
-    );
+    let report = &answer["reports"][0];
+    for method in report["methods"].as_array().unwrap() {
+        assert_eq!(method["needed"][0]["extrapolated"], false, "{method}");
+    }
+    // Not beyond.
+    let random = report["methods"][0]["measured"].as_array().unwrap();
+    let [.., before, last] = random.as_slice() else {
+        panic!("{random:?}");
+    };
+    assert!(before["rmse"].as_f64() > Some(1.0 / 256.0), "{before}");
+    assert!(last["rmse"].as_f64() <= Some(1.0 / 256.0), "{last}");
 }
 
 #[test]
@@ -266,35 +236,12 @@ fn no_method_comes_nearer_than_the_reference_is_known() {
         .unwrap();
     let largest = report["exact"]["bound"].as_f64().unwrap();
     assert!(1e-17 < bound && bound <= largest, "{bound} {largest}");
-    let needed = report["methods"][0]["needed"].as_array().unwrap();
-    let [common, least] = needed.as_slice() else {
-        panic!("{needed:?}");
-    };
-    assert!(common["per_pixel"].is_number() && least["per_pixel"].is_null());
-    // Nothing is known of the spread of a single run.
-    assert!(report["exact"]["time"]["spread"].is_null());
-
-    let text = report_text(
-        &folder,
-        "a.scn --methods exact,sobol --samples 1,4 --runs 1 --error 1e-17",
+    let needed = &report["methods"][0]["needed"];
+    assert!(needed[0]["per_pixel"].is_number() && needed[1]["per_pixel"].is_null());
+    assert_eq!(
+        report["verdicts"][1],
+        "No method is known to come to an error of 1.0e-17."
     );
-    let (_, below) = text.split_once("for 1.0e-17").unwrap();
-    let row = |name: &str| {
-        let mut rows = below.lines().filter(|line| line.starts_with(name));
-        let cells = rows.next().unwrap().split_whitespace();
-        cells.map(str::to_owned).collect::<Vec<_>>()
-    };
-    assert_eq!(row("exact"), ["exact", "-", "-"], "{text}");
-    assert_eq!(row("sobol"), ["sobol", "-", "-"], "{text}");
-    assert!(
-        below.contains("An error of 1.0e-17 cannot be told from none"),
-        "{text}"
-    );
-}
-
-fn report_text(folder: &TempDir, arguments: &str) -> String {
-    let output = report(folder, &arguments.split(' ').collect::<Vec<_>>());
-    words(&output.stderr).to_owned()
 }
 
 #[test]
@@ -303,39 +250,30 @@ fn a_picture_of_one_colour_has_no_error() {
     let empty =
         "image { width 4 height 4 } camera { eye (0, 1, 0) direction (0, 1, 0) up (0, 0, 1) }";
     fs::write(folder.path().join("empty.scn"), empty).unwrap();
-    let output = report(
-        &folder,
-        &["empty.scn", "-o", "out", "--samples", "1,4", "--runs", "1"],
-    );
+    let output = report(&folder, &["empty.scn", "-o", "out"]);
     let text = words(&output.stderr);
     assert!(output.status.success(), "{text}");
-    assert!(
-        text.contains("no slope is fitted to an error of 0"),
-        "{text}"
-    );
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        text.contains("; every sampled method had no error at all with 1 sample per pixel already, in 1 run, so that none is the fastest"),
-        "{text}"
-    );
+    let sobol = text
+        .lines()
+        .find(|line| line.trim_start().starts_with("sobol"));
+    let cells: Vec<_> = sobol.unwrap().split_whitespace().collect();
+    assert_eq!(cells[1..3], ["–", "1"], "{text}");
     parsed(&read(&folder, "out/index.html"));
     parsed(&read(&folder, "out/error-against-time.svg"));
 }
 
 #[test]
-fn without_samples_nothing_is_said_of_them() {
+fn exact_alone_has_a_time_and_no_samples() {
     let folder = folder();
-    let output = report(&folder, &["a.scn", "--methods", "exact", "-o", "out"]);
+    let output = report(
+        &folder,
+        &["a.scn", "--methods", "exact", "-o", "out", "--runs", "2"],
+    );
     let text = words(&output.stderr);
     assert!(output.status.success(), "{text}");
-    let lines: Vec<_> = text.lines().collect();
-    assert_eq!(
-        lines[4].split_whitespace().collect::<Vec<_>>(),
-        ["error", "largest"]
-    );
-    assert!(!text.contains("1024") && !text.contains("slope"), "{text}");
     let json: Value = serde_json::from_str(&read(&folder, "out/report.json")).unwrap();
     assert_eq!(json["per_pixel"], serde_json::json!([]));
+    assert_eq!(json["exact"]["time"]["runs"].as_array().unwrap().len(), 2);
     parsed(&read(&folder, "out/index.html"));
     parsed(&read(&folder, "out/error-against-samples.svg"));
 }
@@ -385,8 +323,15 @@ fn wrong_arguments_are_told() {
     let errors = fails(&folder, &["a.scn", "--samples", "9007199254740992"], 2);
     assert!(errors.contains("more than 2^53"), "{errors}");
     let errors = fails(&folder, &["a.scn", "bad.scn", "--samples", "1"], 1);
-    assert!(
-        errors.contains("pinhole::unknown_field") && !errors.contains("rays"),
-        "{errors}"
-    );
+    assert!(errors.contains("pinhole::unknown_field"), "{errors}");
+    // A report never writes over a scene.
+    fs::copy(
+        folder.path().join("a.scn"),
+        folder.path().join("index.html"),
+    )
+    .unwrap();
+    let kept = read(&folder, "index.html");
+    let errors = fails(&folder, &["index.html", "--samples", "1", "-o", "."], 2);
+    assert!(errors.contains("would write over the scene"), "{errors}");
+    assert_eq!(read(&folder, "index.html"), kept);
 }

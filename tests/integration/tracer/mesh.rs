@@ -64,7 +64,7 @@ fn two_halves_of_a_square_leave_no_gap() {
 
 #[test]
 fn meshes_agree_with_the_oracle() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut found = 0;
     for round in 0..24 {
         let eye = random.vector(4.0);

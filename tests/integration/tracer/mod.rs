@@ -15,10 +15,11 @@ use pinhole::{
         oracle::{ALL_SIZES, Oracle},
         scenes::{self, SIZE},
     },
-    sampling::Sampling,
+    sampling::{CounterRng, Sampling},
     scene::{CenteredTriangle, Checkerboard, Lens, Outline, Scene, Shape, Triangle, View},
     tracer::World,
 };
+use rand::{Rng, RngExt, SeedableRng};
 
 use crate::exact::read;
 
@@ -30,20 +31,20 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Reproducible numbers (SplitMix64).
-pub struct Random(pub u64);
+/// Reproducible numbers.
+pub struct Random(CounterRng);
 
 impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(CounterRng::seed_from_u64(seed))
+    }
+
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 
     /// A multiple of 1/2, at most `limit` halves from 0.
@@ -78,7 +79,7 @@ fn expected(oracle: &Oracle, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
 fn agrees(scene: &Scene, points: usize) -> usize {
     let world = World::new(scene);
     let oracle = Oracle::new(scene, ALL_SIZES);
-    let mut random = Random(points as u64);
+    let mut random = Random::new(points as u64);
     let color = |x, y, offset| world.palette()[world.slot_at(x, y, offset)].srgb;
     let check = |x, y, offset: DVec2| {
         assert_eq!(
@@ -144,7 +145,7 @@ fn the_figure_agrees_with_the_oracle() {
 
 #[test]
 fn random_objects_agree_with_the_oracle() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let mut found = 0;
     for round in 0..24 {
         let eye = random.vector(4.0);

@@ -23,7 +23,7 @@ fn the_floor_far_away_agrees_with_the_oracle() {
         let scene = scene(camera, &[floor()]);
         let world = World::new(&scene);
         let oracle = Oracle::new(&scene, ALL_SIZES);
-        let mut random = Random(1);
+        let mut random = Random::new(1);
         for exponent in 1..16 {
             let below = libm::pow(10.0, -f64::from(exponent));
             let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
@@ -111,7 +111,7 @@ pub fn scene_full_of_ties(random: &mut Random) -> Scene {
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
     // All sample points are multiples of 1/8 pixel.
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..150 {
         let scene = scene_full_of_ties(&mut random);
         let world = World::new(&scene);

@@ -111,7 +111,7 @@ fn nothing_is_too_near_or_too_far_for_the_range_of_numbers() {
         ];
         let scene = scene(camera, &shapes);
         let world = World::new(&scene);
-        let mut random = Random(4);
+        let mut random = Random::new(4);
         // The boxes' common face is seen edge-on in the middle of the picture.
         for (x, expected) in [0, 31, 32, 63].into_iter().zip(expected) {
             let color = world.palette()[world.slot_at(x, 31, random.offset())].srgb;

@@ -116,11 +116,6 @@ impl Oracle {
         &self.axes
     }
 
-    /// The eye.
-    pub fn eye(&self) -> &V {
-        &self.eye
-    }
-
     /// A number as the oracle's arithmetic has it.
     pub fn exact(&self, x: f64) -> N {
         self.number.exact(x)

@@ -79,7 +79,7 @@ fn the_horizon_through_the_longest_lenses() {
 #[test]
 #[ignore = "exhaustive"]
 fn narrow_views_at_random() {
-    let mut random = Random(29);
+    let mut random = Random::new(29);
     for i in 0..24 {
         let mut number = |low: f64, high: f64| random.within(low, high);
         let d = libm::exp10(number(8.0, 15.0));

@@ -60,7 +60,7 @@ sampled_and_exhaustive!(every_pixel_is_known_to_a_thousand_millionth);
 
 /// A million pixels, against bounds and against samples; says how many bounds are above 1e-11.
 fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
-    let mut random = Random(31);
+    let mut random = Random::new(31);
     let (mut pixels, mut above) = (0, 0);
     for _ in effort.first(40, 0..2700) {
         let text = view(&mut random);
@@ -82,7 +82,7 @@ fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
 
 #[test]
 fn four_quarters_are_the_pixel_of_ordinary_views() {
-    let mut random = Random(37);
+    let mut random = Random::new(37);
     for _ in 0..30 {
         let text = view(&mut random);
         part_adds_up(&read(&text), area_of([0, 0, 24, 16]), &text);

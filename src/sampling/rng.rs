@@ -1,10 +1,12 @@
-//! Random bits without a generator: a number is a hash of what it is for.
+//! Random numbers that are counted: the i-th one is a function of i and of what it is for.
 //!
 //! A [`Key`] names a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the i-th 64-bit number of that
 //! purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators") with its state
-//! computed instead of carried: the numbers of a key are the outputs of a generator that starts at the key.
+//! computed instead of carried. [`CounterRng`] gives the numbers of a key in turn, to whatever takes a generator of the crate `rand`.
 
-use std::ops::Range;
+use std::{convert::Infallible, ops::Range};
+
+use rand::{SeedableRng, TryRng};
 
 /// The odd number nearest to 2^64 divided by the golden ratio: the step of SplitMix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -39,22 +41,63 @@ impl Key {
     #[inline(always)]
     pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
         let mut room = [[0; 2]; BATCH];
-        let mut first = points.start;
-        while first < points.end {
-            let count = (points.end - first).min(BATCH as u64);
-            let pairs = &mut room[..count as usize];
+        for first in points.clone().step_by(BATCH) {
+            let pairs = &mut room[..(points.end - first).min(BATCH as u64) as usize];
             for (index, out) in (2 * first..).zip(pairs.as_flattened_mut()) {
                 *out = self.bits(index);
             }
             each(first, pairs);
-            first += count;
         }
+    }
+
+    /// A generator of these numbers, from the first one on.
+    pub fn rng(self) -> CounterRng {
+        CounterRng { key: self, next: 0 }
+    }
+}
+
+/// A generator whose state is a key and a count.
+#[derive(Clone, Debug)]
+pub struct CounterRng {
+    key: Key,
+    next: u64,
+}
+
+impl SeedableRng for CounterRng {
+    type Seed = [u8; 8];
+
+    fn from_seed(seed: Self::Seed) -> Self {
+        Key(u64::from_le_bytes(seed)).rng()
+    }
+
+    /// SplitMix64 that starts at this number.
+    fn seed_from_u64(seed: u64) -> Self {
+        Key(seed).rng()
+    }
+}
+
+impl TryRng for CounterRng {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        self.try_next_u64().map(|bits| (bits >> 32) as u32)
+    }
+
+    #[inline(always)]
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        let bits = self.key.bits(self.next);
+        self.next += 1;
+        Ok(bits)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        rand::rand_core::utils::fill_bytes_via_next_word(bytes, || self.try_next_u64())
     }
 }
 
 /// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1. Its bias is below n/2^64 (Lemire 2019, without
 /// the rejection).
-#[inline]
+#[inline(always)]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
@@ -74,14 +117,6 @@ pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     (high * n_high + (rest >> 26)) >> 6
 }
 
-/// The same for a small `n`.
-#[inline(always)]
-pub fn scale_short(bits: u64, n: u32) -> u64 {
-    let n = u64::from(n);
-    let (high, low) = (bits >> 32, bits & u64::from(u32::MAX));
-    (high * n + ((low * n) >> 32)) >> 32
-}
-
 /// The finaliser of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
 #[inline(always)]
 fn mix(mut z: u64) -> u64 {
@@ -92,7 +127,25 @@ fn mix(mut z: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::Rng;
+
     use super::*;
+
+    #[test]
+    fn the_numbers_are_those_of_splitmix64() {
+        // Of Vigna's splitmix64.c, started at 1234567.
+        let mut rng = CounterRng::seed_from_u64(1_234_567);
+        let expected = [
+            6_457_827_717_110_365_317,
+            3_203_168_211_198_807_973,
+            9_817_491_932_198_370_423,
+        ];
+        assert_eq!(expected.map(|_| rng.next_u64()), expected);
+        let mut bytes = [0; 12];
+        CounterRng::from_seed(1_234_567_u64.to_le_bytes()).fill_bytes(&mut bytes);
+        assert_eq!(bytes[..8], expected[0].to_le_bytes());
+        assert_eq!(bytes[8..], expected[1].to_le_bytes()[..4]);
+    }
 
     #[test]
     fn every_bit_of_every_argument_matters() {
@@ -114,48 +167,17 @@ mod tests {
     }
 
     #[test]
-    fn pairs_are_the_numbers_in_turn() {
-        let key = Key::new(7, 1);
-        for range in [0..0, 3..4, 1..64, 5..300] {
-            let mut next = range.start;
-            key.pairs(range.clone(), |first, pairs| {
-                assert_eq!(first, next);
-                for pair in pairs {
-                    assert_eq!(*pair, [key.bits(2 * next), key.bits(2 * next + 1)]);
-                    next += 1;
-                }
-            });
-            assert_eq!(next, range.end);
-        }
-    }
-
-    #[test]
-    fn parts_make_the_same_product() {
+    fn a_product_by_parts_is_the_long_one() {
         let key = Key::new(3, 4);
         let edges = [0, 1, u64::from(u32::MAX), 1 << 32, u64::MAX - 1, u64::MAX];
-        let numbers: Vec<_> = edges
-            .into_iter()
-            .chain((0..300).map(|i| key.bits(i)))
-            .collect();
+        let numbers = edges.into_iter().chain((0..300).map(|i| key.bits(i)));
+        let numbers: Vec<_> = numbers.collect();
         for (i, &bits) in numbers.iter().enumerate() {
             for &n in &numbers[i..] {
                 for n in [n >> 11, n >> 38, n >> 40, 1 << 53] {
                     assert_eq!(scale_by_parts(bits, n), scale(bits, n), "{bits} {n}");
                 }
-                let n = (n >> 32) as u32;
-                assert_eq!(scale_short(bits, n), scale(bits, u64::from(n)));
             }
         }
-    }
-
-    #[test]
-    fn numbers_below_n_are_even() {
-        let key = Key::new(1, 2);
-        let mut hits = [0_u32; 7];
-        for index in 0..70_000 {
-            hits[scale(key.bits(index), 7) as usize] += 1;
-        }
-        // Standard deviation: √(70 000 · 1/7 · 6/7) = 93.
-        assert!(hits.iter().all(|&n| n.abs_diff(10_000) < 400), "{hits:?}");
     }
 }

@@ -1,0 +1,129 @@
+//! A picture as a file holds it, and why a file is none.
+
+use image::ImageFormat;
+use thiserror::Error;
+
+use super::{Film, TooLarge};
+use crate::area::Area;
+
+/// A picture with more pixels is not read: as a film they take 1.5 GiB.
+const PIXELS: u64 = 1 << 26;
+
+/// A picture as a file holds it.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Its means in linear light.
+    pub film: Film,
+    /// How its numbers are rounded.
+    pub rounding: Rounding,
+    /// What else its coding does to them.
+    pub coding: Coding,
+    /// The part of a whole picture that it is, if it says so.
+    pub crop: Option<Area>,
+}
+
+/// What the numbers of a file are rounded to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Bytes of sRGB, or fewer bits.
+    Byte,
+    /// 16 bits of sRGB.
+    Word,
+    /// Floats of 16 bits, in linear light.
+    Half,
+    /// Floats of 32 bits, in linear light.
+    Float,
+}
+
+impl Rounding {
+    /// How far it may move a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255 of the way from black to white.
+    ///
+    /// The floats' part is their relative rounding 2^−11 or 2^−24 of the light, times the 255 · 1.055/2.4 steps of a unit of light at
+    /// white, where that product is greatest, rounded up.
+    pub fn steps(self) -> f64 {
+        match self {
+            Self::Byte => 0.5,
+            Self::Word => 0.5 / 257.0,
+            Self::Half => 0.06,
+            Self::Float => 1e-5,
+        }
+    }
+}
+
+/// What a file's coding does to colours besides rounding them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coding {
+    /// Nothing.
+    Exact,
+    /// It changes them where that is hardly seen: JPEG, and one kind of WebP.
+    Lossy,
+    /// It replaces them by the nearest of at most 256: GIF.
+    Palette,
+}
+
+impl Coding {
+    /// What whoever compares such a picture should know.
+    pub fn warning(self) -> Option<&'static str> {
+        match self {
+            Self::Exact => None,
+            Self::Lossy => Some(
+                "its coding is lossy and changes colours, most of all where they meet: a PNG keeps them",
+            ),
+            Self::Palette => Some("it has 256 colours at most: a PNG keeps all of them"),
+        }
+    }
+}
+
+/// Why a file is no picture.
+#[derive(Debug, Error)]
+pub enum Unreadable {
+    /// It is none, or of a format that is not read.
+    #[error(
+        "it is no picture in PNG, OpenEXR, PNM, BMP, TIFF, WebP, GIF or JPEG, the formats that are read here{}",
+        .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
+    )]
+    Format(Option<ImageFormat>),
+    /// It does not follow its format, or uses a part of it that is not read here.
+    #[error("it begins as {} file does, but is damaged or cut off: {cause}", with_article(.format))]
+    Damaged {
+        /// The format's name.
+        format: String,
+        /// What is wrong.
+        cause: String,
+    },
+    /// It is larger than pictures that are read.
+    #[error("it has {0} × {1} pixels, and pictures of more than 67108864 are not read")]
+    Pixels(u64, u64),
+    /// There is no memory for it.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
+    /// A value is infinite or NaN.
+    #[error("its pixel ({x}, {y}) holds a value that is no finite number")]
+    NotFinite {
+        /// The column.
+        x: u32,
+        /// The row.
+        y: u32,
+    },
+}
+
+/// What a format is called.
+pub(super) fn name(format: ImageFormat) -> String {
+    format!("{format:?}").to_uppercase()
+}
+
+fn with_article(name: &str) -> String {
+    match name {
+        "OpenEXR" => format!("an {name}"),
+        _ => format!("a {name}"),
+    }
+}
+
+/// Refuses sides that no picture has which is read here.
+pub(super) fn check_pixels(width: u64, height: u64) -> Result<(u32, u32), Unreadable> {
+    let sides = [width, height].map(u32::try_from);
+    match (sides, width.checked_mul(height)) {
+        ([Ok(columns), Ok(rows)], Some(1..=PIXELS)) => Ok((columns, rows)),
+        _ => Err(Unreadable::Pixels(width, height)),
+    }
+}

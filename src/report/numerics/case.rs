@@ -1,0 +1,116 @@
+//! A hard case: what makes its inputs, and where in a scene it asks.
+
+use super::{
+    inputs::Random,
+    oracle::USUAL_SIZES,
+    trial::{Point, Tally, Trial, axes},
+};
+use crate::scene::{Camera, Scene};
+
+/// A row of the catalogue.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name.
+    pub id: &'static str,
+    /// What is hard about it.
+    pub title: &'static str,
+    subject: Subject,
+}
+
+/// What questions are asked of.
+#[derive(Clone, Copy, Debug)]
+enum Subject {
+    /// What is seen in a scene, of which many questions are asked.
+    Seen(fn(&mut Random) -> Input),
+    /// The axes of a camera.
+    Axes(fn(&mut Random) -> Camera),
+}
+
+/// A row that asks what is seen.
+pub(super) const fn case(
+    id: &'static str,
+    title: &'static str,
+    input: fn(&mut Random) -> Input,
+) -> Case {
+    let subject = Subject::Seen(input);
+    Case { id, title, subject }
+}
+
+/// A row that asks for a camera's axes.
+pub(super) const fn axes_case(
+    id: &'static str,
+    title: &'static str,
+    camera: fn(&mut Random) -> Camera,
+) -> Case {
+    let subject = Subject::Axes(camera);
+    Case { id, title, subject }
+}
+
+impl Case {
+    /// Asks so many questions.
+    pub(super) fn ask(&self, random: &mut Random, count: u64, tally: &mut Tally) {
+        let input = match self.subject {
+            Subject::Seen(input) => input(random),
+            Subject::Axes(camera) => return (0..count).for_each(|_| axes(&camera(random), tally)),
+        };
+        let trial = Trial::new(input.scene, input.bits);
+        let at_points = count * input.halves / 2;
+        for _ in 0..at_points {
+            let point = match &input.points {
+                Some(point) => point(random),
+                None => trial.anywhere(random),
+            };
+            trial.decide(point, tally);
+        }
+        trial.boundaries(random, count - at_points, tally);
+    }
+}
+
+/// Makes points.
+type Points = dyn Fn(&mut Random) -> Point;
+
+/// A scene and where in its picture questions are asked.
+pub(super) struct Input {
+    scene: Scene,
+    /// Those that the oracle computes with.
+    bits: usize,
+    /// Points of the picture; anywhere if nothing is said.
+    points: Option<Box<Points>>,
+    /// How many of the questions are asked there, in halves of all; the others close to boundaries.
+    halves: u64,
+}
+
+impl Input {
+    /// Points close to boundaries.
+    pub fn new(scene: Scene) -> Self {
+        Self {
+            scene,
+            bits: USUAL_SIZES,
+            points: None,
+            halves: 0,
+        }
+    }
+
+    /// So many bits for the oracle.
+    pub fn bits(self, bits: usize) -> Self {
+        Self { bits, ..self }
+    }
+
+    /// Points anywhere.
+    pub fn anywhere(self) -> Self {
+        Self { halves: 2, ..self }
+    }
+
+    /// These points.
+    pub fn at(self, point: impl Fn(&mut Random) -> Point + 'static) -> Self {
+        Self {
+            points: Some(Box::new(point)),
+            ..self.anywhere()
+        }
+    }
+
+    /// Points anywhere, or those that were named, and as many close to boundaries.
+    pub fn mixed(self) -> Self {
+        Self { halves: 1, ..self }
+    }
+}

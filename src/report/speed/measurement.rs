@@ -1,0 +1,172 @@
+//! What is asked for and what was measured: plain data, and the numbers that follow from it.
+
+use std::{num::NonZero, time::Duration};
+
+use super::{
+    machine::Machine,
+    statistics::{PowerLaw, median, root_mean_square},
+};
+use crate::{
+    area::Area,
+    film::{Film, Recipe},
+    render::Exact,
+    scene::Method,
+};
+
+/// The scene that is measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// What the user calls it.
+    pub name: String,
+    /// Its text and the overrides.
+    pub recipe: Recipe,
+}
+
+/// What the user asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The methods, `exact` among them or not.
+    pub methods: Vec<Method>,
+    /// Samples per pixel; powers of 4 as far as the time goes if there are none.
+    pub samples: Vec<u64>,
+    /// Runs of each method and number of samples; as many as the time allows if this is `None`.
+    pub runs: Option<u64>,
+    /// The errors for which samples and time are told, in linear light.
+    pub errors: Vec<f64>,
+    /// How long it may take, as far as there is a choice.
+    pub budget: Duration,
+    /// How many threads render; as many as there are processors if this is `None`.
+    pub threads: Option<NonZero<usize>>,
+}
+
+/// What came out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// What was measured.
+    pub subject: Subject,
+    /// What it was measured on.
+    pub machine: Machine,
+    /// How many threads rendered.
+    pub threads: usize,
+    /// The seed of the first run; each further one has the next.
+    pub seed: u64,
+    /// Samples per pixel, ascending.
+    pub rungs: Vec<u64>,
+    /// The errors that are asked for.
+    pub errors: Vec<f64>,
+    /// The exact picture.
+    pub reference: Exact,
+    /// The times of the exact method, if that is asked for.
+    pub exact: Option<Times>,
+    /// The sampled methods, in the order of the language's table.
+    pub series: Vec<Series>,
+    /// The part of the picture that is shown of every method.
+    pub crop: Area,
+    /// Whether the user ended it.
+    pub interrupted: bool,
+    /// How long it took in all, in seconds.
+    pub seconds: f64,
+}
+
+/// What was measured of a sampled method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The method.
+    pub method: Method,
+    /// By samples per pixel, ascending.
+    pub points: Vec<Point>,
+    /// What it renders in the same time as the others.
+    pub picture: Option<Shown>,
+}
+
+/// What was measured of a method with a number of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Samples per pixel, of `scatter` on average.
+    pub per_pixel: u64,
+    /// How many of all samples were traced in the first run: the others lie in pixels that are certain to show one colour.
+    pub rays: u64,
+    /// How long it took.
+    pub times: Times,
+    /// The error of each run: the root of the mean squared difference to the exact picture, in linear light.
+    pub rmse: Vec<f64>,
+}
+
+/// Seconds, run by run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Times {
+    /// CPU time of the whole process, all threads together. NaN where the system does not tell.
+    pub cpu: Vec<f64>,
+    /// From the beginning to the end by the clock.
+    pub wall: Vec<f64>,
+}
+
+/// A picture to look at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// Its samples per pixel.
+    pub per_pixel: u64,
+    /// The CPU time that it took, in seconds.
+    pub cpu: f64,
+    /// The error of the whole picture.
+    pub rmse: f64,
+    /// The part that is shown.
+    pub crop: Film,
+}
+
+impl Times {
+    /// The median CPU time.
+    pub fn cpu(&self) -> f64 {
+        median(&self.cpu)
+    }
+
+    /// The median wall time.
+    pub fn wall(&self) -> f64 {
+        median(&self.wall)
+    }
+}
+
+impl Point {
+    /// The error of all runs together: the root of the mean of their squares.
+    pub fn error(&self) -> f64 {
+        root_mean_square(&self.rmse)
+    }
+}
+
+impl Series {
+    /// How the error falls with the samples, if it is not 0.
+    pub fn fit(&self) -> Option<PowerLaw> {
+        let points = self.points.iter();
+        let points: Vec<_> = points
+            .map(|point| (point.per_pixel as f64, point.error()))
+            .collect();
+        PowerLaw::fit(&points)
+    }
+
+    /// So many samples per pixel take about this CPU time, between the numbers of samples that were measured.
+    pub fn samples_in(&self, cpu: f64) -> Option<u64> {
+        let (first, last) = (self.points.first()?, self.points.last()?);
+        let slower = |pair: &&[Point]| pair[1].times.cpu() > cpu;
+        let Some([a, b]) = self.points.windows(2).find(slower) else {
+            return Some(last.per_pixel);
+        };
+        let share = (cpu - a.times.cpu()) / (b.times.cpu() - a.times.cpu());
+        let more = share * (b.per_pixel - a.per_pixel) as f64;
+        Some((a.per_pixel as f64 + more).max(first.per_pixel as f64) as u64)
+    }
+}
+
+impl Measurement {
+    /// The picture's area.
+    pub fn whole(&self) -> Area {
+        Area::whole(self.reference.film.width(), self.reference.film.height())
+    }
+
+    /// How many runs were begun.
+    pub fn runs(&self) -> usize {
+        let sampled = self.series.iter().flat_map(|series| &series.points);
+        let most = sampled.map(|point| point.rmse.len()).max();
+        most.or(self.exact.as_ref().map(|exact| exact.cpu.len()))
+            .unwrap_or(0)
+    }
+}

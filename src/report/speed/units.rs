@@ -1,0 +1,104 @@
+//! How errors, times, numbers of samples and slopes are written.
+
+use super::{needed::Needed, statistics::PowerLaw};
+use crate::numbers;
+
+/// What stands for a number that is not known.
+pub const UNKNOWN: &str = "–";
+
+/// An error: whole fractions of light that somebody asks for as such, others with two digits.
+pub fn error(error: f64) -> String {
+    let inverse = 1.0 / error;
+    let is_step = (64.0..=65536.0).contains(&inverse) && inverse % 64.0 == 0.0;
+    match is_step {
+        true => format!("1/{inverse}"),
+        false => significant(error, 2),
+    }
+}
+
+/// A time in seconds or milliseconds, with so many digits.
+pub fn seconds(seconds: f64, digits: usize) -> String {
+    match seconds {
+        _ if seconds.is_nan() => UNKNOWN.to_owned(),
+        _ if seconds < 0.9995 => format!("{} ms", significant(seconds * 1e3, digits)),
+        _ => format!("{} s", significant(seconds, digits)),
+    }
+}
+
+/// How long an error takes: of what is extrapolated no more than two digits are worth reading.
+pub fn time(needed: &Needed, time: f64) -> String {
+    match needed.is_extrapolated {
+        true => format!("~{}", seconds(time, 2)),
+        false => seconds(time, 3),
+    }
+}
+
+/// The samples per pixel that an error takes; nothing of the exact method.
+pub fn samples(needed: &Needed) -> String {
+    match needed.per_pixel {
+        None => String::new(),
+        Some(count) if needed.is_extrapolated => format!("~{}", significant(count, 2)),
+        Some(count) => format!("{count}"),
+    }
+}
+
+/// A slope with its standard error.
+pub fn slope(fit: Option<PowerLaw>) -> String {
+    let signed = |number: f64| format!("{number:.3}").replace('-', "−");
+    match fit {
+        None => UNKNOWN.to_owned(),
+        Some(fit) => match fit.slope_error {
+            None => signed(fit.slope),
+            Some(error) => format!("{} ± {error:.3}", signed(fit.slope)),
+        },
+    }
+}
+
+/// A number of things.
+pub fn plural(count: usize, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}
+
+/// So many significant digits, zeros at the end included; what is very large or small has an exponent.
+fn significant(number: f64, digits: usize) -> String {
+    if number == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e7).contains(&number) {
+        return format!("{number:.1e}");
+    }
+    let rounded = numbers::significant(number, digits);
+    let before = libm::log10(rounded).floor() as i32 + 1;
+    let after = (digits as i32 - before).max(0) as usize;
+    format!("{rounded:.after$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_are_worth_reading() {
+        for (number, text) in [
+            (1.0 / 256.0, "1/256"),
+            (0.012_84, "0.013"),
+            (0.5, "0.50"),
+            (0.0, "0"),
+            (1e-6, "1.0e-6"),
+        ] {
+            assert_eq!(error(number), text);
+        }
+        for (time, digits, text) in [
+            (0.012_345, 3, "12.3 ms"),
+            (1.234_5, 3, "1.23 s"),
+            (0.434, 2, "430 ms"),
+            (0.000_12, 2, "0.12 ms"),
+            (f64::NAN, 3, "–"),
+        ] {
+            assert_eq!(seconds(time, digits), text);
+        }
+    }
+}

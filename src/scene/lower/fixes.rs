@@ -1,0 +1,119 @@
+//! Edits of fields and blocks as a whole.
+
+use super::{Lowering, block::Block};
+use crate::{
+    diagnostic::{Edit, Fix},
+    scene::{
+        example_beside,
+        schema::{Choice, Preset},
+    },
+    source::{SourceId, Sources, Span},
+    suggest,
+};
+
+/// Adds lines at the end of the file.
+pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -> Fix {
+    let text = sources.file.text();
+    let line_end = sources.file.line_end();
+    let apart = match text.ends_with('\n') || text.len() == sources.file.bom_len() {
+        true => "",
+        false => line_end,
+    };
+    let added = format!("{apart}{}", lines.replace('\n', line_end));
+    Fix::new(title, [Edit::insert(SourceId::File, text.len(), added)])
+}
+
+/// Of a thing that is there twice, keeps the first or the second one.
+pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sources) -> [Fix; 2] {
+    let ways = [("first", "second", second), ("second", "first", first)];
+    ways.map(|(kept, removed, span)| {
+        let title = format!("keep the {kept} `{name}`, remove the {removed}");
+        Fix::remove_whole(title, span, sources)
+    })
+}
+
+impl Lowering<'_> {
+    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their own.
+    pub(super) fn add_fields(
+        &self,
+        block: &Block<'_>,
+        title: impl Into<String>,
+        fields: &[String],
+    ) -> Option<Fix> {
+        if block.span.source != SourceId::File {
+            return None;
+        }
+        let inside = self.sources.text(block.span).strip_suffix('}')?;
+        let tight = inside.trim_end();
+        let gap = inside.get(tight.len()..)?;
+        let at = block.span.start + tight.len();
+        let line_end = self.sources.file.line_end();
+        let (end, added) = match gap.rsplit_once('\n') {
+            Some((_, indent)) => {
+                let last = tight.lines().next_back()?;
+                let deeper = match last.ends_with('{') {
+                    true => format!("{indent}  "),
+                    false => last.chars().take_while(|c| c.is_whitespace()).collect(),
+                };
+                let lines = fields.iter();
+                let lines = lines.map(|field| format!("{line_end}{deeper}{field}"));
+                (at, lines.collect())
+            }
+            None if tight.ends_with('{') => (at + gap.len(), format!(" {} ", fields.join("  "))),
+            None => (at + gap.len(), format!("  {} ", fields.join("  "))),
+        };
+        let place = Span::new(SourceId::File, at, end);
+        Some(Fix::new(title, [Edit::new(place, added)]))
+    }
+
+    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs, and nothing else stands
+    /// between the fields that go.
+    pub(super) fn one_of(
+        &self,
+        block: &Block<'_>,
+        choice: &Choice,
+        fields: [&str; 2],
+    ) -> impl Iterator<Item = Fix> {
+        let ways = fields.map(|field| {
+            let ways = choice.ways.iter().copied();
+            let (kept, removed): (Vec<&[&str]>, Vec<&[&str]>) =
+                ways.partition(|way| way.contains(&field));
+            let is_given = |name: &&str| block.given(name).is_some();
+            let is_missing = |name: &&str| {
+                let row = block.row.field(name);
+                row.is_some_and(|row| row.preset == Preset::Alternative) && !is_given(name)
+            };
+            let [mut kept, mut removed] = [kept.concat(), removed.concat()];
+            if kept.iter().any(is_missing) {
+                return None;
+            }
+            kept.retain(is_given);
+            removed.retain(is_given);
+            let places = removed.iter().filter_map(|name| block.given(name));
+            let whole = places.map(|given| given.field()).reduce(Span::to)?;
+            let within = block.given.iter().flatten();
+            let within =
+                within.filter(|it| whole.start <= it.name.start && it.name.end <= whole.end);
+            let title = format!("keep {}, remove {}", quoted(&kept), quoted(&removed));
+            let fix = || Fix::remove_whole(title, whole, self.sources);
+            (within.count() == removed.len()).then(fix)
+        });
+        ways.into_iter().flatten()
+    }
+}
+
+/// Names in a title.
+pub(super) fn quoted(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    suggest::list(names.iter().map(String::as_str))
+}
+
+/// Fields with values that they can have beside those that are given.
+pub(super) fn examples(block: &Block<'_>, names: &[&str]) -> Vec<String> {
+    let rows = names.iter().filter_map(|name| block.row.field(name));
+    rows.map(|row| {
+        let value = example_beside(row, &|other| block.given(other)?.value);
+        format!("{} {value}", row.name)
+    })
+    .collect()
+}

@@ -1,0 +1,307 @@
+//! A ray tracer as a class writes it, from the formulas of a textbook (Suffern 2007, "Ray Tracing from the Ground Up", chapters 3, 4, 9
+//! and 19), in plain `f64`. It shares nothing with Pinhole, so that its pictures can judge the grading of pictures.
+//!
+//! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes. What a program may do wrong are
+//! its fields; the mistakes that a class makes stand in `mistakes`.
+
+use glam::{DVec3, dvec3};
+use image::{Rgb, RgbImage};
+use rand::{RngExt, SeedableRng, rngs::SmallRng};
+
+/// A thing of a scene. Colours are in sRGB bytes.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// Centre and radius.
+    Sphere(DVec3, f64),
+    /// The base's left end, its right end, and the apex.
+    Triangle([DVec3; 3]),
+    /// The least corner and the greatest one.
+    Box(DVec3, DVec3),
+    /// The plane at this height, with squares of this side and a second colour.
+    Board(f64, f64, [u8; 3]),
+}
+
+/// A shape, its name and its colour.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// In the scene's text.
+    pub name: &'static str,
+    /// What it is.
+    pub shape: Shape,
+    /// Of a board, the first one.
+    pub color: [u8; 3],
+}
+
+/// How light becomes a byte.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Encoding {
+    /// By the curve of sRGB.
+    Srgb,
+    /// Not at all.
+    None,
+    /// By this curve twice.
+    Twice,
+    /// By one over a power.
+    Power(f64),
+}
+
+/// Where the samples of a pixel lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sampling {
+    /// An even grid.
+    Regular,
+    /// Independent ones.
+    Random,
+    /// One in each cell of a grid.
+    Jittered,
+    /// The points (i/n, φ₂(i)), the same in each pixel.
+    Hammersley,
+}
+
+/// A scene, and what the program does with it.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Of the picture, in pixels.
+    pub size: [u32; 2],
+    /// Where no object is seen.
+    pub background: [u8; 3],
+    /// Of the camera.
+    pub eye: DVec3,
+    /// Of the camera.
+    pub lookat: DVec3,
+    /// Of the camera.
+    pub up: DVec3,
+    /// In radians.
+    pub roll: f64,
+    /// Of the view plane; the window is two metres tall.
+    pub distance: f64,
+    /// Of the far plane, in depth.
+    pub far: f64,
+    /// In the order of the text.
+    pub objects: Vec<Object>,
+    /// Method and seed.
+    pub sampling: Sampling,
+    /// A square number of samples in each pixel.
+    pub samples: u32,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// Whether the window is two metres wide, not tall.
+    pub is_wide: bool,
+    /// Added to each sample's place, in pixels.
+    pub offset: f64,
+    /// Whether what lies behind the eye is seen.
+    pub sees_behind: bool,
+    /// Whether the last object that is hit is seen, not the nearest.
+    pub is_painter: bool,
+    /// Whether the board's coordinates are cut off, not rounded down.
+    pub is_truncated: bool,
+    /// Added to the number of a square.
+    pub parity: i64,
+    /// What the picture's light is encoded by.
+    pub encoding: Encoding,
+    /// Whether the mean is of encoded colours.
+    pub averages_encoded: bool,
+    /// Whether bytes are cut off, not rounded.
+    pub cuts_bytes: bool,
+    /// What is done to the picture at the end.
+    pub afterwards: Option<fn(&RgbImage) -> RgbImage>,
+}
+
+impl Program {
+    /// The picture.
+    pub fn render(&self) -> RgbImage {
+        let [width, height] = self.size;
+        let w = (self.eye - self.lookat).normalize();
+        let u = self.up.cross(w).normalize();
+        let v = w.cross(u);
+        let (sin, cos) = libm::sincos(self.roll);
+        let (u, v) = (cos * u - sin * v, sin * u + cos * v);
+        let pixel = 2.0 / f64::from(if self.is_wide { width } else { height });
+        let mut random = SmallRng::seed_from_u64(self.seed);
+        let picture = RgbImage::from_fn(width, height, |column, row| {
+            let mut sum = DVec3::ZERO;
+            for index in 0..self.samples {
+                let [dx, dy] = self.place(index, &mut random);
+                let x = pixel * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
+                let y = pixel * (f64::from(height) / 2.0 - f64::from(row) - dy - self.offset);
+                let ray = (x * u + y * v - self.distance * w).normalize();
+                let color = self.trace(ray, -w).map(|byte| f64::from(byte) / 255.0);
+                sum += DVec3::from(match self.averages_encoded {
+                    true => color,
+                    false => color.map(|part| self.decode(part)),
+                });
+            }
+            let mean = (sum / f64::from(self.samples)).to_array();
+            Rgb(mean.map(|part| {
+                let encoded = match self.averages_encoded {
+                    true => part,
+                    false => self.encode(part),
+                };
+                let half = if self.cuts_bytes { 0.0 } else { 0.5 };
+                (255.0 * encoded + half) as u8
+            }))
+        });
+        match self.afterwards {
+            Some(change) => change(&picture),
+            None => picture,
+        }
+    }
+
+    /// The light of a colour: flat colours come out as they were written, but where light is not encoded or encoded twice.
+    fn decode(&self, part: f64) -> f64 {
+        match self.encoding {
+            Encoding::Power(power) => libm::pow(part, power),
+            _ if part <= 0.04045 => part / 12.92,
+            _ => libm::pow((part + 0.055) / 1.055, 2.4),
+        }
+    }
+
+    fn encode(&self, light: f64) -> f64 {
+        let srgb = |light: f64| match light <= 0.003_130_8 {
+            true => 12.92 * light,
+            false => 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055,
+        };
+        match self.encoding {
+            Encoding::Srgb => srgb(light),
+            Encoding::None => light,
+            Encoding::Twice => srgb(srgb(light)),
+            Encoding::Power(power) => libm::pow(light, 1.0 / power),
+        }
+    }
+
+    fn place(&self, index: u32, random: &mut SmallRng) -> [f64; 2] {
+        let side = self.samples.isqrt();
+        let (n, cells) = (f64::from(self.samples), f64::from(side));
+        let [i, j] = [index % side, index / side].map(f64::from);
+        match self.sampling {
+            Sampling::Regular => [(i + 0.5) / cells, (j + 0.5) / cells],
+            Sampling::Random => [random.random(), random.random()],
+            Sampling::Jittered => [i, j].map(|cell| (cell + random.random::<f64>()) / cells),
+            Sampling::Hammersley => {
+                let inverse = f64::from(index.reverse_bits()) / 4_294_967_296.0;
+                [(f64::from(index) + 0.5) / n, inverse]
+            }
+        }
+    }
+
+    /// The colour in a direction.
+    fn trace(&self, ray: DVec3, view: DVec3) -> [u8; 3] {
+        let mut nearest = f64::INFINITY;
+        let mut color = self.background;
+        for object in &self.objects {
+            let hits = self.hits(&object.shape, ray);
+            for t in hits.into_iter().flatten() {
+                let is_before = self.sees_behind || t > 1e-9;
+                // What lies behind the eye counts as far away as it is.
+                let depth = t.abs() * ray.dot(view);
+                if is_before && depth < self.far && (t.abs() < nearest || self.is_painter) {
+                    nearest = t.abs();
+                    color = self.color(object, self.eye + t * ray);
+                }
+            }
+        }
+        color
+    }
+
+    fn color(&self, object: &Object, at: DVec3) -> [u8; 3] {
+        let Shape::Board(_, square, second) = object.shape else {
+            return object.color;
+        };
+        let number = |x: f64| match self.is_truncated {
+            true => (x / square) as i64,
+            false => (x / square).floor() as i64,
+        };
+        match (number(at.x) + number(at.z) + self.parity) % 2 {
+            0 => object.color,
+            _ => second,
+        }
+    }
+
+    /// The distances at which a ray meets a shape, the nearest one last, so that a painter sees it.
+    fn hits(&self, shape: &Shape, ray: DVec3) -> [Option<f64>; 2] {
+        match *shape {
+            Shape::Sphere(center, radius) => {
+                let from = self.eye - center;
+                let (b, c) = (from.dot(ray), from.length_squared() - radius * radius);
+                let root = (b * b - c).sqrt();
+                [Some(-b + root), Some(-b - root)].map(|t| t.filter(|t| !t.is_nan()))
+            }
+            Shape::Triangle([a, b, c]) => {
+                let (ab, ac) = (b - a, c - a);
+                let normal = ab.cross(ac);
+                let t = (a - self.eye).dot(normal) / ray.dot(normal);
+                let at = self.eye + t * ray - a;
+                let area = normal.length_squared();
+                let beta = at.cross(ac).dot(normal) / area;
+                let gamma = ab.cross(at).dot(normal) / area;
+                let is_in = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+                [Some(t).filter(|_| is_in), None]
+            }
+            Shape::Box(least, greatest) => {
+                let (a, b) = ((least - self.eye) / ray, (greatest - self.eye) / ray);
+                let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+                [leave, enter].map(|t| Some(t).filter(|_| enter <= leave))
+            }
+            Shape::Board(y, ..) => {
+                let t = (y - self.eye.y) / ray.y;
+                [Some(t).filter(|t| t.is_finite()), None]
+            }
+        }
+    }
+
+    /// The scene's text, for Pinhole.
+    pub fn scene(&self) -> String {
+        let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
+        let vector = |v: DVec3| format!("({}, {}, {})", v.x, v.y, v.z);
+        let [width, height] = self.size;
+        let far = match self.far.is_finite() {
+            true => format!("  far {}", self.far),
+            false => String::new(),
+        };
+        let mut text = format!(
+            "image {{ width {width}  height {height}  background {} }}\n\
+             camera {{ eye {}  lookat {}  up {}  roll {}deg  d {}{far} }}\n",
+            hex(self.background),
+            vector(self.eye),
+            vector(self.lookat),
+            vector(self.up),
+            self.roll.to_degrees().round(),
+            self.distance,
+        );
+        for object in &self.objects {
+            let (kind, fields) = match object.shape {
+                Shape::Sphere(center, radius) => (
+                    "sphere",
+                    format!("center {}  radius {radius}", vector(center)),
+                ),
+                Shape::Triangle([a, b, c]) => {
+                    let (centroid, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a));
+                    let sides = dvec3(a.distance(c), b.distance(c), a.distance(b));
+                    let [centroid, normal, sides] = [centroid, normal, sides].map(vector);
+                    (
+                        "triangle",
+                        format!("centroid {centroid}  normal {normal}  sides {sides}"),
+                    )
+                }
+                Shape::Box(least, greatest) => {
+                    let (center, size) = ((least + greatest) / 2.0, greatest - least);
+                    (
+                        "box",
+                        format!("center {}  size {}", vector(center), vector(size)),
+                    )
+                }
+                Shape::Board(y, square, second) => {
+                    let colors = format!("({}, {})", hex(object.color), hex(second));
+                    text += &format!(
+                        "checkerboard {} {{ y {y}  square {square}  colors {colors} }}\n",
+                        object.name
+                    );
+                    continue;
+                }
+            };
+            let color = hex(object.color);
+            text += &format!("{kind} {} {{ {fields}  color {color} }}\n", object.name);
+        }
+        text
+    }
+}
