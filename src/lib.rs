@@ -61,6 +61,7 @@ pub mod film;
 
 pub mod format;
 pub mod grade;
+#[cfg(feature = "cli")]
 pub mod grading;
 pub mod inspect;
 pub mod probe;

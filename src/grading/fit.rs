@@ -3,8 +3,8 @@
 //! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
 //! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can.
 
-/// The difference below which a square counts as one: a step of 8-bit sRGB.
-const SMALL: f64 = super::score::STEP;
+/// A move by less than this part of a step is the last one.
+const CLOSE: f64 = 0.01;
 
 /// Numbers that were fitted.
 #[derive(Clone, Debug)]
@@ -22,19 +22,80 @@ pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `differences` gives none for numbers that cannot be.
-pub fn fit(
+/// What is to be small: the sum of squares of what is below a bend, and of absolute differences beyond it (Huber, Robust estimation of a location
+/// parameter, 1964).
+fn loss(differences: &[f64], bend: f64) -> f64 {
+    differences.iter().map(|d| weight(*d, bend) * d * d).sum()
+}
+
+/// The weight of a square.
+fn weight(difference: f64, bend: f64) -> f64 {
+    (bend / difference.abs()).min(1.0)
+}
+
+/// What a model makes of numbers.
+pub trait Trial {
+    /// Its differences from a picture.
+    fn differences(&self) -> Vec<f64>;
+
+    /// The standard deviations that are to be expected of them.
+    fn deviations(&self) -> Vec<f64>;
+}
+
+/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives none for numbers that cannot be.
+///
+/// By squares first, which have one valley; then in standard deviations, of which more than one counts by its absolute value, so that what the numbers
+/// cannot explain does not draw them away from what they can.
+pub fn fit<T: Trial>(
     start: Vec<f64>,
     steps: &[f64],
-    rounds: usize,
-    differences: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
+    rounds: [usize; 2],
+    trial: &dyn Fn(&[f64]) -> Option<T>,
 ) -> Option<Fitted> {
-    let count = start.len();
-    let mut numbers = start;
+    let even = vec![1.0; trial(&start)?.differences().len()];
+    let mut best = round(start, steps, rounds[0], f64::INFINITY, &even, trial)?;
+    if rounds[1] > 0 {
+        let deviations = trial(&best.0)?.deviations();
+        best = round(best.0, steps, rounds[1], 1.0, &deviations, trial)?;
+    }
+    let (numbers, normal) = best;
+    let left = absolute(&trial(&numbers)?.differences());
+    let errors = (0..numbers.len())
+        .map(|i| {
+            let mut unit = vec![0.0; numbers.len()];
+            unit[i] = 1.0;
+            let inverse = solve(normal.clone(), unit).map_or(0.0, |column| column[i].max(0.0));
+            steps[i].abs() * inverse.sqrt()
+        })
+        .collect();
+    Some(Fitted {
+        numbers,
+        left,
+        errors,
+    })
+}
+
+/// Rounds of Levenberg and Marquardt's method from a start: the numbers, and the normal matrix there.
+fn round<T: Trial>(
+    mut numbers: Vec<f64>,
+    steps: &[f64],
+    rounds: usize,
+    bend: f64,
+    deviations: &[f64],
+    trial: &dyn Fn(&[f64]) -> Option<T>,
+) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let count = numbers.len();
+    let differences = |numbers: &[f64]| {
+        let differences = trial(numbers)?.differences().into_iter();
+        let scaled = differences
+            .zip(deviations)
+            .map(|(difference, deviation)| difference / deviation);
+        Some(scaled.collect::<Vec<f64>>())
+    };
     let mut now = differences(&numbers)?;
-    let mut left = absolute(&now);
-    let mut damping = 1e-3;
+    let mut left = loss(&now, bend);
     let mut normal = vec![vec![0.0; count]; count];
+    let mut damping = 1e-3;
     for _ in 0..rounds {
         let mut slopes = Vec::with_capacity(count);
         for i in 0..count {
@@ -46,21 +107,13 @@ pub fn fit(
             let (by, other) = varied(steps[i]).or_else(|| varied(-steps[i]))?;
             // In units of the step, so that all numbers are alike.
             let sign = steps[i] / by;
-            slopes.push(
-                other
-                    .iter()
-                    .zip(&now)
-                    .map(|(b, a)| sign * (b - a))
-                    .collect::<Vec<_>>(),
-            );
+            let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
+            slopes.push(slope.collect::<Vec<_>>());
         }
-        let weights: Vec<f64> = now.iter().map(|d| 1.0 / d.abs().max(SMALL)).collect();
+        let weights: Vec<f64> = now.iter().map(|d| weight(*d, bend)).collect();
         let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter()
-                .zip(b)
-                .zip(&weights)
-                .map(|((a, b), weight)| a * b * weight)
-                .sum()
+            let terms = a.iter().zip(b).zip(&weights);
+            terms.map(|((a, b), weight)| a * b * weight).sum()
         };
         for i in 0..count {
             for j in 0..count {
@@ -68,7 +121,7 @@ pub fn fit(
             }
         }
         let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
-        let mut is_better = false;
+        let mut is_moving = false;
         for _ in 0..4 {
             let mut damped = normal.clone();
             for (i, row) in damped.iter_mut().enumerate() {
@@ -77,41 +130,23 @@ pub fn fit(
             let Some(moves) = solve(damped, gradient.clone()) else {
                 break;
             };
-            let moved: Vec<f64> = numbers
-                .iter()
-                .zip(steps)
-                .zip(&moves)
-                .map(|((x, step), by)| x + step * by)
-                .collect();
+            let moved = numbers.iter().zip(steps).zip(&moves);
+            let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
             if let Some(other) = differences(&moved)
-                && absolute(&other) < left
+                && loss(&other, bend) < left
             {
-                let gain = 1.0 - absolute(&other) / left;
-                (left, now, numbers) = (absolute(&other), other, moved);
+                (left, now, numbers) = (loss(&other, bend), other, moved);
                 damping *= 0.1;
-                is_better = gain > 1e-3;
+                is_moving = moves.iter().any(|by| by.abs() > CLOSE);
                 break;
             }
             damping *= 10.0;
         }
-        if !is_better {
+        if !is_moving {
             break;
         }
     }
-    // The weights are 1/SMALL where all is right, so the normal matrix is that of errors of the variance SMALL²/12 times 1/SMALL.
-    let errors = (0..count)
-        .map(|i| {
-            let mut unit = vec![0.0; count];
-            unit[i] = 1.0;
-            let inverse = solve(normal.clone(), unit).map_or(0.0, |column| column[i].max(0.0));
-            steps[i].abs() * (inverse * SMALL / 12.0).sqrt()
-        })
-        .collect();
-    Some(Fitted {
-        numbers,
-        left,
-        errors,
-    })
+    Some((numbers, normal))
 }
 
 /// Solves a small system of linear equations by elimination with the largest pivot.
@@ -146,6 +181,18 @@ fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
+    struct Line(Vec<f64>);
+
+    impl Trial for Line {
+        fn differences(&self) -> Vec<f64> {
+            self.0.clone()
+        }
+
+        fn deviations(&self) -> Vec<f64> {
+            vec![1e-3; self.0.len()]
+        }
+    }
+
     #[test]
     fn a_line_is_found_among_points_of_which_some_are_elsewhere() {
         let points: Vec<f64> = (0..40)
@@ -157,11 +204,11 @@ mod tests {
                 }
             })
             .collect();
-        let differences = |numbers: &[f64]| {
+        let trial = |numbers: &[f64]| {
             let line = |(x, y): (usize, &f64)| numbers[0] + numbers[1] * x as f64 - y;
-            Some(points.iter().enumerate().map(line).collect())
+            Some(Line(points.iter().enumerate().map(line).collect()))
         };
-        let fitted = fit(vec![0.0, 0.0], &[0.1, 0.1], 30, &differences).unwrap();
+        let fitted = fit(vec![0.0, 0.0], &[0.1, 0.1], [30, 30], &trial).unwrap();
         assert!(
             (fitted.numbers[0] - 2.0).abs() < 0.02 && (fitted.numbers[1] - 0.25).abs() < 0.002,
             "{fitted:?}"

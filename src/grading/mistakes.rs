@@ -1,10 +1,10 @@
 //! The table of mistakes that a class makes: a word for programs, what it is, the way out, and what it does.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
-    candidate::{Candidate, Cause, Look, Named},
-    textbook::Visible,
+    candidate::{Average, Candidate, Cause, Look, Named},
+    textbook::{Behind, Squares, Visible},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -22,8 +22,19 @@ pub struct Row {
     pub help: &'static str,
     /// What it does, if it can do anything.
     pub change: fn(&mut Candidate) -> Option<()>,
-    /// Whether it moves nothing, so that it shows where colours meet and nowhere else.
-    pub is_of_edges: bool,
+    /// Where it shows.
+    pub shows: Shows,
+}
+
+/// Where a mistake shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// In areas of one colour.
+    InAreas,
+    /// Where colours meet, and nowhere else: it moves nothing by a pixel.
+    AtEdges,
+    /// In both.
+    Everywhere,
 }
 
 /// A row about an object.
@@ -68,7 +79,7 @@ const fn row(
         message,
         help,
         change,
-        is_of_edges: false,
+        shows: Shows::InAreas,
     }
 }
 
@@ -83,7 +94,7 @@ const fn edge(
         message,
         help,
         change,
-        is_of_edges: true,
+        shows: Shows::AtEdges,
     }
 }
 
@@ -93,19 +104,19 @@ pub const ROWS: &[Row] = &[
         "mirrored",
         "the picture is mirrored: left and right are exchanged",
         "u = (up × w)/|up × w| points to the right; w × up points to the left",
-        |c| place(c, |p, size| DVec2::new(size.x - p.x, p.y)),
+        |c| layout(c, [true, false, false]),
     ),
     row(
         "upside_down",
         "the picture is upside down: top and bottom are exchanged",
         "rows are counted from the top, and y_v = s (height/2 − py) falls as they grow",
-        |c| place(c, |p, size| DVec2::new(p.x, size.y - p.y)),
+        |c| layout(c, [false, true, false]),
     ),
     row(
         "turned_180",
         "the picture is turned by 180 degrees",
         "the view plane lies before the eye, at −d w, so the picture stands upright",
-        |c| place(c, |p, size| size - p),
+        |c| layout(c, [true, true, false]),
     ),
     row(
         "transposed",
@@ -113,7 +124,7 @@ pub const ROWS: &[Row] = &[
         "a pixel's index is row · width + column",
         |c| {
             (c.scene.image.width == c.scene.image.height).then_some(())?;
-            place(c, |p, _| DVec2::new(p.y, p.x))
+            layout(c, [false, false, true])
         },
     ),
     row(
@@ -122,28 +133,27 @@ pub const ROWS: &[Row] = &[
         WINDOW,
         |c| {
             (c.scene.image.width != c.scene.image.height).then_some(())?;
-            place(c, |p, size| {
-                DVec2::new(size.x / 2.0 + (p.x - size.x / 2.0) * size.y / size.x, p.y)
-            })
+            c.behaviour.is_squeezed = true;
+            Some(())
         },
     ),
     edge(
         "half_pixel",
         "samples lie half a pixel too far up and left: around a pixel's corner, not its middle",
         "the middle of the pixel in column x and row y is at (x + 1/2, y + 1/2)",
-        |c| place(c, |p, _| p - 0.5),
+        |c| shifted(c, [-1, -1]),
     ),
     edge(
         "half_pixel",
         "samples lie half a pixel too far down and right",
         "the middle of the pixel in column x and row y is at (x + 1/2, y + 1/2)",
-        |c| place(c, |p, _| p + 0.5),
+        |c| shifted(c, [1, 1]),
     ),
     edge(
         "half_pixel",
         "samples lie half a pixel too far down and left",
         "the middle of the pixel in column x and row y is at (x + 1/2, y + 1/2)",
-        |c| place(c, |p, _| p + DVec2::new(-0.5, 0.5)),
+        |c| shifted(c, [-1, 1]),
     ),
     row(
         "channels",
@@ -237,26 +247,25 @@ pub const ROWS: &[Row] = &[
         "averaged_encoded",
         "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark",
         AVERAGE,
-        |c| averaged(c, linear_to_srgb, srgb_to_linear),
+        |c| averaged(c, Average::Encoded, srgb_to_linear),
     ),
     edge(
         "gamma_22_averaged",
         "colours were decoded with the power 2.2 and encoded with 1/2.2, which is near sRGB but not it: flat colours are right, and edges a little off",
         ENCODE,
         |c| {
-            averaged(
-                c,
-                |light| libm::pow(linear_to_srgb(light), 2.2),
-                |mean| srgb_to_linear(libm::pow(mean.max(0.0), 1.0 / 2.2)),
-            )
+            averaged(c, Average::Power22, |mean| {
+                srgb_to_linear(libm::pow(mean.max(0.0), 1.0 / 2.2))
+            })
         },
     ),
-    edge(
-        "cut_off",
-        "bytes are cut off instead of rounded, as int(255 c) does: they are too dark by up to a step",
-        "a channel's byte is round(255 c), which is floor(255 c + 0.5), of its encoded colour c",
-        |c| look(c, Look::CutOff),
-    ),
+    Row {
+        id: "cut_off",
+        message: "bytes are cut off instead of rounded, as int(255 c) does: they are too dark by up to a step",
+        help: "a channel's byte is round(255 c), which is floor(255 c + 0.5), of its encoded colour c",
+        change: |c| look(c, Look::CutOff),
+        shows: Shows::Everywhere,
+    },
     row(
         "depth_ignored",
         "of several objects that a ray hits the last one in the file is seen, though another one may be nearer",
@@ -279,34 +288,46 @@ pub const ROWS: &[Row] = &[
         "behind_seen",
         "what lies behind the eye is seen, as the floor in the sky: hits with t < 0 count",
         "a hit counts only if t > 0",
-        |c| {
-            c.behaviour.behind = true;
-            Some(())
-        },
+        |c| behind(c, Behind::First),
+    ),
+    row(
+        "behind_seen",
+        "what lies behind the eye is seen, as the floor in the sky, where nothing before it is nearer: hits with t < 0 count",
+        "a hit counts only if t > 0",
+        |c| behind(c, Behind::ByDistance),
     ),
     row(
         "board_truncated",
         "coordinates on the checkerboard are truncated towards 0, so the squares on both sides of an axis are one",
         SQUARES,
-        |c| board(c, |x, z| (x.trunc() + z.trunc()).rem_euclid(2.0) == 0.0),
+        |c| squares(c, Squares::Truncated),
     ),
     row(
         "board_remainder",
         "a negative odd sum of a checkerboard's coordinates is taken for an even one",
         SQUARES,
-        |c| board(c, |x, z| (x.floor() + z.floor()) % 2.0 != 1.0),
+        |c| squares(c, Squares::SignedSum),
     ),
     row(
         "board_remainder",
         "a checkerboard's coordinates, one of them negative, are compared by their remainders",
         SQUARES,
-        |c| board(c, |x, z| x.floor() % 2.0 == z.floor() % 2.0),
+        |c| squares(c, Squares::SignedParts),
     ),
     row(
         "board_swapped",
         "the checkerboard's colours are exchanged",
         SQUARES,
-        |c| board(c, |x, z| (x.floor() + z.floor()).rem_euclid(2.0) == 1.0),
+        |c| {
+            let mut is_swapped = None;
+            for object in &mut c.scene.objects {
+                if let Shape::Checkerboard(board) = &mut object.shape {
+                    board.colors.reverse();
+                    is_swapped = Some(());
+                }
+            }
+            is_swapped
+        },
     ),
     row(
         "roll_sign",
@@ -459,8 +480,15 @@ pub const OBJECT_ROWS: &[ObjectRow] = &[
     },
 ];
 
-fn place(c: &mut Candidate, to: fn(DVec2, DVec2) -> DVec2) -> Option<()> {
-    c.behaviour.places.push(to);
+fn shifted(c: &mut Candidate, half_pixels: [i32; 2]) -> Option<()> {
+    c.layout.half_pixels = half_pixels;
+    Some(())
+}
+
+fn layout(c: &mut Candidate, [mirrored, upside_down, transposed]: [bool; 3]) -> Option<()> {
+    c.layout.is_mirrored ^= mirrored;
+    c.layout.is_upside_down ^= upside_down;
+    c.layout.is_transposed ^= transposed;
     Some(())
 }
 
@@ -487,8 +515,8 @@ fn encoded_gray(c: &mut Candidate, weights: [f64; 3]) -> Option<()> {
     Some(())
 }
 
-fn averaged(c: &mut Candidate, to: fn(f64) -> f64, back: fn(f64) -> f64) -> Option<()> {
-    c.behaviour.average = to;
+fn averaged(c: &mut Candidate, average: Average, back: fn(f64) -> f64) -> Option<()> {
+    c.average = average;
     c.looks.insert(0, Look::Curve(back));
     Some(())
 }
@@ -499,10 +527,15 @@ fn visible(c: &mut Candidate, visible: Visible) -> Option<()> {
     Some(())
 }
 
-fn board(c: &mut Candidate, is_first: fn(f64, f64) -> bool) -> Option<()> {
+fn behind(c: &mut Candidate, behind: Behind) -> Option<()> {
+    c.behaviour.behind = behind;
+    Some(())
+}
+
+fn squares(c: &mut Candidate, squares: Squares) -> Option<()> {
     let is_board = |object: &crate::scene::Object| matches!(object.shape, Shape::Checkerboard(_));
     c.scene.objects.iter().any(is_board).then_some(())?;
-    c.behaviour.is_first = is_first;
+    c.behaviour.squares = squares;
     Some(())
 }
 

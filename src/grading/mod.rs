@@ -23,24 +23,17 @@ use serde_json::{Map, Value, json};
 
 use crate::{
     area::Area,
-    color::{Color, linear_to_srgb},
     film::{Comparison, Film},
-    render::{Control, RenderError, render_exact},
-    scene::{Scene, Shape},
-    threads,
-    tracer::World,
+    render::{Control, RenderError},
+    scene::Scene,
 };
 
 use self::{
-    candidate::Candidate,
-    mistakes::ROWS,
-    score::{FLAT, Model, STEP, Score, around, score},
+    candidate::{Average, Candidate, exact_moments},
+    score::{Model, Score, score, strays},
     select::{Found, Search},
     textbook::Moments,
 };
-
-/// A flat pixel is wrong if it is off by more than this, in steps: half of one is rounding, and half of that another way to decode.
-const WRONG: f64 = 0.75;
 
 /// What a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,19 +113,17 @@ pub struct Verdict {
 pub struct Reference<'a> {
     scene: &'a Scene,
     part: Area,
-    exact: &'a Film,
-    /// The mean of squares, made when it is asked for.
-    squares: OnceLock<Film>,
+    /// The exact means and variances, made when they are asked for.
+    moments: OnceLock<Moments>,
 }
 
 impl<'a> Reference<'a> {
     /// From the exact picture of the part.
-    pub fn new(scene: &'a Scene, part: Area, exact: &'a Film) -> Self {
+    pub fn new(scene: &'a Scene, part: Area) -> Self {
         Self {
             scene,
             part,
-            exact,
-            squares: OnceLock::new(),
+            moments: OnceLock::new(),
         }
     }
 
@@ -150,59 +141,42 @@ impl<'a> Reference<'a> {
         if comparison.is_equal() {
             return Ok(Verdict::of(Kind::Right, self.scene));
         }
-        let squares = match self.squares.get() {
-            Some(squares) => squares,
+        let moments = match self.moments.get() {
+            Some(moments) => moments,
             None => {
-                let squares = exact_part(&squared(self.scene), self.part, control)?;
-                self.squares.get_or_init(|| squares)
+                let moments = exact_moments(self.scene, Average::Light, self.part, control.cancel)
+                    .ok_or(RenderError::Cancelled)?;
+                self.moments.get_or_init(|| moments)
             }
         };
-        threads::install(control.threads, || judged(film, self, squares, control))?
+        judged(film, self, moments, control)
     }
 }
 
 fn judged(
     film: &Film,
     reference: &Reference,
-    squares: &Film,
+    moments: &Moments,
     control: &Control,
 ) -> Result<Verdict, RenderError> {
-    let Reference {
-        scene, part, exact, ..
-    } = *reference;
-    let variance = |(mean, square): (&[f64; 3], &[f64; 3])| {
-        [0, 1, 2].map(|i| (square[i] - mean[i] * mean[i]).max(0.0))
-    };
-    let variance = exact
-        .pixels()
-        .iter()
-        .zip(squares.pixels())
-        .map(variance)
-        .collect();
+    let Reference { scene, part, .. } = *reference;
     let model = Model {
-        moments: Moments {
-            mean: exact.pixels().to_vec(),
-            variance,
-        },
-        from: None,
+        moments: moments.clone(),
+        doubt: Vec::new(),
         cut: 0.0,
     };
     let width = film.width() as usize;
-    let noise = score(film.pixels(), &model, width);
+    let noise = score(film.pixels(), &model);
     let search = Search::new(scene, film, part, control.cancel);
-    let strays = strays(film.pixels(), &model, width);
-    let right = Candidate::right(scene);
-    let found = match strays.0 {
+    let strays = strays(film.pixels(), &model, width, false);
+    let found = match strays.len() {
         // All that differs lies where colours meet. Only what shows there can be wrong.
-        0 => of_edges(&search, right)?,
-        _ => match search.judged(right) {
-            Some(right) => Some(search.run(right)?),
-            None => None,
-        },
+        0 => search.with_edges(Candidate::right(scene))?,
+        _ => search.run()?,
     };
     let mut verdict = match found {
         Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
-        _ if strays.1 == 0 => Verdict {
+        _ if score::strays(film.pixels(), &model, width, true).is_empty() => Verdict {
             samples: Some(noise.samples),
             ..Verdict::of(Kind::Noise, scene)
         },
@@ -212,47 +186,15 @@ fn judged(
     Ok(verdict)
 }
 
-/// The best of the rows that show only where colours meet, if one is better than noise.
-fn of_edges(search: &Search, right: Candidate) -> Result<Option<Found>, RenderError> {
-    let Some(null) = search.judged(right.clone()) else {
-        return Ok(None);
-    };
-    let rows = ROWS.iter().filter(|row| row.is_of_edges);
-    let judged = rows.filter_map(|row| search.judged(right.with(row.named())?));
-    let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
-    // What explains nothing of the squared difference explains the tails of noise.
-    Ok(best.filter(|best| best.cost < null.cost && best.score.squares < null.score.squares))
-}
-
-/// How many pixels of one colour have another, and how many of these have none of several colours beside them: an edge that is off by less than half a pixel
-/// reaches no farther.
-fn strays(seen: &[[f64; 3]], model: &Model, width: usize) -> (usize, usize) {
-    let variance = &model.moments.variance;
-    let around = around(variance, width);
-    let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
-    let is_off = |at: &usize| {
-        let pairs = seen[*at].iter().zip(&model.moments.mean[*at]);
-        pairs.into_iter().any(|(seen, mean)| {
-            (linear_to_srgb(*seen) - linear_to_srgb(*mean)).abs() > WRONG * STEP
-        })
-    };
-    let strays: Vec<usize> = (0..seen.len())
-        .filter(|&at| is_flat(&variance[at]))
-        .filter(is_off)
-        .collect();
-    (
-        strays.len(),
-        strays.iter().filter(|&&at| is_flat(&around[at])).count(),
-    )
-}
-
 /// The verdict on a picture with mistakes.
 fn wrong(search: &Search, found: &Found) -> Verdict {
     let scene = search.scene;
     let named = &found.candidate.named;
     let beyond = |score: &Score| (score.squares - score.noise).max(0.0);
     let mut before = Candidate::right(scene);
-    let all = search.judge(before.clone()).score.squares;
+    let all = search
+        .judged(before.clone())
+        .map_or(0.0, |found| found.score.squares);
     let all = (all - found.score.noise).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
@@ -263,7 +205,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         let is_last = after.named.len() == named.len();
         let score = match is_last {
             true => Some(found.score.clone()),
-            false => Some(search.judge(after.clone()).score),
+            false => search.judged(after.clone()).map(|found| found.score),
         };
         let now = score.map_or(left, |score| (score.squares - found.score.noise).max(0.0));
         let set = parameters::arguments(&before.scene, &after.scene);
@@ -286,7 +228,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (found.score.outliers * found.score.is_outlier.len() as f64 >= 1.0)
+    let rest = (!search.strays(&found.candidate).is_empty())
         .then(|| (beyond(&found.score) / all).min(1.0));
     let of = |object: usize| {
         let (own, other) = (&scene.objects[object], &before.scene.objects[object]);
@@ -393,30 +335,4 @@ pub fn json(verdict: &Verdict) -> Map<String, Value> {
     }
     fields.insert("limited".to_owned(), json!(verdict.is_cut));
     fields
-}
-
-/// The exact picture of a part of a scene's.
-fn exact_part(scene: &Scene, part: Area, control: &Control) -> Result<Film, RenderError> {
-    let world = World::new_unless(scene, control.cancel)?;
-    Ok(render_exact(&world, part, control)?.film)
-}
-
-/// A scene whose colours are the squares of another's, in linear light: its exact picture is the mean of squares.
-fn squared(scene: &Scene) -> Scene {
-    let square = |color: Color| Color {
-        srgb: color
-            .to_linear()
-            .map(|light| 255.0 * linear_to_srgb(light * light)),
-    };
-    let mut scene = scene.clone();
-    scene.image.background = square(scene.image.background);
-    for object in &mut scene.objects {
-        match &mut object.shape {
-            Shape::Sphere(sphere) => sphere.color = square(sphere.color),
-            Shape::Triangle(triangle) => triangle.color = square(triangle.color),
-            Shape::Box(cuboid) => cuboid.color = square(cuboid.color),
-            Shape::Checkerboard(board) => board.colors = board.colors.map(square),
-        }
-    }
-    scene
 }

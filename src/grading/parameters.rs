@@ -205,8 +205,8 @@ impl Parameter {
             },
         };
         let step = |(field, value): (&&'static str, Value)| match (*field, value) {
-            (_, Value::Color(_)) => vec![8.0; 3],
-            (_, Value::Colors(_)) => vec![8.0; 6],
+            (_, Value::Color(color)) => color.srgb.map(inward).to_vec(),
+            (_, Value::Colors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
             ("normal", Value::Vector(normal)) => vec![0.03 * normal.length(); 3],
             (_, Value::Vector(_)) => vec![pixel; 3],
             ("fov" | "hfov", Value::Angle(angle)) => {
@@ -229,6 +229,11 @@ impl Parameter {
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")
     }
+}
+
+/// A few steps of a channel that stay between 0 and 255.
+fn inward(channel: f64) -> f64 {
+    if channel < 128.0 { 8.0 } else { -8.0 }
 }
 
 /// The middle of a shape that has one.

@@ -1,9 +1,13 @@
 //! How likely a picture is if a model of it is right.
 //!
 //! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that of one sample within it and r² that of rounding to a step,
-//! a twelfth of its square. Or it shows something else, any colour as likely as any other. The share of such pixels and n are fitted. Of two
+//! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
+//! errors are taken to have Student's distribution with four degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
+//! 1989). Of two
 //! models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz, Estimating the
 //! dimension of a model, 1978. It is the only rule of significance here.
+
+use std::sync::LazyLock;
 
 use super::textbook::Moments;
 use crate::color::{linear_to_srgb, srgb_to_linear};
@@ -11,8 +15,11 @@ use crate::color::{linear_to_srgb, srgb_to_linear};
 /// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
 pub const STEP: f64 = 1.0 / 255.0;
 
+/// Degrees of freedom of errors.
+const FREEDOM: f64 = 4.0;
+
 /// Fitting goes on for so many rounds: each leaves less than half of what is missing.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 8;
 
 /// The variance below which a pixel shows one colour: a part of 1e-9 of it may be another.
 pub const FLAT: f64 = 1e-9;
@@ -22,8 +29,8 @@ pub const FLAT: f64 = 1e-9;
 pub struct Model {
     /// Means and variances.
     pub moments: Moments,
-    /// How many samples the means were computed from; none if they are exact.
-    pub from: Option<usize>,
+    /// The variances of the means themselves; empty if they are exact.
+    pub doubt: Vec<[f64; 3]>,
     /// By how much bytes are cut off on an average, in steps.
     pub cut: f64,
 }
@@ -35,10 +42,8 @@ pub struct Score {
     pub likelihood: f64,
     /// The number of independent samples in a pixel that make as much noise.
     pub samples: f64,
-    /// The share of pixels that show something else.
-    pub outliers: f64,
-    /// For each pixel whether it is likelier one of those.
-    pub is_outlier: Vec<bool>,
+    /// How far each pixel is off, in standard deviations of its error: the sum of the squares of its channels.
+    pub off: Vec<f64>,
     /// The squared difference.
     pub squares: f64,
     /// The part of it that noise of so many samples makes.
@@ -54,13 +59,20 @@ impl Score {
 
 /// The standard deviation of rounding a light's encoding to a step.
 fn rounding(light: f64) -> f64 {
-    let encoded = linear_to_srgb(light.clamp(0.0, 1.0));
-    // The steps on both sides: the curve is bent, and white has none above.
-    (srgb_to_linear(encoded + STEP / 2.0) - srgb_to_linear((encoded - STEP / 2.0).max(0.0)))
-        / libm::sqrt(12.0)
+    /// Lights in steps of this are told apart: none of them has twice the rounding of the one before.
+    const LIGHTS: usize = 4096;
+    static ROUNDINGS: LazyLock<Vec<f64>> = LazyLock::new(|| {
+        let of = |at: usize| {
+            let encoded = linear_to_srgb(at as f64 / LIGHTS as f64);
+            let below = srgb_to_linear((encoded - STEP / 2.0).max(0.0));
+            (srgb_to_linear(encoded + STEP / 2.0) - below) / libm::sqrt(12.0)
+        };
+        (0..=LIGHTS).map(of).collect()
+    });
+    ROUNDINGS[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
 }
 
-/// What is known of a pixel: its difference, its variance and that of rounding.
+/// What is known of a pixel: its difference, its variance, and that of rounding and of the model itself.
 #[derive(Clone, Copy)]
 struct Known {
     difference: [f64; 3],
@@ -69,22 +81,25 @@ struct Known {
 }
 
 /// Judges a model of a picture of so many pixels in a row.
-pub fn score(seen: &[[f64; 3]], model: &Model, width: usize) -> Score {
-    let variances = model.variances(width);
+pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
     let mut last = ([f64::NAN; 3], [0.0; 3]);
     let known = |at: usize| {
-        let (mean, variance) = (model.moments.mean[at], variances[at]);
+        let (mean, variance) = (model.moments.mean[at], model.moments.variance[at]);
+        let variance = variance.map(|one| if one < FLAT { 0.0 } else { one });
         if last.0 != mean {
             last = (mean, mean.map(|light| rounding(light) * rounding(light)));
         }
         Known {
             difference: [0, 1, 2].map(|i| model.difference(seen[at][i], mean[i], variance)),
             variance,
-            rounding: last.1,
+            rounding: match model.doubt.get(at) {
+                Some(doubt) => [0, 1, 2].map(|i| last.1[i] + doubt[i]),
+                None => last.1,
+            },
         }
     };
     let known: Vec<Known> = (0..seen.len()).map(known).collect();
-    // What all pixels have that are of one colour and right is counted once.
+    // What pixels have that are of one colour and right is counted once.
     let is_plain = |one: &Known| {
         one.variance == [0.0; 3]
             && one
@@ -104,39 +119,29 @@ pub fn score(seen: &[[f64; 3]], model: &Model, width: usize) -> Score {
         .filter(|one| is_plain(one))
         .map(|one| one.density(0.0))
         .sum();
-    let plain_count = known.len() - others.len();
-
-    // 1/n, which is 1 at most, and the share of outliers.
-    let (mut noise, mut share) = (1.0, 0.01);
-    let mut weights = vec![1.0; others.len()];
+    // 1/n, which is 1 at most.
+    let mut noise: f64 = 1.0;
     for _ in 0..ROUNDS {
-        let (mut above, mut below, mut inside) = (0.0, 0.0, plain_count as f64);
-        for ((_, one), weight) in others.iter().zip(&mut weights) {
-            let right = (1.0 - share) * libm::exp(one.density(noise).min(300.0));
-            *weight = right / (right + share);
-            inside += *weight;
+        let (mut above, mut below) = (0.0, 0.0);
+        for (_, one) in &others {
+            let weight = (FREEDOM + 3.0) / (FREEDOM + one.off(noise));
             for i in 0..3 {
                 let total = one.variance[i] * noise + one.rounding[i];
-                let part = *weight * one.variance[i] / (total * total);
-                above += part * (one.difference[i] * one.difference[i] - total);
+                let part = one.variance[i] / (total * total);
+                above += part * (weight * one.difference[i] * one.difference[i] - total);
                 below += part * one.variance[i];
             }
         }
         if below > 0.0 {
             noise = (noise + above / below).clamp(1e-6, 1.0);
         }
-        let count = known.len() as f64;
-        share = ((count - inside) / count).clamp(1e-9, 0.999);
     }
-    let mut likelihood = plain + plain_count as f64 * libm::log(1.0 - share);
-    let mut is_outlier = vec![false; known.len()];
+    let mut likelihood = plain;
+    let mut off = vec![0.0; known.len()];
     let (mut squares, mut expected) = (0.0, 0.0);
-    for ((at, one), weight) in others.iter().zip(&weights) {
-        let density = one.density(noise);
-        let (right, other) = (libm::log(1.0 - share) + density, libm::log(share));
-        let most = right.max(other);
-        likelihood += most + libm::log(libm::exp(right - most) + libm::exp(other - most));
-        is_outlier[*at] = *weight < 0.5;
+    for (at, one) in &others {
+        likelihood += one.density(noise);
+        off[*at] = one.off(noise);
         for i in 0..3 {
             squares += one.difference[i] * one.difference[i];
             expected += one.variance[i] * noise + one.rounding[i];
@@ -145,45 +150,52 @@ pub fn score(seen: &[[f64; 3]], model: &Model, width: usize) -> Score {
     Score {
         likelihood,
         samples: 1.0 / noise,
-        outliers: share,
-        is_outlier,
+        off,
         squares,
         noise: expected.min(squares),
     }
 }
 
 impl Known {
-    /// The logarithm of the density, if a sample has this share of its variance.
-    fn density(&self, noise: f64) -> f64 {
+    /// The sum of the squares in standard deviations, if an error has this share of a sample's variance.
+    fn off(&self, noise: f64) -> f64 {
         let channel = |i: usize| {
-            let total = self.variance[i] * noise + self.rounding[i];
-            let square = self.difference[i] * self.difference[i] / total;
-            square + libm::log(2.0 * std::f64::consts::PI * total)
+            self.difference[i] * self.difference[i] / (self.variance[i] * noise + self.rounding[i])
         };
-        -0.5 * (0..3).map(channel).sum::<f64>()
+        (0..3).map(channel).sum()
+    }
+
+    /// The logarithm of the density, but for a number that all have.
+    fn density(&self, noise: f64) -> f64 {
+        let volume: f64 = (0..3)
+            .map(|i| self.variance[i] * noise + self.rounding[i])
+            .product();
+        -0.5 * libm::log(volume) - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.off(noise) / FREEDOM)
     }
 }
 
 impl Model {
-    /// The variances of one sample, with what the model's own few samples may have missed beside an edge.
-    fn variances(&self, width: usize) -> Vec<[f64; 3]> {
-        let own = &self.moments.variance;
-        let Some(samples) = self.from else {
-            return own
-                .iter()
-                .map(|one| one.map(|one| if one < FLAT { 0.0 } else { one }))
-                .collect();
-        };
-        let around = around(own, width);
-        let count = samples as f64;
-        own.iter()
-            .zip(around)
-            .map(|(own, most)| [0, 1, 2].map(|i| own[i] + most[i] / count))
-            .collect()
+    /// The differences in light of what is seen from what is expected, of each channel of each pixel.
+    pub fn differences(&self, seen: &[[f64; 3]]) -> Vec<f64> {
+        let Moments { mean, variance } = &self.moments;
+        let pixels = seen.iter().zip(mean).zip(variance);
+        let differences = pixels.flat_map(|((seen, mean), variance)| {
+            [0, 1, 2].map(|i| self.difference(seen[i], mean[i], *variance))
+        });
+        differences.collect()
     }
 
-    /// The difference in light of what is seen from what is expected.
-    pub fn difference(&self, seen: f64, mean: f64, variance: [f64; 3]) -> f64 {
+    /// The standard deviations that these may have, as the mean of a single sample: an edge may be one pixel off.
+    pub fn deviations(&self, width: usize) -> Vec<f64> {
+        let around = around(&self.moments.variance, width);
+        let deviations = around.iter().enumerate().flat_map(|(at, variance)| {
+            let doubt = self.doubt.get(at).copied().unwrap_or_default();
+            [0, 1, 2].map(|i| (variance[i] + doubt[i] + STEP * STEP).sqrt())
+        });
+        deviations.collect()
+    }
+
+    fn difference(&self, seen: f64, mean: f64, variance: [f64; 3]) -> f64 {
         if self.cut == 0.0 {
             return seen - mean;
         }
@@ -218,5 +230,33 @@ pub fn around(variances: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
             let rows = y.saturating_sub(1)..(y + 2).min(height);
             rows.map(|y| in_rows[y * width + x]).fold([0.0; 3], most)
         })
+        .collect()
+}
+
+/// The pixels that no sampling explains: those of one colour, with more of it around them if that is asked for, that show another. An edge that is off by
+/// less than half a pixel reaches no farther than to its neighbours.
+pub fn strays(seen: &[[f64; 3]], model: &Model, width: usize, is_inside: bool) -> Vec<usize> {
+    /// In steps: half of one is rounding, and half of that another way to decode.
+    const WRONG: f64 = 0.75;
+    /// In standard deviations of a model that is sampled itself.
+    const DOUBTS: f64 = 4.0;
+    let variances = &model.moments.variance;
+    let around = match is_inside {
+        true => around(variances, width),
+        false => Vec::new(),
+    };
+    let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
+    let is_off = |at: &usize| {
+        let doubt = model.doubt.get(*at).copied().unwrap_or_default();
+        (0..3).any(|i| {
+            let mean = model.moments.mean[*at][i];
+            let off = model.difference(seen[*at][i], mean, variances[*at]).abs();
+            // The root of 12 standard deviations of rounding are a step.
+            off > WRONG * libm::sqrt(12.0) * rounding(mean) + DOUBTS * doubt[i].sqrt()
+        })
+    };
+    (0..seen.len())
+        .filter(|&at| is_flat(&variances[at]) && (!is_inside || is_flat(&around[at])))
+        .filter(is_off)
         .collect()
 }

@@ -1,24 +1,26 @@
 //! Forward selection: the mistake that explains most, then the table once more on what is left, at most four times; then what is not needed any more
 //! goes.
 //!
-//! A coarse grid tells which mistakes are worth a look, a finer one fits their numbers, and the finest one judges them. Work is counted in rays times
-//! objects, so that it does not depend on the machine.
+//! A tiny grid and a coarse one tell which mistakes are worth a look, a finer one fits their numbers and judges them. What shows only where
+//! colours meet is judged on the pixels.
 
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
 };
 
+use cpu_time::ThreadTime;
 use glam::DVec2;
 
 use super::{
-    candidate::{Candidate, Cause, Look, Named, is_near},
-    fit::{Fitted, absolute, fit},
+    candidate::{Candidate, Cause, Look, Made, Named, is_near},
+    fit::{Fitted, Trial, absolute, fit},
     grid::Grid,
-    mistakes::{OBJECT_ROWS, ROWS, Row},
+    mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
     parameters::{self, Owner, Parameter},
-    score::{Score, score},
-    textbook::{Moments, Textbook},
+    score::{Model, Score, score, strays},
+    textbook::Textbook,
     words,
 };
 use crate::{
@@ -32,42 +34,47 @@ use crate::{
 /// So many mistakes are named at most.
 const MOST_MISTAKES: usize = 4;
 
-/// So many are fitted and judged at a time, of those that explain most on the coarse grid.
+/// So many are fitted and judged at a time, of those that leave least on the coarse grid.
 const FINALISTS: usize = 3;
 
+/// From so many starts numbers are fitted on the tiny grid.
+const STARTS: usize = 3;
+
 /// Of so many parameters numbers are fitted on the coarse grid.
-const FITTED: usize = 8;
+const FITTED: usize = 6;
+
+/// So many objects are looked at, those around which most is wrong.
+const SUSPECTS: usize = 12;
 
 /// A move of less than this, in pixels, is not named.
 pub const HALF_PIXEL: f64 = 0.5;
 
-/// The longest sides of the four grids, in cells, and the samples in a cell.
-const TINY: (u32, usize) = (32, 5);
-const COARSE: (u32, usize) = (64, 8);
-const MIDDLE: (u32, usize) = (160, 8);
-const FINE: (u32, usize) = (640, 21);
+/// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
+const TINY: (u32, usize) = (32, 8);
+const COARSE: u32 = 48;
+const MIDDLE: u32 = 160;
 
-/// Rays times objects: for any picture, and for each of its pixels. Measured: 4 to 8 nanoseconds each.
-const WORK: f64 = 1.3e8;
-const WORK_OF_A_PIXEL: f64 = 200.0;
+/// The processor time that a search may take: for any picture, and for each of its pixels.
+const TIME: f64 = 0.7;
+const TIME_OF_A_PIXEL: f64 = 2e-6;
 
 /// A grid, and what a picture shows in it.
 pub struct Level {
     pub grid: Grid,
     pub seen: Vec<[f64; 3]>,
-    pub samples: usize,
+    /// How many samples a cell has; none if it is computed exactly.
+    samples: Option<usize>,
 }
 
 /// A picture that is compared with a scene.
 pub struct Search<'a> {
     pub scene: &'a Scene,
-    pub tiny: Level,
-    pub coarse: Level,
-    pub middle: Level,
+    tiny: Level,
+    coarse: Level,
+    middle: Level,
     pub fine: Level,
-    /// What may still be done, and what of it is kept for later.
-    work: Cell<f64>,
-    kept: Cell<f64>,
+    started: ThreadTime,
+    limit: Duration,
     /// Whether something was left out for that.
     pub is_cut: Cell<bool>,
     cancel: &'a AtomicBool,
@@ -78,13 +85,15 @@ pub struct Found {
     pub candidate: Candidate,
     pub score: Score,
     pub cost: f64,
+    /// What it makes on the grid that it was judged on.
+    made: Made,
 }
 
 impl<'a> Search<'a> {
     /// For a picture of a part of a scene's.
     pub fn new(scene: &'a Scene, film: &Film, part: Area, cancel: &'a AtomicBool) -> Self {
-        let level = |(longest, samples)| {
-            let grid = Grid::new(part, longest);
+        let level = |longest, samples| {
+            let grid = Grid::new(&scene.image, part, longest);
             Level {
                 grid,
                 seen: grid.reduce(film),
@@ -93,120 +102,156 @@ impl<'a> Search<'a> {
         };
         Self {
             scene,
-            tiny: level(TINY),
-            coarse: level(COARSE),
-            middle: level(MIDDLE),
-            fine: level(FINE),
-            work: Cell::new(WORK + WORK_OF_A_PIXEL * part.pixels() as f64),
-            kept: Cell::new(0.0),
+            tiny: level(TINY.0, Some(TINY.1)),
+            coarse: level(COARSE, None),
+            middle: level(MIDDLE, None),
+            fine: level(u32::MAX, None),
+            started: ThreadTime::now(),
+            limit: Duration::from_secs_f64(
+                std::env::var("LIMIT").map_or(TIME + TIME_OF_A_PIXEL * part.pixels() as f64, |s| {
+                    s.parse().unwrap()
+                }),
+            ),
             is_cut: Cell::new(false),
             cancel,
         }
     }
 
-    /// Whether a picture of the scene may be made on a level.
-    fn may(&self, level: &Level) -> bool {
-        // A ray is asked for an object in earnest only within its bounds, which takes much longer than to see that it is not.
-        let objects = 0.25 * self.scene.objects.len() as f64 + 8.0;
-        let samples = 5.0 + level.samples as f64 / 3.0;
-        let left = self.work.get() - objects * level.grid.cells() as f64 * samples;
-        let may = left >= self.kept.get() && !self.cancel.load(Ordering::Relaxed);
-        match may {
-            true => self.work.set(left),
-            false => self.is_cut.set(true),
-        }
-        may
+    /// What a candidate makes on a level, if there is time for it.
+    fn made(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
+        let may = self.started.elapsed() < self.limit;
+        self.is_cut.set(self.is_cut.get() || !may);
+        may.then_some(())?;
+        candidate.made(&level.grid, level.samples, like, self.cancel)
     }
 
-    fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
-        self.may(level).then(|| {
-            let model = candidate.model(&level.grid, &level.seen, level.samples);
-            let Moments { mean, variance } = &model.moments;
-            let cells = level.seen.iter().zip(mean).zip(variance);
-            cells
-                .flat_map(|((seen, mean), variance)| {
-                    [0, 1, 2].map(|i| model.difference(seen[i], mean[i], *variance))
-                })
-                .collect()
-        })
+    fn differences(&self, made: &Made, level: &Level) -> Vec<f64> {
+        let model = made.model(&level.grid, &level.seen);
+        model.differences(&level.seen)
     }
 
-    /// Judges a candidate on the finest grid, if that may be done.
+    /// Judges a candidate on the pixels.
     pub fn judged(&self, candidate: Candidate) -> Option<Found> {
-        self.may(&self.fine).then(|| self.judge(candidate))
+        self.judged_on(&self.fine, candidate, None)
     }
 
-    /// Judges a candidate on the finest grid.
-    pub fn judge(&self, candidate: Candidate) -> Found {
-        self.judge_on(&self.fine, candidate)
-    }
-
-    fn judge_on(&self, level: &Level, candidate: Candidate) -> Found {
-        let model = candidate.model(&level.grid, &level.seen, level.samples);
-        let score = score(&level.seen, &model, level.grid.width);
+    fn judged_on(&self, level: &Level, candidate: Candidate, like: Option<&Made>) -> Option<Found> {
+        let made = self.made(&candidate, level, like)?;
+        let model: Model = made.model(&level.grid, &level.seen);
+        let score = score(&level.seen, &model);
         let cost = score.cost(candidate.fitted(), level.seen.len());
-        Found {
+        Some(Found {
             candidate,
             score,
             cost,
-        }
+            made,
+        })
     }
 
     /// The mistakes that explain a picture, from what a program without mistakes would have made.
-    pub fn run(&self, right: Found) -> Result<Found, Cancelled> {
-        let mut best = right;
-        while best.candidate.named.len() < MOST_MISTAKES {
+    pub fn run(&self) -> Result<Option<Found>, Cancelled> {
+        let right = Candidate::right(self.scene);
+        let Some(mut best) = self.judged_on(&self.middle, right, None) else {
+            return Ok(None);
+        };
+        while best.candidate.named.len() < MOST_MISTAKES && !self.strays(&best.candidate).is_empty()
+        {
             let Some(next) = self.step(&best) else { break };
             best = next;
         }
         if best.candidate.named.len() > 1 {
             best = self.without_needless(best);
         }
+        let best = self.with_edges(self.shortened(best))?;
         crate::cancel::unless_set(self.cancel, best)
+    }
+
+    /// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels.
+    pub fn with_edges(&self, candidate: Candidate) -> Result<Option<Found>, Cancelled> {
+        let Some(null) = self.judged(candidate) else {
+            return Ok(None);
+        };
+        // What is done to light makes other noise at edges, of which too little is known to tell these.
+        let may = null.candidate.looks.is_empty();
+        let rows = ROWS.iter().filter(|row| may && row.shows != Shows::InAreas);
+        let judged = rows.filter_map(|row| {
+            let candidate = null.candidate.with(row.named())?;
+            self.judged_on(&self.fine, candidate, Some(&null.made))
+        });
+        let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
+        // What explains nothing of the squared difference explains the tails of noise.
+        let is_better =
+            |best: &Found| best.cost < null.cost && best.score.squares < null.score.squares;
+        crate::cancel::unless_set(self.cancel, Some(best.filter(is_better).unwrap_or(null)))
+    }
+
+    /// The pixels that show something else than a candidate for certain.
+    pub fn strays(&self, candidate: &Candidate) -> Vec<usize> {
+        let Level { grid, seen, .. } = &self.fine;
+        let made = self.made(candidate, &self.fine, None);
+        made.map_or_else(Vec::new, |made| {
+            strays(seen, &made.model(grid, seen), grid.width(), true)
+        })
     }
 
     /// The best candidate with one more mistake, if it is better.
     fn step(&self, from: &Found) -> Option<Found> {
-        // Half of what may be done is kept for those that are worth a closer look.
-        self.kept.set(self.work.get() / 2.0);
-        let mut tried = self.rows(from);
-        tried.extend(self.numbers(from));
-        self.kept.set(0.0);
+        if std::env::var("DEBUG").is_ok() {
+            eprintln!("  begin: {:?}", self.started.elapsed());
+        }
+        let coarse = self.made(&from.candidate, &self.coarse, None)?;
+        let mut tried = self.rows(from, &coarse);
+        if std::env::var("DEBUG").is_ok() {
+            eprintln!("  rows: {:?}", self.started.elapsed());
+        }
+        tried.extend(self.numbers(from, &coarse));
         tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let finalists = tried.into_iter().take(FINALISTS);
-        let fitted = finalists.filter_map(|(_, candidate)| {
-            let candidate = self.fitted(candidate, &self.middle, 2)?.0;
-            self.may(&self.middle)
-                .then(|| self.judge_on(&self.middle, candidate))
+        if std::env::var("DEBUG").is_ok() {
+            eprintln!("  step: {:?}", self.started.elapsed());
+            for (left, candidate) in tried.iter().take(12) {
+                let last = candidate.named.last().unwrap();
+                eprintln!("   tried {left:.2} {}", words::message(self.scene, last));
+            }
+        }
+        let finalists = tried
+            .into_iter()
+            .take(FINALISTS)
+            .map(|(_, candidate)| candidate);
+        let judged = finalists.filter_map(|candidate| {
+            let like = self.made(&candidate, &self.middle, Some(&from.made))?;
+            let candidate = self.fitted(candidate, &self.middle, like, [3, 3])?;
+            let found = self.judged_on(&self.middle, candidate, Some(&from.made))?;
+            if std::env::var("DEBUG").is_ok() {
+                eprintln!(
+                    "   final {:.1} (before {:.1}) outliers {} {}",
+                    found.cost,
+                    from.cost,
+                    0,
+                    words::message(self.scene, found.candidate.named.last().unwrap())
+                );
+            }
+            Some(found)
         });
-        let mut fitted: Vec<Found> = fitted.collect();
-        // Something too many would explain anything; it is thought of where nothing else explains more than before.
-        let rank = |found: &Found| {
-            let is_patch = matches!(
-                found.candidate.named.last().map(|named| &named.cause),
-                Some(Cause::Patch(_))
-            );
-            (is_patch, found.cost)
+        let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
+        if std::env::var("DEBUG").is_ok() {
+            eprintln!("  end: {:?}", self.started.elapsed());
+        }
+        let is_better = |best: &Found| {
+            best.cost < from.cost && words::is_seen(self.scene, &from.candidate, &best.candidate)
         };
-        let before = self.judge_on(&self.middle, from.candidate.clone()).cost;
-        fitted.retain(|found| found.cost < before);
-        fitted.sort_by(|one, other| {
-            let (one, other) = (rank(one), rank(other));
-            one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
-        });
-        let best = self.refined(fitted.into_iter().next()?.candidate)?;
-        let is_better = best.cost < from.cost;
-        (is_better && words::is_seen(self.scene, &from.candidate, &best.candidate)).then_some(best)
+        // Something too many would explain anything; it is thought of where nothing else explains more than before.
+        best.filter(is_better).or_else(|| {
+            let patched = from.candidate.with(self.patch(from)?)?;
+            let found = self.judged_on(&self.middle, patched, Some(&from.made))?;
+            (found.cost < from.cost).then_some(found)
+        })
     }
 
     /// The rows of the table, and how much each leaves on the coarse grid.
-    fn rows(&self, from: &Found) -> Vec<(f64, Candidate)> {
-        let mut named: Vec<Named> = ROWS.iter().map(Row::named).collect();
-        for object in self
-            .suspects(from)
-            .into_iter()
-            .filter(|&object| from.candidate.is_drawn[object])
-        {
+    fn rows(&self, from: &Found, like: &Made) -> Vec<(f64, Candidate)> {
+        let rows = ROWS.iter().filter(|row| row.shows != Shows::AtEdges);
+        let mut named: Vec<Named> = rows.map(Row::named).collect();
+        for object in self.suspects(from) {
             let name = Owner::Object(object).name(self.scene);
             named.extend(OBJECT_ROWS.iter().map(|row| Named {
                 id: row.id,
@@ -215,46 +260,56 @@ impl<'a> Search<'a> {
                 cause: Cause::ObjectRow(row.change, object),
             }));
         }
-        named.extend(self.patch(from));
         let candidates = named
             .into_iter()
             .filter_map(|named| from.candidate.with(named));
-        candidates
-            .filter_map(|candidate| {
-                let differences = self.differences(&candidate, &self.coarse)?;
-                Some((absolute(&differences), candidate))
-            })
-            .collect()
+        let judged = candidates.filter_map(|candidate| {
+            let made = self.made(&candidate, &self.coarse, Some(like))?;
+            Some((absolute(&self.differences(&made, &self.coarse)), candidate))
+        });
+        judged.collect()
     }
 
     /// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
-    fn numbers(&self, from: &Found) -> Vec<(f64, Candidate)> {
+    fn numbers(&self, from: &Found, like: &Made) -> Vec<(f64, Candidate)> {
         let candidate = &from.candidate;
         let suspects = self.suspects(from);
         let is_suspect = |parameter: &Parameter| match parameter.owner {
-            Owner::Object(object) => suspects.contains(&object) && candidate.is_drawn[object],
+            Owner::Object(object) => suspects.contains(&object),
             _ => true,
         };
         let all = parameters::all(&candidate.scene).into_iter();
         let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
+        let Some(tiny) = self.made(candidate, &self.tiny, None) else {
+            return Vec::new();
+        };
         let mut started: Vec<(f64, Parameter, Vec<f64>)> = all
             .filter_map(|parameter| {
-                let steps = self.steps(candidate, &parameter, &self.coarse);
+                let steps = steps(candidate, &parameter, &self.coarse);
                 let numbers = parameter.numbers(&candidate.scene);
-                // What one round makes of the numbers as they are is a start, too.
-                let near = self.fit_one(candidate, &parameter, &self.tiny, numbers.clone(), 2);
-                let others = starts(&parameter, &numbers, &steps)
-                    .into_iter()
-                    .filter_map(|start| {
-                        let differences =
-                            self.changed(candidate, &parameter, &start, &self.tiny)?;
-                        Some((absolute(&differences), start))
-                    });
-                let near = near.map(|fitted| (fitted.left, fitted.numbers));
-                let best = others
-                    .chain(near)
-                    .min_by(|one, other| one.0.total_cmp(&other.0))?;
-                Some((best.0, parameter, best.1))
+                let starts = match parameter.is_color() {
+                    true => vec![self.colors(&numbers, &from.made)],
+                    false => starts(&parameter, &numbers, &steps),
+                };
+                let tried = starts.into_iter().filter_map(|start| {
+                    let differences = self
+                        .changed(&tiny, &parameter, &start, &self.tiny)?
+                        .differences();
+                    Some((absolute(&differences), start))
+                });
+                let mut tried: Vec<_> = tried.collect();
+                tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+                let best = tried.into_iter().take(STARTS);
+                let rounds = if parameter.is_color() && candidate.looks.is_empty() {
+                    0
+                } else {
+                    4
+                };
+                let fitted = best.filter_map(|(_, start)| {
+                    self.fit_one(&tiny, &parameter, &self.tiny, start, [rounds, 0])
+                });
+                let best = fitted.min_by(|one, other| one.left.total_cmp(&other.left))?;
+                Some((best.left, parameter, best.numbers))
             })
             .collect();
         started.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -262,70 +317,101 @@ impl<'a> Search<'a> {
             .into_iter()
             .take(FITTED)
             .filter_map(|(_, parameter, start)| {
-                let fitted = self.fit_one(candidate, &parameter, &self.coarse, start, 4)?;
+                // A colour that was read off the picture fits.
+                let rounds = if parameter.is_color() && candidate.looks.is_empty() {
+                    0
+                } else {
+                    1
+                };
+                let fitted = self.fit_one(
+                    like,
+                    &parameter,
+                    &self.coarse,
+                    start,
+                    [5 * rounds, 2 * rounds],
+                )?;
                 let named = words::numbers(self.scene, &parameter, fitted.numbers);
                 Some((fitted.left, candidate.with(named)?))
             });
         fitted.collect()
     }
 
-    fn steps(&self, candidate: &Candidate, parameter: &Parameter, level: &Level) -> Vec<f64> {
-        let steps = parameter.steps(&candidate.scene).into_iter();
-        match parameter.is_color() {
-            true => steps.collect(),
-            false => steps
-                .map(|step| step * f64::from(level.grid.factor) / 2.0)
-                .collect(),
-        }
+    /// The colours that a picture has where these colours alone should be seen: the medians of their channels.
+    fn colors(&self, numbers: &[f64], made: &Made) -> Vec<f64> {
+        let Level { grid, seen, .. } = &self.middle;
+        let model = made.model(grid, seen);
+        let color = |own: &[f64]| {
+            let light = Color {
+                srgb: [own[0], own[1], own[2]],
+            }
+            .to_linear();
+            let cells = seen
+                .iter()
+                .zip(&model.moments.mean)
+                .zip(&model.moments.variance);
+            let alone =
+                cells.filter(|((_, mean), variance)| **mean == light && **variance == [0.0; 3]);
+            let mut seen: Vec<[f64; 3]> = alone.map(|((seen, _), _)| *seen).collect();
+            let mut median = |i: usize| {
+                seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
+                let middle = seen.get(seen.len() / 2)?;
+                // A byte, if the picture has bytes.
+                Some((255.0 * linear_to_srgb(middle[i]) * 1024.0).round() / 1024.0)
+            };
+            [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
+        };
+        numbers.chunks_exact(3).flat_map(color).collect()
     }
 
-    fn changed(
+    /// What differs if a parameter has other numbers than in what was made.
+    fn changed<'l>(
         &self,
-        from: &Candidate,
+        like: &Made,
         parameter: &Parameter,
         numbers: &[f64],
-        level: &Level,
-    ) -> Option<Vec<f64>> {
-        let scene = parameter.put(&from.scene, numbers)?;
+        level: &'l Level,
+    ) -> Option<Shown<'l>> {
         let changed = Candidate {
-            scene,
-            ..from.clone()
+            scene: parameter.put(&like.candidate.scene, numbers)?,
+            ..like.candidate.clone()
         };
-        self.differences(&changed, level)
+        self.trial(&changed, level, like)
+    }
+
+    fn trial<'l>(&self, candidate: &Candidate, level: &'l Level, like: &Made) -> Option<Shown<'l>> {
+        let model = self
+            .made(candidate, level, Some(like))?
+            .model(&level.grid, &level.seen);
+        Some(Shown { level, model })
     }
 
     fn fit_one(
         &self,
-        from: &Candidate,
+        like: &Made,
         parameter: &Parameter,
         level: &Level,
         start: Vec<f64>,
-        rounds: usize,
+        rounds: [usize; 2],
     ) -> Option<Fitted> {
-        let steps = self.steps(from, parameter, level);
-        let differences = |numbers: &[f64]| self.changed(from, parameter, numbers, level);
-        fit(start, &steps, rounds, &differences)
+        let steps = steps(&like.candidate, parameter, level);
+        let trial = |numbers: &[f64]| self.changed(like, parameter, numbers, level);
+        fit(start, &steps, rounds, &trial)
     }
 
     /// The objects that may be wrong, those first around which most is.
     fn suspects(&self, from: &Found) -> Vec<usize> {
-        let level = &self.fine;
-        let textbook = Textbook::new(&from.candidate.scene, from.candidate.behaviour.clone());
-        let labels = match self.may(level) {
-            true => textbook.labels(&level.grid),
-            false => return Vec::new(),
-        };
-        let mut wrong = vec![0u64; self.scene.objects.len()];
-        let width = level.grid.width;
-        for (at, _) in from
-            .score
-            .is_outlier
-            .iter()
-            .enumerate()
-            .filter(|(_, is)| **is)
-        {
+        let grid = &self.middle.grid;
+        let candidate = &from.candidate;
+        let textbook = Textbook::new(
+            &grid.scene(&candidate.scene, false),
+            candidate.behaviour,
+            |light| light,
+        );
+        let labels = textbook.labels(grid.cells);
+        let mut wrong = vec![0.0; self.scene.objects.len()];
+        for (at, off) in from.score.off.iter().enumerate() {
             // An object that grew is wrong beside where it is seen.
-            let reach = [0, 4, width * 4];
+            let reach = [0, 2, grid.width() * 2];
             let near = reach
                 .iter()
                 .flat_map(|by| [at.checked_sub(*by), Some(at + by)])
@@ -333,33 +419,41 @@ impl<'a> Search<'a> {
             let mut objects: Vec<_> = near.filter_map(|at| *labels.get(at)?).collect();
             objects.sort_unstable();
             objects.dedup();
-            objects.into_iter().for_each(|object| wrong[object] += 1);
+            objects
+                .into_iter()
+                .for_each(|object| wrong[object] += libm::log1p(*off));
         }
         let mut suspects: Vec<_> = (0..wrong.len())
-            .filter(|&object| wrong[object] > 0)
+            .filter(|&object| wrong[object] > 0.0 && candidate.is_drawn[object])
             .collect();
-        suspects.sort_by_key(|&object| std::cmp::Reverse(wrong[object]));
+        suspects.sort_by(|&one, &other| wrong[other].total_cmp(&wrong[one]));
+        suspects.truncate(SUSPECTS);
         suspects
     }
 
     /// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
     fn patch(&self, from: &Found) -> Option<Named> {
         let Level { grid, seen, .. } = &self.fine;
-        let mut is_left = from.score.is_outlier.clone();
+        let made = self.made(&from.candidate, &self.fine, None)?;
+        let model = made.model(grid, seen);
+        let strays = strays(seen, &model, grid.width(), true);
+        let pairs = seen.iter().zip(&model.moments.mean);
+        let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
         let mut largest: Vec<usize> = Vec::new();
-        for start in 0..seen.len() {
+        for start in strays {
             if !std::mem::replace(&mut is_left[start], false) {
                 continue;
             }
             let mut piece = vec![start];
             let mut at = 0;
             while at < piece.len() {
-                let (x, y) = (piece[at] % grid.width, piece[at] / grid.width);
+                let (width, height) = (grid.width(), grid.cells.height as usize);
+                let (x, y) = (piece[at] % width, piece[at] / width);
                 let beside = [
                     (x > 0).then(|| piece[at] - 1),
-                    (x + 1 < grid.width).then_some(piece[at] + 1),
-                    (y > 0).then(|| piece[at] - grid.width),
-                    (y + 1 < grid.height).then_some(piece[at] + grid.width),
+                    (x + 1 < width).then_some(piece[at] + 1),
+                    (y > 0).then(|| piece[at] - width),
+                    (y + 1 < height).then_some(piece[at] + width),
                 ];
                 for next in beside.into_iter().flatten() {
                     if is_left[next] && is_near(seen[next], seen[start]) {
@@ -374,9 +468,8 @@ impl<'a> Search<'a> {
             }
         }
         let light = seen[*largest.first()?];
-        let place = |at: usize| grid.place(at % grid.width, at / grid.width, DVec2::splat(0.5));
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for place in largest.iter().map(|&at| place(at)) {
+        for place in largest.iter().map(|&at| grid.middle(at)) {
             (least, most) = (least.min(place), most.max(place));
         }
         let reach = f64::from(grid.factor);
@@ -396,55 +489,65 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// All numbers of a candidate fitted together on a level, and how far each may be off.
+    /// All numbers of a candidate fitted together on a level, on which it was made.
     fn fitted(
         &self,
         candidate: Candidate,
         level: &Level,
-        rounds: usize,
-    ) -> Option<(Candidate, Vec<f64>)> {
-        let named = &candidate.named;
-        let start = joined(named);
+        made: Made,
+        rounds: [usize; 2],
+    ) -> Option<Candidate> {
+        let (named, start) = (&candidate.named, joined(&candidate.named));
         if start.is_empty() {
-            return Some((candidate, Vec::new()));
+            return Some(candidate);
         }
-        let of = |named: &Named| match &named.cause {
-            Cause::Numbers(parameter, _) => self.steps(&candidate, parameter, level),
-            _ => Vec::new(),
-        };
-        let steps: Vec<f64> = named.iter().flat_map(of).collect();
-        let differences = |numbers: &[f64]| {
-            let candidate = Candidate::of(self.scene, &split(named, numbers))?;
-            self.differences(&candidate, level)
-        };
-        let fitted = fit(start, &steps, rounds, &differences)?;
-        let candidate = Candidate::of(self.scene, &split(named, &fitted.numbers))?;
-        Some((candidate, fitted.errors))
+        let fitted = self.fit_all(&candidate, level, &made, rounds)?;
+        Candidate::of(self.scene, &split(named, &fitted.numbers))
     }
 
-    /// A candidate with its numbers fitted on the finest grid, and with as few digits as do.
-    fn refined(&self, candidate: Candidate) -> Option<Found> {
-        let (candidate, errors) = self
-            .fitted(candidate.clone(), &self.fine, 1)
-            .unwrap_or((candidate, Vec::new()));
-        let (named, numbers) = (candidate.named.clone(), joined(&candidate.named));
-        let fitted = self.judged(candidate)?;
-        if errors.is_empty() {
-            return Some(fitted);
-        }
+    fn fit_all(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        made: &Made,
+        rounds: [usize; 2],
+    ) -> Option<Fitted> {
+        let named = &candidate.named;
+        let of = |named: &Named| match &named.cause {
+            Cause::Numbers(parameter, _) => steps(candidate, parameter, level),
+            _ => Vec::new(),
+        };
+        let steps: Vec<f64> = named.iter().flat_map(of).map(|step| step / 2.0).collect();
+        let trial = |numbers: &[f64]| {
+            let candidate = Candidate::of(self.scene, &split(named, numbers))?;
+            self.trial(&candidate, level, made)
+        };
+        fit(joined(named), &steps, rounds, &trial)
+    }
+
+    /// A candidate whose numbers have as few digits as do.
+    fn shortened(&self, found: Found) -> Candidate {
+        let named = &found.candidate.named;
+        let fitted = match joined(named).is_empty() {
+            true => None,
+            false => self.fit_all(&found.candidate, &self.middle, &found.made, [0, 1]),
+        };
+        let Some(fitted) = fitted else {
+            return found.candidate;
+        };
         for digits in [8.0, 2.0] {
-            let rounded = numbers.iter().zip(&errors);
+            let rounded = joined(named).into_iter().zip(&fitted.errors);
             let rounded: Vec<f64> = rounded
-                .map(|(x, error)| words::rounded(*x, digits * error))
+                .map(|(x, error)| words::rounded(x, digits * error))
                 .collect();
-            if let Some(candidate) = Candidate::of(self.scene, &split(&named, &rounded))
-                && let Some(judged) = self.judged(candidate)
-                && judged.cost <= fitted.cost + rounded.len() as f64
+            if let Some(candidate) = Candidate::of(self.scene, &split(named, &rounded))
+                && let Some(judged) = self.judged_on(&self.middle, candidate, Some(&found.made))
+                && judged.cost <= found.cost + rounded.len() as f64
             {
-                return Some(judged);
+                return judged.candidate;
             }
         }
-        Some(fitted)
+        found.candidate
     }
 
     /// Without those mistakes that are not needed beside the others.
@@ -453,14 +556,44 @@ impl<'a> Search<'a> {
         while found.candidate.named.len() > 1 && at < found.candidate.named.len() {
             let mut named = found.candidate.named.clone();
             named.remove(at);
-            let without =
-                Candidate::of(self.scene, &named).and_then(|candidate| self.judged(candidate));
+            let without = Candidate::of(self.scene, &named).and_then(|candidate| {
+                let made = self.made(&candidate, &self.middle, Some(&found.made))?;
+                let candidate = self.fitted(candidate, &self.middle, made, [3, 3])?;
+                self.judged_on(&self.middle, candidate, Some(&found.made))
+            });
             match without {
                 Some(without) if without.cost <= found.cost => found = without,
                 _ => at += 1,
             }
         }
         found
+    }
+}
+
+/// What a candidate shows on a level.
+struct Shown<'l> {
+    level: &'l Level,
+    model: Model,
+}
+
+impl Trial for Shown<'_> {
+    fn differences(&self) -> Vec<f64> {
+        self.model.differences(&self.level.seen)
+    }
+
+    fn deviations(&self) -> Vec<f64> {
+        self.model.deviations(self.level.grid.width())
+    }
+}
+
+/// By how much each number of a parameter is varied on a level.
+fn steps(candidate: &Candidate, parameter: &Parameter, level: &Level) -> Vec<f64> {
+    let steps = parameter.steps(&candidate.scene).into_iter();
+    match parameter.is_color() {
+        true => steps.collect(),
+        false => steps
+            .map(|step| step * f64::from(level.grid.factor) / 2.0)
+            .collect(),
     }
 }
 
@@ -494,9 +627,11 @@ fn split(named: &[Named], mut numbers: &[f64]) -> Vec<Named> {
 /// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
-    if parameter.is_color() {
-        return starts;
-    }
+    // A single number costs little: all within reach are tried.
+    let far = match numbers.len() {
+        1 => 10,
+        _ => 3,
+    };
     let mut with = |change: &dyn Fn(&mut Vec<f64>)| {
         let mut other = numbers.to_vec();
         change(&mut other);
@@ -504,14 +639,18 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
             starts.push(other);
         }
     };
+    if let ["roll" | "spin"] = parameter.fields[..] {
+        (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
+    }
     for i in 0..numbers.len() {
         with(&|other| other[i] = -other[i]);
         with(&|other| other[i] = 0.0);
         with(&|other| other[i] *= 2.0);
         with(&|other| other[i] *= 0.5);
         with(&|other| other.swap(i, (i + 1) % numbers.len()));
-        for by in [-9.0, -3.0, 3.0, 9.0] {
-            with(&|other| other[i] += by * steps[i]);
+        for by in 1..=far {
+            with(&|other| other[i] += 3.0 * f64::from(by) * steps[i]);
+            with(&|other| other[i] -= 3.0 * f64::from(by) * steps[i]);
         }
     }
     starts

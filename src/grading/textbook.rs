@@ -5,10 +5,11 @@
 //! can be wrong in the ways in which a program can.
 
 use glam::{BVec3, DVec2, DVec3};
-use rayon::prelude::*;
 
-use super::grid::Grid;
-use crate::scene::{Camera, Image, Lens, Outline, Scene, Shape, View, level_direction};
+use crate::{
+    area::Area,
+    scene::{Camera, Image, Lens, Outline, Scene, Shape, View, level_direction},
+};
 
 /// Which of the surfaces that a ray crosses is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +24,30 @@ pub enum Visible {
     Farthest,
 }
 
+/// Whether what lies behind the eye is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Behind {
+    /// As it should be.
+    Unseen,
+    /// It is nearer than all that lies before the eye.
+    First,
+    /// It is as far away as it is.
+    ByDistance,
+}
+
+/// Which squares of a checkerboard have the first colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Squares {
+    /// As it should be: those where floor(x) + floor(z) is even.
+    Floored,
+    /// Those where trunc(x) + trunc(z) is even.
+    Truncated,
+    /// Those where the remainder of floor(x) + floor(z), which may be −1, is not 1.
+    SignedSum,
+    /// Those where the remainders of floor(x) and floor(z), which may be −1, are equal.
+    SignedParts,
+}
+
 /// A cell that shows one colour in these places, near its corners and in its middle, shows no other: an edge that passes between them cuts off a corner
 /// of a thousandth of it.
 const PROBES: [DVec2; 5] = [
@@ -34,29 +59,38 @@ const PROBES: [DVec2; 5] = [
 ];
 
 /// How a program behaves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Behaviour {
     /// Which surface is seen.
     pub visible: Visible,
     /// Whether surfaces behind the eye are seen, too.
-    pub behind: bool,
-    /// Whether a square, by x and z in squares, has the first colour.
-    pub is_first: fn(f64, f64) -> bool,
-    /// Where samples are taken, of where they should be, in a picture of a size; one after the other.
-    pub places: Vec<fn(DVec2, DVec2) -> DVec2>,
-    /// What is averaged in place of light.
-    pub average: fn(f64) -> f64,
+    pub behind: Behind,
+    /// How squares are told.
+    pub squares: Squares,
+    /// Whether the window is as wide as it is high, though the picture is not.
+    pub is_squeezed: bool,
 }
 
 impl Behaviour {
     /// A program without mistakes.
     pub const RIGHT: Self = Self {
         visible: Visible::Nearest,
-        behind: false,
-        is_first: |x, z| (x.floor() + z.floor()).rem_euclid(2.0) == 0.0,
-        places: Vec::new(),
-        average: |light| light,
+        behind: Behind::Unseen,
+        squares: Squares::Floored,
+        is_squeezed: false,
     };
+}
+
+impl Squares {
+    /// Whether the square that a point lies in has the first colour.
+    fn is_first(self, x: f64, z: f64) -> bool {
+        match self {
+            Self::Floored => (x.floor() + z.floor()).rem_euclid(2.0) == 0.0,
+            Self::Truncated => (x.trunc() + z.trunc()).rem_euclid(2.0) == 0.0,
+            Self::SignedSum => (x.floor() + z.floor()) % 2.0 != 1.0,
+            Self::SignedParts => x.floor() % 2.0 == z.floor() % 2.0,
+        }
+    }
 }
 
 /// What cells show.
@@ -178,10 +212,10 @@ pub struct Textbook {
 }
 
 impl Textbook {
-    /// Prepares a scene.
-    pub fn new(scene: &Scene, behaviour: Behaviour) -> Self {
+    /// Prepares a scene, and what is averaged in place of light.
+    pub fn new(scene: &Scene, behaviour: Behaviour, average: impl Fn(f64) -> f64) -> Self {
         let eye = scene.camera.eye;
-        let light = |color: crate::color::Color| color.to_linear().map(behaviour.average);
+        let light = |color: crate::color::Color| color.to_linear().map(&average);
         let mut colors = Vec::new();
         let shapes = scene.objects.iter().map(|object| match object.shape {
             Shape::Sphere(sphere) => {
@@ -223,9 +257,11 @@ impl Textbook {
         });
         let shapes = shapes.collect();
         let axes = Axes::new(&scene.camera, &scene.image);
-        let bounds = scene.objects.iter().map(|object| match behaviour.behind {
-            true => EVERYWHERE,
-            false => bounds(&object.shape, &axes).unwrap_or(EVERYWHERE),
+        let bounds = scene.objects.iter().map(|object| {
+            match behaviour.behind == Behind::Unseen && !behaviour.is_squeezed {
+                true => bounds(&object.shape, &axes).unwrap_or(EVERYWHERE),
+                false => EVERYWHERE,
+            }
         });
         let bounds = bounds.collect();
         colors.push([light(scene.image.background); 2]);
@@ -240,60 +276,51 @@ impl Textbook {
         }
     }
 
-    /// What the cells of a grid show, with so many samples in each.
-    pub fn moments(&self, grid: &Grid, samples: usize) -> Moments {
+    /// What the pixels of a part of the picture show, with so many samples in each.
+    pub fn moments(&self, part: Area, samples: usize) -> Moments {
         let places = lattice(samples);
         let count = places.len() as f64;
-        let rows: Vec<Vec<[[f64; 3]; 2]>> = (0..grid.height)
-            .into_par_iter()
-            .map(|y| {
-                let cell = |x| {
-                    let first = self.color(grid.place(x, y, PROBES[0]));
-                    let is_flat = |probe: &DVec2| self.color(grid.place(x, y, *probe)) == first;
-                    if PROBES[1..].iter().all(is_flat) {
-                        return [first, [0.0; 3]];
-                    }
-                    let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
-                    for &place in &places {
-                        let color = self.color(grid.place(x, y, place));
-                        for i in 0..3 {
-                            sums[i] += color[i];
-                            squares[i] += color[i] * color[i];
-                        }
-                    }
-                    let mean = sums.map(|sum| sum / count);
-                    [
-                        mean,
-                        [0, 1, 2].map(|i| (squares[i] / count - mean[i] * mean[i]).max(0.0)),
-                    ]
-                };
-                (0..grid.width).map(cell).collect()
-            })
-            .collect();
-        let cells = || rows.iter().flatten();
-        Moments {
-            mean: cells().map(|cell| cell[0]).collect(),
-            variance: cells().map(|cell| cell[1]).collect(),
-        }
+        let pixel = |(x, y): (u32, u32)| {
+            let corner = DVec2::new(f64::from(x), f64::from(y));
+            let first = self.color(corner + PROBES[0]);
+            let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
+            if PROBES[1..].iter().all(is_flat) {
+                return (first, [0.0; 3]);
+            }
+            let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
+            for &place in &places {
+                let color = self.color(corner + place);
+                for i in 0..3 {
+                    sums[i] += color[i];
+                    squares[i] += color[i] * color[i];
+                }
+            }
+            let mean = sums.map(|sum| sum / count);
+            let variance = [0, 1, 2].map(|i| (squares[i] / count - mean[i] * mean[i]).max(0.0));
+            (mean, variance)
+        };
+        let (mean, variance) = part.iter().map(pixel).unzip();
+        Moments { mean, variance }
     }
 
-    /// The object that is seen in the middle of each cell.
-    pub fn labels(&self, grid: &Grid) -> Vec<Option<usize>> {
-        let cell = |at: usize| {
-            let (x, y) = (at % grid.width, at / grid.width);
-            self.seen(grid.place(x, y, DVec2::splat(0.5)))
-                .map(|(object, _)| object)
+    /// The object that is seen in the middle of each pixel of a part of the picture.
+    pub fn labels(&self, part: Area) -> Vec<Option<usize>> {
+        let label = |(x, y)| {
+            let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+            self.seen(middle).map(|(object, _)| object)
         };
-        (0..grid.cells()).map(cell).collect()
+        part.iter().map(label).collect()
     }
 
     fn color(&self, place: DVec2) -> [f64; 3] {
         let size = 2.0 * self.axes.middle;
-        let moved = self
-            .behaviour
-            .places
-            .iter()
-            .fold(place, |place, to| to(place, size));
+        let moved = match self.behaviour.is_squeezed {
+            true => {
+                let middle = self.axes.middle.x;
+                DVec2::new(middle + (place.x - middle) * size.y / size.x, place.y)
+            }
+            false => place,
+        };
         match self.seen(moved) {
             Some((object, second)) => self.colors[object][usize::from(second)],
             None => self.colors[self.shapes.len()][0],
@@ -314,7 +341,10 @@ impl Textbook {
             let is_better = match (self.behaviour.visible, best) {
                 (_, None) | (Visible::Last, _) => true,
                 (Visible::First, _) => false,
-                (Visible::Nearest, Some((_, least))) => t < least,
+                (Visible::Nearest, Some((_, least))) => match self.behaviour.behind {
+                    Behind::ByDistance => t.abs() < least.abs(),
+                    _ => t < least,
+                },
                 (Visible::Farthest, Some((_, most))) => t > most,
             };
             if is_better {
@@ -325,17 +355,31 @@ impl Textbook {
         let second = match self.shapes[object] {
             Prepared::Board { square, .. } => {
                 let point = self.axes.eye + t * ray;
-                !(self.behaviour.is_first)(point.x / square, point.z / square)
+                !self
+                    .behaviour
+                    .squares
+                    .is_first(point.x / square, point.z / square)
             }
             _ => false,
         };
         Some((object, second))
     }
 
+    /// The one of two crossings, in order, that is seen, of those that count.
+    fn first(&self, [one, other]: [(f64, bool); 2]) -> Option<f64> {
+        let is_later = match self.behaviour.behind {
+            Behind::ByDistance => other.1 && (!one.1 || other.0.abs() < one.0.abs()),
+            _ => !one.1,
+        };
+        let (t, counts) = if is_later { other } else { one };
+        counts.then_some(t)
+    }
+
     fn crossing(&self, shape: &Prepared, ray: DVec3) -> Option<f64> {
         let counts = |t: f64| {
             let is_ahead = t > self.near && t < self.far;
-            is_ahead || (self.behaviour.behind && t < 0.0)
+            let is_behind = self.behaviour.behind != Behind::Unseen && t < 0.0;
+            is_ahead || (is_behind && -t < self.far)
         };
         match *shape {
             Prepared::Sphere { to, power } => {
@@ -345,9 +389,7 @@ impl Textbook {
                     return None;
                 }
                 let root = root.sqrt();
-                [(b - root) / a, (b + root) / a]
-                    .into_iter()
-                    .find(|&t| counts(t))
+                self.first([(b - root) / a, (b + root) / a].map(|t| (t, counts(t))))
             }
             Prepared::Triangle {
                 normal,
@@ -365,7 +407,7 @@ impl Textbook {
                 let (one, other) = (min / ray, max / ray);
                 let (first, last) = (one.min(other).max_element(), one.max(other).min_element());
                 match first <= last {
-                    true => [first, last].into_iter().find(|&t| counts(t)),
+                    true => self.first([first, last].map(|t| (t, counts(t)))),
                     false => None,
                 }
             }
@@ -381,7 +423,7 @@ impl Textbook {
 const EVERYWHERE: [DVec2; 2] = [DVec2::NEG_INFINITY, DVec2::INFINITY];
 
 /// The rectangle of the picture that a shape lies in, if all of it lies before the eye.
-fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
+pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
     let (min, max) = match shape {
         Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
         Shape::Box(cuboid) => (cuboid.min, cuboid.max),
