@@ -1,6 +1,6 @@
 //! A program with mistakes: the scene that it makes a picture of, how it behaves, and what it does to the picture's light.
 
-use std::sync::atomic::AtomicBool;
+use std::{rc::Rc, sync::atomic::AtomicBool};
 
 use glam::DVec2;
 
@@ -12,11 +12,60 @@ use super::{
 };
 use crate::{
     area::Area,
-    color::{Color, linear_to_srgb},
+    color::{Color, linear_to_srgb, srgb_to_linear},
     exact::{ExactPixel, Integrator},
     scene::Scene,
     tracer::World,
 };
+
+/// How light is encoded, told by what light is seen in its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// As it should be: itself.
+    Right,
+    /// Not at all, so that it is decoded.
+    Missing,
+    /// Twice, so that it is encoded.
+    Twice,
+    /// By the power 1/2.2.
+    Power22,
+    /// By a square root.
+    Root,
+}
+
+impl Curve {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Right,
+        Self::Missing,
+        Self::Twice,
+        Self::Power22,
+        Self::Root,
+    ];
+
+    /// The light that was encoded, where other light is seen.
+    pub fn light(self, seen: f64) -> f64 {
+        match self {
+            Self::Right => seen,
+            Self::Missing => linear_to_srgb(seen),
+            Self::Twice => srgb_to_linear(seen),
+            Self::Power22 => libm::pow(linear_to_srgb(seen), 2.2),
+            Self::Root => linear_to_srgb(seen) * linear_to_srgb(seen),
+        }
+    }
+
+    /// The light that is seen in the place of light.
+    pub fn seen(self, light: f64) -> f64 {
+        let light = light.max(0.0);
+        match self {
+            Self::Right => light,
+            Self::Missing => srgb_to_linear(light),
+            Self::Twice => linear_to_srgb(light),
+            Self::Power22 => srgb_to_linear(libm::pow(light, 1.0 / 2.2)),
+            Self::Root => srgb_to_linear(light.sqrt()),
+        }
+    }
+}
 
 /// How a picture is laid out otherwise than it should be: in place of a pixel that of another place is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -152,6 +201,8 @@ pub struct Candidate {
     pub behaviour: Behaviour,
     /// What it averages.
     pub average: Average,
+    /// How it encodes what it averaged.
+    pub curve: Curve,
     /// How it lays out what it makes.
     pub layout: Layout,
     /// What it does to the light.
@@ -168,6 +219,7 @@ impl Candidate {
             is_drawn: vec![true; scene.objects.len()],
             behaviour: Behaviour::RIGHT,
             average: Average::Light,
+            curve: Curve::Right,
             layout: Layout::default(),
             looks: Vec::new(),
             named: Vec::new(),
@@ -227,22 +279,26 @@ impl Candidate {
             None => exact_moments(&scene, self.average, area, cancel),
             Some(samples) => Some(sampled(self.behaviour, area, samples)),
         };
-        let right = like
-            .map(|like| &like.right)
-            .filter(|right| right.mean.len() == part.pixels() as usize);
         let is_alike = |like: &&Made| {
-            samples.is_none()
-                || like.candidate.behaviour == self.behaviour && self.is_seen_where_it_is()
+            let other = &like.candidate;
+            let behaves = samples.is_none()
+                || other.behaviour == self.behaviour && self.is_seen_where_it_is();
+            let is_in_place = other.layout.half_pixels == self.layout.half_pixels;
+            like.part == part && is_in_place && behaves
         };
-        let like = like
-            .filter(|like| like.part == part && right.is_some())
-            .filter(is_alike);
+        let like = like.filter(is_alike);
         let changed = like.and_then(|like| self.changed(&like.candidate, grid, part));
         let right = match (like, changed) {
             (Some(like), Some(area)) => {
                 let mut moments = like.right.clone();
                 if area.pixels() > 0 {
-                    let own = render(area)?;
+                    let mut own = render(area)?;
+                    if let Some(error) = &like.error {
+                        for ((x, y), mean) in area.iter().zip(&mut own.mean) {
+                            let error = error[part.index(x, y)];
+                            *mean = [0, 1, 2].map(|i| mean[i] - error[i]);
+                        }
+                    }
                     for ((at, mean), variance) in area.iter().zip(own.mean).zip(own.variance) {
                         let index = part.index(at.0, at.1);
                         (moments.mean[index], moments.variance[index]) = (mean, variance);
@@ -291,6 +347,28 @@ impl Candidate {
             part,
             right,
             behaved,
+            error: like.and_then(|like| like.error.clone()),
+        })
+    }
+
+    /// What it shows exactly in the cells of a grid, from which others will be told by so many samples in a cell: what these are off here is taken from all
+    /// that differ from it in a part of the picture.
+    pub fn made_to_compare(
+        &self,
+        grid: &Grid,
+        samples: usize,
+        cancel: &AtomicBool,
+    ) -> Option<Made> {
+        let sampled = self.made(grid, Some(samples), None, cancel)?;
+        if self.behaviour != Behaviour::RIGHT {
+            return Some(sampled);
+        }
+        let exact = self.made(grid, None, None, cancel)?;
+        let pairs = sampled.right.mean.iter().zip(&exact.right.mean);
+        let error = pairs.map(|(sampled, exact)| [0, 1, 2].map(|i| sampled[i] - exact[i]));
+        Some(Made {
+            error: Some(error.collect()),
+            ..exact
         })
     }
 
@@ -350,6 +428,8 @@ pub struct Made {
     part: Area,
     /// What it would make if it behaved as a right program.
     right: Moments,
+    /// How far the means are off of what is told from it by samples, where it was made for that.
+    error: Option<Rc<[[f64; 3]]>>,
     /// What it makes, and the variance of these means.
     behaved: Option<(Moments, Vec<[f64; 3]>)>,
 }
@@ -381,6 +461,7 @@ impl Made {
             },
             doubt,
             cut: 0.0,
+            curve: self.candidate.curve,
         };
         model.look(&self.candidate.looks, grid, seen);
         model

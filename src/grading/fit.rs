@@ -96,9 +96,13 @@ fn round<T: Trial>(
     let mut left = loss(&now, bend);
     let mut normal = vec![vec![0.0; count]; count];
     let mut damping = 1e-3;
-    for _ in 0..rounds {
-        let mut slopes = Vec::with_capacity(count);
-        for i in 0..count {
+    let mut slopes: Vec<Vec<f64>> = Vec::new();
+    for at in 0..rounds {
+        // Slopes serve for two rounds: to find them takes most of the time.
+        if at % 2 == 0 {
+            slopes.clear();
+        }
+        for i in slopes.len()..count {
             let varied = |by: f64| {
                 let mut other = numbers.clone();
                 other[i] += by;

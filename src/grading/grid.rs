@@ -8,7 +8,6 @@ use glam::DVec2;
 
 use crate::{
     area::Area,
-    film::Film,
     math::Angle,
     scene::{Image, Lens, Scene},
 };
@@ -107,11 +106,8 @@ impl Grid {
         scene
     }
 
-    /// The means of a film of the part.
-    pub fn reduce(&self, film: &Film) -> Vec<[f64; 3]> {
-        if self.factor == 1 {
-            return film.pixels().to_vec();
-        }
+    /// The means of the part's pixels, told by column and row in it.
+    pub fn reduce(&self, pixel: impl Fn(u32, u32) -> [f64; 3]) -> Vec<[f64; 3]> {
         let factor = f64::from(self.factor);
         // From where to where a cell reaches, and the pixels that it has a share of.
         let reach = |cell: u32, margin: f64, corner: f64| {
@@ -129,7 +125,7 @@ impl Grid {
             for row in rows.2.clone() {
                 for column in columns.2.clone() {
                     let weight = share(row, &rows) * share(column, &columns) / (factor * factor);
-                    let pixel = film.pixel(column, row);
+                    let pixel = pixel(column, row);
                     sum = [0, 1, 2].map(|i| sum[i] + weight * pixel[i]);
                 }
             }

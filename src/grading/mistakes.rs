@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    candidate::{Average, Candidate, Cause, Look, Named},
+    candidate::{Average, Candidate, Cause, Curve, Look, Named},
     textbook::{Behind, Squares, Visible},
 };
 use crate::{
@@ -219,45 +219,38 @@ pub const ROWS: &[Row] = &[
         "not_encoded",
         "the colours are too dark: linear light was written where sRGB is expected",
         ENCODE,
-        |c| curve(c, srgb_to_linear),
+        |c| encoded(c, Curve::Missing),
     ),
     row(
         "encoded_twice",
         "the colours are too bright: they were encoded as sRGB twice, or a scene's sRGB colours were not decoded",
         AVERAGE,
-        |c| curve(c, linear_to_srgb),
+        |c| encoded(c, Curve::Twice),
     ),
-    row(
-        "gamma_22",
-        "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
-        ENCODE,
-        |c| {
-            curve(c, |light| {
-                srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 2.2))
-            })
-        },
-    ),
+    Row {
+        id: "gamma_22",
+        message: "the colours were encoded with the power 1/2.2, which is near sRGB but not it",
+        help: ENCODE,
+        change: |c| encoded(c, Curve::Power22),
+        shows: Shows::Everywhere,
+    },
     row(
         "gamma_2",
         "the colours were encoded with a square root, which is near sRGB but not it",
         ENCODE,
-        |c| curve(c, |light| srgb_to_linear(light.max(0.0).sqrt())),
+        |c| encoded(c, Curve::Root),
     ),
     edge(
         "averaged_encoded",
         "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark",
         AVERAGE,
-        |c| averaged(c, Average::Encoded, srgb_to_linear),
+        |c| averaged(c, Average::Encoded, Curve::Missing),
     ),
     edge(
         "gamma_22_averaged",
         "colours were decoded with the power 2.2 and encoded with 1/2.2, which is near sRGB but not it: flat colours are right, and edges a little off",
         ENCODE,
-        |c| {
-            averaged(c, Average::Power22, |mean| {
-                srgb_to_linear(libm::pow(mean.max(0.0), 1.0 / 2.2))
-            })
-        },
+        |c| averaged(c, Average::Power22, Curve::Power22),
     ),
     Row {
         id: "cut_off",
@@ -501,8 +494,10 @@ fn channels(c: &mut Candidate, order: [usize; 3]) -> Option<()> {
     look(c, Look::Channels(order))
 }
 
-fn curve(c: &mut Candidate, curve: fn(f64) -> f64) -> Option<()> {
-    look(c, Look::Curve(curve))
+fn encoded(c: &mut Candidate, curve: Curve) -> Option<()> {
+    (c.curve == Curve::Right).then_some(())?;
+    c.curve = curve;
+    Some(())
 }
 
 /// Gray by a mean of encoded values.
@@ -515,10 +510,9 @@ fn encoded_gray(c: &mut Candidate, weights: [f64; 3]) -> Option<()> {
     Some(())
 }
 
-fn averaged(c: &mut Candidate, average: Average, back: fn(f64) -> f64) -> Option<()> {
+fn averaged(c: &mut Candidate, average: Average, curve: Curve) -> Option<()> {
     c.average = average;
-    c.looks.insert(0, Look::Curve(back));
-    Some(())
+    encoded(c, curve)
 }
 
 fn visible(c: &mut Candidate, visible: Visible) -> Option<()> {

@@ -29,8 +29,8 @@ use crate::{
 };
 
 use self::{
-    candidate::{Average, Candidate, exact_moments},
-    score::{Model, Score, score, strays},
+    candidate::{Average, Candidate, Curve, exact_moments},
+    score::{Model, Strays, score},
     select::{Found, Search},
     textbook::Moments,
 };
@@ -164,24 +164,26 @@ fn judged(
         moments: moments.clone(),
         doubt: Vec::new(),
         cut: 0.0,
+        curve: Curve::Right,
     };
     let width = film.width() as usize;
     let noise = score(film.pixels(), &model);
     let search = Search::new(scene, film, part, control.cancel);
-    let strays = strays(film.pixels(), &model, width, false);
-    let found = match strays.len() {
+    let strays = Strays::new(film.pixels(), &model, width);
+    let found = match strays.is_empty() {
         // All that differs lies where colours meet. Only what shows there can be wrong.
-        0 => search.with_edges(Candidate::right(scene))?,
-        _ => search.run()?,
+        true => search.with_edges(Candidate::right(scene))?,
+        false => search.run()?,
     };
     let mut verdict = match found {
         Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
-        _ if score::strays(film.pixels(), &model, width, true).is_empty() => Verdict {
+        _ if strays.is_negligible() => Verdict {
             samples: Some(noise.samples),
             ..Verdict::of(Kind::Noise, scene)
         },
         _ => Verdict::of(Kind::Unknown, scene),
     };
+    search.stage("told");
     verdict.is_cut = search.is_cut.get();
     Ok(verdict)
 }
@@ -190,24 +192,24 @@ fn judged(
 fn wrong(search: &Search, found: &Found) -> Verdict {
     let scene = search.scene;
     let named = &found.candidate.named;
-    let beyond = |score: &Score| (score.squares - score.noise).max(0.0);
+    // The squared difference on the same grid for all, less what noise leaves of it in the end.
+    let last = search.judged(found.candidate.clone());
+    let noise = last.as_ref().map_or(0.0, |last| last.score.noise);
+    let beyond =
+        |found: Option<Found>| found.map_or(0.0, |found| (found.score.squares - noise).max(0.0));
+    let at_last = beyond(last);
     let mut before = Candidate::right(scene);
-    let all = search
-        .judged(before.clone())
-        .map_or(0.0, |found| found.score.squares);
-    let all = (all - found.score.noise).max(1e-12);
+    let all = beyond(search.judged(before.clone())).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
     for one in named {
         let Some(after) = before.with(one.clone()) else {
             continue;
         };
-        let is_last = after.named.len() == named.len();
-        let score = match is_last {
-            true => Some(found.score.clone()),
-            false => search.judged(after.clone()).map(|found| found.score),
+        let now = match after.named.len() == named.len() {
+            true => at_last,
+            false => beyond(search.judged(after.clone())),
         };
-        let now = score.map_or(left, |score| (score.squares - found.score.noise).max(0.0));
         let set = parameters::arguments(&before.scene, &after.scene);
         let mut message = words::message(scene, one);
         if let (candidate::Cause::Row(_), [set]) = (&one.cause, set.as_slice())
@@ -228,8 +230,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (!search.strays(&found.candidate).is_empty())
-        .then(|| (beyond(&found.score) / all).min(1.0));
+    let rest = (!search.strays(&found.candidate).is_negligible()).then(|| (at_last / all).min(1.0));
     let of = |object: usize| {
         let (own, other) = (&scene.objects[object], &before.scene.objects[object]);
         let off = words::off(scene, &before.scene, object);

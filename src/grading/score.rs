@@ -7,9 +7,9 @@
 //! models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz, Estimating the
 //! dimension of a model, 1978. It is the only rule of significance here.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
-use super::textbook::Moments;
+use super::{candidate::Curve, textbook::Moments};
 use crate::color::{linear_to_srgb, srgb_to_linear};
 
 /// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
@@ -33,6 +33,8 @@ pub struct Model {
     pub doubt: Vec<[f64; 3]>,
     /// By how much bytes are cut off on an average, in steps.
     pub cut: f64,
+    /// How light is encoded: what is seen is compared as the light that was encoded so.
+    pub curve: Curve,
 }
 
 /// How well a model fits.
@@ -57,19 +59,19 @@ impl Score {
     }
 }
 
-/// The standard deviation of rounding a light's encoding to a step.
-fn rounding(light: f64) -> f64 {
+/// The standard deviation of light that a step of the encoding of what is seen in its place rounds off.
+fn rounding(light: f64, curve: Curve) -> f64 {
     /// Lights in steps of this are told apart: none of them has twice the rounding of the one before.
     const LIGHTS: usize = 4096;
-    static ROUNDINGS: LazyLock<Vec<f64>> = LazyLock::new(|| {
-        let of = |at: usize| {
-            let encoded = linear_to_srgb(at as f64 / LIGHTS as f64);
-            let below = srgb_to_linear((encoded - STEP / 2.0).max(0.0));
-            (srgb_to_linear(encoded + STEP / 2.0) - below) / libm::sqrt(12.0)
-        };
-        (0..=LIGHTS).map(of).collect()
-    });
-    ROUNDINGS[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
+    static ROUNDINGS: [OnceLock<Vec<f64>>; Curve::ALL.len()] =
+        [const { OnceLock::new() }; Curve::ALL.len()];
+    let of = |at: usize| {
+        let encoded = linear_to_srgb(curve.seen(at as f64 / LIGHTS as f64));
+        let light = |encoded: f64| curve.light(srgb_to_linear(encoded.max(0.0)));
+        (light(encoded + STEP / 2.0) - light(encoded - STEP / 2.0)) / libm::sqrt(12.0)
+    };
+    let roundings = ROUNDINGS[curve as usize].get_or_init(|| (0..=LIGHTS).map(of).collect());
+    roundings[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
 }
 
 /// What is known of a pixel: its difference, its variance, and that of rounding and of the model itself.
@@ -87,7 +89,7 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
         let (mean, variance) = (model.moments.mean[at], model.moments.variance[at]);
         let variance = variance.map(|one| if one < FLAT { 0.0 } else { one });
         if last.0 != mean {
-            last = (mean, mean.map(|light| rounding(light) * rounding(light)));
+            last = (mean, mean.map(|light| rounding(light, model.curve).powi(2)));
         }
         Known {
             difference: [0, 1, 2].map(|i| model.difference(seen[at][i], mean[i], variance)),
@@ -136,20 +138,40 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
             noise = (noise + above / below).clamp(1e-6, 1.0);
         }
     }
-    let mut likelihood = plain;
+    // Densities are told of the picture's own light.
+    let stretch = |light: &f64| {
+        let own = rounding(model.curve.seen(*light), Curve::Right);
+        libm::log(own / rounding(*light, model.curve))
+    };
+    let mut likelihood = plain
+        - match model.curve {
+            Curve::Right => 0.0,
+            _ => seen.iter().flatten().map(stretch).sum::<f64>(),
+        };
     let mut off = vec![0.0; known.len()];
     let (mut squares, mut expected) = (0.0, 0.0);
+    // Of pixels of several colours: the variances of a sample, and the squared differences beyond rounding.
+    let (mut of_samples, mut beyond) = (0.0, 0.0);
     for (at, one) in &others {
         likelihood += one.density(noise);
         off[*at] = one.off(noise);
         for i in 0..3 {
-            squares += one.difference[i] * one.difference[i];
+            let square = one.difference[i] * one.difference[i];
+            squares += square;
             expected += one.variance[i] * noise + one.rounding[i];
+            if one.variance[i] > 0.0 {
+                of_samples += one.variance[i];
+                beyond += square - one.rounding[i];
+            }
         }
     }
+    let samples = match beyond > 1e-6 * of_samples {
+        true => (of_samples / beyond).max(1.0),
+        false => 1e6,
+    };
     Score {
         likelihood,
-        samples: 1.0 / noise,
+        samples,
         off,
         squares,
         noise: expected.min(squares),
@@ -207,7 +229,7 @@ impl Model {
         } else {
             self.cut
         };
-        (steps - from) * rounding(mean) * libm::sqrt(12.0)
+        (steps - from) * rounding(mean, self.curve) * libm::sqrt(12.0)
     }
 }
 
@@ -233,30 +255,58 @@ pub fn around(variances: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The pixels that no sampling explains: those of one colour, with more of it around them if that is asked for, that show another. An edge that is off by
-/// less than half a pixel reaches no farther than to its neighbours.
-pub fn strays(seen: &[[f64; 3]], model: &Model, width: usize, is_inside: bool) -> Vec<usize> {
-    /// In steps: half of one is rounding, and half of that another way to decode.
-    const WRONG: f64 = 0.75;
-    /// In standard deviations of a model that is sampled itself.
-    const DOUBTS: f64 = 4.0;
-    let variances = &model.moments.variance;
-    let around = match is_inside {
-        true => around(variances, width),
-        false => Vec::new(),
-    };
-    let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
-    let is_off = |at: &usize| {
-        let doubt = model.doubt.get(*at).copied().unwrap_or_default();
-        (0..3).any(|i| {
-            let mean = model.moments.mean[*at][i];
-            let off = model.difference(seen[*at][i], mean, variances[*at]).abs();
-            // The root of 12 standard deviations of rounding are a step.
-            off > WRONG * libm::sqrt(12.0) * rounding(mean) + DOUBTS * doubt[i].sqrt()
-        })
-    };
-    (0..seen.len())
-        .filter(|&at| is_flat(&variances[at]) && (!is_inside || is_flat(&around[at])))
-        .filter(is_off)
-        .collect()
+/// The pixels that no sampling explains: those of one colour that show another.
+#[derive(Debug, Default)]
+pub struct Strays {
+    /// Those with more of their colour around them. An edge that is off by less than half a pixel does not reach so far.
+    pub inside: Vec<usize>,
+    /// How many there are beside edges.
+    beside: usize,
+    /// How many pixels show several colours.
+    edges: usize,
+}
+
+impl Strays {
+    /// Those of a picture.
+    pub fn new(seen: &[[f64; 3]], model: &Model, width: usize) -> Self {
+        /// In steps: half of one is rounding, and half of that another way to decode.
+        const WRONG: f64 = 0.75;
+        /// In standard deviations of a model that is sampled itself.
+        const DOUBTS: f64 = 4.0;
+        let variances = &model.moments.variance;
+        let around = around(variances, width);
+        let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
+        let is_off = |at: usize| {
+            let doubt = model.doubt.get(at).copied().unwrap_or_default();
+            (0..3).any(|i| {
+                let mean = model.moments.mean[at][i];
+                let off = model.difference(seen[at][i], mean, variances[at]).abs();
+                // The root of 12 standard deviations of rounding are a step.
+                let step = libm::sqrt(12.0) * rounding(mean, model.curve);
+                off > WRONG * step + DOUBTS * doubt[i].sqrt()
+            })
+        };
+        let mut strays = Self::default();
+        for at in 0..seen.len() {
+            if !is_flat(&variances[at]) {
+                strays.edges += 1;
+            } else if is_off(at) {
+                match is_flat(&around[at]) {
+                    true => strays.inside.push(at),
+                    false => strays.beside += 1,
+                }
+            }
+        }
+        strays
+    }
+
+    /// Whether there are none at all.
+    pub fn is_empty(&self) -> bool {
+        self.inside.is_empty() && self.beside == 0
+    }
+
+    /// Whether there are no more than edges leave that are off by a fiftieth of a pixel.
+    pub fn is_negligible(&self) -> bool {
+        self.inside.is_empty() && self.beside * 50 <= self.edges
+    }
 }

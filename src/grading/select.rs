@@ -5,7 +5,8 @@
 //! colours meet is judged on the pixels.
 
 use std::{
-    cell::Cell,
+    cell::{Cell, OnceCell, RefCell},
+    collections::HashMap,
     sync::atomic::{AtomicBool, Ordering},
     time::Duration,
 };
@@ -14,12 +15,12 @@ use cpu_time::ThreadTime;
 use glam::DVec2;
 
 use super::{
-    candidate::{Candidate, Cause, Look, Made, Named, is_near},
+    candidate::{Candidate, Cause, Curve, Look, Made, Named, is_near},
     fit::{Fitted, Trial, absolute, fit},
     grid::Grid,
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
     parameters::{self, Owner, Parameter},
-    score::{Model, Score, score, strays},
+    score::{Model, Score, Strays, score},
     textbook::Textbook,
     words,
 };
@@ -40,39 +41,85 @@ const FINALISTS: usize = 3;
 /// From so many starts numbers are fitted on the tiny grid.
 const STARTS: usize = 3;
 
-/// Of so many parameters numbers are fitted on the coarse grid.
-const FITTED: usize = 6;
+/// Of so many parameters of objects, and of so many others, numbers are fitted on the coarse grid.
+const FITTED: usize = 4;
 
 /// So many objects are looked at, those around which most is wrong.
 const SUSPECTS: usize = 12;
+
+/// The part of what the best one explains that another may leave to be as good.
+const AS_GOOD: f64 = 1e-3;
+
+/// Fewer pixels than this are not taken for something too many.
+const SMALLEST: usize = 4;
+
+/// More samples than this in a pixel are not one.
+const ONE: f64 = 1.5;
 
 /// A move of less than this, in pixels, is not named.
 pub const HALF_PIXEL: f64 = 0.5;
 
 /// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
-const TINY: (u32, usize) = (32, 8);
+const TINY: (u32, usize) = (32, 5);
 const COARSE: u32 = 48;
-const MIDDLE: u32 = 160;
+const MIDDLE: u32 = 128;
+
+/// Of so many pixels in the middle of a picture, those tell of edges.
+const PIXELS_OF_EDGES: u64 = 20_000;
 
 /// The processor time that a search may take: for any picture, and for each of its pixels.
 const TIME: f64 = 0.7;
 const TIME_OF_A_PIXEL: f64 = 2e-6;
 
-/// A grid, and what a picture shows in it.
-pub struct Level {
+/// A grid over a part of a picture.
+pub struct Level<'a> {
     pub grid: Grid,
-    pub seen: Vec<[f64; 3]>,
+    film: &'a Film,
+    /// The part's corner in the film.
+    corner: [u32; 2],
+    /// What it shows in the cells, as light that was encoded in each way, where that was asked for.
+    seen: [OnceCell<Vec<[f64; 3]>>; Curve::ALL.len()],
     /// How many samples a cell has; none if it is computed exactly.
     samples: Option<usize>,
+}
+
+impl Level<'_> {
+    /// What the picture shows in the cells, as light that was encoded in a way.
+    pub fn seen(&self, curve: Curve) -> &[[f64; 3]] {
+        self.seen[curve as usize].get_or_init(|| {
+            let [left, top] = self.corner;
+            let pixel = |x, y| self.film.pixel(left + x, top + y);
+            if curve == Curve::Right {
+                return self.grid.reduce(pixel);
+            }
+            // Most pixels have one of a few bytes.
+            let known: RefCell<HashMap<u64, f64>> = RefCell::default();
+            let light = |seen: f64| {
+                let mut known = known.borrow_mut();
+                *known
+                    .entry(seen.to_bits())
+                    .or_insert_with(|| curve.light(seen))
+            };
+            self.grid.reduce(|x, y| pixel(x, y).map(light))
+        })
+    }
+
+    fn model(&self, made: &Made) -> Model {
+        made.model(&self.grid, self.seen(made.candidate.curve))
+    }
 }
 
 /// A picture that is compared with a scene.
 pub struct Search<'a> {
     pub scene: &'a Scene,
-    tiny: Level,
-    coarse: Level,
-    middle: Level,
-    pub fine: Level,
+    tiny: Level<'a>,
+    coarse: Level<'a>,
+    middle: Level<'a>,
+    fine: Level<'a>,
+    /// The pixels in the middle of the picture.
+    edges: Level<'a>,
+    /// What was made last of all pixels.
+    last: Cell<Option<Made>>,
     started: ThreadTime,
     limit: Duration,
     /// Whether something was left out for that.
@@ -91,21 +138,22 @@ pub struct Found {
 
 impl<'a> Search<'a> {
     /// For a picture of a part of a scene's.
-    pub fn new(scene: &'a Scene, film: &Film, part: Area, cancel: &'a AtomicBool) -> Self {
-        let level = |longest, samples| {
-            let grid = Grid::new(&scene.image, part, longest);
-            Level {
-                grid,
-                seen: grid.reduce(film),
-                samples,
-            }
+    pub fn new(scene: &'a Scene, film: &'a Film, part: Area, cancel: &'a AtomicBool) -> Self {
+        let level = |area: Area, longest, samples| Level {
+            grid: Grid::new(&scene.image, area, longest),
+            film,
+            corner: [area.x - part.x, area.y - part.y],
+            seen: std::array::from_fn(|_| OnceCell::new()),
+            samples,
         };
         Self {
             scene,
-            tiny: level(TINY.0, Some(TINY.1)),
-            coarse: level(COARSE, None),
-            middle: level(MIDDLE, None),
-            fine: level(u32::MAX, None),
+            tiny: level(part, TINY.0, Some(TINY.1)),
+            coarse: level(part, COARSE, None),
+            middle: level(part, MIDDLE, None),
+            fine: level(part, u32::MAX, None),
+            edges: level(middle(part), u32::MAX, None),
+            last: Cell::new(None),
             started: ThreadTime::now(),
             limit: Duration::from_secs_f64(
                 std::env::var("LIMIT").map_or(TIME + TIME_OF_A_PIXEL * part.pixels() as f64, |s| {
@@ -114,6 +162,12 @@ impl<'a> Search<'a> {
             ),
             is_cut: Cell::new(false),
             cancel,
+        }
+    }
+
+    pub fn stage(&self, name: &str) {
+        if std::env::var("DEBUG").is_ok() {
+            eprintln!("  {name}: {:?}", self.started.elapsed());
         }
     }
 
@@ -126,20 +180,20 @@ impl<'a> Search<'a> {
     }
 
     fn differences(&self, made: &Made, level: &Level) -> Vec<f64> {
-        let model = made.model(&level.grid, &level.seen);
-        model.differences(&level.seen)
+        level
+            .model(made)
+            .differences(level.seen(made.candidate.curve))
     }
 
-    /// Judges a candidate on the pixels.
+    /// Judges a candidate.
     pub fn judged(&self, candidate: Candidate) -> Option<Found> {
-        self.judged_on(&self.fine, candidate, None)
+        self.judged_on(&self.middle, candidate, None)
     }
 
     fn judged_on(&self, level: &Level, candidate: Candidate, like: Option<&Made>) -> Option<Found> {
         let made = self.made(&candidate, level, like)?;
-        let model: Model = made.model(&level.grid, &level.seen);
-        let score = score(&level.seen, &model);
-        let cost = score.cost(candidate.fitted(), level.seen.len());
+        let score = score(level.seen(candidate.curve), &level.model(&made));
+        let cost = score.cost(candidate.fitted(), level.grid.count());
         Some(Found {
             candidate,
             score,
@@ -154,44 +208,90 @@ impl<'a> Search<'a> {
         let Some(mut best) = self.judged_on(&self.middle, right, None) else {
             return Ok(None);
         };
-        while best.candidate.named.len() < MOST_MISTAKES && !self.strays(&best.candidate).is_empty()
-        {
+        while best.candidate.named.len() < MOST_MISTAKES && !self.is_explained(&best.candidate) {
             let Some(next) = self.step(&best) else { break };
             best = next;
         }
+        self.stage("chosen");
         if best.candidate.named.len() > 1 {
             best = self.without_needless(best);
         }
-        let best = self.with_edges(self.shortened(best))?;
+        self.stage("needed");
+        let short = self.shortened(best);
+        self.stage("shortened");
+        let mut best = self.with_edges(short)?;
+        // A shift by half a pixel may be taken for a camera that looks a little elsewhere.
+        if let Some(found) = &best
+            && found.candidate.named.len() == 1
+        {
+            let other = self.with_edges(Candidate::right(self.scene))?;
+            let other = other.filter(|other| self.strays(&other.candidate).is_negligible());
+            best = best
+                .into_iter()
+                .chain(other)
+                .min_by(|one, other| one.cost.total_cmp(&other.cost));
+        }
+        self.stage("edges");
         crate::cancel::unless_set(self.cancel, best)
     }
 
     /// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels.
     pub fn with_edges(&self, candidate: Candidate) -> Result<Option<Found>, Cancelled> {
-        let Some(null) = self.judged(candidate) else {
+        let Some(null) = self.judged_on(&self.edges, candidate, None) else {
             return Ok(None);
         };
-        // What is done to light makes other noise at edges, of which too little is known to tell these.
-        let may = null.candidate.looks.is_empty();
+        // What is done to light makes other noise at edges, of which too little is known to tell these. One sample is its own mean, whatever is averaged.
+        let may = null.candidate.looks.is_empty() && null.candidate.curve == Curve::Right;
+        let is_averaged = null.score.samples > ONE;
         let rows = ROWS.iter().filter(|row| may && row.shows != Shows::InAreas);
-        let judged = rows.filter_map(|row| {
-            let candidate = null.candidate.with(row.named())?;
-            self.judged_on(&self.fine, candidate, Some(&null.made))
-        });
-        let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
-        // What explains nothing of the squared difference explains the tails of noise.
-        let is_better =
-            |best: &Found| best.cost < null.cost && best.score.squares < null.score.squares;
+        let candidates = rows.filter_map(|row| null.candidate.with(row.named()));
+        let candidates =
+            candidates.filter(|other| is_averaged || other.average == null.candidate.average);
+        let judged = candidates
+            .filter_map(|candidate| self.judged_on(&self.edges, candidate, Some(&null.made)));
+        let judged: Vec<Found> = judged.collect();
+        if std::env::var("DEBUG").is_ok() {
+            eprintln!(
+                "   null {:.1} {:.4} n {}",
+                null.cost, null.score.squares, null.score.samples
+            );
+            for found in &judged {
+                eprintln!(
+                    "   edge {:.1} {:.4} n {} {}",
+                    found.cost,
+                    found.score.squares,
+                    found.score.samples,
+                    found.candidate.named.last().unwrap().message
+                );
+            }
+        }
+        // Where areas are not explained yet, that comes first.
+        let is_open = !self.strays(&null.candidate).is_negligible();
+        let best = judged
+            .into_iter()
+            .filter(|found| !is_open || self.strays(&found.candidate).is_negligible())
+            .min_by(|one, other| one.cost.total_cmp(&other.cost));
+        let is_better = |best: &Found| best.cost < null.cost;
         crate::cancel::unless_set(self.cancel, Some(best.filter(is_better).unwrap_or(null)))
     }
 
+    /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
+    fn is_explained(&self, candidate: &Candidate) -> bool {
+        let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
+        let mut all = std::iter::once(candidate.clone()).chain(rows.filter_map(|row| candidate.with(row.named())));
+        all.any(|candidate| self.strays(&candidate).is_negligible())
+    }
+
     /// The pixels that show something else than a candidate for certain.
-    pub fn strays(&self, candidate: &Candidate) -> Vec<usize> {
-        let Level { grid, seen, .. } = &self.fine;
-        let made = self.made(candidate, &self.fine, None);
-        made.map_or_else(Vec::new, |made| {
-            strays(seen, &made.model(grid, seen), grid.width(), true)
-        })
+    pub fn strays(&self, candidate: &Candidate) -> Strays {
+        let like = self.last.take();
+        let Some(made) = self.made(candidate, &self.fine, like.as_ref()) else {
+            return Strays::default();
+        };
+        let seen = self.fine.seen(candidate.curve);
+        let strays = Strays::new(seen, &self.fine.model(&made), self.fine.grid.width());
+        self.last.set(Some(made));
+        strays
     }
 
     /// The best candidate with one more mistake, if it is better.
@@ -232,10 +332,25 @@ impl<'a> Search<'a> {
             }
             Some(found)
         });
-        let best = judged.min_by(|one, other| one.cost.total_cmp(&other.cost));
-        if std::env::var("DEBUG").is_ok() {
-            eprintln!("  end: {:?}", self.started.elapsed());
-        }
+        let judged: Vec<Found> = judged.collect();
+        let least = judged
+            .iter()
+            .map(|found| found.cost)
+            .fold(f64::INFINITY, f64::min);
+        // A row says more than a number that makes as good as the same picture.
+        let is_row = |found: &Found| {
+            !matches!(
+                found.candidate.named.last().map(|named| &named.cause),
+                Some(Cause::Numbers(..))
+            )
+        };
+        let enough = least + AS_GOOD * (from.cost - least);
+        let best = judged.into_iter().min_by(|one, other| {
+            let rank = |found: &Found| (!(is_row(found) && found.cost <= enough), found.cost);
+            let (one, other) = (rank(one), rank(other));
+            one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
+        });
+        self.stage("end");
         let is_better = |best: &Found| {
             best.cost < from.cost && words::is_seen(self.scene, &from.candidate, &best.candidate)
         };
@@ -249,7 +364,7 @@ impl<'a> Search<'a> {
 
     /// The rows of the table, and how much each leaves on the coarse grid.
     fn rows(&self, from: &Found, like: &Made) -> Vec<(f64, Candidate)> {
-        let rows = ROWS.iter().filter(|row| row.shows != Shows::AtEdges);
+        let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
         let mut named: Vec<Named> = rows.map(Row::named).collect();
         for object in self.suspects(from) {
             let name = Owner::Object(object).name(self.scene);
@@ -280,66 +395,54 @@ impl<'a> Search<'a> {
         };
         let all = parameters::all(&candidate.scene).into_iter();
         let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
-        let Some(tiny) = self.made(candidate, &self.tiny, None) else {
+        let Some(tiny) = candidate.made_to_compare(&self.tiny.grid, TINY.1, self.cancel) else {
             return Vec::new();
         };
-        let mut started: Vec<(f64, Parameter, Vec<f64>)> = all
-            .filter_map(|parameter| {
-                let steps = steps(candidate, &parameter, &self.coarse);
-                let numbers = parameter.numbers(&candidate.scene);
-                let starts = match parameter.is_color() {
-                    true => vec![self.colors(&numbers, &from.made)],
-                    false => starts(&parameter, &numbers, &steps),
-                };
-                let tried = starts.into_iter().filter_map(|start| {
-                    let differences = self
-                        .changed(&tiny, &parameter, &start, &self.tiny)?
-                        .differences();
-                    Some((absolute(&differences), start))
-                });
-                let mut tried: Vec<_> = tried.collect();
-                tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-                let best = tried.into_iter().take(STARTS);
-                let rounds = if parameter.is_color() && candidate.looks.is_empty() {
-                    0
-                } else {
-                    4
-                };
-                let fitted = best.filter_map(|(_, start)| {
-                    self.fit_one(&tiny, &parameter, &self.tiny, start, [rounds, 0])
-                });
-                let best = fitted.min_by(|one, other| one.left.total_cmp(&other.left))?;
-                Some((best.left, parameter, best.numbers))
-            })
-            .collect();
-        started.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let fitted = started
-            .into_iter()
-            .take(FITTED)
-            .filter_map(|(_, parameter, start)| {
-                // A colour that was read off the picture fits.
-                let rounds = if parameter.is_color() && candidate.looks.is_empty() {
-                    0
-                } else {
-                    1
-                };
-                let fitted = self.fit_one(
-                    like,
-                    &parameter,
-                    &self.coarse,
-                    start,
-                    [5 * rounds, 2 * rounds],
-                )?;
-                let named = words::numbers(self.scene, &parameter, fitted.numbers);
-                Some((fitted.left, candidate.with(named)?))
+        let shown = self.middle.model(&from.made);
+        let is_read = |parameter: &Parameter| parameter.is_color() && candidate.looks.is_empty();
+        let tried = all.filter_map(|parameter| {
+            let numbers = parameter.numbers(&candidate.scene);
+            let starts = match parameter.is_color() {
+                true => vec![self.colors(&numbers, &shown)],
+                false => {
+                    let steps = steps(candidate, &parameter, &self.coarse);
+                    starts(&parameter, &numbers, &steps)
+                }
+            };
+            let tried = starts.into_iter().filter_map(|start| {
+                let shown = self.changed(&tiny, &parameter, &start, &self.tiny)?;
+                Some((absolute(&shown.differences()), start))
             });
-        fitted.collect()
+            let mut tried: Vec<_> = tried.collect();
+            tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+            tried.truncate(STARTS);
+            Some((parameter, tried))
+        });
+        let on_tiny = tried.filter_map(|(parameter, tried)| {
+            let rounds = if is_read(&parameter) { 0 } else { 4 };
+            let fitted = tried.into_iter().filter_map(|(_, start)| {
+                self.fit_one(&tiny, &parameter, &self.tiny, start, [rounds, 0])
+            });
+            let best = fitted.min_by(|one, other| one.left.total_cmp(&other.left))?;
+            Some((best.left, (parameter, best.numbers)))
+        });
+        let (local, others): (Vec<_>, Vec<_>) =
+            on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
+        let on_coarse = [local, others]
+            .into_iter()
+            .flat_map(|fitted| least(fitted.into_iter(), FITTED));
+        let on_coarse = on_coarse.filter_map(|(parameter, start)| {
+            let rounds = if is_read(&parameter) { [0, 0] } else { [5, 2] };
+            let fitted = self.fit_one(like, &parameter, &self.coarse, start, rounds)?;
+            let named = words::numbers(self.scene, &parameter, fitted.numbers);
+            Some((fitted.left, candidate.with(named)?))
+        });
+        on_coarse.collect()
     }
 
     /// The colours that a picture has where these colours alone should be seen: the medians of their channels.
-    fn colors(&self, numbers: &[f64], made: &Made) -> Vec<f64> {
-        let Level { grid, seen, .. } = &self.middle;
-        let model = made.model(grid, seen);
+    fn colors(&self, numbers: &[f64], model: &Model) -> Vec<f64> {
+        let seen = self.middle.seen(model.curve);
         let color = |own: &[f64]| {
             let light = Color {
                 srgb: [own[0], own[1], own[2]],
@@ -378,10 +481,13 @@ impl<'a> Search<'a> {
         self.trial(&changed, level, like)
     }
 
-    fn trial<'l>(&self, candidate: &Candidate, level: &'l Level, like: &Made) -> Option<Shown<'l>> {
-        let model = self
-            .made(candidate, level, Some(like))?
-            .model(&level.grid, &level.seen);
+    fn trial<'l>(
+        &self,
+        candidate: &Candidate,
+        level: &'l Level<'l>,
+        like: &Made,
+    ) -> Option<Shown<'l>> {
+        let model = level.model(&self.made(candidate, level, Some(like))?);
         Some(Shown { level, model })
     }
 
@@ -433,10 +539,10 @@ impl<'a> Search<'a> {
 
     /// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
     fn patch(&self, from: &Found) -> Option<Named> {
-        let Level { grid, seen, .. } = &self.fine;
+        let (grid, seen) = (&self.fine.grid, self.fine.seen(from.candidate.curve));
         let made = self.made(&from.candidate, &self.fine, None)?;
-        let model = made.model(grid, seen);
-        let strays = strays(seen, &model, grid.width(), true);
+        let model = self.fine.model(&made);
+        let strays = Strays::new(seen, &model, grid.width()).inside;
         let pairs = seen.iter().zip(&model.moments.mean);
         let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
         let mut largest: Vec<usize> = Vec::new();
@@ -463,7 +569,7 @@ impl<'a> Search<'a> {
                 }
                 at += 1;
             }
-            if piece.len() > largest.len() {
+            if piece.len() > largest.len().max(SMALLEST - 1) {
                 largest = piece;
             }
         }
@@ -570,15 +676,37 @@ impl<'a> Search<'a> {
     }
 }
 
+/// Those of which least is left, in this order.
+fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> impl Iterator<Item = T> {
+    let mut all: Vec<(f64, T)> = all.collect();
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    all.into_iter().take(most).map(|(_, one)| one)
+}
+
+/// The middle of a part of a picture, of its proportions and of so many pixels at most.
+fn middle(part: Area) -> Area {
+    let by = (PIXELS_OF_EDGES as f64 / part.pixels() as f64)
+        .sqrt()
+        .min(1.0);
+    let [width, height] =
+        [part.width, part.height].map(|length| ((f64::from(length) * by) as u32).max(1));
+    Area {
+        x: part.x + (part.width - width) / 2,
+        y: part.y + (part.height - height) / 2,
+        width,
+        height,
+    }
+}
+
 /// What a candidate shows on a level.
 struct Shown<'l> {
-    level: &'l Level,
+    level: &'l Level<'l>,
     model: Model,
 }
 
 impl Trial for Shown<'_> {
     fn differences(&self) -> Vec<f64> {
-        self.model.differences(&self.level.seen)
+        self.model.differences(self.level.seen(self.model.curve))
     }
 
     fn deviations(&self) -> Vec<f64> {
@@ -639,6 +767,13 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
             starts.push(other);
         }
     };
+    if let (["normal"], [x, y, z]) = (&parameter.fields[..], numbers) {
+        for turn in 1..12 {
+            let angle = std::f64::consts::FRAC_PI_6 * f64::from(turn);
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            with(&|other| *other = vec![cos * x + sin * z, *y, cos * z - sin * x]);
+        }
+    }
     if let ["roll" | "spin"] = parameter.fields[..] {
         (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
     }

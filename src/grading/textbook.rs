@@ -48,10 +48,9 @@ pub enum Squares {
     SignedParts,
 }
 
-/// A cell that shows one colour in these places, near its corners and in its middle, shows no other: an edge that passes between them cuts off a corner
+/// A cell that shows one colour near its corners and in the first samples shows no other: an edge that passes between them cuts off a corner
 /// of a thousandth of it.
-const PROBES: [DVec2; 5] = [
-    DVec2::new(0.5, 0.5),
+const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.04),
     DVec2::new(0.96, 0.96),
     DVec2::new(0.96, 0.04),
@@ -84,11 +83,15 @@ impl Behaviour {
 impl Squares {
     /// Whether the square that a point lies in has the first colour.
     fn is_first(self, x: f64, z: f64) -> bool {
+        // Beyond what an i64 holds no square is told from another.
+        let odd = |x: f64| x as i64 & 1 == 1;
+        // A remainder of an odd negative number is −1.
+        let remainder = |x: f64| if odd(x) { x.signum() } else { 0.0 };
         match self {
-            Self::Floored => (x.floor() + z.floor()).rem_euclid(2.0) == 0.0,
-            Self::Truncated => (x.trunc() + z.trunc()).rem_euclid(2.0) == 0.0,
-            Self::SignedSum => (x.floor() + z.floor()) % 2.0 != 1.0,
-            Self::SignedParts => x.floor() % 2.0 == z.floor() % 2.0,
+            Self::Floored => odd(x.floor()) == odd(z.floor()),
+            Self::Truncated => odd(x.trunc()) == odd(z.trunc()),
+            Self::SignedSum => remainder(x.floor() + z.floor()) != 1.0,
+            Self::SignedParts => remainder(x.floor()) == remainder(z.floor()),
         }
     }
 }
@@ -282,9 +285,14 @@ impl Textbook {
         let count = places.len() as f64;
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
-            let first = self.color(corner + PROBES[0]);
+            let first = self.color(corner + places[0]);
             let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
-            if PROBES[1..].iter().all(is_flat) {
+            // Squares of the size of half a cell show the same in all corners.
+            if CORNERS
+                .iter()
+                .chain(&places[1..places.len().min(8)])
+                .all(is_flat)
+            {
                 return (first, [0.0; 3]);
             }
             let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
