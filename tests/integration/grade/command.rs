@@ -121,14 +121,17 @@ fn each_picture_has_a_line_in_every_form() {
     assert_eq!(rows[0], "file,verdict,rmse,samples_per_pixel,line,set");
     assert!(
         rows[1].starts_with("\"class/color.png\",wrong,0.")
-            && rows[1].ends_with("Ball.color=red\""),
+            && rows[1].ends_with("Ball.color=#ff0000\""),
         "{}",
         rows[1]
     );
     let page = read("index.html");
     assert_eq!(page.matches("<td class=\"picture\">").count(), 5);
     assert_eq!(page.matches("data:image/png;base64,").count(), 10);
-    assert!(page.contains("<code>--set Ball.color=red</code>"), "{page}");
+    assert!(
+        page.contains("<code>--set Ball.color='#ff0000'</code>"),
+        "{page}"
+    );
     // What `diff` says of the same picture stands in its line.
     let arguments = ["diff", "class/color.png", "a.scn", "--format", "json"];
     let output = command(path, &arguments).output().unwrap();
