@@ -9,7 +9,7 @@ use std::{
 use pinhole::{
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grading::{self, Kind, Verdict},
+    grading::{self, Kind, ObjectVerdict, Verdict},
     numbers::{grouped, short, significant},
     render::RenderError,
 };
@@ -404,24 +404,45 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
         )?;
     }
     if verdict.kind == Kind::Wrong {
-        let objects = verdict.objects.iter().map(|object| {
-            let name = object.name.as_ref().unwrap_or(&object.title);
-            match (object.is_right, object.off.round()) {
-                (true, _) => format!("{name} right"),
-                (false, 0.0) => format!("{name} wrong"),
-                (false, 1.0) => format!("{name} off by 1 pixel"),
-                (false, pixels) => format!("{name} off by {} pixels", short(pixels)),
-            }
-        });
-        let background = match verdict.is_background_right {
-            true => "background right",
-            false => "background wrong",
-        };
-        let objects: Vec<_> = objects.chain([background.to_owned()]).collect();
         writeln!(out)?;
-        writeln!(out, "objects   {}", visible(&objects.join(", ")))?;
+        writeln!(out, "objects   {}", visible(&objects(verdict)))?;
     }
     Ok(())
+}
+
+/// What is right and what is not: all objects, or, where they are many, some of those that are not right.
+fn objects(verdict: &Verdict) -> String {
+    /// More are not listed.
+    const MOST: usize = 12;
+    let all = &verdict.objects;
+    let is_all = all.len() <= MOST;
+    let is_listed = |object: &&ObjectVerdict| is_all || !object.is_right;
+    let listed: Vec<_> = all.iter().filter(is_listed).take(MOST).collect();
+    let mut parts: Vec<String> = listed.iter().map(|object| state(object)).collect();
+    let right = all.iter().filter(|object| object.is_right).count();
+    let unlisted = all.len() - right - listed.iter().filter(|object| !object.is_right).count();
+    if unlisted > 0 {
+        parts.push(format!("{} others not right", grouped(unlisted as u64)));
+    }
+    if !is_all {
+        parts.push(format!("{} right", grouped(right as u64)));
+    }
+    parts.push(match verdict.is_background_right {
+        true => "background right".to_owned(),
+        false => "background wrong".to_owned(),
+    });
+    parts.join(", ")
+}
+
+fn state(object: &ObjectVerdict) -> String {
+    let title = || object.title.trim_start_matches("the ").to_owned();
+    let name = object.name.clone().unwrap_or_else(title);
+    match (object.is_right, object.off.round()) {
+        (true, _) => format!("{name} right"),
+        (false, 0.0) => format!("{name} wrong"),
+        (false, 1.0) => format!("{name} off by 1 pixel"),
+        (false, pixels) => format!("{name} off by {} pixels", short(pixels)),
+    }
 }
 
 /// A share in per cent: few digits, but neither 0 nor 100 unless it is that.

@@ -179,11 +179,13 @@ pub fn cases(count: usize, size: [u32; 2], (sampling, samples): (Sampling, u32))
                 .iter()
                 .map(|mistake| mistake.name.split('|').next());
             let names: Vec<&str> = names.flatten().collect();
+            let names = match names.as_slice() {
+                [] => "right".to_owned(),
+                names => names.join(", "),
+            };
             let title = format!(
-                "{scene} {}x{} {samples} {sampling:?}: {}",
-                size[0],
-                size[1],
-                names.join(", ")
+                "{scene} {}x{} {samples} {sampling:?}: {names}",
+                size[0], size[1],
             );
             let right = right.clone();
             cases.push(Case {
