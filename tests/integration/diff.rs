@@ -92,10 +92,10 @@ const VERDICTS: &[(&[&str], &[&str], i32, &str)] = &[
         "right: no pixel differs by more than 255 steps",
     ),
     (
-        &["--set", "camera.roll=-10deg"],
+        &["--set", "Ball.radius=0.8"],
         &[],
         1,
-        "wrong: the roll has the wrong sign: -10",
+        "wrong: the sphere Ball has a wrong size",
     ),
     (
         &["--set", "Ball.color=red"],

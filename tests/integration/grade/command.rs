@@ -18,17 +18,6 @@ checkerboard Floor {}
 /// A file, how it is rendered, its verdict, and the ids of its mistakes.
 const PICTURES: &[(&str, &[&str], &str, &[&str])] = &[
     (
-        "color.png",
-        &[
-            "--set",
-            "sampler.method=jittered",
-            "--set",
-            "Ball.color=red",
-        ],
-        "wrong",
-        &["color"],
-    ),
-    (
         "crop.png",
         &["--set", "sampler.method=exact", "--crop", "8,4,40,50"],
         "right",
@@ -52,15 +41,21 @@ const PICTURES: &[(&str, &[&str], &str, &[&str])] = &[
         &[],
     ),
     (
-        "roll.png",
+        "size.png",
+        &["--set", "sampler.method=exact", "--set", "Ball.radius=0.8"],
+        "wrong",
+        &["radius"],
+    ),
+    (
+        "sky.png",
         &[
             "--set",
             "sampler.method=exact",
             "--set",
-            "camera.roll=-10deg",
+            "image.background=red",
         ],
         "wrong",
-        &["roll_sign"],
+        &["background"],
     ),
 ];
 
@@ -77,8 +72,8 @@ fn class() -> TempDir {
         assert!(output.status.success(), "{output:?}");
     }
     // No text of Pinhole's own is left in it.
-    let picture = image::open(path.join("class/roll.png")).unwrap();
-    picture.to_rgb8().save(path.join("class/roll.png")).unwrap();
+    let picture = image::open(path.join("class/sky.png")).unwrap();
+    picture.to_rgb8().save(path.join("class/sky.png")).unwrap();
     folder
 }
 
@@ -110,7 +105,7 @@ fn each_picture_has_a_line_in_every_form() {
         let mistakes = line["mistakes"].as_array().unwrap();
         let found: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
         assert_eq!(found, *ids, "{line:#}");
-        let is_ours = name.ends_with(".png") && *name != "roll.png";
+        let is_ours = name.ends_with(".png") && *name != "sky.png";
         assert_eq!(line["rendered_by_pinhole"], is_ours, "{name}");
     }
     let read = |name: &str| fs::read_to_string(path.join("graded").join(name)).unwrap();
@@ -120,35 +115,35 @@ fn each_picture_has_a_line_in_every_form() {
     assert_eq!(rows.len(), 1 + PICTURES.len());
     assert_eq!(rows[0], "file,verdict,rmse,samples_per_pixel,line,set");
     assert!(
-        rows[1].starts_with("\"class/color.png\",wrong,0.")
-            && rows[1].ends_with("Ball.color=#ff0000\""),
+        rows[4].starts_with("\"class/size.png\",wrong,0.")
+            && rows[4].ends_with("\"Ball.radius=0.8\""),
         "{}",
-        rows[1]
+        rows[4]
     );
     let page = read("index.html");
     assert_eq!(page.matches("<td class=\"picture\">").count(), 5);
     assert_eq!(page.matches("data:image/png;base64,").count(), 10);
     assert!(
-        page.contains("<code>--set Ball.color='#ff0000'</code>"),
+        page.contains("<code>--set image.background='#ff0000'</code>"),
         "{page}"
     );
     // What `diff` says of the same picture stands in its line.
-    let arguments = ["diff", "class/color.png", "a.scn", "--format", "json"];
+    let arguments = ["diff", "class/size.png", "a.scn", "--format", "json"];
     let output = command(path, &arguments).output().unwrap();
     let diff: Value = serde_json::from_slice(&output.stdout).unwrap();
     for (key, value) in diff.as_object().unwrap() {
-        assert_eq!(&graded[0][key], value, "{key}");
+        assert_eq!(&graded[3][key], value, "{key}");
     }
 
     let (status, out, table) = grade(path, &["class"]);
     assert_eq!((status, out.as_str()), (Some(1), ""));
     let words = [
         "picture",
-        "wrong: ",
         "right: equal to the exact picture (rendered by Pinhole)",
         "right: equal to the exact picture",
         "right but for sampling noise",
-        "wrong: the roll has the wrong sign",
+        "wrong: the sphere Ball has a wrong size: its radius is 0.8 instead of 1",
+        "wrong: the image has a wrong colour",
     ];
     assert_eq!(table.lines().count(), words.len());
     for (line, words) in table.lines().zip(words) {
