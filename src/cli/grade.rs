@@ -109,27 +109,29 @@ fn graded(
     paths: &[PathBuf],
     cancel: &AtomicBool,
 ) -> Result<Result<Vec<Graded>, RenderError>, rayon::ThreadPoolBuildError> {
-    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
-    let wanted = args.threads.map(usize::try_from);
-    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
-    let threads = threads.min(paths.len());
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
     let whole = Area::whole(scene.image.width, scene.image.height);
     let judge = progress::watched(whole.pixels(), |done| {
         Judge::new(scene, whole, cancel, &|more| {
             done.fetch_add(more, Ordering::Relaxed);
         })
     });
-    Ok(judge.and_then(|judge| {
-        progress::watched(paths.len() as u64, |done| {
-            let grade = |path: &PathBuf| {
-                let result = grade(path, scene, &judge, args, cancel)?;
-                done.fetch_add(1, Ordering::Relaxed);
-                let name = shown(path);
-                Ok(Graded { name, result })
-            };
-            pool.install(|| paths.par_iter().map(grade).collect())
-        })
+    let judge = match judge {
+        Ok(judge) => judge,
+        Err(error) => return Ok(Err(error)),
+    };
+    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = args.threads.map(usize::try_from);
+    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
+    let threads = threads.min(paths.len());
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+    Ok(progress::watched(paths.len() as u64, |done| {
+        let grade = |path: &PathBuf| {
+            let result = grade(path, scene, &judge, args, cancel)?;
+            done.fetch_add(1, Ordering::Relaxed);
+            let name = shown(path);
+            Ok(Graded { name, result })
+        };
+        pool.install(|| paths.par_iter().map(grade).collect())
     }))
 }
 

@@ -7,19 +7,18 @@ use tempfile::TempDir;
 
 use crate::program::command;
 
-const SCENE: &str = "image { width 96 height 64 background navy }
+const SCENE: &str = "image { width 60 height 40 background navy }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
-sphere Ball { center (-1.6, 1, 0) }
-triangle Sail { centroid (0.2, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
-box Crate { center (2, 0.75, -0.5) }
-checkerboard Floor {}
+sphere Ball { center (-1, 1, 0) }
+triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
+box { center (2.2, 0.75, -0.5) }
 ";
 
 /// A file, how it is rendered, its verdict, and the ids of its mistakes.
 const PICTURES: &[(&str, &[&str], &str, &[&str])] = &[
     (
         "crop.png",
-        &["--set", "sampler.method=exact", "--crop", "8,4,40,50"],
+        &["--set", "sampler.method=exact", "--crop", "8,4,40,30"],
         "right",
         &[],
     ),
@@ -42,7 +41,7 @@ const PICTURES: &[(&str, &[&str], &str, &[&str])] = &[
     ),
     (
         "size.png",
-        &["--set", "sampler.method=exact", "--set", "Ball.radius=0.8"],
+        &["--set", "sampler.method=exact", "--set", "Ball.radius=1.5"],
         "wrong",
         &["radius"],
     ),
@@ -116,7 +115,7 @@ fn each_picture_has_a_line_in_every_form() {
     assert_eq!(rows[0], "file,verdict,rmse,samples_per_pixel,line,set");
     assert!(
         rows[4].starts_with("\"class/size.png\",wrong,0.")
-            && rows[4].ends_with("\"Ball.radius=0.8\""),
+            && rows[4].ends_with("\"Ball.radius=1.5\""),
         "{}",
         rows[4]
     );
@@ -142,7 +141,7 @@ fn each_picture_has_a_line_in_every_form() {
         "right: equal to the exact picture (rendered by Pinhole)",
         "right: equal to the exact picture",
         "right but for sampling noise",
-        "wrong: the sphere Ball has a wrong size: its radius is 0.8 instead of 1",
+        "wrong: the sphere Ball has a wrong size: its radius is 1.5 instead of 1",
         "wrong: the image has a wrong colour",
     ];
     assert_eq!(table.lines().count(), words.len());
@@ -165,7 +164,7 @@ fn a_picture_that_cannot_be_compared_is_a_line_of_its_own() {
         ("broken.png", "it is no picture in PNG"),
         (
             "small.png",
-            "it has 48 × 32 pixels, and the scene's picture 96 × 64",
+            "it has 48 × 32 pixels, and the scene's picture 60 × 40",
         ),
         ("none.png", "No such file"),
     ];
