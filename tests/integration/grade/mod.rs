@@ -21,7 +21,7 @@ use serde_json::Value;
 use self::corpus::{Case, Judgement, SIZES, cases, samplings};
 use crate::exact::read;
 
-/// Pictures of all kinds, a title of the corpus in each line of this file: right ones by every method, the mistakes that a class makes, and pairs.
+/// Pictures of all kinds, a title of the corpus in each line of this file: right ones by every method, and mistakes that a class makes.
 const TITLES: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/tests/integration/grade/titles.txt"
