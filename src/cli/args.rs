@@ -157,21 +157,25 @@ Examples:
   pinhole diff a.png b.exr                       two pictures
   pinhole diff mine.png figure.scn               a picture with what the scene means, without noise
   pinhole diff mine.png figure.scn -o where.png  also a heat map of the differences
-  pinhole diff mine.png figure.scn --tolerance 8 --format json
+  pinhole diff mine.png figure.scn --strict --format json
 
-Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white. Where B is a \
-scene, simple mistakes that explain the difference are named: a mirrored picture, a wrong distance or \
-roll, colours averaged without decoding them, an object in the wrong place, too few samples.
+Where B is a scene, the verdict comes first: the picture is right, right but for sampling noise, or wrong. Mistakes that explain \
+the difference are named, with the --set arguments that make the scene give that picture; then what is right and what is not, \
+object by object. A picture that carries a crop is compared with that part of the scene.
+
+Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white.
 
 JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
 a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be judged, as the exact picture's bound is too \
-large there), tolerance (in steps), equal, likely [{mistake, message, help, rmse, explains, sure, off {right, \
-down, outwards}}] with the best explanation first, thin (whether a simple mistake or noise would explain it, of which too few \
-pixels tell), may_be_noise (whether noise would: then nothing need be wrong); rmse is what an explanation leaves, explains its \
-share of the squared difference, 0 to 1, sure whether that share is a half or more, and off is by how many pixels an object is \
-off: its middle, and its outline, away from there. Of pictures of different sizes rmse, largest, beyond and undecided are null.
+large there), tolerance (in steps), equal (whether no pixel is beyond it). Of two pictures of different sizes rmse, largest, beyond and \
+undecided are null. With a scene also verdict (right, noise, wrong, or unknown: wrong, and not by a mistake known here), line (the \
+verdict in words), samples_per_pixel (independent ones that make as much noise), mistakes [{id, message, help, set, explains}] \
+(explains is the share of the squared difference beyond noise, 0 to 1), rest (the share that mistakes leave, if that is more than \
+noise), objects [{index, name, right, off}] (off in pixels), limited (whether not all mistakes were tried, as the scene has too \
+much in it).
 
-Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
+Exit status: 0 for pictures within the tolerance, and for one that is right, but for noise; 1 if not, or the scene has errors; \
+2 trouble, also where a picture has another size than the scene's.";
 
 const GRADE_EXAMPLES: &str = "\
 Examples:
@@ -409,6 +413,9 @@ pub struct DiffArgs {
     /// nothing, always comes on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
+    /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance implies it
+    #[arg(long)]
+    pub strict: bool,
     #[command(flatten)]
     pub overrides: Overrides,
     /// How many threads to use [default: one for each processor]

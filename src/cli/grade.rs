@@ -1,29 +1,33 @@
 //! `grade`: a class's pictures against one scene.
 
 use std::{
-    fs,
+    fs, iter,
+    num::NonZero,
     path::{Path, PathBuf},
-    sync::atomic::Ordering,
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
 };
 
 use pinhole::{
     area::Area,
     diagnostic::visible,
-    film::{self, CHANNELS, Comparison, Film, Tolerance},
-    grading::{self, Kind, Reference, Verdict},
+    film::{self, Comparison, Picture},
+    grading::{Kind, Verdict},
     numbers::short,
-    render::{Control, Exact, RenderError},
+    render::RenderError,
     scene::Scene,
 };
+use rayon::{ThreadPoolBuilder, prelude::*};
 use serde_json::{Map, Value, json};
 
 use super::{
     Status, Trouble,
     args::{Format, GradeArgs},
     diff,
-    grade_page::page,
+    grade_page::{Thumbnails, page},
     input::{self, Input, shown},
     interrupt::Interrupt,
+    judge::{self, Judge},
     output, progress,
 };
 
@@ -39,33 +43,17 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         made.map_err(|error| Trouble(format!("cannot make {}: {error}", shown(folder))))?;
     }
     let cancel = interrupt.watch();
-    let exact = match diff::exact(&scene, cancel) {
-        Ok(exact) => exact,
-        Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
-        Err(error) => return Err(Trouble(error.to_string())),
+    let graded = match graded(args, &scene, &paths, cancel) {
+        Ok(Ok(graded)) => graded,
+        Ok(Err(RenderError::Cancelled)) => return Ok(Status::Interrupted),
+        Ok(Err(error)) => return Err(Trouble(error.to_string())),
+        Err(error) => return Err(Trouble(format!("cannot start threads: {error}"))),
     };
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    let reference = Reference::new(&scene, whole, &exact.film);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel,
-    };
-    let graded: Result<Vec<Graded>, RenderError> = progress::watched(paths.len() as u64, |done| {
-        paths
-            .iter()
-            .map(|path| {
-                let graded = grade(path, &scene, &exact, &reference, &control);
-                done.fetch_add(1, Ordering::Relaxed);
-                graded
-            })
-            .collect()
-    });
-    let graded = match graded {
-        Ok(graded) => graded,
-        Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
-        Err(error) => return Err(Trouble(error.to_string())),
-    };
+    for (name, judged) in graded.iter().filter_map(Graded::judged) {
+        if let Some(warning) = judged.warning {
+            output::warning(&format!("{name}: {warning}"));
+        }
+    }
     let lines: String = graded
         .iter()
         .map(|one| format!("{}\n", one.json()))
@@ -75,7 +63,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         Format::Json => output::to_programs(lines.as_bytes())?,
     }
     if let Some(folder) = &args.output {
-        let html = page(&shown(&args.scene), &graded, &exact.film)
+        let html = page(&shown(&args.scene), &graded)
             .map_err(|error| Trouble(format!("cannot make the page: {error}")))?;
         for (name, text) in [
             ("index.html", html),
@@ -102,67 +90,110 @@ pub struct Graded {
 
 /// What is known of a picture.
 pub struct Judged {
-    pub film: Film,
     pub comparison: Comparison,
     pub verdict: Verdict,
+    /// What there is for programs.
+    fields: Map<String, Value>,
+    /// What its format does to colours.
+    warning: Option<&'static str>,
     /// Whether it carries the text that Pinhole writes into its pictures.
-    pub is_ours: bool,
+    is_ours: bool,
+    /// If there will be a page.
+    pub thumbnails: Option<Thumbnails>,
 }
 
+/// Each picture by itself, on as many threads as there are processors.
+fn graded(
+    args: &GradeArgs,
+    scene: &Scene,
+    paths: &[PathBuf],
+    cancel: &AtomicBool,
+) -> Result<Result<Vec<Graded>, RenderError>, rayon::ThreadPoolBuildError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let judge = progress::watched(whole.pixels(), |done| {
+        Judge::new(scene, whole, cancel, &|more| {
+            done.fetch_add(more, Ordering::Relaxed);
+        })
+    });
+    let judge = match judge {
+        Ok(judge) => judge,
+        Err(error) => return Ok(Err(error)),
+    };
+    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = args.threads.map(usize::try_from);
+    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
+    let threads = threads.min(paths.len());
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+    Ok(progress::watched(paths.len() as u64, |done| {
+        let grade = |path: &PathBuf| {
+            let result = grade(path, scene, &judge, args, cancel)?;
+            done.fetch_add(1, Ordering::Relaxed);
+            let name = shown(path);
+            Ok(Graded { name, result })
+        };
+        pool.install(|| paths.par_iter().map(grade).collect())
+    }))
+}
+
+/// A picture judged, or why it cannot be.
 fn grade(
     path: &Path,
     scene: &Scene,
-    exact: &Exact,
-    reference: &Reference,
-    control: &Control,
-) -> Result<Graded, RenderError> {
-    let name = shown(path);
-    let read = input::whole(path)
-        .map_err(|error| error.to_string())
-        .and_then(|bytes| {
-            let picture = film::read_picture(&bytes).map_err(|error| error.to_string())?;
-            Ok((picture, film::read_recipe(&bytes).is_ok()))
-        });
-    let (picture, is_ours) = match read {
+    whole: &Judge,
+    args: &GradeArgs,
+    cancel: &AtomicBool,
+) -> Result<Result<Judged, String>, RenderError> {
+    let (picture, part, is_ours) = match read(path, scene) {
         Ok(read) => read,
-        Err(error) => {
-            return Ok(Graded {
-                name,
-                result: Err(error),
-            });
-        }
+        Err(error) => return Ok(Err(error)),
     };
-    let tolerance = Tolerance {
-        steps: picture.rounding.steps(),
-        bounds: Some(&exact.bounds),
+    let own;
+    let judge = if part == whole.part {
+        whole
+    } else {
+        own = Judge::new(scene, part, cancel, &|_| {})?;
+        &own
     };
-    let comparison = match film::compare(&picture.film, &exact.film, tolerance) {
+    let steps = picture.rounding.steps();
+    let comparison = match judge.compare(&picture, steps) {
         Ok(comparison) => comparison,
-        Err(_) => {
-            let error = format!(
-                "it has {} x {} pixels, and the scene's picture {} x {}",
-                picture.film.width(),
-                picture.film.height(),
-                scene.image.width,
-                scene.image.height
-            );
-            return Ok(Graded {
-                name,
-                result: Err(error),
-            });
-        }
+        Err(error) => return Ok(Err(error.to_string())),
     };
-    let verdict = reference.judge(&picture.film, &comparison, control)?;
-    let judged = Judged {
-        film: picture.film,
+    let verdict = judge.judge(&picture, &comparison, cancel)?;
+    let thumbnails = match args.output {
+        Some(_) => {
+            let (film, exact) = (&picture.film, &judge.exact.film);
+            match Thumbnails::new(film, exact, judge.tolerance(steps)) {
+                Ok(thumbnails) => Some(thumbnails),
+                Err(error) => return Ok(Err(error.to_string())),
+            }
+        }
+        None => None,
+    };
+    let mut fields = diff::json(
+        [&shown(path), &shown(&args.scene)],
+        [[part.width, part.height]; 2],
+        Some(&comparison),
+        steps,
+        Some(&verdict),
+    );
+    fields.insert("rendered_by_pinhole".to_owned(), json!(is_ours));
+    Ok(Ok(Judged {
         comparison,
         verdict,
+        fields,
+        warning: picture.coding.warning(),
         is_ours,
-    };
-    Ok(Graded {
-        name,
-        result: Ok(judged),
-    })
+        thumbnails,
+    }))
+}
+
+/// A picture, the part of the scene that it shows, and whether Pinhole rendered it.
+fn read(path: &Path, scene: &Scene) -> Result<(Picture, Area, bool), String> {
+    let bytes = input::whole(path).map_err(|error| error.to_string())?;
+    let picture = film::read_picture(&bytes).map_err(|error| error.to_string())?;
+    let part = judge::part(&picture, scene).map_err(|misfit| format!("it {misfit}"))?;
+    Ok((picture, part, film::read_recipe(&bytes).is_ok()))
 }
 
 /// The pictures, and those in folders by name.
@@ -200,6 +231,11 @@ const ENDINGS: [&str; 14] = [
 ];
 
 impl Graded {
+    fn judged(&self) -> Option<(&str, &Judged)> {
+        let judged = self.result.as_ref().ok()?;
+        Some((&self.name, judged))
+    }
+
     fn status(&self) -> Status {
         match &self.result {
             Err(_) => Status::Trouble,
@@ -217,28 +253,7 @@ impl Graded {
             Err(error) => {
                 fields.insert("error".to_owned(), json!(error));
             }
-            Ok(Judged {
-                comparison,
-                verdict,
-                is_ours,
-                ..
-            }) => {
-                let largest = comparison.largest;
-                let own = json!({
-                    "width": comparison.width,
-                    "height": comparison.height,
-                    "rmse": comparison.rmse,
-                    "largest": {
-                        "error": largest.steps, "x": largest.x, "y": largest.y,
-                        "channel": CHANNELS[largest.channel], "a": largest.a, "b": largest.b,
-                    },
-                    "beyond": { "pixels": comparison.beyond, "share": comparison.share() },
-                    "equal": comparison.is_equal(),
-                    "rendered_by_pinhole": is_ours,
-                });
-                fields.extend(own.as_object().cloned().unwrap_or_default());
-                fields.extend(grading::json(verdict));
-            }
+            Ok(judged) => fields.extend(judged.fields.clone()),
         }
         Value::Object(fields)
     }
@@ -290,7 +305,7 @@ fn table(graded: &[Graded]) -> String {
     let rows = rows
         .iter()
         .map(|row| line(row.each_ref().map(String::as_str)));
-    std::iter::once(head).chain(rows).collect()
+    iter::once(head).chain(rows).collect()
 }
 
 fn csv(graded: &[Graded]) -> String {
@@ -321,7 +336,7 @@ fn csv(graded: &[Graded]) -> String {
         )
     };
     let rows = graded.iter().map(row);
-    std::iter::once("file,verdict,rmse,samples_per_pixel,line,set\n".to_owned())
+    iter::once("file,verdict,rmse,samples_per_pixel,line,set\n".to_owned())
         .chain(rows)
         .collect()
 }

@@ -5,7 +5,10 @@ use std::{fmt::Write, io};
 use base64::{Engine, prelude::BASE64_STANDARD};
 use pinhole::film::{self, Film, HEAT_LEGEND, Tolerance};
 
-use super::grade::{Graded, Judged};
+use super::{
+    grade::{Graded, Judged},
+    judge::quoted,
+};
 
 const STYLE: &str = include_str!("grade_page.css");
 const SCRIPT: &str = include_str!("grade_page.js");
@@ -14,7 +17,7 @@ const SCRIPT: &str = include_str!("grade_page.js");
 const WIDEST: u32 = 320;
 
 /// The page.
-pub fn page(scene: &str, graded: &[Graded], exact: &Film) -> io::Result<String> {
+pub fn page(scene: &str, graded: &[Graded]) -> io::Result<String> {
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Pictures of {scene}</title>\n<style>\n{STYLE}</style>\n\
          </head>\n<body>\n<h1>Pictures of {scene}</h1>\n<p>{} pictures, compared with the exact one. Point at a picture to see where it differs; \
@@ -25,18 +28,18 @@ pub fn page(scene: &str, graded: &[Graded], exact: &Film) -> io::Result<String> 
     for one in graded {
         let [name, verdict, error, samples] = one.cells().map(|cell| escaped(&cell));
         let (mut pictures, mut sets, mut word) = (String::new(), String::new(), "error");
-        if let Ok(Judged { film, verdict, .. }) = &one.result {
+        if let Ok(Judged {
+            verdict,
+            thumbnails,
+            ..
+        }) = &one.result
+        {
             word = verdict.kind.word();
-            let tolerance = Tolerance {
-                steps: 0.5,
-                bounds: None,
-            };
-            let heat = film::heat_map(film, exact, tolerance).map_err(io::Error::other)?;
-            pictures = format!(
-                "<img alt=\"\" src=\"{}\"><img alt=\"where it differs\" class=\"heat\" src=\"{}\">",
-                data(film)?,
-                data(&heat)?
-            );
+            if let Some(Thumbnails { picture, heat }) = thumbnails {
+                pictures = format!(
+                    "<img alt=\"\" src=\"{picture}\"><img alt=\"where it differs\" class=\"heat\" src=\"{heat}\">"
+                );
+            }
             for set in verdict.mistakes.iter().flat_map(|mistake| &mistake.set) {
                 write!(sets, "<br><code>--set {}</code>", escaped(&quoted(set)))
                     .map_err(io::Error::other)?;
@@ -54,6 +57,23 @@ pub fn page(scene: &str, graded: &[Graded], exact: &Film) -> io::Result<String> 
     )
     .map_err(io::Error::other)?;
     Ok(html)
+}
+
+/// A picture and its heat map, as `data:` URIs.
+pub struct Thumbnails {
+    picture: String,
+    heat: String,
+}
+
+impl Thumbnails {
+    /// Of a picture and the exact one.
+    pub fn new(film: &Film, exact: &Film, tolerance: Tolerance) -> io::Result<Self> {
+        let heat = film::heat_map(film, exact, tolerance).map_err(io::Error::other)?;
+        Ok(Self {
+            picture: data(film)?,
+            heat: data(&heat)?,
+        })
+    }
 }
 
 /// A picture as a `data:` URI, of some pixels' means where it is large.
@@ -79,14 +99,6 @@ fn data(film: &Film) -> io::Result<String> {
         "data:image/png;base64,{}",
         BASE64_STANDARD.encode(png)
     ))
-}
-
-/// An argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    match argument.split_once('=') {
-        Some((target, value)) if value.contains(['(', ' ', '#']) => format!("{target}='{value}'"),
-        _ => argument.to_owned(),
-    }
 }
 
 fn escaped(text: &str) -> String {

@@ -13,6 +13,7 @@ mod grade_page;
 mod input;
 mod inspect;
 mod interrupt;
+mod judge;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod manual;
