@@ -288,6 +288,9 @@ impl Candidate {
         };
         let like = like.filter(is_alike);
         let changed = like.and_then(|like| self.changed(&like.candidate, grid, part));
+        // A sample takes less time than a cell.
+        let cost = if samples.is_none() { 1.0 } else { 0.1 };
+        let mut work = cost * changed.unwrap_or(part).pixels() as f64;
         let right = match (like, changed) {
             (Some(like), Some(area)) => {
                 let mut moments = like.right.clone();
@@ -318,17 +321,22 @@ impl Candidate {
                 .and_then(|like| Some((like.behaved.clone()?, changed?)));
             let ((mut behaved, mut doubt), area) =
                 near.unwrap_or_else(|| ((right.clone(), vec![[0.0; 3]; right.mean.len()]), part));
+            work += 2.0 * area.pixels() as f64;
             let other = sampled(self.behaviour, area, SAMPLES);
             let own = sampled(Behaviour::RIGHT, area, SAMPLES);
             for (from, (x, y)) in area.iter().enumerate() {
                 let at = part.index(x, y);
                 let is_alike = other.mean[from] == own.mean[from]
                     && other.variance[from] == own.variance[from];
-                let sum = |i: usize| {
-                    (right.mean[at][i] + other.mean[from][i] - own.mean[from][i]).clamp(0.0, 1.0)
+                let is_flat = other.variance[from] == [0.0; 3];
+                let sum = |i: usize| match is_flat {
+                    true => other.mean[from][i],
+                    false => (right.mean[at][i] + other.mean[from][i] - own.mean[from][i])
+                        .clamp(0.0, 1.0),
                 };
                 let variances = |i: usize| {
-                    (other.variance[from][i] + own.variance[from][i]) / SAMPLES as f64
+                    (other.variance[from][i] + if is_flat { 0.0 } else { own.variance[from][i] })
+                        / SAMPLES as f64
                         + MISSED * MISSED
                 };
                 (behaved.mean[at], behaved.variance[at], doubt[at]) = match is_alike {
@@ -345,6 +353,7 @@ impl Candidate {
         Some(Made {
             candidate: self.clone(),
             part,
+            work,
             right,
             behaved,
             error: like.and_then(|like| like.error.clone()),
@@ -426,6 +435,8 @@ const MISSED: f64 = 1e-3;
 pub struct Made {
     pub candidate: Candidate,
     part: Area,
+    /// How many cells were computed for it, exactly or by all samples.
+    pub work: f64,
     /// What it would make if it behaved as a right program.
     right: Moments,
     /// How far the means are off of what is told from it by samples, where it was made for that.

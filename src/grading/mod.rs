@@ -183,7 +183,6 @@ fn judged(
         },
         _ => Verdict::of(Kind::Unknown, scene),
     };
-    search.stage("told");
     verdict.is_cut = search.is_cut.get();
     Ok(verdict)
 }
