@@ -9,8 +9,9 @@ use glam::DVec2;
 use pinhole::{
     area::Area,
     film::{Film, Recipe, write_exr, write_png},
+    math::SimdWidth,
     render::{Control, render},
-    sampling::Sampling,
+    sampling::{Points, Sampling},
     scene::{Count, Method, Scene},
     tracer::World,
 };
@@ -108,11 +109,10 @@ fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
 fn points(scene: &Scene) -> f64 {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     let mut sum = DVec2::ZERO;
-    let mut points = Vec::new();
+    let mut points = Points::default();
     for tile in Area::whole(WIDTH, HEIGHT).tiles(64) {
         for ((x, y), count) in tile.iter().zip(sampling.counts(tile)) {
-            points.clear();
-            sampling.points(x, y, count, 0..count, &mut points);
+            sampling.place(SimdWidth::Widest, [x, y], count, 0..count, &mut points);
             sum += points.iter().sum::<DVec2>();
         }
     }

@@ -1,5 +1,4 @@
-//! How many threads there are: for a render, and for what is done in parallel without being asked, which is to read a long text and to
-//! prepare many objects.
+//! How many threads there are: for a render, and for what is done in parallel without being asked, which is to prepare many objects.
 
 use std::{
     num::NonZero,

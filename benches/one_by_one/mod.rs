@@ -3,7 +3,8 @@
 use pinhole::{
     area::Area,
     film::{Film, mean},
-    sampling::Sampling,
+    math::SimdWidth,
+    sampling::{Points, Sampling},
     tracer::World,
 };
 
@@ -13,7 +14,7 @@ pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
     const CHUNK: u64 = 1 << 12;
     let palette = world.palette().iter();
     let colors: Vec<_> = palette.map(|color| color.to_linear()).collect();
-    let mut offsets = Vec::new();
+    let mut offsets = Points::default();
     let mut counts = vec![0; colors.len()];
     let mut pixel = |(x, y): (u32, u32)| {
         counts.fill(0);
@@ -21,9 +22,9 @@ pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
         let mut first = 0;
         while first < samples {
             let end = samples.min(first + CHUNK);
-            offsets.clear();
-            sampling.points(x, y, samples, first..end, &mut offsets);
-            for &offset in &offsets {
+            let part = first..end;
+            sampling.place(SimdWidth::Widest, [x, y], samples, part, &mut offsets);
+            for offset in offsets.iter() {
                 counts[world.slot_at(x, y, offset)] += 1;
             }
             first = end;

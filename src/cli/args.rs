@@ -350,7 +350,7 @@ pub struct ReportArgs {
     #[arg(value_name = "SCENE", required_unless_present = "numerics")]
     pub scenes: Vec<PathBuf>,
     /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG, report.csv and
-    /// report.json; of several scenes each has a folder in it. It is made if it is missing
+    /// report.json; of several scenes each has a folder in it. It is made if it is missing; a symbolic link in it is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// The methods [default: all]

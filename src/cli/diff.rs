@@ -198,14 +198,11 @@ fn write_heat_map(
     let Some(path) = &args.output else {
         return Ok(());
     };
-    let map = match film::heat_map(a, b, tolerance) {
-        Ok(map) => map,
-        Err(film::HeatError::Sizes(_)) => {
-            output::warning(&"pictures of different sizes have no heat map");
-            return Ok(());
-        }
-        Err(error) => return Err(Trouble(error.to_string())),
-    };
+    if [a.width(), a.height()] != [b.width(), b.height()] {
+        output::warning(&"pictures of different sizes have no heat map");
+        return Ok(());
+    }
+    let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
     film::write_whole(path, cancel, |out| film::write_plain_png(&map, out))
         .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))?;
     let legend = legend(is_equal);

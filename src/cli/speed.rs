@@ -48,6 +48,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if let Some(folder) = &args.output {
         make_folder(folder)?;
         let index = folder.join(INDEX);
+        refuse_link(&index)?;
         film::check_writable(&index).map_err(|error| cannot_write(&index, &error))?;
     }
     let mut subjects = Vec::new();
@@ -127,7 +128,6 @@ fn request(args: &ReportArgs) -> Request {
         runs: args.runs,
         errors: errors(&args.errors),
         budget: Duration::from_secs(args.budget),
-        threads: None,
     }
 }
 
@@ -174,7 +174,7 @@ fn measure(
     interrupt: &Interrupt,
 ) -> Result<Option<Measurement>, Trouble> {
     let control = Control {
-        threads: request.threads,
+        threads: None,
         progress: &|_| {},
         cancel: interrupt.watch(),
     };
@@ -200,7 +200,10 @@ fn folders(folder: &Path, scenes: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
         }
     }
     let mut folders: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
-    folders.iter().try_for_each(|folder| check_folder(folder))?;
+    for folder in &folders {
+        refuse_link(folder)?;
+        check_folder(folder)?;
+    }
     if folders.is_empty() {
         folders.push(folder.to_owned());
     }
@@ -208,6 +211,7 @@ fn folders(folder: &Path, scenes: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
         .iter()
         .flat_map(|folder| FILES.map(|file| folder.join(file)));
     for file in files.chain([folder.join(INDEX)]) {
+        refuse_link(&file)?;
         if let Some(scene) = scenes.iter().find(|scene| is_same_file(&file, scene)) {
             return Err(Trouble(format!(
                 "the report would write over the scene {}",
@@ -243,6 +247,17 @@ fn write_file(path: &Path, text: &str) -> Result<(), Trouble> {
     let go_on = AtomicBool::new(false);
     film::write_whole(path, &go_on, |out| out.write_all(text.as_bytes()))
         .map_err(|error| cannot_write(path, &error))
+}
+
+/// A report writes nothing outside of its folder, whatever links there are in it.
+fn refuse_link(path: &Path) -> Result<(), Trouble> {
+    match path.is_symlink() {
+        true => Err(Trouble(format!(
+            "{} is a symbolic link, and a report writes nothing outside of its folder",
+            shown(path)
+        ))),
+        false => Ok(()),
+    }
 }
 
 fn check_folder(folder: &Path) -> Result<(), Trouble> {

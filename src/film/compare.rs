@@ -6,7 +6,7 @@
 
 use thiserror::Error;
 
-use super::Film;
+use super::{memory::TooLarge, pixels::Film};
 use crate::color::linear_to_srgb;
 
 /// Steps between black and white.
@@ -97,10 +97,14 @@ impl Comparison {
 
 /// Compares two pictures.
 pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, SizesDiffer> {
-    check_sizes(a, b)?;
+    let sizes = [a, b].map(|film| [film.width(), film.height()]);
+    if sizes[0] != sizes[1] {
+        return Err(SizesDiffer(sizes[0], sizes[1]));
+    }
+    let (width, height) = (a.width(), a.height());
     let mut largest = Largest::default();
     let (mut beyond, mut undecided) = (0, 0);
-    for (at, (&p, &q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+    for (at, (&p, &q)) in a.pixels().iter().zip(b.pixels()).enumerate() {
         let (limit, open) = (tolerance.steps + SLACK, tolerance.open(at));
         if p == q && open == 0.0 {
             continue;
@@ -109,8 +113,8 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
         if most > largest.steps {
             largest = Largest {
                 steps: most,
-                x: (at % a.width as usize) as u32,
-                y: (at / a.width as usize) as u32,
+                x: (at % width as usize) as u32,
+                y: (at / width as usize) as u32,
                 channel,
                 a: steps(p[channel]),
                 b: steps(q[channel]),
@@ -121,8 +125,8 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
         undecided += u64::from(!is_beyond && most + open > limit);
     }
     Ok(Comparison {
-        width: a.width,
-        height: a.height,
+        width,
+        height,
         rmse: rmse(a, b),
         largest,
         beyond,
@@ -143,22 +147,22 @@ fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
 
 /// The root of the mean square of the differences of two pictures of one size, in linear light.
 pub fn rmse(a: &Film, b: &Film) -> f64 {
-    let squares = a.pixels.iter().zip(&b.pixels);
+    let squares = a.pixels().iter().zip(b.pixels());
     let sum: f64 = squares
         .map(|(p, q)| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>())
         .sum();
-    (sum / (3.0 * a.pixels.len() as f64)).sqrt()
+    (sum / (3.0 * a.pixels().len() as f64)).sqrt()
 }
 
-/// A picture of the differences: a pixel's is that of its channel that differs most. What lies within the tolerance is black; from there
+/// A picture of the differences of two pictures of one size: a pixel's is that of its channel that differs most. What lies within the tolerance is black; from there
 /// on the colour goes through red and yellow to white at 255 steps, linearly in what can be seen: noise stays dark.
-pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, HeatError> {
-    check_sizes(a, b)?;
-    let mut map = Film::new(a.width, a.height)?;
-    for (at, (&p, &q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
+    let mut map = Film::new(a.width(), a.height())?;
+    let pairs = a.pixels().iter().zip(b.pixels());
+    for (at, ((&p, &q), pixel)) in pairs.zip(map.pixels_mut()).enumerate() {
         let (_, most) = difference(p, q);
         if most > tolerance.steps + SLACK + tolerance.open(at) {
-            map.pixels[at] = heat(most);
+            *pixel = heat(most);
         }
     }
     Ok(map)
@@ -168,129 +172,13 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, HeatEr
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
-/// Why there is no heat map.
-#[derive(Debug, Error)]
-pub enum HeatError {
-    /// The pictures cannot be laid on each other.
-    #[error(transparent)]
-    Sizes(#[from] SizesDiffer),
-    /// There is no memory for it.
-    #[error(transparent)]
-    TooLarge(#[from] super::TooLarge),
-}
-
 /// The light of a colour for a difference in steps.
 fn heat(steps: f64) -> [f64; 3] {
     let t = 3.0 * steps / STEPS;
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 
-fn check_sizes(a: &Film, b: &Film) -> Result<(), SizesDiffer> {
-    let sizes = [a, b].map(|film| [film.width, film.height]);
-    match sizes[0] == sizes[1] {
-        true => Ok(()),
-        false => Err(SizesDiffer(sizes[0], sizes[1])),
-    }
-}
-
 /// Light in steps of 8-bit sRGB, 0 to 255 for what a screen shows.
 fn steps(light: f64) -> f64 {
     STEPS * linear_to_srgb(light)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{area::Area, color::srgb_to_linear};
-
-    const HALF: Tolerance = Tolerance {
-        steps: 0.5,
-        bounds: None,
-    };
-
-    fn film(pixels: &[[f64; 3]]) -> Film {
-        let mut film = Film::new(pixels.len() as u32, 1).unwrap();
-        film.put(Area::whole(pixels.len() as u32, 1), pixels);
-        film
-    }
-
-    #[test]
-    fn the_largest_difference_has_a_place() {
-        let a = film(&[[0.0; 3], [0.5, 0.25, srgb_to_linear(10.0 / 255.0)]]);
-        let b = film(&[[0.0; 3], [0.5, 0.25, srgb_to_linear(13.0 / 255.0)]]);
-        let found = compare(&a, &b, HALF).unwrap();
-        let Largest {
-            steps,
-            x,
-            y,
-            channel,
-            a,
-            b,
-        } = found.largest;
-        assert_eq!((x, y, channel), (1, 0, 2));
-        assert!((steps - 3.0).abs() < 1e-9 && (a - 10.0).abs() < 1e-9 && (b - 13.0).abs() < 1e-9);
-        assert_eq!((found.beyond, found.share()), (1, 0.5));
-        assert!(!found.is_equal());
-    }
-
-    #[test]
-    fn the_root_mean_square_is_of_all_channels() {
-        let found = compare(
-            &film(&[[0.0; 3], [0.6, 0.0, 0.0]]),
-            &film(&[[0.0; 3]; 2]),
-            HALF,
-        );
-        assert!((found.unwrap().rmse - (0.36f64 / 6.0).sqrt()).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_tolerance_takes_its_own_steps_and_the_bound() {
-        let at = |k: f64| film(&[[srgb_to_linear(k / 255.0); 3]]);
-        for k in 0..255 {
-            let k = f64::from(k);
-            assert!(
-                compare(&at(k), &at(k + 0.5), HALF).unwrap().is_equal(),
-                "{k}"
-            );
-            assert!(
-                !compare(&at(k), &at(k + 0.501), HALF).unwrap().is_equal(),
-                "{k}"
-            );
-        }
-        let bounded = Tolerance {
-            bounds: Some(&[1e-3]),
-            ..HALF
-        };
-        let (dark, light) = (film(&[[0.0; 3]]), film(&[[1e-3 + 0.4 / STEEPEST; 3]]));
-        assert!(!compare(&dark, &light, HALF).unwrap().is_equal());
-        let found = compare(&dark, &light, bounded).unwrap();
-        assert!(found.is_equal() && found.undecided == 1);
-        // As far as the bound alone may reach, too.
-        assert_eq!(compare(&dark, &dark, bounded).unwrap().undecided, 1);
-        let little = Tolerance {
-            bounds: Some(&[1e-6]),
-            ..HALF
-        };
-        assert_eq!(compare(&dark, &dark, little).unwrap().undecided, 0);
-    }
-
-    #[test]
-    fn sizes_that_differ_are_told() {
-        let told = compare(&film(&[[0.0; 3]]), &film(&[[0.0; 3]; 2]), HALF).unwrap_err();
-        assert_eq!(told.to_string(), "the sizes differ: 1 × 1 pixels and 2 × 1");
-    }
-
-    #[test]
-    fn heat_grows_ever_brighter() {
-        let brightness = |steps: f64| {
-            let [r, g, b] = heat(steps);
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        };
-        for step in 0..255 {
-            assert!(brightness(f64::from(step)) < brightness(f64::from(step + 1)));
-        }
-        assert_eq!(heat(255.0), [1.0; 3]);
-        let same = heat_map(&film(&[[0.5; 3]]), &film(&[[0.5; 3]]), HALF).unwrap();
-        assert_eq!(same.pixel(0, 0), [0.0; 3]);
-    }
 }

@@ -8,24 +8,24 @@ use exr::{
     error::Error,
     image::{
         Encoding, Image, SpecificChannels,
-        read::{
-            image::ReadLayers, layers::ReadChannels, read as reader,
-            specific_channels::ReadSpecificChannel,
-        },
+        read::{image::ReadLayers, layers::ReadChannels, read as reader},
         write::WritableImage,
     },
     math::Vec2,
     meta::{
         MetaData,
-        attribute::{Chromaticities, IntegerBounds, LineOrder, SampleType, Text},
+        attribute::{
+            ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
+        },
         header::ImageAttributes,
     },
     prelude::{Blocks, Compression, LayerAttributes},
 };
 
 use super::{
-    Film,
+    memory::TooLarge,
     picture::{Coding, Picture, Rounding, Unreadable, check_pixels},
+    pixels::Film,
 };
 use crate::area::Area;
 
@@ -78,33 +78,21 @@ pub fn write_exr(film: &Film, part: Area, whole: Area, out: impl Write + Seek) -
 
 /// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not looked at.
 pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
-    let meta = MetaData::read_from_buffered(bytes, false).map_err(damaged)?;
-    let mut rounding = Rounding::Float;
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(unreadable)?;
     for header in &meta.headers {
         // Before anything is unpacked.
         let Vec2(width, height) = header.layer_size;
-        let (width, height) = check_pixels(width as u64, height as u64)?;
-        Film::<[f64; 3]>::new(width, height)?;
-        let channels = &header.channels.list;
-        if channels
-            .iter()
-            .any(|channel| channel.sample_type == SampleType::F16)
-        {
-            rounding = Rounding::Half;
-        }
+        check_pixels(width as u64, height as u64)?;
     }
     let image = reader()
         .no_deep_data()
         .largest_resolution_level()
-        .specific_channels()
-        .required("R")
-        .required("G")
-        .required("B")
-        .collect_pixels(
-            |Vec2(width, height), _| Film::new(width as u32, height as u32).ok(),
-            |film: &mut Option<Film>, Vec2(x, y), (r, g, b): (f32, f32, f32)| {
-                if let Some(film) = film {
-                    film.pixels[y * film.width as usize + x] = [r, g, b].map(f64::from);
+        .rgb_channels(
+            |Vec2(width, height), _| Film::new(width as u32, height as u32),
+            |film: &mut Result<Film, TooLarge>, Vec2(x, y), (r, g, b): (f32, f32, f32)| {
+                if let Ok(film) = film {
+                    let at = y * film.width() as usize + x;
+                    film.pixels_mut()[at] = [r, g, b].map(f64::from);
                 }
             },
         )
@@ -112,12 +100,13 @@ pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(damaged)?;
+        .map_err(unreadable)?;
     let window = image.attributes.display_window;
     let corner = image.layer_data.attributes.layer_position - window.position;
-    let film = image.layer_data.channel_data.pixels;
-    let film = film.ok_or_else(|| damaged(Error::Aborted))?;
-    let (width, height) = (film.width, film.height);
+    let channels = image.layer_data.channel_data;
+    let (red, green, blue) = channels.channels;
+    let film = channels.pixels?;
+    let (width, height) = (film.width(), film.height());
     let is_whole = corner == Vec2(0, 0) && window.size == Vec2(width as usize, height as usize);
     let crop = match (corner.0.try_into(), corner.1.try_into()) {
         (Ok(x), Ok(y)) if !is_whole => Some(Area {
@@ -128,22 +117,32 @@ pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
         }),
         _ => None,
     };
+    let is_half = |channel: &ChannelDescription| channel.sample_type == SampleType::F16;
     Ok(Picture {
         film,
-        rounding,
+        rounding: match [red, green, blue].iter().any(is_half) {
+            true => Rounding::Half,
+            false => Rounding::Float,
+        },
         coding: Coding::Exact,
         crop,
     })
 }
 
-fn damaged(error: Error) -> Unreadable {
-    Unreadable::Damaged {
-        format: "OpenEXR".to_owned(),
-        cause: match error {
-            Error::NotSupported(what) => format!("it uses what is not read here: {what}"),
-            Error::Invalid(what) => what.into_owned(),
-            Error::Io(error) => error.to_string(),
-            Error::Aborted => "there is no memory for it".to_owned(),
+fn unreadable(error: Error) -> Unreadable {
+    let format = "OpenEXR".to_owned();
+    match error {
+        Error::NotSupported(what) => Unreadable::Unsupported {
+            format,
+            cause: what.into_owned(),
+        },
+        Error::Invalid(what) => Unreadable::Damaged {
+            format,
+            cause: what.into_owned(),
+        },
+        other => Unreadable::Damaged {
+            format,
+            cause: other.to_string(),
         },
     }
 }

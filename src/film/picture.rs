@@ -3,7 +3,7 @@
 use image::ImageFormat;
 use thiserror::Error;
 
-use super::{Film, TooLarge};
+use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
 /// A picture with more pixels is not read: as a film they take 1.5 GiB.
@@ -88,14 +88,25 @@ pub enum Unreadable {
         .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
     )]
     Format(Option<ImageFormat>),
-    /// It does not follow its format, or uses a part of it that is not read here.
-    #[error("it begins as {} file does, but is damaged or cut off: {cause}", with_article(.format))]
+    /// It does not follow its format.
+    #[error("it begins as {format} files do, but is damaged or cut off: {cause}")]
     Damaged {
         /// The format's name.
         format: String,
         /// What is wrong.
         cause: String,
     },
+    /// It uses a part of its format that is not read here.
+    #[error("it is {format} of a kind that is not read here: {cause}")]
+    Unsupported {
+        /// The format's name.
+        format: String,
+        /// What is not read.
+        cause: String,
+    },
+    /// To unpack it takes too much memory, besides what the picture itself takes.
+    #[error("unpacking it takes more than 512 MiB of memory")]
+    Unpacking,
     /// It is larger than pictures that are read.
     #[error("it has {0} × {1} pixels, and pictures of more than 67108864 are not read")]
     Pixels(u64, u64),
@@ -115,13 +126,6 @@ pub enum Unreadable {
 /// What a format is called.
 pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
-}
-
-fn with_article(name: &str) -> String {
-    match name {
-        "OpenEXR" => format!("an {name}"),
-        _ => format!("a {name}"),
-    }
 }
 
 /// Refuses sides that no picture has which is read here.

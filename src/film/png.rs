@@ -10,7 +10,10 @@ use fdeflate::BoundedDecompressionError;
 use png::{BitDepth, ColorType, DeflateCompression, Encoder, Filter, SrgbRenderingIntent};
 use thiserror::Error;
 
-use super::{Film, Pixel, srgb};
+use super::{
+    pixels::{Film, Pixel},
+    srgb,
+};
 use crate::area::Area;
 
 /// The first bytes of every PNG.

@@ -11,9 +11,10 @@ use std::{error::Error, io::Cursor};
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use super::{
-    Film, exr,
+    exr, memory,
     picture::{Coding, Picture, Rounding, Unreadable, check_pixels, name},
-    read_recipe,
+    pixels::Film,
+    png::read_recipe,
 };
 use crate::color::srgb_to_linear;
 
@@ -41,7 +42,7 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     };
     let width = picture.film.width() as usize;
     let is_odd = |pixel: &[f64; 3]| pixel.iter().any(|light| !light.is_finite());
-    if let Some(at) = picture.film.pixels.iter().position(is_odd) {
+    if let Some(at) = picture.film.pixels().iter().position(is_odd) {
         let (x, y) = ((at % width) as u32, (at / width) as u32);
         return Err(Unreadable::NotFinite { x, y });
     }
@@ -49,50 +50,39 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
 }
 
 fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
-    let damaged = |error: ImageError| Unreadable::Damaged {
-        format: name(format),
-        // Its own words name the format again.
-        cause: error
-            .source()
-            .map_or_else(|| error.to_string(), ToString::to_string),
-    };
+    let unreadable = |error| unreadable(&error, format);
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     // What a decoder may take: 512 MiB.
     reader.limits(Limits::default());
-    let decoder = reader.into_decoder().map_err(damaged)?;
+    let decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     check_pixels(width.into(), height.into())?;
-    let mut film = Film::new(width, height)?;
-    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-
-    let sample = image.color();
-    let rounding = match sample.bytes_per_pixel() / sample.channel_count() {
+    let color = decoder.color_type();
+    let rounding = match color.bytes_per_pixel() / color.channel_count() {
         1 => Rounding::Byte,
         2 => Rounding::Word,
         _ => Rounding::Float,
     };
+    // What is decoded, the same with all four channels, and the film.
+    let channels = match rounding {
+        Rounding::Float => size_of::<[f32; 4]>(),
+        _ => size_of::<[u16; 4]>(),
+    };
+    let whole = usize::from(color.bytes_per_pixel()) + channels + size_of::<[f64; 3]>();
+    memory::check(width, height, whole as u64)?;
+    let mut film = Film::new(width, height)?;
+    let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     match rounding {
-        Rounding::Byte => {
-            let table = table(u8::MAX.into());
-            let part = |byte: u8| f64::from(byte) / f64::from(u8::MAX);
-            fill(
-                &mut film,
-                &image.into_rgba8(),
-                |byte| table[usize::from(byte)],
-                part,
-            );
-        }
-        Rounding::Word => {
-            let table = table(u16::MAX);
+        Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
+        // A byte k is the word 257 k, the same part of the whole.
+        _ => {
             let part = |word: u16| f64::from(word) / f64::from(u16::MAX);
-            fill(
-                &mut film,
-                &image.into_rgba16(),
-                |word| table[usize::from(word)],
-                part,
-            );
+            let light: Vec<_> = (0..=u16::MAX)
+                .map(|word| srgb_to_linear(part(word)))
+                .collect();
+            let light = |word: u16| light[usize::from(word)];
+            fill(&mut film, &image.into_rgba16(), light, part);
         }
-        _ => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
     }
     let is_lossy = match format {
         ImageFormat::WebP => {
@@ -111,12 +101,6 @@ fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
         },
         crop: read_recipe(bytes).ok().and_then(|recipe| recipe.crop),
     })
-}
-
-/// The light of each number of sRGB up to the last.
-fn table(last: u16) -> Vec<f64> {
-    let light = |k| srgb_to_linear(f64::from(k) / f64::from(last));
-    (0..=last).map(light).collect()
 }
 
 /// Whether a PNG says that its numbers follow another curve than sRGB's. A chunk `sRGB` overrules `gAMA`, and `iCCP` both.
@@ -163,7 +147,20 @@ fn fill<T: Copy>(
     light: impl Fn(T) -> f64,
     opacity: impl Fn(T) -> f64,
 ) {
-    for (pixel, &[r, g, b, a]) in film.pixels.iter_mut().zip(samples.as_chunks().0) {
+    for (pixel, &[r, g, b, a]) in film.pixels_mut().iter_mut().zip(samples.as_chunks().0) {
         *pixel = [r, g, b].map(|sample| light(sample) * opacity(a));
+    }
+}
+
+fn unreadable(error: &ImageError, format: ImageFormat) -> Unreadable {
+    let format = name(format);
+    // Its own words name the format again.
+    let cause = error
+        .source()
+        .map_or_else(|| error.to_string(), ToString::to_string);
+    match error {
+        ImageError::Limits(_) => Unreadable::Unpacking,
+        ImageError::Unsupported(_) => Unreadable::Unsupported { format, cause },
+        _ => Unreadable::Damaged { format, cause },
     }
 }

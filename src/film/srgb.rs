@@ -51,12 +51,6 @@ impl Encoder {
         }
         byte
     }
-
-    /// Whether all light from one to another has the same byte.
-    pub fn is_one(&self, low: f64, high: f64) -> bool {
-        let byte = self.encode(low);
-        byte == 255 || high < self.thresholds[usize::from(byte)]
-    }
 }
 
 #[cfg(test)]
@@ -94,10 +88,10 @@ mod tests {
         }
         for k in 0..255_u8 {
             let light = half_byte(k);
-            assert!(encoder.is_one(light, light.next_up()));
-            assert!(!encoder.is_one(light.next_down(), light));
+            let around = [light.next_down(), light, light.next_up()];
+            let bytes = around.map(|light| encoder.encode(light));
+            assert_eq!(bytes, [k, k + 1, k + 1]);
         }
-        assert!(encoder.is_one(1.0, 2.0) && encoder.is_one(-2.0, 0.0));
         assert_eq!(encoder.encode(-1.0), 0);
         assert_eq!(encoder.encode(2.0), 255);
     }

@@ -1,4 +1,4 @@
-//! What Pinhole says about itself: how right its decisions and numbers are, and how fast its methods come how near the truth.
+//! What Pinhole says about itself: how right its decisions and numbers are, and in what time its methods come to what error.
 
 pub mod numerics;
 #[cfg(feature = "report")]

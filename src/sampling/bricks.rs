@@ -112,24 +112,6 @@ impl Bricks {
 mod tests {
     use super::*;
 
-    fn lengths(n: u64) -> Vec<u64> {
-        let bricks = Bricks::new(n);
-        (0..bricks.rows).map(|k| bricks.row(k).cells).collect()
-    }
-
-    #[test]
-    fn rows_are_as_the_reference_says() {
-        assert_eq!(lengths(1), [1]);
-        assert_eq!(lengths(2), [2]);
-        assert_eq!(lengths(3), [3]);
-        assert_eq!(lengths(5), [2, 1, 2]);
-        assert_eq!(lengths(7), [2, 3, 2]);
-        assert_eq!(lengths(12), [4, 4, 4]);
-        assert_eq!(lengths(14), [3, 4, 4, 3]);
-        assert_eq!(lengths(16), [4, 4, 4, 4]);
-        assert_eq!(lengths(25), [5, 5, 5, 5, 5]);
-    }
-
     #[test]
     fn cells_are_found_in_their_rows() {
         for n in (1..300).chain([(1 << 53) - 111, 1 << 53]) {

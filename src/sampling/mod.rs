@@ -22,10 +22,10 @@ mod binomial;
 mod bricks;
 mod halton;
 mod hammersley;
+mod hilbert;
 mod jittered;
 mod lattice;
 mod multi_jittered;
-mod order;
 mod points;
 mod random;
 mod regular;
@@ -36,12 +36,11 @@ mod sobol;
 
 use std::ops::Range;
 
-use glam::DVec2;
 use multiversion::multiversion;
 
 use self::{
-    bricks::Bricks, halton::Halton, hammersley::Hammersley, jittered::Jittered,
-    multi_jittered::MultiJittered, order::Order, rng::Key, scatter::Scatter, sobol::Sobol,
+    bricks::Bricks, halton::Halton, hammersley::Hammersley, hilbert::HilbertOrder,
+    jittered::Jittered, multi_jittered::MultiJittered, rng::Key, scatter::Scatter, sobol::Sobol,
 };
 pub use self::{points::Points, rng::CounterRng};
 use crate::{
@@ -78,7 +77,7 @@ struct Even {
     extra: u64,
     pixels: u64,
     /// Along which the extra ones are dealt out.
-    order: Order,
+    order: HilbertOrder,
     /// How `count` points lie, and how one more.
     patterns: [Pattern; 2],
 }
@@ -159,17 +158,10 @@ impl Sampling {
         }
     }
 
-    /// Appends the points of a pixel with the indices in `range`, which ends at `count` or before; `count` is what
-    /// [`count`](Self::count) says of the pixel.
+    /// Places the points of a pixel with the indices in `range`, which ends at `count` or before, by vectors of either kind; `count` is what
+    /// [`count`](Self::count) says of the pixel. They take the place of the points that `out` had before.
     ///
     /// What a pixel's points have in common is prepared anew in each call, so ask for a few thousand at once.
-    pub fn points(&self, x: u32, y: u32, count: u64, range: Range<u64>, out: &mut Vec<DVec2>) {
-        let mut points = Points::default();
-        self.place(SimdWidth::Widest, [x, y], count, range, &mut points);
-        out.extend(points.iter());
-    }
-
-    /// The same points in the place of those before, by vectors of either kind.
     pub fn place(
         &self,
         vectors: SimdWidth,
@@ -207,7 +199,7 @@ impl Even {
             count,
             extra,
             pixels,
-            order: Order::new(width, height),
+            order: HilbertOrder::new(width, height),
             patterns: [count, more].map(|n| Pattern::new(method, n)),
         }
     }

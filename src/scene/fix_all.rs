@@ -1,6 +1,6 @@
 //! All that can be put right without being asked: the first fix of each error, again until nothing changes.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use super::read;
 use crate::{
@@ -55,26 +55,27 @@ pub fn fix_all(sources: &Sources) -> Fixed {
 
 /// The first fixes of all errors as one, but for those that would change what another one changes: they wait for the next round.
 fn one_round(sources: &Sources) -> (Fix, Vec<Done>) {
-    /// Each is compared with all others, and the rest has its turn in the next round.
-    const AT_ONCE: usize = 1000;
     let mut edits: Vec<Edit> = Vec::new();
+    // The ends of the places that are changed, by their starts. No two of them touch.
+    let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
     let mut done = Vec::new();
     for diagnostic in read(sources).diagnostics {
-        if done.len() == AT_ONCE {
-            break;
-        }
         let (Some(label), Some(fix)) = (diagnostic.labels.first(), diagnostic.fixes.first()) else {
             continue;
         };
         let is_free = |edit: &Edit| {
-            let touches = |other: &Edit| {
-                edit.span.start <= other.span.end && other.span.start <= edit.span.end
-            };
-            edit.span.source == SourceId::File && !edits.iter().any(touches)
+            let before = taken.range(..=edit.span.end).next_back();
+            edit.span.source == SourceId::File
+                && before.is_none_or(|(_, &end)| end < edit.span.start)
         };
         if !diagnostic.is_error() || !fix.edits.iter().all(is_free) {
             continue;
         }
+        taken.extend(
+            fix.edits
+                .iter()
+                .map(|edit| (edit.span.start, edit.span.end)),
+        );
         edits.extend(fix.edits.iter().cloned());
         done.push(Done {
             place: sources.file.place(label.span.start),

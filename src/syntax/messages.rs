@@ -9,7 +9,6 @@ pub const FOREIGN_FILE: Message = Message::new("foreign_file", "this looks like 
 pub const NOT_IN_LANGUAGE: Message = Message::new("not_in_language", "the language has no {0}", "not a part of the language", "{1}");
 // Text.
 pub const ODD_SPACE: Message = Message::new("odd_space", "{0} is no white space here{1}", "it cannot be seen", "write a plain space in its place, or take it away");
-pub const LONE_RETURN: Message = Message::new("odd_space", "a line of a comment ends at a carriage return alone, which ends no line", "here", "end the lines at LF or CRLF; the comment takes what follows, up to the next LF");
 pub const UNCLOSED_COMMENT: Message = Message::new("unclosed_comment", "a comment is never closed", "the comment starts here and takes the rest of the text", "write `*/` where it ends, or begin it with `//` if it is one line");
 pub const NESTED_COMMENT: Message = Message::new("nested_comment", "comments do not nest: the first `*/` ends this one", "this opens no other comment", "");
 pub const COMMENT_SIGN: Message = Message::new("comment_sign", "a comment begins with `//`, not with `{0}`{1}", "`//` should stand here", "write `//`; the comment takes the rest of the line");

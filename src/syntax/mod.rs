@@ -1,7 +1,7 @@
 //! Text → tree.
 //!
 //! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest reads the items that are
-//! right (`grammar`, `parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
+//! right (`parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
 //! of each slip and nodes of what can be understood. Names are looked up only to choose between
 //! explanations of a mistake.
 
@@ -16,11 +16,10 @@
     )
 )]
 
-mod grammar;
 #[rustfmt::skip]
 mod messages;
-mod parallel;
 mod parser;
+mod parts;
 mod problem;
 mod recovery;
 mod scan;
@@ -29,8 +28,8 @@ pub mod tree;
 mod vocabulary;
 
 pub use messages::{invalid_utf8, utf16};
-pub use parallel::parse_in_parts;
 pub use parser::{parse, parse_unless, parse_value};
+pub use parts::parse_in_parts;
 pub use problem::shorten;
 pub use tree::Tree;
 

@@ -7,16 +7,20 @@
 //! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a right text can be taken
 //! apart.
 
-use std::{ops::Range, sync::atomic::AtomicBool, thread};
+use std::{
+    ops::Range,
+    sync::{LazyLock, atomic::AtomicBool},
+    thread,
+};
 
 use pest::{
     Parser as _,
     iterators::{Pair, Pairs},
+    pratt_parser::{Assoc, Op, PrattParser},
 };
 
 use super::{
     Parsed,
-    grammar::{Grammar, PRECEDENCE, Rule},
     recovery::Recovery,
     scan::Scan,
     tokens::{Lexer, TokenKind},
@@ -32,8 +36,21 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
+/// pest's parser for the rules of the grammar.
+#[derive(pest_derive::Parser)]
+#[grammar = "grammar/scn.pest"]
+struct Grammar;
+
+/// The operators, the loosest first.
+static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
+    PrattParser::new()
+        .op(Op::infix(Rule::sum, Assoc::Left))
+        .op(Op::infix(Rule::product, Assoc::Left))
+        .op(Op::prefix(Rule::sign))
+});
+
 /// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
-pub const STACK: usize = 64 << 20;
+const STACK: usize = 64 << 20;
 
 /// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte: most values are short, and there is one for each default.
 const SHALLOW: usize = 32;
@@ -95,7 +112,7 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
 }
 
 /// The places from an offset on.
-fn after(places: &[usize], from: usize) -> &[usize] {
+pub fn after(places: &[usize], from: usize) -> &[usize] {
     let first = places.partition_point(|&place| place < from);
     places.get(first..).unwrap_or_default()
 }
@@ -124,7 +141,7 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
 }
 
 /// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
-fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
+pub fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK);
         match builder
@@ -175,16 +192,12 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            end = item.span().end;
-            if let (Item::Block(block), Some(Item::Definition(before))) =
-                (&item, recovery.items.last())
-                && before.span.start >= recovery.read_to
-                && self.is_rest_of_value(block, before)
+            if let (Item::Block(block), Some(Item::Definition(_))) = (&item, recovery.items.last())
+                && self.is_rest_of_value(block, end)
             {
-                let start = before.span.start;
-                recovery.items.pop();
-                return (recovery.item(start), false);
+                return (end, true);
             }
+            end = item.span().end;
             if self.doubtful || self.has_dashes(item.span()) {
                 match recovery.item_as_meant(start) {
                     Some(read_to) if read_to == end => continue,
@@ -198,14 +211,14 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     }
 
     /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
-    fn is_rest_of_value(&self, block: &Block<'_>, before: &Definition<'_>) -> bool {
+    fn is_rest_of_value(&self, block: &Block<'_>, end: usize) -> bool {
         let (Some(kind), Some(name)) = (block.kind, block.name) else {
             return false;
         };
         let breaks = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
         !self.words.is_kind(kind.text)
             && self.words.is_kind(name.text)
-            && !breaks(before.span.end, kind.span.start)
+            && !breaks(end, kind.span.start)
             && breaks(kind.span.end, name.span.start)
     }
 

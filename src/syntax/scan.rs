@@ -13,7 +13,6 @@ use super::{
 use crate::{
     cancel,
     diagnostic::{Diagnostic, Edit, Fix},
-    schema,
     source::{Source, SourceId, Span},
 };
 
@@ -101,20 +100,6 @@ impl Scan {
     pub fn report(self, source: &Source, id: SourceId, parsed: &mut Parsed<'_>) {
         let text = source.text();
         self.report_odd_spaces(text, id, &mut parsed.problems);
-        let lone = self.comments.iter().find_map(|comment| {
-            let written = text.get(comment.clone())?;
-            let line = written
-                .starts_with("//")
-                .then(|| written.trim_end_matches('\r'))?;
-            Some((comment.start, comment.start + line.find('\r')?, comment.end))
-        });
-        // Where lines end at carriage returns alone, a comment of one line takes all that follows.
-        if let Some((start, at, end)) = lone {
-            parsed.problems.push(lone_return(source, id, at));
-            if end == text.len() {
-                parsed.cut = parsed.cut.or(Some(start));
-            }
-        }
         if let Some(start) = self.open_comment {
             // What the comment took is no second mistake.
             parsed.problems.retain(|problem| {
@@ -122,7 +107,10 @@ impl Scan {
                 problem.code != "pinhole::unclosed_block" && first < start
             });
             parsed.cut = Some(start);
-            parsed.problems.push(unclosed_comment(text, id, start));
+            let span = Span::new(id, start, start + 2);
+            parsed
+                .problems
+                .push(say::UNCLOSED_COMMENT.at(span, &[], None));
         }
         let comments = self.comments.into_iter();
         let comments = comments.map(|comment| Span::new(id, comment.start, comment.end));
@@ -168,42 +156,4 @@ fn name_of_space(text: &str) -> String {
         _ => "a control character",
     };
     format!("U+{:04X}, {name},", u32::from(character))
-}
-
-/// A carriage return within a comment of one line; the fix ends all lines that end so.
-fn lone_return(source: &Source, id: SourceId, at: usize) -> Diagnostic {
-    let text = source.text();
-    let returns = text.match_indices('\r');
-    let lone = returns.filter(|(at, _)| text.as_bytes().get(at + 1) != Some(&b'\n'));
-    let edits = lone.map(|(at, _)| Edit::new(Span::new(id, at, at + 1), source.line_end()));
-    let fix = Fix::new("end these lines as text files do", edits);
-    say::LONE_RETURN.at(Span::new(id, at, at + 1), &[], fix)
-}
-
-/// A comment of one line is meant, as a rule, if what it took from the next line on starts as an item does. It ends with its
-/// line, before what closes something that was opened before it.
-fn unclosed_comment(text: &str, id: SourceId, start: usize) -> Diagnostic {
-    let span = Span::new(id, start, start + 2);
-    let (before, taken) = text.split_at(start);
-    let line = taken.lines().next().unwrap_or_default().trim_end();
-    let next = Lexer::past_comments(text, start + line.len());
-    let word = text.get(next.start..next.end).unwrap_or_default();
-    if !(matches!(word, "" | "let" | "}") || schema::block(word).is_some()) {
-        return say::UNCLOSED_COMMENT.at(span, &[], None);
-    }
-    let before = before.rsplit('\n').next().unwrap_or_default();
-    let opened = before.matches(['{', '(']).count();
-    let closed = before.matches(['}', ')']).count();
-    let inner = match opened > closed {
-        true => line.trim_end_matches(['}', ')', ' ']),
-        false => line,
-    };
-    let edit = Edit::insert(id, start + inner.len(), " */");
-    let fix = Fix::new("close it in its line", [edit]);
-    let mut found = say::UNCLOSED_COMMENT.at(span, &[], fix);
-    if inner == line {
-        let fix = Fix::new("begin it with `//`", [Edit::new(span, "//")]);
-        found.fixes.push(fix);
-    }
-    found
 }

@@ -166,7 +166,7 @@ fn mistakes_point_into_the_argument() {
     assert_problem(&["hh=2"], "no_such_target", 1, "hh");
     assert_problem(&["Ball.radus=2"], "unknown_field", 1, "radus");
     assert_problem(&["Ball.radius=-2"], "out_of_range", 1, "-2");
-    assert_problem(&["Ball.radius=2m"], "bad_number", 1, "m");
+    assert_problem(&["Ball.radius=2m"], "bad_number", 1, "2m");
     assert_problem(&["Ball.radius="], "missing_value", 1, "=");
     assert_problem(&["Ball.radius=2 3"], "missing_operator", 1, "3");
     assert_problem(&["Ball.center=(0, 1"], "unclosed_parenthesis", 1, "(");

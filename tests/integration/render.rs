@@ -15,7 +15,7 @@ use pinhole::{
     tracer::World,
 };
 
-use crate::figure::figure;
+use crate::{figure::figure, sampling::placed};
 
 fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
     let control = Control {
@@ -70,10 +70,8 @@ fn a_pixel_is_the_mean_of_its_samples() {
     let film = picture(&scene, Area::whole(16, 9), 2);
     let (world, sampling) = (World::new(&scene), Sampling::new(&scene.sampler, 16, 9));
     for (x, y) in Area::whole(16, 9).iter() {
-        let mut points = Vec::new();
-        sampling.points(x, y, 10_000, 0..10_000, &mut points);
         let mut counts = vec![0_u64; world.palette().len()];
-        for point in points {
+        for point in placed(&sampling, [x, y], 0..10_000) {
             counts[world.slot_at(x, y, point)] += 1;
         }
         let seen = counts

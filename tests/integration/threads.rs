@@ -42,9 +42,11 @@ fn hold_to_the_number_asked_for(folder: &TempDir, arguments: &[&str]) {
 }
 
 #[test]
-fn no_more_than_were_asked_for_read_a_long_text_and_prepare_its_objects() {
+fn no_more_than_were_asked_for_prepare_objects_and_render() {
     let folder = TempDir::new().expect("a folder");
-    let mut text = String::from("image { width 8 height 8 }\n");
+    let mut text = String::from(
+        "image { width 640 height 360 } camera { eye (0, 0, 5) direction (0, 0, -1) }\n",
+    );
     for index in 0..30_000 {
         let (x, y) = (index % 173, index / 173);
         let _ = writeln!(

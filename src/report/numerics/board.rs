@@ -10,24 +10,17 @@ use super::{
 };
 
 /// The cases.
+#[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("P1", "up to 1e-13 pixels below the horizon", horizon),
-    case(
-        "P2",
-        "rays parallel to the board, and next to it",
-        parallels,
-    ),
-    case("P3", "planes through the eye", edge_on),
-    case("P4", "the eye 1e-9 … 5e-324 m above the board", low),
-    case("P5", "the eye 1e9 … 1e15 squares above it", high),
-    case("P6a", "1e9 … 4e15 squares from the origin", displaced),
-    case("P6b", "exact corners of squares, and next to them", corners),
-    case(
-        "P7",
-        "boxes and triangles on the board, from below",
-        from_below,
-    ),
-    case("P8", "two boards or two triangles in one plane", coincident),
+    case("P1", "up to 1e-13 pixels below the horizon", 2.0, horizon),
+    case("P2", "rays parallel to the board, and next to it", 2.0, parallels),
+    case("P3", "planes through the eye", 2.0, edge_on),
+    case("P4", "the eye 1e-9 … 5e-324 m above the board", 2.0, low),
+    case("P5", "the eye 1e9 … 1e15 squares above it", 2.0, high),
+    case("P6a", "1e9 … 4e15 squares from the origin", 2.0, displaced),
+    case("P6b", "exact corners of squares, and next to them", 2.0, corners),
+    case("P7", "boxes and triangles on the board, from below", 2.0, from_below),
+    case("P8", "two boards or two triangles in one plane", 2.0, coincident),
 ];
 
 fn horizon(random: &mut Random) -> Input {

@@ -14,6 +14,8 @@ pub struct Case {
     pub id: &'static str,
     /// What is hard about it.
     pub title: &'static str,
+    /// The greatest error that is claimed; no decision is wrong.
+    pub bound: f64,
     subject: Subject,
 }
 
@@ -26,27 +28,46 @@ enum Subject {
     Axes(fn(&mut Random) -> Camera),
 }
 
-/// A row that asks what is seen.
+/// A row that asks what is seen: distances and points are right up to so many units in the last place.
 pub(super) const fn case(
     id: &'static str,
     title: &'static str,
+    bound: f64,
     input: fn(&mut Random) -> Input,
 ) -> Case {
-    let subject = Subject::Seen(input);
-    Case { id, title, subject }
+    Case {
+        id,
+        title,
+        bound,
+        subject: Subject::Seen(input),
+    }
 }
 
-/// A row that asks for a camera's axes.
+/// A row that asks for a camera's axes: components of unit vectors are right up to four times 2^−53.
 pub(super) const fn axes_case(
     id: &'static str,
     title: &'static str,
     camera: fn(&mut Random) -> Camera,
 ) -> Case {
-    let subject = Subject::Axes(camera);
-    Case { id, title, subject }
+    Case {
+        id,
+        title,
+        bound: 4.0,
+        subject: Subject::Axes(camera),
+    }
 }
 
 impl Case {
+    /// Whether something is decided, and not only computed.
+    pub fn decides(&self) -> bool {
+        matches!(self.subject, Subject::Seen(_))
+    }
+
+    /// What errors are counted in.
+    pub fn unit(&self) -> &'static str {
+        if self.decides() { "ulp" } else { "u" }
+    }
+
     /// Asks so many questions.
     pub(super) fn ask(&self, random: &mut Random, count: u64, tally: &mut Tally) {
         let input = match self.subject {

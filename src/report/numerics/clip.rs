@@ -9,14 +9,11 @@ use super::{
 };
 
 /// The cases.
+#[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case(
-        "K2",
-        "surfaces exactly at the near or the far plane",
-        exactly_there,
-    ),
-    case("K3", "objects cut by both planes", cut),
-    case("K4", "the near plane within objects", within),
+    case("K2", "surfaces exactly at the near or the far plane", 2.0, exactly_there),
+    case("K3", "objects cut by both planes", 2.0, cut),
+    case("K4", "the near plane within objects", 2.0, within),
 ];
 
 /// View directions with a length that is a whole number, so that depths can be.

@@ -10,16 +10,13 @@ use super::{
 use crate::math::Angle;
 
 /// The cases.
+#[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case(
-        "B1",
-        "rays in the planes of faces, and along edges",
-        in_planes,
-    ),
-    case("B2", "the eye inside, on a face, an edge, a corner", inside),
-    case("B3", "boxes an ulp thick", thin),
-    case("B4", "rays that graze edges, 1 … 1e9 m away", silhouettes),
-    case("B5", "the seam of two boxes that share a face", neighbours),
+    case("B1", "rays in the planes of faces, and along edges", 2.0, in_planes),
+    case("B2", "the eye inside, on a face, an edge, a corner", 2.0, inside),
+    case("B3", "boxes an ulp thick", 2.0, thin),
+    case("B4", "rays that graze edges, 1 … 1e9 m away", 2.0, silhouettes),
+    case("B5", "the seam of two boxes that share a face", 2.0, neighbours),
 ];
 
 /// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.

@@ -1,37 +1,28 @@
 //! Numbers that only look random, of which inputs are made.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
+use rand::{Rng, RngExt};
 
-use crate::sampling::rng::{Key, scale};
+use crate::sampling::{
+    CounterRng,
+    rng::{Key, scale},
+};
 
 /// Numbers that are a function of a case and a block of its inputs.
 #[derive(Clone, Debug)]
-pub struct Random {
-    key: Key,
-    next: u64,
-}
+pub struct Random(CounterRng);
 
 impl Random {
     /// The numbers of a block of a case.
     pub fn new(case: &str, block: u64) -> Self {
-        let name = case
-            .bytes()
-            .fold(0, |name, byte| name << 8 | u64::from(byte));
-        Self {
-            key: Key::new(name, block),
-            next: 0,
-        }
-    }
-
-    /// 64 random bits.
-    pub fn bits(&mut self) -> u64 {
-        self.next += 1;
-        self.key.bits(self.next)
+        let name = case.bytes();
+        let name = name.fold(0, |name, byte| name << 8 | u64::from(byte));
+        Self(Key::new(name, block).rng())
     }
 
     /// A whole number below `n`.
     pub fn below(&mut self, n: u64) -> u64 {
-        scale(self.bits(), n)
+        scale(self.0.next_u64(), n)
     }
 
     /// A whole number from `low` to `high`.
@@ -46,7 +37,7 @@ impl Random {
 
     /// A number between two others, evenly.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 
     /// 10 to a power between two others.

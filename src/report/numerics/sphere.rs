@@ -9,28 +9,17 @@ use super::{
 };
 
 /// The cases.
+#[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("S1a", "rays that nearly touch a sphere", silhouettes),
-    case("S1b", "rays that touch it exactly: they miss", touches),
-    case("S2", "small and far, 1e6 … 1e15 radii away", far_and_small),
-    case("S3", "the eye inside", inside),
-    case(
-        "S4",
-        "the eye on the surface, and 1e-16 … 1e-3 off",
-        at_the_surface,
-    ),
-    case(
-        "S5",
-        "a globe of 1e6 … 1e15 m, the eye 1 m above it",
-        globes,
-    ),
-    case("S6", "scenes of 1e±160 … 1e±300 m", out_of_range),
-    case("S7", "equal spheres, and radii an ulp apart", concentric),
-    case(
-        "S8",
-        "centre and eye 1e9 … 1e300 m from the origin",
-        displaced,
-    ),
+    case("S1a", "rays that nearly touch a sphere", 1.0, silhouettes),
+    case("S1b", "rays that touch it exactly: they miss", 1.0, touches),
+    case("S2", "small and far, 1e6 … 1e15 radii away", 1.0, far_and_small),
+    case("S3", "the eye inside", 1.0, inside),
+    case("S4", "the eye on the surface, and 1e-16 … 1e-3 off", 1.0, at_the_surface),
+    case("S5", "a globe of 1e6 … 1e15 m, the eye 1 m above it", 1.0, globes),
+    case("S6", "scenes of 1e±160 … 1e±300 m", 1.0, out_of_range),
+    case("S7", "equal spheres, and radii an ulp apart", 1.0, concentric),
+    case("S8", "centre and eye 1e9 … 1e300 m from the origin", 1.0, displaced),
 ];
 
 fn silhouettes(random: &mut Random) -> Input {

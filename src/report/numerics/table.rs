@@ -4,48 +4,20 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use super::trial::Tally;
+use super::{case::Case, trial::Tally};
 use crate::numbers::grouped;
 
-/// What is claimed of a case besides that no decision is wrong.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Claim {
-    /// Distances and points are right up to so many units in the last place.
-    Ulps(f64),
-    /// Components of unit vectors are right up to so many times 2^−53, and nothing is decided.
-    Roundings(f64),
-}
-
-impl Claim {
-    /// Whether something is decided, and not only computed.
-    pub fn decides(self) -> bool {
-        matches!(self, Self::Ulps(_))
-    }
-
-    /// The greatest error that is claimed, and its unit.
-    pub fn bound(self) -> (f64, &'static str) {
-        match self {
-            Self::Ulps(bound) => (bound, "ulp"),
-            Self::Roundings(bound) => (bound, "u"),
-        }
-    }
-}
-
 /// What came out of a case.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// The case's name in the catalogue.
-    pub id: &'static str,
-    /// What is hard about it.
-    pub title: &'static str,
-    /// What is claimed.
-    pub claim: Claim,
+    /// What was asked.
+    pub case: &'static Case,
     /// What was counted and measured.
     pub tally: Tally,
 }
 
 /// What came out of all cases.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Table {
     /// The cases in the order of the catalogue.
     pub rows: Vec<Row>,
@@ -72,27 +44,21 @@ impl Table {
     /// The same for programs. An error that is no number, as of a distance that is not found at all, is null, as are what was
     /// not measured and what a case does not ask.
     pub fn to_json(&self) -> Value {
-        let rows = self.rows.iter().map(|row| {
-            let Tally {
-                inputs,
-                wrong,
-                error,
-            } = row.tally;
-            let (bound, unit) = row.claim.bound();
+        let rows = self.rows.iter().map(|Row { case, tally }| {
             let side = |i: usize| {
                 json!({
-                    "wrong": row.claim.decides().then_some(wrong[i]),
-                    "error": error[i],
+                    "wrong": case.decides().then_some(tally.wrong[i]),
+                    "error": tally.error[i],
                 })
             };
             json!({
-                "case": row.id,
-                "about": row.title,
-                "inputs": inputs,
+                "case": case.id,
+                "about": case.title,
+                "inputs": tally.inputs,
                 "textbook": side(0),
                 "pinhole": side(1),
-                "bound": bound,
-                "unit": unit,
+                "bound": case.bound,
+                "unit": case.unit(),
             })
         });
         json!({ "complete": self.is_complete(), "numerics": rows.collect::<Vec<_>>() })
@@ -113,20 +79,15 @@ impl fmt::Display for Table {
             f,
             ["case", "", "textbook", "pinhole", "textbook", "pinhole", ""],
         )?;
-        for row in &self.rows {
-            let Tally {
-                inputs,
-                wrong,
-                error,
-            } = row.tally;
-            let wrong = match row.claim.decides() {
-                true => [share(wrong[0], inputs), grouped(wrong[1])],
+        for Row { case, tally } in &self.rows {
+            let wrong = match case.decides() {
+                true => [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])],
                 false => [String::new(), String::new()],
             };
-            let (errors, (bound, unit)) = (error.map(size), row.claim.bound());
-            let bound = format!("{bound} {unit}");
+            let errors = tally.error.map(size);
+            let bound = format!("{} {}", case.bound, case.unit());
             let cells = [
-                row.id, row.title, &wrong[0], &wrong[1], &errors[0], &errors[1], &bound,
+                case.id, case.title, &wrong[0], &wrong[1], &errors[0], &errors[1], &bound,
             ];
             columns(f, cells)?;
         }
@@ -151,9 +112,9 @@ impl fmt::Display for Table {
     }
 }
 
-/// A share of the inputs in per cent, or how many they are if they are few.
+/// A share of the inputs in per cent, with an exponent where it is small.
 fn share(count: u64, inputs: u64) -> String {
-    let percent = 100.0 * count as f64 / inputs.max(1) as f64;
+    let percent = 100.0 * count as f64 / inputs as f64;
     match count {
         0 => "0".to_owned(),
         _ if percent < 0.1 => format!("{percent:.0e} %"),

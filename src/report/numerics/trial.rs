@@ -119,16 +119,12 @@ impl Trial {
         let textbook = self.textbook.seen(x, y, offset);
         let textbook = textbook.map(|seen| (seen.object, seen.odd));
         let ours = self.ours(x, y, offset);
-        self.judge(tally, truth, [textbook, ours]);
+        tally.inputs += 1;
+        for (wrong, answer) in tally.wrong.iter_mut().zip([textbook, ours]) {
+            *wrong += u64::from(answer != truth);
+        }
         if tally.inputs.is_multiple_of(MEASURED) {
             self.measure(x, y, offset, tally);
-        }
-    }
-
-    fn judge(&self, tally: &mut Tally, truth: Answer, answers: [Answer; 2]) {
-        tally.inputs += 1;
-        for (wrong, answer) in tally.wrong.iter_mut().zip(answers) {
-            *wrong += u64::from(answer != truth);
         }
     }
 
@@ -209,7 +205,7 @@ impl Trial {
                 _ => self.boundary(random, axis, |x, y, offset| self.ours(x, y, offset)),
             };
             if let Some(boundary) = found {
-                self.beside(random, boundary, end - tally.inputs, tally);
+                self.beside(random, axis, boundary, end - tally.inputs, tally);
             }
         }
         while tally.inputs < end {
@@ -223,35 +219,29 @@ impl Trial {
         random: &mut Random,
         axis: usize,
         seen: impl Fn(u32, u32, DVec2) -> Answer,
-    ) -> Option<(usize, [u32; 2], DVec2)> {
+    ) -> Option<([u32; 2], DVec2)> {
         let size = [self.scene.image.width, self.scene.image.height];
         let mut pixel = size.map(|size| random.below(size.into()) as u32);
         let mut offset = random.offset();
-        let color = |pixel: [u32; 2], at: f64| {
-            let mut offset = offset;
-            offset[axis] = at;
+        let at = |index: u32, place: f64| {
+            let (mut pixel, mut offset) = (pixel, offset);
+            (pixel[axis], offset[axis]) = (index, place);
             seen(pixel[0], pixel[1], offset)
         };
         let mut ends = [0, 0].map(|_: u32| random.below(size[axis].into()) as u32);
         ends.sort_unstable();
-        let moved = |at: u32| {
-            let mut pixel = pixel;
-            pixel[axis] = at;
-            pixel
-        };
-        let first = color(moved(ends[0]), -0.5);
-        if first == color(moved(ends[1]), -0.5) {
+        let first = at(ends[0], -0.5);
+        if first == at(ends[1], -0.5) {
             return None;
         }
         while ends[1] - ends[0] > 1 {
             let middle = ends[0] + (ends[1] - ends[0]) / 2;
-            ends[usize::from(color(moved(middle), -0.5) != first)] = middle;
+            ends[usize::from(at(middle, -0.5) != first)] = middle;
         }
-        pixel = moved(ends[0]);
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
-        if color(pixel, high) == first {
-            offset[axis] = high;
-            return Some((axis, pixel, offset));
+        if at(ends[0], high) == first {
+            // It is the pixel's edge.
+            low = high;
         }
         // Down to neighbours; near 0 these are closer than anything that matters.
         for _ in 0..130 {
@@ -259,21 +249,21 @@ impl Trial {
             if middle == low || middle == high {
                 break;
             }
-            if color(pixel, middle) == first {
-                low = middle;
-            } else {
-                high = middle;
+            match at(ends[0], middle) == first {
+                true => low = middle,
+                false => high = middle,
             }
         }
-        offset[axis] = low;
-        Some((axis, pixel, offset))
+        (pixel[axis], offset[axis]) = (ends[0], low);
+        Some((pixel, offset))
     }
 
     /// Asks on both sides of a boundary.
     fn beside(
         &self,
         random: &mut Random,
-        (axis, [x, y], offset): (usize, [u32; 2], DVec2),
+        axis: usize,
+        ([x, y], offset): ([u32; 2], DVec2),
         count: u64,
         tally: &mut Tally,
     ) {

@@ -10,23 +10,16 @@ use super::{
 use crate::scene::Lens;
 
 /// The cases.
+#[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("T1", "triangles of 1e-3 … 1e-9 m", tiny),
-    case("T2", "the eye 1e-3 … 1e-15 m off the plane", slivers),
-    case(
-        "T3a",
-        "close to an edge that two triangles share",
-        shared_edges,
-    ),
-    case("T3b", "exactly on such an edge", lattice_points),
-    case("T4", "needles of 1 to 1e3 … 1e12, and flat ones", needles),
-    case(
-        "T5",
-        "normals of 1e±307, nearly or wholly vertical",
-        normals,
-    ),
-    case("T6", "1e6 … 1e15 m from the origin", displaced),
-    case("T7", "vertices behind the eye", around),
+    case("T1", "triangles of 1e-3 … 1e-9 m", 2.0, tiny),
+    case("T2", "the eye 1e-3 … 1e-15 m off the plane", 2.0, slivers),
+    case("T3a", "close to an edge that two triangles share", 2.0, shared_edges),
+    case("T3b", "exactly on such an edge", 2.0, lattice_points),
+    case("T4", "needles of 1 to 1e3 … 1e12, and flat ones", 2.0, needles),
+    case("T5", "normals of 1e±307, nearly or wholly vertical", 2.0, normals),
+    case("T6", "1e6 … 1e15 m from the origin", 2.0, displaced),
+    case("T7", "vertices behind the eye", 2.0, around),
 ];
 
 /// The sides of the assignment's triangle.

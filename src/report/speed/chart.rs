@@ -19,10 +19,10 @@ use plotters::{
 };
 
 use super::{
-    marker::{Drawn, Look, Place},
-    measurement::{Measurement, Point, Times},
+    line_style::{Drawn, LineStyle, Place},
+    notation::asked_error,
+    results::{Measurement, Point, Times},
     summary::printable,
-    units::error,
 };
 use crate::numbers;
 
@@ -39,19 +39,19 @@ const LABEL_HEIGHT: i32 = 21;
 const LETTERS: f64 = 18.0;
 
 /// What a chart shows.
-struct Chart<'a> {
+struct Chart {
     title: &'static str,
     x_name: &'static str,
     write_x: fn(f64) -> String,
     lines: Vec<Line>,
     /// Errors that are asked for.
-    wanted: &'a [f64],
+    wanted: Vec<f64>,
     /// The exact method's time: its error is off the scale.
     exact: Option<f64>,
 }
 
 struct Line {
-    look: Look,
+    style: LineStyle,
     label: &'static str,
     points: Vec<(f64, f64)>,
 }
@@ -66,10 +66,21 @@ pub fn against_time(measured: &Measurement) -> String {
             false => format!("{} s", numbers::short(time)),
         },
         lines: lines(measured, |point| point.times.cpu()),
-        wanted: &measured.errors,
+        wanted: shown_errors(measured),
         exact: measured.exact.as_ref().map(Times::cpu),
     };
     draw(&chart, &measured.subject.name)
+}
+
+/// The errors that are asked for, but for those that are far away from all that were measured.
+pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
+    let points = measured.series.iter().flat_map(|series| &series.points);
+    let found: Vec<_> = points.map(Point::error).collect();
+    let is_near = |wanted: &f64| {
+        let mut found = found.iter();
+        found.any(|error| (error / 30.0..error * 30.0).contains(wanted))
+    };
+    measured.errors.iter().copied().filter(is_near).collect()
 }
 
 /// The chart of error against samples per pixel.
@@ -79,7 +90,7 @@ pub fn against_samples(measured: &Measurement) -> String {
         x_name: "samples per pixel",
         write_x: numbers::short,
         lines: lines(measured, |point| point.per_pixel as f64),
-        wanted: &measured.errors,
+        wanted: shown_errors(measured),
         exact: None,
     };
     draw(&chart, &measured.subject.name)
@@ -89,7 +100,7 @@ fn lines(measured: &Measurement, x: fn(&Point) -> f64) -> Vec<Line> {
     let line = measured.series.iter().map(|series| {
         let points = series.points.iter().map(|point| (x(point), point.error()));
         Line {
-            look: Look::of(series.method),
+            style: LineStyle::of(series.method),
             label: series.method.name(),
             // What has no logarithm has no place.
             points: points.filter(|&(x, y)| x > 0.0 && y > 0.0).collect(),
@@ -130,11 +141,8 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
             .map(|point| point.0)
             .chain(chart.exact.filter(|&x| x > 0.0)),
     );
-    let errors = Axis::around(points().map(|point| point.1)).ends;
-    // The errors that are asked for are shown, too, unless they are far away.
-    let is_near = |wanted: &f64| (errors.start / 30.0..errors.end * 30.0).contains(wanted);
-    let wanted = || chart.wanted.iter().copied().filter(is_near);
-    let y_axis = Axis::around(points().map(|point| point.1).chain(wanted()));
+    let errors = points().map(|point| point.1);
+    let y_axis = Axis::around(errors.chain(chart.wanted.iter().copied()));
     let mut plot = ChartBuilder::on(&area)
         .margin_top(36)
         .margin_right(LABELS)
@@ -158,11 +166,11 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
     let title = TextStyle::from(("sans-serif", 20.0).into_font());
     area.draw(&Text::new(chart.title, (columns.start, 10), title))?;
     let place = |x: f64, y: f64| plot.backend_coord(&(x, y));
-    for wanted in wanted() {
+    for &wanted in &chart.wanted {
         let (_, y) = place(x_axis.ends.start, wanted);
         let ends = [(columns.start, y), (columns.end, y)];
         area.draw(&DashedPathElement::new(ends, 4, 4, BLACK.mix(0.6)))?;
-        write(&area, error(wanted), (columns.start + 5, y - 10))?;
+        write(&area, asked_error(wanted), (columns.start + 5, y - 10))?;
     }
     if let Some(time) = chart.exact.filter(|time| time.is_finite() && *time > 0.0) {
         let (x, _) = place(time, y_axis.ends.start);
@@ -175,14 +183,14 @@ fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> D
     let heights = spread_out(&ends, &rows);
     let labels = ends.iter().zip(heights);
     for ((line, places), (end, height)) in chart.lines.iter().zip(&lines).zip(labels) {
-        line.look.line(&area, places)?;
+        line.style.line(&area, places)?;
         let marker = (columns.end + 20, height);
         for &place in places.iter().chain([&marker]) {
-            line.look.marker(&area, place)?;
+            line.style.marker(&area, place)?;
         }
         let start = (end.0 + 7, end.1);
         let leader = vec![start, (columns.end + 5, height), (marker.0 - 8, height)];
-        area.draw(&PathElement::new(leader, line.look.color.mix(0.45)))?;
+        area.draw(&PathElement::new(leader, line.style.color.mix(0.45)))?;
         write(&area, line.label.to_owned(), (marker.0 + 10, height))?;
     }
     area.present()

@@ -8,11 +8,11 @@ use minijinja::{AutoEscape, Environment, context};
 use serde::Serialize;
 
 use super::{
-    chart::{against_samples, against_time},
-    measurement::Measurement,
-    picture,
-    summary::{heading, notes, printable, table, verdict},
-    units::{error, plural, seconds},
+    chart::{against_samples, against_time, shown_errors},
+    notation::{error, plural, seconds},
+    picture::{self, uri},
+    results::{Measurement, Shown},
+    summary::{heading, notes, printable, table, verdicts},
 };
 
 /// What the template fills in for a scene.
@@ -22,13 +22,20 @@ struct Section {
     heading: String,
     overrides: Vec<String>,
     verdicts: Vec<String>,
-    /// SVG, not to be escaped.
-    charts: [String; 2],
+    /// SVG, not to be escaped; none without a sampled method.
+    charts: Vec<String>,
+    /// Whether the charts show errors that are asked for.
+    has_dashed_lines: bool,
+    /// Whether exact is among the methods.
+    has_exact: bool,
+    has_slopes: bool,
+    has_slope_errors: bool,
     heads: Vec<String>,
     rows: Vec<Vec<String>>,
     notes: Vec<String>,
-    /// The part that is shown, in words.
+    /// Which part of the picture is shown of every method.
     part: String,
+    /// The exact one first; none without another.
     pictures: Vec<Picture>,
     whole: Picture,
 }
@@ -36,7 +43,7 @@ struct Section {
 #[derive(Serialize)]
 struct Picture {
     uri: String,
-    name: String,
+    name: &'static str,
     about: String,
 }
 
@@ -56,60 +63,53 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
 }
 
 fn section(measured: &Measurement) -> io::Result<Section> {
-    let summary = table(measured);
-    let (part, whole) = (measured.crop, measured.whole());
-    let verdicts = measured
-        .errors
-        .iter()
-        .map(|&error| verdict(measured, error));
+    let summary = table(measured, &measured.errors);
     let overrides = measured.subject.recipe.overrides.iter();
-    let (uri, size) = picture::whole(measured)?;
+    let fits = || measured.series.iter().filter_map(|series| series.fit());
+    let (part, pictures) = pictures(measured)?;
     Ok(Section {
         name: printable(&measured.subject.name),
         heading: heading(measured),
         overrides: overrides.map(|set| printable(set)).collect(),
-        verdicts: verdicts.collect(),
-        charts: [against_time(measured), against_samples(measured)],
+        verdicts: verdicts(measured),
+        charts: match measured.series.is_empty() {
+            true => Vec::new(),
+            false => vec![against_time(measured), against_samples(measured)],
+        },
+        has_dashed_lines: !shown_errors(measured).is_empty(),
+        has_exact: measured.exact.is_some(),
+        has_slopes: fits().next().is_some(),
+        has_slope_errors: fits().any(|fit| fit.slope_error.is_some()),
         heads: summary.heads,
         rows: summary.rows,
         notes: notes(measured),
-        part: format!(
-            "{} × {} pixels, {} from the left and {} from the top",
-            part.width, part.height, part.x, part.y
-        ),
-        pictures: pictures(measured)?,
-        whole: Picture {
-            uri,
-            name: "exact".to_owned(),
-            about: match size == whole {
-                true => "the whole picture".to_owned(),
-                false => format!(
-                    "the whole picture, reduced to {} × {} pixels",
-                    size.width, size.height
-                ),
-            },
-        },
+        part,
+        pictures,
+        whole: whole(measured)?,
     })
 }
 
-/// The exact picture and those of the methods, as far as there are any.
-fn pictures(measured: &Measurement) -> io::Result<Vec<Picture>> {
-    let exact = match &measured.exact {
-        Some(times) => format!("no error, {}", seconds(times.cpu(), 2)),
-        None => "no error".to_owned(),
+/// A part of the picture in words, and as the exact method and the others make it; nothing without the others.
+fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Picture>)> {
+    let shown = measured.series.iter();
+    let shown = shown.filter_map(|series| Some((series.method, series.picture.as_ref()?)));
+    let shown: Vec<_> = shown.collect();
+    let Some(&(first, &Shown { part, .. })) = shown.first() else {
+        return Ok(Default::default());
     };
+    let exact = picture::cropped(&measured.reference.film, part).map_err(io::Error::other)?;
     let mut pictures = vec![Picture {
-        uri: picture::exact(measured)?,
-        name: "exact".to_owned(),
-        about: exact,
+        uri: uri(&exact)?,
+        name: "exact",
+        about: match &measured.exact {
+            Some(times) => format!("no error, {}", seconds(times.cpu(), 2)),
+            None => "no error".to_owned(),
+        },
     }];
-    for series in &measured.series {
-        let Some(shown) = &series.picture else {
-            continue;
-        };
+    for (method, shown) in shown {
         pictures.push(Picture {
-            uri: picture::sampled(measured, series.method, shown)?,
-            name: series.method.name().to_owned(),
+            uri: uri(&shown.film)?,
+            name: method.name(),
             about: format!(
                 "error {}, {}, {} per pixel",
                 error(shown.rmse),
@@ -118,5 +118,26 @@ fn pictures(measured: &Measurement) -> io::Result<Vec<Picture>> {
             ),
         });
     }
-    Ok(pictures)
+    let part = format!(
+        "{} × {} pixels, {} from the left and {} from the top, where {} errs most",
+        part.width,
+        part.height,
+        part.x,
+        part.y,
+        first.name()
+    );
+    Ok((part, pictures))
+}
+
+fn whole(measured: &Measurement) -> io::Result<Picture> {
+    let film = picture::reduced(&measured.reference.film).map_err(io::Error::other)?;
+    let (width, height) = (film.width(), film.height());
+    Ok(Picture {
+        uri: uri(&film)?,
+        name: "the exact picture as a whole",
+        about: match width == measured.whole().width {
+            true => "the whole picture".to_owned(),
+            false => format!("the whole picture, reduced to {width} × {height} pixels"),
+        },
+    })
 }

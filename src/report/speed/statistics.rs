@@ -25,10 +25,8 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 pub struct PowerLaw {
     /// The exponent b.
     pub slope: f64,
-    /// Its standard error; none of fewer than three points.
+    /// Its standard error; none of fewer than four points, as one residual more than the line has parameters says next to nothing.
     pub slope_error: Option<f64>,
-    /// How many points it was fitted to.
-    pub points: usize,
 }
 
 impl PowerLaw {
@@ -49,8 +47,7 @@ impl PowerLaw {
             .sum();
         slope.is_finite().then_some(Self {
             slope,
-            slope_error: (logs.len() > 2).then(|| (residuals / (k - 2.0) / spread).sqrt()),
-            points: logs.len(),
+            slope_error: (logs.len() > 3).then(|| (residuals / (k - 2.0) / spread).sqrt()),
         })
     }
 }

@@ -1,9 +1,9 @@
 //! What a measurement says in words and in one table, for a terminal and for a page alike.
 
 use super::{
-    measurement::Measurement,
-    needed::Needed,
-    units::{UNKNOWN, error, plural, samples, slope, time},
+    estimate::{Estimate, Ranking},
+    notation::{UNKNOWN, asked_error, plural, samples, slope, time},
+    results::Measurement,
 };
 use crate::{diagnostic::visible, numbers, scene::Method};
 
@@ -30,96 +30,135 @@ pub fn heading(measured: &Measurement) -> String {
     )
 }
 
-/// Which method to use for an error, and why.
-pub fn verdict(measured: &Measurement, wanted: f64) -> String {
-    let all = measured.fastest(wanted);
-    let wanted = error(wanted);
-    let told = |(method, needed): &(Method, Needed)| {
-        let (name, cpu) = (method.name(), time(needed, needed.cpu));
-        match needed.per_pixel {
-            None => format!("{name} takes {cpu}, without error"),
-            Some(_) => format!("{name} takes {cpu}, with {}", per_pixel(needed)),
-        }
-    };
-    let [first, rest @ ..] = all.as_slice() else {
-        return format!("No method is known to come to an error of {wanted}.");
-    };
-    let (method, needed) = first;
-    let cpu = time(needed, needed.cpu);
-    match (method, rest.first()) {
-        (_, None) => format!(
-            "Of these methods, one is known to come to an error of {wanted}: {}.",
-            told(first)
-        ),
-        (Method::Exact, Some(next)) => format!(
-            "Use exact: it takes {cpu} of CPU time and makes no error. The fastest sampling method takes longer for an error of {wanted}: {}.",
-            told(next)
-        ),
-        (_, Some(next)) => {
-            let exact = rest[1..]
-                .iter()
-                .find(|(method, _)| *method == Method::Exact);
-            let others: Vec<_> = [next].into_iter().chain(exact).map(told).collect();
-            format!(
-                "Use {}: it comes to an error of {wanted} in the least CPU time, {cpu}, with {}. For comparison, {}.",
-                method.name(),
-                per_pixel(needed),
-                others.join("; ")
-            )
-        }
-    }
+/// Which method to use for each error, and why.
+pub fn verdicts(measured: &Measurement) -> Vec<String> {
+    let errors = measured.errors.iter();
+    errors.map(|&error| verdict(measured, error)).collect()
 }
 
-fn per_pixel(needed: &Needed) -> String {
-    let one = if needed.per_pixel == Some(1.0) {
+/// Which method to use for an error, and why, as surely as it is known.
+pub fn verdict(measured: &Measurement, wanted: f64) -> String {
+    let Ranking { fastest, others } = measured.ranking(wanted);
+    let wanted = asked_error(wanted);
+    let Some((_, first)) = fastest.first() else {
+        return format!("No method is known to come to an error of {wanted}.");
+    };
+    let basis = match (first.is_extrapolated, measured.runs()) {
+        (false, 1) => "By one run alone, use",
+        (false, _) => "Use",
+        (true, 1) => "By extrapolation of one run, use",
+        (true, _) => "By extrapolation, use",
+    };
+    let names = listed(fastest.iter().map(|(method, _)| method.name()));
+    let is_exact = |(method, _): &&(Method, Estimate)| *method == Method::Exact;
+    if let ([only], []) = (fastest.as_slice(), others.as_slice()) {
+        let cost = cost(only);
+        return format!(
+            "{basis} {names} for an error of {wanted}, the only method that is known to come to it: {cost}."
+        );
+    }
+    let last = fastest.last().map_or(*first, |(_, last)| *last);
+    let [least, most] = [first, &last].map(|it| time(it, it.cpu));
+    let why = match fastest.as_slice() {
+        [(Method::Exact, _)] => format!("it takes {least} of CPU time and makes none"),
+        [(_, it)] => {
+            format!(
+                "it takes the least CPU time, {least}, with {}",
+                per_pixel(it)
+            )
+        }
+        all => {
+            let range = match least == most {
+                true => least,
+                false => format!("{least} to {most}"),
+            };
+            let exact = match all.iter().any(|it| is_exact(&it)) {
+                true => ", and exact makes none",
+                false => "",
+            };
+            format!("they are about as fast, with {range} of CPU time{exact}")
+        }
+    };
+    let next = others.iter().find(|it| !is_exact(it));
+    let compared: Vec<_> = next
+        .into_iter()
+        .chain(others.iter().find(is_exact))
+        .map(cost)
+        .collect();
+    let compared = match compared.is_empty() {
+        true => String::new(),
+        false => format!(" For comparison, {}.", compared.join("; ")),
+    };
+    format!("{basis} {names} for an error of {wanted}: {why}.{compared}")
+}
+
+/// What a method takes.
+fn cost((method, estimate): &(Method, Estimate)) -> String {
+    let takes = match estimate.is_extrapolated {
+        true => "would take",
+        false => "takes",
+    };
+    let with = match estimate.per_pixel {
+        None => "without error".to_owned(),
+        Some(_) => format!("with {}", per_pixel(estimate)),
+    };
+    let (name, cpu) = (method.name(), time(estimate, estimate.cpu));
+    format!("{name} {takes} {cpu}, {with}")
+}
+
+fn per_pixel(estimate: &Estimate) -> String {
+    let one = if estimate.per_pixel == Some(1.0) {
         ""
     } else {
         "s"
     };
-    format!("{} sample{one} per pixel", samples(needed))
+    format!("{} sample{one} per pixel", samples(estimate))
 }
 
-/// For each method its slope, and for each error the samples, the CPU time and the wall time that it takes.
-pub fn table(measured: &Measurement) -> Table {
+/// Words with commas, and an `or` before the last.
+fn listed<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let words: Vec<_> = words.collect();
+    match words.as_slice() {
+        [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        words => words.concat(),
+    }
+}
+
+/// For each method its slope, and for each of some errors the samples, the CPU time and the wall time that it takes.
+pub fn table(measured: &Measurement, errors: &[f64]) -> Table {
     let mut heads = vec!["method".to_owned(), "slope of\nthe error".to_owned()];
-    for wanted in measured.errors.iter().map(|&wanted| error(wanted)) {
+    for wanted in errors.iter().copied().map(asked_error) {
         let columns = ["samples", "CPU time", "wall time"];
         heads.extend(columns.map(|what| format!("{what}\nfor {wanted}")));
     }
-    let cells = |needed: Option<Needed>| match needed {
-        None => [UNKNOWN; 3].map(str::to_owned),
-        Some(it) => [samples(&it), time(&it, it.cpu), time(&it, it.wall)],
+    let row = |method: Method, slope: String, estimates: Vec<Option<Estimate>>| {
+        let cells = estimates.into_iter().flat_map(|estimate| match estimate {
+            None => [UNKNOWN; 3].map(str::to_owned),
+            Some(it) => [samples(&it), time(&it, it.cpu), time(&it, it.wall)],
+        });
+        [method.name().to_owned(), slope]
+            .into_iter()
+            .chain(cells)
+            .collect()
     };
-    let row = |method: Method, slope: String, needed: &dyn Fn(f64) -> Option<Needed>| {
-        let mut row = vec![method.name().to_owned(), slope];
-        row.extend(
-            measured
-                .errors
-                .iter()
-                .flat_map(|&wanted| cells(needed(wanted))),
-        );
-        row
-    };
-    let sampled = measured.series.iter().map(|series| {
-        let needed = |wanted| measured.needed(series, wanted);
-        row(series.method, slope(series.fit()), &needed)
-    });
-    let needed = |wanted| measured.exact_needed(wanted);
-    let exact = measured
-        .exact
-        .iter()
-        .map(|_| row(Method::Exact, String::new(), &needed));
-    Table {
-        heads,
-        rows: sampled.chain(exact).collect(),
+    let mut rows: Vec<_> = (measured.series.iter())
+        .map(|series| {
+            let estimates = errors.iter().map(|&error| measured.estimate(series, error));
+            row(series.method, slope(series.fit()), estimates.collect())
+        })
+        .collect();
+    if measured.exact.is_some() {
+        let estimates = errors.iter().map(|&error| measured.exact_estimate(error));
+        rows.push(row(Method::Exact, String::new(), estimates.collect()));
     }
+    Table { heads, rows }
 }
 
 /// How to read the table.
 pub fn notes(measured: &Measurement) -> Vec<String> {
     let bound = numbers::at_most(measured.reference.bound());
     let mut notes = vec![format!(
-        "~ extrapolated; {UNKNOWN} not known; exact is within {bound} of the truth in every channel."
+        "~ extrapolated; {UNKNOWN} not known; the exact picture is within {bound} of the truth in every channel."
     )];
     if measured.interrupted {
         notes.push("Interrupted: these are the runs that were made until then.".to_owned());

@@ -3,16 +3,34 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets::NOTHING};
 
 use super::{
-    measurement::Measurement,
+    results::Measurement,
     summary::{self, heading, notes, printable, verdict},
 };
 
 /// Lines are no longer than this.
 const WIDTH: usize = 100;
 
-/// What was measured, the table, which method to use, and how to read that.
+/// What was measured, and for each error a table and which method to use; in the end how to read that.
 pub fn text(measured: &Measurement) -> String {
-    let summary = summary::table(measured);
+    let filled = |text: &str| textwrap::fill(text, WIDTH) + "\n";
+    let mut text = format!(
+        "{}: {}\n",
+        printable(&measured.subject.name),
+        heading(measured)
+    );
+    for &error in &measured.errors {
+        let verdict = filled(&verdict(measured, error));
+        text += &format!("\n{}\n\n{verdict}", table(measured, error));
+    }
+    text += &notes(measured)
+        .iter()
+        .map(|note| filled(note))
+        .collect::<String>();
+    text
+}
+
+fn table(measured: &Measurement, error: f64) -> String {
+    let summary = summary::table(measured, &[error]);
     let mut table = Table::new();
     table
         .load_preset(NOTHING)
@@ -25,17 +43,5 @@ pub fn text(measured: &Measurement) -> String {
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
-    let verdicts = measured
-        .errors
-        .iter()
-        .map(|&error| verdict(measured, error));
-    let paragraphs = verdicts.chain(notes(measured));
-    let paragraphs: Vec<_> = paragraphs.map(|it| textwrap::fill(&it, WIDTH)).collect();
-    format!(
-        "{}: {}\n\n{}\n\n{}\n",
-        printable(&measured.subject.name),
-        heading(measured),
-        table.trim_fmt(),
-        paragraphs.join("\n")
-    )
+    table.trim_fmt()
 }

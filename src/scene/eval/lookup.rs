@@ -159,6 +159,5 @@ fn and_here(problem: &mut Diagnostic, span: Span) {
     for fix in &mut problem.fixes {
         let text = fix.edits.first().map(|edit| edit.text.clone());
         fix.edits.extend(text.map(|text| Edit::new(span, text)));
-        fix.edits.sort_by_key(|edit| edit.span);
     }
 }

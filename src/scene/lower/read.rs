@@ -1,4 +1,4 @@
-//! From the text to the tree, and on to the scene: in parts side by side where all is well, and as a whole.
+//! From the text to the tree, and on to the scene: in parts where all is well, and as a whole.
 
 use std::sync::atomic::AtomicBool;
 
@@ -31,12 +31,12 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// A part is long enough to be worth its hand-over, and so short that many are at work at once, and that soon none is when nobody
-/// wants them.
+/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree takes little memory, and that soon
+/// none is read when nobody wants it.
 const PART: usize = 1 << 16;
 
-/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed side by side and made sense of one after the
-/// other, so that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
+/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made sense of one after the other, so
+/// that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
 /// whole, for a report may tell of what stands elsewhere.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
@@ -119,7 +119,11 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        let of_names = self.names.problems.take();
+        let mut of_names = self.names.problems.take();
+        // The uses of a name are not always found in the order of the text.
+        for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
+            fix.edits.sort_by_key(|edit| edit.span);
+        }
         let found = std::mem::take(&mut self.problems).into_iter();
         diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);

@@ -8,7 +8,7 @@ use crate::{
         messages as say,
         problem::{replace, shorten},
         tokens::{TokenKind, line_end, numeric_part},
-        tree::{Block, Field, Name, Value, ValueKind, bad, number},
+        tree::{Block, Field, Name, Value, ValueKind, bad},
     },
 };
 
@@ -206,11 +206,9 @@ impl<'s> Recovery<'_, 's> {
         let end = self.peek(behind - 1).end;
         let at = Span::new(self.id, span.start + field.len(), end);
         let rest = self.written(at);
-        let kind = match numeric_part(rest) == rest {
-            true => number(rest),
-            false if self.words.is_value(rest) => ValueKind::Name(rest),
-            false => return None,
-        };
+        if numeric_part(rest) != rest && !self.words.is_value(rest) {
+            return None;
+        }
         // Where a value follows, the word is a name.
         let next = self.word(behind);
         let is_value = self.words.is_value(next) && !self.is_field_name(next);
@@ -229,7 +227,7 @@ impl<'s> Recovery<'_, 's> {
                 span: Span::new(self.id, span.start, at.start),
             },
             span: span.to(at),
-            value: Value { kind, span: at },
+            value: bad(at),
         })
     }
 

@@ -2,7 +2,7 @@
 
 use super::Recovery;
 use crate::{
-    diagnostic::{Edit, Fix, Label},
+    diagnostic::{Edit, Fix},
     source::Span,
     syntax::{
         messages::{self as say, FOREIGN_FILES, statement},
@@ -110,12 +110,7 @@ impl Recovery<'_, '_> {
             [second, comment.len(), close].map(|at| Span::new(self.id, at, at + 2));
         let edits = [Edit::new(inner, ""), Edit::new(inner_close, "")];
         let fix = Fix::new("take the inner `/*` and `*/` away", edits);
-        let mut found = say::NESTED_COMMENT.at(inner, &[], fix);
-        found.labels.push(Label {
-            span: close,
-            message: "so this closes none".to_owned(),
-        });
-        self.problems.push(found);
+        self.report(&say::NESTED_COMMENT, inner, &[], fix);
         self.seek(close.end);
         true
     }

@@ -10,7 +10,7 @@ use crate::{
         messages as say,
         problem::replace,
         tokens::numeric_part,
-        tree::{Element, Name, Operator, Value, ValueKind, bad, chain},
+        tree::{Value, ValueKind, bad},
     },
 };
 
@@ -37,35 +37,32 @@ impl<'s> Recovery<'_, 's> {
         if values.iter().any(|value| value.kind == ValueKind::Bad) {
             return bad(span);
         }
+        let are_parts = values.iter().all(|value| match takes {
+            Some(Type::Colors) => !matches!(value.kind, ValueKind::Tuple(_)),
+            _ => is_plain_number(value) || self.is_factor(value),
+        });
         match (takes, values.len()) {
             // `dark red` and `multi jittered` are one name, written wrongly.
             (Some(Type::Color | Type::Method), _)
                 if are_names(&values) && commas == 0 && !whole.contains(['\n', '/']) =>
             {
                 let kind = ValueKind::Name(whole);
-                Value { kind, span }
+                return Value { kind, span };
             }
             (None | Some(Type::Number | Type::Angle), _)
-                if numbers && commas > 0 && self.comma_in_number(span) =>
-            {
-                bad(span)
-            }
+                if numbers && commas > 0 && self.comma_in_number(span) => {}
             (Some(Type::Color), 3) if numbers => {
                 self.missing_parentheses(span, Some(replace(span, format!("rgb{right}"))));
-                let (text, span) = ("rgb", first.span);
-                self.call_of(Name { text, span }, elements(values), span)
             }
-            (Some(Type::Vector) | None, 3) | (Some(Type::Colors), 2) => {
+            (Some(Type::Vector) | None, 3) | (Some(Type::Colors), 2) if are_parts => {
                 self.missing_parentheses(span, Some(replace(span, right)));
-                let kind = ValueKind::Tuple(elements(values));
-                Value { kind, span }
             }
             (Some(Type::Vector), _) if !matches!(first.kind, ValueKind::Tuple(_)) => {
                 self.missing_parentheses(span, None);
-                bad(span)
             }
-            _ => self.missing_between(first, second).unwrap_or(bad(span)),
+            _ => self.missing_between(&first, &second),
         }
+        bad(span)
     }
 
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
@@ -74,11 +71,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Two values with nothing between: an operator is missing, or the name of a field.
-    pub(super) fn missing_between(
-        &mut self,
-        left: Value<'s>,
-        right: Value<'s>,
-    ) -> Option<Value<'s>> {
+    pub(super) fn missing_between(&mut self, left: &Value<'s>, right: &Value<'s>) {
         let is_whole = match left.kind {
             ValueKind::Tuple(_) | ValueKind::ColorCode(_) => true,
             ValueKind::Name(name) => self.words.is_color(name),
@@ -96,18 +89,16 @@ impl<'s> Recovery<'_, 's> {
                 true => &say::COLOR_WITHOUT_NAME,
                 false => &say::MISSING_FIELD_NAME,
             };
-            self.report(said, right.span, &[&r], None);
-            return None;
+            return self.report(said, right.span, &[&r], None);
         }
         // `2 pi`, if both are surely numbers.
         let sign = Span::new(self.id, left.span.end, right.span.start);
-        let are_numbers = (is_plain_number(&left) && self.is_factor(&right))
-            || (self.is_factor(&left) && is_plain_number(&right));
+        let are_numbers = (is_plain_number(left) && self.is_factor(right))
+            || (self.is_factor(left) && is_plain_number(right));
         let is_product = are_numbers && matches!(self.within.takes, None | Some(Type::Number));
         let title = format!("write `{l} * {r}`");
         let fix = is_product.then(|| Fix::new(title, [Edit::new(sign, " * ")]));
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
-        is_product.then(|| chain(left, Operator::Multiply, sign, right))
     }
 
     /// Whether a value starts with a name that is surely that of a number.
@@ -151,10 +142,4 @@ pub(super) fn are_names(values: &[Value<'_>]) -> bool {
     values
         .iter()
         .all(|value| matches!(value.kind, ValueKind::Name(_)))
-}
-
-/// Values as the parts of a list whose commas are not there.
-pub(super) fn elements(values: Vec<Value<'_>>) -> Vec<Element<'_>> {
-    let element = |value| Element { value, comma: None };
-    values.into_iter().map(element).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Recovery, example, foreign::Place, is_plain_number, joined::elements};
+use super::{Recovery, example, foreign::Place, is_plain_number};
 use crate::{
     diagnostic::{Edit, Fix},
     schema::{self, Type},
@@ -228,7 +228,7 @@ impl<'s> Recovery<'_, 's> {
             return None;
         }
         if !fits && is_plain_number(left) && self.is_factor(right) {
-            self.missing_between(left.clone(), right.clone());
+            self.missing_between(&left.clone(), &right.clone());
             return None;
         }
         let (l, r) = (self.short(left.span), self.short(right.span));
@@ -250,15 +250,15 @@ impl<'s> Recovery<'_, 's> {
             _ => ("a vector", "", 3),
         };
         let fits = list.elements.len() == count && list.needless.is_none();
-        let values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
-        let right = format!("{function}({})", self.list_of(&values));
+        let parts = list.elements.iter().map(|e| self.written(e.value.span));
+        let parts: Vec<&str> = parts.collect();
+        let right = format!("{function}({})", parts.join(", "));
         let fix = fits.then(|| replace(span, right));
         self.report(&say::BRACKETS, span, &[what, example(takes)], fix);
-        let kind = ValueKind::Tuple(elements(values.clone()));
-        match function {
-            _ if !fits => bad(span),
-            "" => Value { kind, span },
-            text => self.call_of(Name { text, span }, elements(values), span),
-        }
+        let kind = match fits && function.is_empty() {
+            true => ValueKind::Tuple(list.elements),
+            false => ValueKind::Bad,
+        };
+        Value { kind, span }
     }
 }

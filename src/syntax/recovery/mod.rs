@@ -5,8 +5,8 @@
 //! numbers in `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
 //! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace (`resync`).
-//! - A fix is offered where it is plain, and then the tree holds what the fix would make, so that applying it changes no
-//!   other problem. Where none is offered, the value is bad, and nothing that uses it is reported.
+//! - A fix is offered where it is plain. A value with a slip is bad, as a rule, whether there is a fix or not, and nothing
+//!   that uses it is reported.
 //! - Where different slips are found in one value, none of their fixes is sure (`settle`).
 
 mod fields;

@@ -8,7 +8,7 @@ use crate::{
         messages as say,
         problem::{replace, shorten},
         tokens::{is_color_code, numeric_part},
-        tree::{Unit, Value, ValueKind, bad, number},
+        tree::{Value, bad, number},
     },
 };
 
@@ -77,43 +77,27 @@ impl<'s> Recovery<'_, 's> {
         behind: Span,
     ) -> Value<'s> {
         let unit = self.written(behind);
-        let (fits, kind, label) = match (right, self.within.takes) {
-            ("", None | Some(Type::Number)) => {
-                (true, ValueKind::Number(digits), "all lengths are in metres")
-            }
-            (_, None | Some(Type::Angle)) if !right.is_empty() => {
-                let is_degrees = right == "deg";
-                let unit = if is_degrees {
-                    Unit::Degrees
-                } else {
-                    Unit::Radians
-                };
-                (
-                    true,
-                    ValueKind::Angle {
-                        number: digits,
-                        unit,
-                    },
-                    "the units are `deg` and `rad`",
-                )
-            }
-            _ => (
-                false,
-                ValueKind::Bad,
-                "only angles have a unit, such as `30deg`",
-            ),
+        let wanted = if right.is_empty() {
+            Type::Number
+        } else {
+            Type::Angle
+        };
+        let fits = self.within.takes.is_none_or(|takes| takes == wanted);
+        let label = match wanted {
+            _ if !fits => "only angles have a unit, such as `30deg`",
+            Type::Number => "all lengths are in metres",
+            _ => "the units are `deg` and `rad`",
         };
         let text = scaled(digits, factor).filter(|_| fits);
         let fix = text.map(|number| replace(whole, format!("{number}{right}")));
-        if !right.is_empty() && unit != "°" && behind.start > whole.start + digits.len() {
-            let place = if unit == right { whole } else { behind };
-            self.report(&say::SPACED_UNIT, place, &[label], fix);
+        let is_apart = behind.start > whole.start + digits.len() && unit != "°";
+        if is_apart && wanted == Type::Angle {
+            self.report(&say::SPACED_UNIT, whole, &[label], fix);
         } else {
             let written = shorten(&format!("{digits}{unit}"));
-            self.report(&say::BAD_NUMBER, behind, &[&written, label], fix);
+            self.report(&say::BAD_NUMBER, whole, &[&written, label], fix);
         }
-        let kind = if factor == 1.0 { kind } else { ValueKind::Bad };
-        Value { kind, span: whole }
+        bad(whole)
     }
 
     /// What starts as a number does and is none.
@@ -121,7 +105,6 @@ impl<'s> Recovery<'_, 's> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
         let takes = self.within.takes;
-        let tight = written.replace('_', "");
         let (label, right, place) = if self.words.is_factor(unit) {
             let takes_number = matches!(takes, None | Some(Type::Number));
             let product = takes_number.then(|| format!("{digits} * {unit}"));
@@ -131,8 +114,6 @@ impl<'s> Recovery<'_, 's> {
             (label, Some(format!("#{hex}")), span)
         } else if let Some(sizes) = self.sizes(written) {
             ("`x` is no operator", Some(sizes), span)
-        } else if numeric_part(&tight) == tight {
-            ("a `_` stands between two digits only", Some(tight), span)
         } else {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)

@@ -1,12 +1,6 @@
 //! Values: operators and operands.
 
-use super::{
-    Recovery, example,
-    foreign::Place,
-    is_name,
-    joined::{are_names, elements},
-    unquoted,
-};
+use super::{Recovery, example, foreign::Place, is_name, joined::are_names, unquoted};
 use crate::{
     diagnostic::{Edit, Fix},
     schema::{self, Type},
@@ -176,30 +170,24 @@ impl<'s> Recovery<'_, 's> {
         sign: Span,
         right: Value<'s>,
     ) -> Value<'s> {
-        let (operator, is_right) = match written {
-            "+" => (Operator::Add, true),
-            "-" => (Operator::Subtract, true),
-            "*" => (Operator::Multiply, true),
-            "/" => (Operator::Divide, true),
-            "−" => (Operator::Subtract, false),
-            "×" | "·" => (Operator::Multiply, false),
-            "÷" => (Operator::Divide, false),
+        let operator = match written {
+            "+" => Operator::Add,
+            "-" => Operator::Subtract,
+            "*" => Operator::Multiply,
+            "/" => Operator::Divide,
             _ => {
-                self.unknown_operator(written, sign, None);
+                let meant = ["−-", "×*", "·*", "÷/"].into_iter();
+                let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
+                self.unknown_operator(written, sign, meant.map(|meant| replace(sign, meant)));
                 return bad(left.span.to(right.span));
             }
         };
-        if !is_right {
-            let fix = replace(sign, operator.sign().to_string());
-            self.unknown_operator(written, sign, Some(fix));
-        }
         chain(left, operator, sign, right)
     }
 
     fn unknown_operator(&mut self, written: &str, span: Span, fix: Option<Fix>) {
-        let help = match (written, self.within.takes) {
-            ("%", Some(Type::Color)) => "write a part of a colour as a number from 0 to 255",
-            ("%", _) => "write the number itself, such as `0.5`",
+        let help = match written {
+            "%" => "write the number itself, such as `0.5`",
             _ => "write a product, such as `a * a`, or `sqrt(a)`",
         };
         self.report(&say::UNKNOWN_OPERATOR, span, &[written, help], fix);
@@ -212,7 +200,6 @@ impl<'s> Recovery<'_, 's> {
         } else if SUM.contains(&written) {
             let fix = self.remove(format!("remove this `{written}`"), sign);
             self.report(&say::MISSING_OPERAND, sign, &["after", written], Some(fix));
-            return left;
         } else {
             // Without a factor the value would be of another type.
             self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
@@ -364,12 +351,11 @@ impl<'s> Recovery<'_, 's> {
             arguments.push(self.signed());
         }
         let span = name.span.to(self.behind());
-        if self.problems.len() > told {
-            return bad(span);
+        if self.problems.len() == told {
+            let right = format!("{}({})", name.text, self.list_of(&arguments));
+            self.missing_parentheses(span, Some(replace(span, right)));
         }
-        let right = format!("{}({})", name.text, self.list_of(&arguments));
-        self.missing_parentheses(span, Some(replace(span, right)));
-        self.call_of(name, elements(arguments), span)
+        bad(span)
     }
 
     pub(super) fn call_of(
@@ -426,15 +412,9 @@ impl<'s> Recovery<'_, 's> {
     fn quoted(&mut self) -> Value<'s> {
         let span = self.bump();
         let inner = unquoted(self.written(span));
-        let is_name = is_name(inner);
-        let fix = is_name.then(|| replace(span, inner));
+        let fix = is_name(inner).then(|| replace(span, inner));
         self.report(&say::QUOTED, span, &[&shorten(inner)], fix);
-        let kind = if is_name {
-            ValueKind::Name(inner)
-        } else {
-            ValueKind::Bad
-        };
-        Value { kind, span }
+        bad(span)
     }
 
     /// Passes over the rest of a value that nests too deep.

@@ -113,8 +113,6 @@ fn mistakes_of_syntax_are_told_and_no_others() {
         formatted("sphere { center (1"),
         codes(&["unclosed_block", "unclosed_parenthesis"])
     );
-    // The comment would have to end where it does not.
-    assert_eq!(formatted("// a\rlet a=1\r"), codes(&["odd_space"]));
     assert_eq!(
         formatted("let a=1\rlet b=2\r").unwrap(),
         "let a = 1\nlet b = 2\n"

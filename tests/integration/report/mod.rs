@@ -70,7 +70,7 @@ fn parsed(text: &str) -> roxmltree::Document<'_> {
 #[test]
 fn people_get_a_table_and_an_answer() {
     let folder = folder();
-    let output = report(&folder, &["a.scn", "--samples", "1,4,16", "--runs", "2"]);
+    let output = report(&folder, &["a.scn", "--samples", "1,2,4,16", "--runs", "2"]);
     let text = words(&output.stderr);
     assert!(
         output.status.success() && output.stdout.is_empty(),
@@ -110,6 +110,33 @@ fn people_get_a_table_and_an_answer() {
 }
 
 #[test]
+fn each_error_has_a_table_that_fits_a_terminal() {
+    let folder = folder();
+    let arguments = "a.scn --samples 1,4 --runs 1 --error 0.0101 --error 0.0104";
+    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
+    let text = words(&output.stderr);
+    for error in ["1/256", "0.0101", "0.0104"] {
+        assert_eq!(
+            text.matches(&format!("use exact for an error of {error}: "))
+                .count(),
+            1,
+            "{text}"
+        );
+        assert_eq!(
+            text.matches(&format!(" for {error}\n")).count(),
+            1,
+            "{text}"
+        );
+    }
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 100),
+        "{text}"
+    );
+    // A slope through two points has no standard error.
+    assert!(!text.contains('±'), "{text}");
+}
+
+#[test]
 fn the_answer_is_the_method_with_the_least_time() {
     let folder = folder();
     let arguments = "a.scn --format json --samples 1,16,256 --runs 3 --error 0.02";
@@ -117,20 +144,24 @@ fn the_answer_is_the_method_with_the_least_time() {
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
     let report = &answer["reports"][0];
     for at in 0..2 {
-        let mut times = vec![(report["exact"]["time"]["median"].as_f64().unwrap(), "exact")];
+        let mut times = vec![(report["exact"]["time"].as_f64().unwrap(), "exact")];
         for method in report["methods"].as_array().unwrap() {
-            let time = method["needed"][at]["time"].as_f64().unwrap();
-            times.push((time, method["method"].as_str().unwrap()));
+            let needed = &method["needed"][at];
+            let [time, least, most] =
+                ["time", "least_time", "greatest_time"].map(|key| needed[key].as_f64().unwrap());
+            assert!(least <= time && time <= most, "{needed}");
+            if needed["extrapolated"] == false {
+                times.push((time, method["method"].as_str().unwrap()));
+            }
         }
         let (_, fastest) = times
             .into_iter()
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .unwrap();
         let verdict = report["verdicts"][at].as_str().unwrap();
-        assert!(
-            verdict.starts_with(&format!("Use {fastest}: ")),
-            "{fastest}: {verdict}"
-        );
+        let start = format!("Use {fastest}");
+        let rest = verdict.strip_prefix(&start).expect(verdict);
+        assert!(rest.starts_with([',', ' ']), "{verdict}");
     }
 }
 
@@ -166,17 +197,17 @@ fn programs_get_json_and_errors_fall() {
         for pair in measured.windows(2) {
             let [coarse, fine] = [0, 1].map(|at: usize| pair[at]["rmse"].as_f64().unwrap());
             assert!(fine < 0.75 * coarse, "{name}: {coarse} to {fine}");
-            assert_eq!(pair[0]["rmse_runs"].as_array().unwrap().len(), 3);
+            assert_eq!(pair[0]["runs"]["rmse"].as_array().unwrap().len(), 3);
         }
         for point in measured {
             for time in ["time", "wall"] {
-                let [min, median, max] =
-                    ["min", "median", "max"].map(|key| point[time][key].as_f64().unwrap());
-                assert!(0.0 < min && min <= median && median <= max, "{name}");
+                let median = point[time].as_f64().unwrap();
+                let runs = point["runs"][time].as_array().unwrap();
+                let mut runs: Vec<_> = runs.iter().map(|run| run.as_f64().unwrap()).collect();
+                runs.sort_by(f64::total_cmp);
+                assert_eq!((runs.len(), runs[1]), (3, median), "{name}");
+                assert!(runs[0] > 0.0, "{name}");
             }
-            // Neither is all of the picture in doubt, nor nothing of it.
-            let [samples, rays] = ["samples", "rays"].map(|key| point[key].as_u64().unwrap());
-            assert!(0 < rays && rays < samples, "{name}: {rays} of {samples}");
         }
         let slope = method["fit"]["slope"].as_f64().unwrap();
         let expected = match name {
@@ -199,7 +230,7 @@ fn programs_get_json_and_errors_fall() {
     }
     // Each run draws its own seed's samples, and the errors of the seeds differ.
     let mut random = methods.iter().filter(|method| method["method"] == "random");
-    let runs = random.next().unwrap()["measured"][3]["rmse_runs"].clone();
+    let runs = random.next().unwrap()["measured"][3]["runs"]["rmse"].clone();
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);
 }
 
@@ -240,7 +271,7 @@ fn no_method_comes_nearer_than_the_reference_is_known() {
     assert!(needed[0]["per_pixel"].is_number() && needed[1]["per_pixel"].is_null());
     assert_eq!(
         report["verdicts"][1],
-        "No method is known to come to an error of 1.0e-17."
+        "No method is known to come to an error of 1e-17."
     );
 }
 
@@ -273,8 +304,12 @@ fn exact_alone_has_a_time_and_no_samples() {
     assert!(output.status.success(), "{text}");
     let json: Value = serde_json::from_str(&read(&folder, "out/report.json")).unwrap();
     assert_eq!(json["per_pixel"], serde_json::json!([]));
-    assert_eq!(json["exact"]["time"]["runs"].as_array().unwrap().len(), 2);
-    parsed(&read(&folder, "out/index.html"));
+    assert_eq!(json["exact"]["runs"]["time"].as_array().unwrap().len(), 2);
+    let page = read(&folder, "out/index.html");
+    parsed(&page);
+    for absent in ["<svg", "dashed line", "samples per pixel", "The slope"] {
+        assert!(!page.contains(absent), "{absent}");
+    }
     parsed(&read(&folder, "out/error-against-samples.svg"));
 }
 
@@ -334,4 +369,39 @@ fn wrong_arguments_are_told() {
     let errors = fails(&folder, &["index.html", "--samples", "1", "-o", "."], 2);
     assert!(errors.contains("would write over the scene"), "{errors}");
     assert_eq!(read(&folder, "index.html"), kept);
+}
+
+/// Links that are there already lead nowhere: neither a file nor a scene's folder is written through one.
+#[cfg(unix)]
+#[test]
+fn no_link_leads_out_of_the_folder() {
+    use std::os::unix::fs::symlink;
+
+    for (scenes, link) in [
+        ("a.scn", "index.html"),
+        ("a.scn", "report.csv"),
+        ("a.scn a.scn", "a-2"),
+        ("a.scn a.scn", "index.html"),
+    ] {
+        let folder = folder();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir_all(path("outside/deep")).unwrap();
+        fs::create_dir(path("out")).unwrap();
+        symlink(path("outside/deep"), path("out").join(link)).unwrap();
+        let arguments = format!("{scenes} -o out --samples 1 --runs 1 --methods sobol");
+        let errors = fails(&folder, &arguments.split(' ').collect::<Vec<_>>(), 2);
+        let expected = format!(
+            "error: out/{link} is a symbolic link, and a report writes nothing outside of its folder\n"
+        );
+        assert_eq!(errors, expected);
+        assert_eq!(fs::read_dir(path("outside/deep")).unwrap().count(), 0);
+    }
+    // What the user names may be a link.
+    let folder = folder();
+    fs::create_dir(folder.path().join("real")).unwrap();
+    symlink("real", folder.path().join("out")).unwrap();
+    let arguments = "a.scn -o out --samples 1 --runs 1 --methods sobol";
+    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    read(&folder, "real/index.html");
 }

@@ -1,12 +1,22 @@
-//! Numbers about numbers: medians, slopes, and what an error takes.
+//! Numbers about numbers: medians, slopes, what an error takes, and what is said of that.
+
+use std::{cell::RefCell, num::NonZero, sync::atomic::AtomicBool, time::Duration};
 
 use pinhole::{
+    area::Area,
+    film::Recipe,
+    render::{Control, render_exact},
     report::speed::{
-        Needed, Point, Series, Times,
+        Estimate, Machine, Measurement, Point, Request, Series, Subject, Times, measure,
         statistics::{PowerLaw, median, root_mean_square},
+        verdict,
     },
     scene::Method,
+    tracer::World,
 };
+
+use super::SCENE;
+use crate::exact::read;
 
 #[test]
 fn the_median_is_the_middle_one() {
@@ -22,7 +32,6 @@ fn a_power_law_is_fitted_exactly() {
     let fit = PowerLaw::fit(&points).unwrap();
     assert!((fit.slope + 0.75).abs() < 1e-14, "{}", fit.slope);
     assert!(fit.slope_error.unwrap() < 1e-14);
-    assert_eq!(fit.points, 4);
 }
 
 #[test]
@@ -32,18 +41,22 @@ fn the_slopes_standard_error_is_that_of_the_textbook() {
     let fit = PowerLaw::fit(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
-    // Two points have a line and nothing to judge it by, one has none, and an error of 0 has no logarithm.
-    let two = PowerLaw::fit(&[(1.0, 1.0), (4.0, 0.5)]).unwrap();
-    assert_eq!((two.slope, two.slope_error), (-0.5, None));
+    // Few points have a line and next to nothing to judge it by, one has none, and an error of 0 has no logarithm.
+    for few in [
+        &[(1.0, 1.0), (4.0, 0.5)][..],
+        &[(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)],
+    ] {
+        let few = PowerLaw::fit(few).unwrap();
+        assert_eq!((few.slope, few.slope_error), (-0.5, None));
+    }
     assert_eq!(PowerLaw::fit(&[(4.0, 0.5)]), None);
     assert_eq!(PowerLaw::fit(&[(1.0, 1.0), (4.0, 0.0)]), None);
 }
 
-/// Numbers of samples with their seconds and errors.
+/// Numbers of samples with their seconds and errors, in one run.
 fn series(points: &[(u64, f64, f64)]) -> Series {
     let point = |&(per_pixel, seconds, error): &(u64, f64, f64)| Point {
         per_pixel,
-        rays: 0,
         times: Times {
             cpu: vec![seconds],
             wall: vec![seconds / 2.0],
@@ -57,17 +70,18 @@ fn series(points: &[(u64, f64, f64)]) -> Series {
     }
 }
 
-fn needed(points: &[(u64, f64, f64)], error: f64) -> Option<Needed> {
-    series(points).needed(error)
+fn estimate(points: &[(u64, f64, f64)], error: f64) -> Option<Estimate> {
+    series(points).estimate(error)
 }
 
 /// Samples, CPU time, and whether they are extrapolated.
-fn is(needed: Option<Needed>, samples: f64, cpu: f64, is_extrapolated: bool) {
-    let needed = needed.unwrap();
-    let found = (needed.per_pixel, needed.is_extrapolated);
-    assert_eq!(found, (Some(samples), is_extrapolated), "{needed:?}");
-    assert!((needed.cpu - cpu).abs() < 1e-9, "{needed:?}");
-    assert!((needed.wall - cpu / 2.0).abs() < 1e-9, "{needed:?}");
+fn is(estimate: Option<Estimate>, samples: f64, cpu: f64, is_extrapolated: bool) {
+    let estimate = estimate.unwrap();
+    let found = (estimate.per_pixel, estimate.is_extrapolated);
+    assert_eq!(found, (Some(samples), is_extrapolated), "{estimate:?}");
+    assert!((estimate.cpu - cpu).abs() < 1e-9, "{estimate:?}");
+    assert!((estimate.wall - cpu / 2.0).abs() < 1e-9, "{estimate:?}");
+    assert_eq!(estimate.cpu_runs, [estimate.cpu; 2]);
 }
 
 #[test]
@@ -75,28 +89,43 @@ fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
     let straight = [(1, 0.5, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)];
     // Half-way in logarithms, and a third of the way in time.
     is(
-        needed(&straight, 0.02f64.sqrt() + 1e-9),
+        estimate(&straight, 0.02f64.sqrt() + 1e-9),
         8.0,
         5.0 / 3.0,
         false,
     );
-    is(needed(&straight, 0.2), 4.0, 1.0, false);
+    is(estimate(&straight, 0.2), 4.0, 1.0, false);
     // Beyond the last point the slope of −1/2 goes on; the time goes on from the first to the last.
-    is(needed(&straight, 0.05 + 1e-9), 64.0, 0.5 + 63.0 / 6.0, true);
+    is(
+        estimate(&straight, 0.05 + 1e-9),
+        64.0,
+        0.5 + 63.0 / 6.0,
+        true,
+    );
+    // That slope is the one of all points, and not of the last two: with logarithms to base 4 it is that of x = −3/2, −1/2, 1/2, 3/2.
+    let bent = [
+        (1, 1.0, 0.4),
+        (4, 4.0, 0.2),
+        (16, 16.0, 0.1),
+        (64, 64.0, 0.09),
+    ];
+    let slope = (1.5 * libm::log(0.09 / 0.4) + 0.5 * libm::log(0.1 / 0.2)) / 5.0 / libm::log(4.0);
+    let samples = (64.0 * libm::exp2(-1.0 / slope)).ceil();
+    is(estimate(&bent, 0.045), samples, samples, true);
     // Times that fall by chance do not fall on.
     let falling = [(1, 1.2, 0.4), (4, 1.1, 0.2), (16, 1.0, 0.1)];
-    is(needed(&falling, 0.05 + 1e-9), 64.0, 1.0, true);
+    is(estimate(&falling, 0.05 + 1e-9), 64.0, 1.0, true);
     // The first number is enough, alone or not, whatever the others do.
-    is(needed(&[(64, 1.0, 0.2)], 0.4), 64.0, 1.0, false);
+    is(estimate(&[(64, 1.0, 0.2)], 0.4), 64.0, 1.0, false);
     is(
-        needed(&[(4, 1.0, 0.0), (16, 5.0, 0.0)], 0.4),
+        estimate(&[(4, 1.0, 0.0), (16, 5.0, 0.0)], 0.4),
         4.0,
         1.0,
         false,
     );
     let few = [(4, 1.0, 0.2), (16, 3.0, 0.1)];
-    is(needed(&few, 0.4 - 1e-9), 4.0, 1.0, false);
-    is(needed(&straight, 0.9), 1.0, 0.5, false);
+    is(estimate(&few, 0.4 - 1e-9), 4.0, 1.0, false);
+    is(estimate(&straight, 0.9), 1.0, 0.5, false);
 }
 
 #[test]
@@ -108,7 +137,7 @@ fn an_error_that_comes_back_was_not_reached() {
         (16, 16.0, 0.2),
         (64, 64.0, 0.05),
     ];
-    let found = needed(&wave, 0.1).unwrap();
+    let found = estimate(&wave, 0.1).unwrap();
     assert!(
         (16.0..64.0).contains(&found.per_pixel.unwrap()),
         "{found:?}"
@@ -117,12 +146,12 @@ fn an_error_that_comes_back_was_not_reached() {
 
 #[test]
 fn nothing_is_known_where_more_samples_do_not_help() {
-    assert_eq!(needed(&[(1, 1.0, 0.4), (4, 1.0, 0.4)], 0.1), None);
-    assert_eq!(needed(&[(1, 1.0, 0.1), (4, 1.0, 0.4)], 0.01), None);
-    assert_eq!(needed(&[(4, 1.0, 0.4)], 0.1), None);
+    assert_eq!(estimate(&[(1, 1.0, 0.4), (4, 1.0, 0.4)], 0.1), None);
+    assert_eq!(estimate(&[(1, 1.0, 0.1), (4, 1.0, 0.4)], 0.01), None);
+    assert_eq!(estimate(&[(4, 1.0, 0.4)], 0.1), None);
     // No error at all is one that is small enough.
     is(
-        needed(&[(1, 1.0, 0.4), (4, 2.0, 0.0)], 0.1),
+        estimate(&[(1, 1.0, 0.4), (4, 2.0, 0.0)], 0.1),
         4.0,
         2.0,
         false,
@@ -142,4 +171,148 @@ fn a_time_has_its_samples() {
     ] {
         assert_eq!(series.samples_in(cpu), Some(samples), "{cpu}");
     }
+}
+
+#[test]
+fn multi_jittered_takes_as_many_samples_as_make_a_grid() {
+    let points = [1, 4, 16, 64, 256, 1024_u64].map(|n| (n, n as f64, 1.0 / (n as f64).sqrt()));
+    let grids = Series {
+        method: Method::MultiJittered,
+        ..series(&points)
+    };
+    for (samples, grid) in [(401, 420), (400, 400), (419, 420), (421, 441), (1020, 1024)] {
+        let error = 1.0 / f64::from(samples).sqrt() + 1e-12;
+        is(grids.estimate(error), grid.into(), grid.into(), false);
+        is(
+            series(&points).estimate(error),
+            samples.into(),
+            samples.into(),
+            false,
+        );
+    }
+    // At the last number, and beyond.
+    is(grids.estimate(1.0 / 32.0), 1024.0, 1024.0, false);
+}
+
+fn subject() -> Subject {
+    Subject {
+        name: "a.scn".to_owned(),
+        recipe: Recipe {
+            scene: String::new(),
+            overrides: Vec::new(),
+            crop: None,
+        },
+    }
+}
+
+#[test]
+fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
+    let request = Request {
+        methods: vec![Method::Sobol],
+        samples: vec![4, 1, 4],
+        runs: Some(2),
+        errors: vec![0.1],
+        budget: Duration::from_secs(1),
+    };
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let told = RefCell::new(Vec::new());
+    let tell = |share| told.borrow_mut().push(share);
+    let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
+    assert_eq!(measured.rungs, [1, 4]);
+    assert!(measured.exact.is_none());
+    // The first run goes up, the second in an order of its own.
+    let told = told.into_inner();
+    assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
+    assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");
+}
+
+/// Methods with the CPU times of some runs, each with 4 and 16 samples, which come to errors of 0.2 and 0.1.
+fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement {
+    let world = World::new(&read(SCENE));
+    let control = Control {
+        threads: NonZero::new(1),
+        progress: &|_| {},
+        cancel: &AtomicBool::new(false),
+    };
+    let times = |runs: &[f64], share: f64| {
+        let cpu: Vec<_> = runs.iter().map(|time| time * share).collect();
+        Times {
+            wall: cpu.clone(),
+            cpu,
+        }
+    };
+    let series = methods.iter().map(|&(method, runs)| Series {
+        method,
+        points: [(4, 0.25, 0.2), (16, 1.0, 0.1)]
+            .map(|(per_pixel, share, error)| Point {
+                per_pixel,
+                times: times(runs, share),
+                rmse: vec![error; runs.len()],
+            })
+            .into(),
+        picture: None,
+    });
+    Measurement {
+        subject: subject(),
+        machine: Machine::here(),
+        threads: 1,
+        seed: 0,
+        rungs: vec![4, 16],
+        errors: Vec::new(),
+        reference: render_exact(&world, Area::whole(48, 32), &control).unwrap(),
+        exact: exact.map(|runs| times(runs, 1.0)),
+        series: series.collect(),
+        interrupted: false,
+    }
+}
+
+#[test]
+fn an_answer_is_as_sure_as_what_it_rests_on() {
+    let (sobol, halton, random) = (Method::Sobol, Method::Halton, Method::Random);
+    let said =
+        |methods: &[(Method, &[f64])], exact, error| verdict(&measured(methods, exact), error);
+    // Apart, within the spread of one method's runs, and in a single run.
+    let apart: [(Method, &[f64]); 2] = [(sobol, &[1.0, 1.1, 1.2]), (halton, &[1.3, 1.4, 1.5])];
+    assert_eq!(
+        said(&apart, None, 0.1),
+        "Use sobol for an error of 0.1: it takes the least CPU time, 1.10 s, with 16 samples per pixel. \
+         For comparison, halton takes 1.40 s, with 16 samples per pixel."
+    );
+    let close: [(Method, &[f64]); 3] = [
+        (sobol, &[1.0, 1.1, 1.2]),
+        (halton, &[1.11, 1.12, 1.3]),
+        (random, &[4.0, 4.1, 4.2]),
+    ];
+    assert_eq!(
+        said(&close, Some(&[1.05, 1.15, 9.0]), 0.1),
+        "Use sobol, halton or exact for an error of 0.1: they are about as fast, with 1.10 s to 1.15 s of CPU time, \
+         and exact makes none. For comparison, random takes 4.10 s, with 16 samples per pixel."
+    );
+    let one: [(Method, &[f64]); 2] = [(sobol, &[1.0]), (halton, &[1.3])];
+    assert!(
+        said(&one, None, 0.1).starts_with("By one run alone, use sobol for an error of 0.1: it")
+    );
+    // What is extrapolated decides only where there is nothing else.
+    assert_eq!(
+        said(&apart, Some(&[9.0, 9.1, 9.2]), 0.051),
+        "Use exact for an error of 0.051: it takes 9.10 s of CPU time and makes none. \
+         For comparison, sobol would take ~4.3 s, with ~62 samples per pixel."
+    );
+    assert!(
+        said(&apart, None, 0.051)
+            .starts_with("By extrapolation, use sobol for an error of 0.051: it")
+    );
+    assert_eq!(
+        said(&apart[..1], None, 0.051),
+        "By extrapolation, use sobol for an error of 0.051, the only method that is known to come to it: \
+         sobol would take ~4.3 s, with ~62 samples per pixel."
+    );
+    assert_eq!(
+        said(&apart, None, 1e-17),
+        "No method is known to come to an error of 1e-17."
+    );
 }

@@ -4,10 +4,13 @@ mod errors;
 mod strata;
 mod totals;
 
+use std::ops::Range;
+
 use glam::DVec2;
 use pinhole::{
     area::Area,
-    sampling::Sampling,
+    math::SimdWidth,
+    sampling::{Points, Sampling},
     scene::{Count, Method, Sampler},
 };
 
@@ -28,10 +31,17 @@ fn sampling(method: Method, n: u64, seed: u64) -> Sampling {
     Sampling::new(&sampler, 64, 64)
 }
 
+/// The points of a pixel with these indices.
+pub fn placed(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
+    let mut points = Points::default();
+    let count = sampling.count(x, y);
+    sampling.place(SimdWidth::Widest, [x, y], count, indices, &mut points);
+    points.iter().collect()
+}
+
 /// The points of one pixel.
 fn points(method: Method, n: u64, seed: u64, [x, y]: [u32; 2]) -> Vec<DVec2> {
-    let mut points = Vec::new();
-    sampling(method, n, seed).points(x, y, n, 0..n, &mut points);
+    let points = placed(&sampling(method, n, seed), [x, y], 0..n);
     assert_eq!(points.len() as u64, n);
     points
 }
@@ -42,13 +52,10 @@ fn points_asked_for_in_parts_are_the_same() {
         for n in [1, 7, 16, 100, 5003] {
             let sampling = sampling(method, n, 11);
             let n = sampling.count(9, 8);
-            let mut whole = Vec::new();
-            sampling.points(9, 8, n, 0..n, &mut whole);
-            let mut parts = Vec::new();
-            for cut in [0..n / 3, n / 3..n / 3, n / 3..n / 2, n / 2..n] {
-                sampling.points(9, 8, n, cut, &mut parts);
-            }
-            assert_eq!(whole, parts);
+            let whole = placed(&sampling, [9, 8], 0..n);
+            let parts = [0..n / 3, n / 3..n / 3, n / 3..n / 2, n / 2..n];
+            let parts = parts.map(|part| placed(&sampling, [9, 8], part));
+            assert_eq!(whole, parts.concat());
         }
     }
 }
@@ -59,10 +66,10 @@ fn seeds_and_pixels_have_points_of_their_own() {
         if matches!(method, Method::Regular) {
             continue;
         }
+        // As many as `scatter` puts there, too.
         let of = |seed, pixel: [u32; 2]| {
-            let mut out = Vec::new();
-            sampling(method, 5, seed).points(pixel[0], pixel[1], 5, 0..5, &mut out);
-            out
+            let sampling = sampling(method, 5, seed);
+            placed(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))
         };
         let base = of(1, [3, 4]);
         assert_eq!(base, of(1, [3, 4]));
@@ -102,8 +109,7 @@ fn points_stay_where_they_are() {
         };
         let sampling = Sampling::new(&sampler, 64, 64);
         let count = sampling.count(20, 30);
-        let mut points = Vec::new();
-        sampling.points(20, 30, count, 0..count, &mut points);
+        let points = placed(&sampling, [20, 30], 0..count);
         let expected = match method {
             Method::Scatter => 14,
             _ => 16,

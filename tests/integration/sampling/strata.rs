@@ -45,6 +45,23 @@ fn rows(n: u64) -> Vec<u64> {
 }
 
 #[test]
+fn rows_of_cells_are_as_even_as_they_can_be() {
+    for (n, lengths) in [
+        (1, &[1][..]),
+        (2, &[2]),
+        (3, &[3]),
+        (5, &[2, 1, 2]),
+        (7, &[2, 3, 2]),
+        (12, &[4, 4, 4]),
+        (14, &[3, 4, 4, 3]),
+        (16, &[4, 4, 4, 4]),
+        (25, &[5, 5, 5, 5, 5]),
+    ] {
+        assert_eq!(rows(n), lengths);
+    }
+}
+
+#[test]
 fn regular_is_an_even_grid_symmetric_to_the_bit() {
     for n in counts() {
         let points = points(Method::Regular, n, 0, [5, 7]);
@@ -190,8 +207,7 @@ fn sobol_goes_on_beyond_2_to_the_32() {
     let n = 1 << 53;
     let sampling = sampling(Method::Sobol, 1 << 41, 0);
     for first in [1_u64 << 32, (1 << 41) - 4096] {
-        let mut points = Vec::new();
-        sampling.points(3, 4, 1 << 41, first..first + 4096, &mut points);
+        let mut points = placed(&sampling, [3, 4], first..first + 4096);
         for a in 0..=12 {
             let (columns, rows) = (1 << a, 1 << (12 - a));
             assert!(each_once(points.iter().map(|point| {
@@ -211,8 +227,7 @@ fn sobol_goes_on_beyond_2_to_the_32() {
         1,
         1,
     );
-    let mut points = Vec::new();
-    whole.points(0, 0, n, n - 1024..n, &mut points);
+    let points = placed(&whole, [0, 0], n - 1024..n);
     assert!(each_once(points.iter().map(|point| stratum(point.x, 1024))));
 }
 
@@ -227,18 +242,20 @@ fn the_largest_counts_keep_their_strata() {
         };
         for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
             let sampling = Sampling::new(&sampler(method), 1, 1);
-            let mut points = Vec::new();
-            sampling.points(0, 0, n, n / 2..n / 2 + 3000, &mut points);
-            sampling.points(0, 0, n, n - 1..n, &mut points);
-            let mut columns: Vec<_> = points.iter().map(|point| stratum(point.x, n)).collect();
+            let points =
+                [n / 2..n / 2 + 3000, n - 1..n].map(|part| placed(&sampling, [0, 0], part));
+            let mut columns: Vec<_> = points
+                .iter()
+                .flatten()
+                .map(|point| stratum(point.x, n))
+                .collect();
             columns.sort_unstable();
             columns.dedup();
             assert_eq!(columns.len(), 3001);
         }
         for method in Method::SAMPLED {
             let sampling = Sampling::new(&sampler(method), 1, 1);
-            let mut points = Vec::new();
-            sampling.points(0, 0, n, n - 10..n, &mut points);
+            let points = placed(&sampling, [0, 0], n - 10..n);
             assert_eq!(points.len(), 10);
             assert!(
                 points

@@ -34,8 +34,7 @@ fn a_total_is_shared_out_to_the_last_sample() {
                         assert!(count == total / pixels || count == total.div_ceil(pixels));
                     }
                     if count <= 2000 {
-                        let mut points = Vec::new();
-                        sampling.points(x, y, count, 0..count, &mut points);
+                        let points = placed(&sampling, [x, y], 0..count);
                         assert_eq!(points.len() as u64, count);
                     }
                 }

@@ -1,11 +1,14 @@
 //! Picture files: what is in them, and that they are whole.
 
+mod compare;
+
 use std::{fs, io, io::Cursor, sync::atomic::AtomicBool};
 
 use pinhole::{
     area::Area,
+    color::srgb_to_linear,
     film::{
-        Coding, Film, NotOurs, OVERRIDES_LIMIT, Recipe, Rounding, SIGNATURE, TEXT_LIMIT,
+        Coding, Film, NotOurs, OVERRIDES_LIMIT, Recipe, Rounding, SIGNATURE, TEXT_LIMIT, TooLarge,
         check_writable, read_picture, read_recipe, write_exr, write_png, write_whole,
     },
 };
@@ -217,6 +220,58 @@ fn read_of(picture: &image::RgbImage, format: image::ImageFormat) -> pinhole::fi
     let mut bytes = Cursor::new(Vec::new());
     picture.write_to(&mut bytes, format).unwrap();
     read_picture(bytes.get_ref()).unwrap()
+}
+
+#[test]
+fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
+    let bytes = image::GrayImage::from_fn(256, 1, |x, _| image::Luma([x as u8]));
+    let words = image::ImageBuffer::from_fn(256, 256, |x, y| image::Luma([(y << 8 | x) as u16]));
+    for (picture, last) in [
+        (image::DynamicImage::from(bytes), 255.0),
+        (image::DynamicImage::from(words), 65535.0),
+    ] {
+        let mut file = Cursor::new(Vec::new());
+        picture
+            .write_to(&mut file, image::ImageFormat::Png)
+            .unwrap();
+        let film = read_picture(file.get_ref()).unwrap().film;
+        for (k, pixel) in (0..).zip(film.pixels()) {
+            assert_eq!(*pixel, [srgb_to_linear(f64::from(k) / last); 3]);
+        }
+    }
+}
+
+/// What is not read, an opacity or another layer, says nothing of how the colours are rounded.
+#[test]
+fn only_the_channels_that_are_read_say_how_an_exr_is_rounded() {
+    use exr::prelude::{Image, SpecificChannels, WritableImage, f16};
+
+    let rounding = |bytes: &[u8]| read_picture(bytes).unwrap().rounding;
+    let half = f16::from_f32(0.5);
+    let mut file = Cursor::new(Vec::new());
+    let channels = SpecificChannels::rgba(|_| (0.1_f32, 0.2_f32, 0.3_f32, half));
+    let image = Image::from_channels((2, 1), channels);
+    image.write().to_buffered(&mut file).unwrap();
+    assert_eq!(rounding(file.get_ref()), Rounding::Float);
+    let mut file = Cursor::new(Vec::new());
+    let channels = SpecificChannels::rgb(|_| (0.1_f32, half, 0.3_f32));
+    let image = Image::from_channels((2, 1), channels);
+    image.write().to_buffered(&mut file).unwrap();
+    assert_eq!(rounding(file.get_ref()), Rounding::Half);
+}
+
+#[test]
+fn a_picture_without_memory_for_it_is_refused_with_its_sizes() {
+    let refused = Film::<[f64; 3]>::new(1 << 20, 1 << 20).unwrap_err();
+    assert_eq!(refused.needed, 24 << 40);
+    let told = TooLarge {
+        available: Some(3 << 29),
+        ..refused
+    };
+    assert_eq!(
+        told.to_string(),
+        "a picture of 1048576 × 1048576 pixels needs 24.0 TiB of memory, and 1.5 GiB are available"
+    );
 }
 
 #[test]

@@ -1,28 +1,25 @@
 //! Renders are timed and compared with the exact picture.
 //!
-//! The exact picture comes first: it is the reference, and it warms the machine up. A round then renders by every method with every
-//! number of samples once; the first one with ever more of them, as long as there is time for a few such rounds, each further one in an
-//! order that is shuffled anew by a fixed rule, so that what else the machine does falls on all of them alike. A run has a seed of its own: that of
-//! the scene plus the number of the round. What is timed is the way from the scene in memory to the film in memory: preparing the objects and
-//! the samples, starting the threads, rendering. Neither reading the scene nor comparing nor encoding is.
+//! The exact picture comes first: it is the reference, and it warms the machine up, so that its time does not count. A round then renders by every
+//! method with every number of samples once; the first one with ever more of them, as long as there is time for a few such rounds, each further
+//! one in an order that is shuffled anew by a fixed rule, so that what else the machine does falls on all of them alike. What is timed is the way
+//! from the scene in memory to the film in memory: preparing the objects and the samples, starting the threads, rendering. Neither reading the
+//! scene nor comparing nor encoding is.
 
-use std::{
-    num::NonZero,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
 use cpu_time::ProcessTime;
 use rand::seq::SliceRandom;
 
 use super::{
     machine::Machine,
-    measurement::{Measurement, Point, Request, Series, Shown, Subject, Times},
     picture,
+    results::{Measurement, Point, Request, Series, Shown, Subject, Times},
 };
 use crate::{
     area::Area,
     film::{self, Film},
-    render::{Control, Exact, RenderError, render_and_count, render_exact},
+    render::{Control, Exact, RenderError, render, render_exact},
     sampling::{Sampling, rng::Key},
     scene::{Count, Method, Sampler, Scene},
     threads,
@@ -30,7 +27,7 @@ use crate::{
 };
 
 /// The samples are so many powers of 4 at least, as a slope through fewer points has no standard error, and so many at most.
-const RUNGS: (usize, usize) = (3, 10);
+const RUNGS: (usize, usize) = (4, 10);
 
 /// So many runs are wanted, as the median of fewer is one that something else may have delayed, and no more than so many are made.
 const RUNS: (u64, u64) = (3, 9);
@@ -38,9 +35,6 @@ const RUNS: (u64, u64) = (3, 9);
 /// The pictures are shown that the methods make in the CPU time in which the slowest one takes so many samples per pixel:
 /// enough for the methods to differ, few enough for the eye to see it.
 const SHOWN: u64 = 16;
-
-/// Seeds are below 2^53.
-const SEEDS: u64 = 1 << 53;
 
 /// Measures what is asked for. When it is cancelled, what was measured until then comes out, marked as interrupted; before the exact picture there
 /// is nothing. `progress` is told after each render what share of the whole is done; that of `control` is not.
@@ -53,12 +47,10 @@ pub fn measure(
 ) -> Result<Measurement, RenderError> {
     let started = Instant::now();
     let control = &Control {
-        threads: request.threads,
         progress: &|_| {},
-        cancel: control.cancel,
+        ..*control
     };
-    let mut first = Times::default();
-    let reference = exact(scene, control, &mut first)?;
+    let reference = exact(scene, control)?;
     let methods = Method::SAMPLED.into_iter();
     let series = methods.filter(|method| request.methods.contains(method));
     let series = series.map(|method| Series {
@@ -66,25 +58,25 @@ pub fn measure(
         points: Vec::new(),
         picture: None,
     });
+    let mut samples = request.samples.clone();
+    samples.sort_unstable();
+    samples.dedup();
     let measured = Measurement {
         subject: subject.clone(),
         machine: Machine::here(),
-        threads: request
-            .threads
-            .map_or_else(threads::available, NonZero::get),
+        threads: threads::available(),
         seed: scene.sampler.seed,
         rungs: Vec::new(),
         errors: request.errors.clone(),
-        exact: request.methods.contains(&Method::Exact).then_some(first),
+        exact: (request.methods.contains(&Method::Exact)).then(Times::default),
         series: series.collect(),
-        crop: picture::part(&reference.film, &reference.film),
         reference,
         interrupted: false,
-        seconds: 0.0,
     };
     let mut session = Session {
         scene,
         request,
+        samples,
         control,
         progress,
         started,
@@ -96,7 +88,7 @@ pub fn measure(
     }
     let mut measured = session.measured;
     measured.series.retain(|series| !series.points.is_empty());
-    measured.seconds = started.elapsed().as_secs_f64();
+    measured.exact = measured.exact.filter(|exact| !exact.wall.is_empty());
     Ok(measured)
 }
 
@@ -104,6 +96,8 @@ pub fn measure(
 struct Session<'a> {
     scene: &'a Scene,
     request: &'a Request,
+    /// The samples that are asked for, ascending, each once.
+    samples: Vec<u64>,
     control: &'a Control<'a>,
     progress: &'a dyn Fn(f64),
     started: Instant,
@@ -144,16 +138,15 @@ impl Session<'_> {
 
     /// Every method with the samples that are asked for, or with ever more while there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
+        self.exact()?;
         if self.measured.series.is_empty() {
             return Ok(());
         }
-        let mut asked = self.request.samples.clone();
-        asked.sort_unstable();
-        asked.dedup();
-        let is_open = asked.is_empty();
-        if is_open {
-            asked = (0..RUNGS.1).map(|power| 1 << (2 * power)).collect();
-        }
+        let is_open = self.samples.is_empty();
+        let asked = match is_open {
+            true => (0..RUNGS.1).map(|power| 1 << (2 * power)).collect(),
+            false => self.samples.clone(),
+        };
         let mut before = Duration::ZERO;
         for (point, per_pixel) in asked.into_iter().enumerate() {
             let started = Instant::now();
@@ -188,7 +181,8 @@ impl Session<'_> {
 
     fn exact(&mut self) -> Result<(), RenderError> {
         if let Some(times) = &mut self.measured.exact {
-            exact(self.scene, self.control, times)?;
+            let (_, time) = timed(|| exact(self.scene, self.control))?;
+            times.push(time);
             self.tell();
         }
         Ok(())
@@ -197,34 +191,21 @@ impl Session<'_> {
     fn sampled(&mut self, series: usize, point: usize, round: u64) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let per_pixel = measured.rungs[point];
-        let seed = (measured.seed + round) % SEEDS;
-        let mut times = Times::default();
-        let method = measured.series[series].method;
-        let (film, rays) = sampled(
-            self.scene,
-            method,
-            [per_pixel, seed],
-            self.control,
-            &mut times,
-        )?;
-        let rmse = film::rmse(&film, &measured.reference.film);
-        if series == 0 && point == 0 && round == 0 {
-            measured.crop = picture::part(&film, &measured.reference.film);
-        }
-        let points = &mut measured.series[series].points;
-        match points.get_mut(point) {
-            Some(point) => {
-                point.times.cpu.extend(times.cpu);
-                point.times.wall.extend(times.wall);
-                point.rmse.push(rmse);
-            }
-            None => points.push(Point {
+        // Each run has a seed of its own, as has each number of samples in it: neither are the runs alike, nor do the points of a line err together.
+        let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
+        let series = &mut measured.series[series];
+        let samples = [per_pixel, seed];
+        let (film, time) = timed(|| sampled(self.scene, series.method, samples, self.control))?;
+        if series.points.len() == point {
+            series.points.push(Point {
                 per_pixel,
-                rays,
-                times,
-                rmse: vec![rmse],
-            }),
+                times: Times::default(),
+                rmse: Vec::new(),
+            });
         }
+        let point = &mut series.points[point];
+        point.times.push(time);
+        point.rmse.push(film::rmse(&film, &measured.reference.film));
         self.tell();
         Ok(())
     }
@@ -241,18 +222,26 @@ impl Session<'_> {
         };
         let times = measured.series.iter().map(|it| it.points[rung].times.cpu());
         let cpu = times.fold(0.0, f64::max);
+        let mut part = None;
         for series in &mut measured.series {
             let Some(per_pixel) = series.samples_in(cpu) else {
                 continue;
             };
-            let mut times = Times::default();
             let samples = [per_pixel, measured.seed];
-            let (film, _) = sampled(self.scene, series.method, samples, self.control, &mut times)?;
+            let (film, [cpu, _]) =
+                timed(|| sampled(self.scene, series.method, samples, self.control))?;
+            let reference = &measured.reference.film;
+            let here = match part {
+                Some(part) => part,
+                None => picture::part(&film, reference)?,
+            };
+            part = Some(here);
             series.picture = Some(Shown {
                 per_pixel,
-                cpu: times.cpu(),
-                rmse: film::rmse(&film, &measured.reference.film),
-                crop: picture::cropped(&film, measured.crop)?,
+                cpu,
+                rmse: film::rmse(&film, reference),
+                part: here,
+                film: picture::cropped(&film, here)?,
             });
         }
         Ok(())
@@ -262,10 +251,10 @@ impl Session<'_> {
     fn tell(&self) {
         let measured = &self.measured;
         let share = match self.request.runs {
-            Some(runs) if !self.request.samples.is_empty() => {
+            Some(runs) if !self.samples.is_empty() => {
                 let points = measured.series.iter().flat_map(|series| &series.points);
                 let done = points.map(|it| it.per_pixel as f64 * it.rmse.len() as f64);
-                let asked = self.request.samples.iter().map(|&rung| rung as f64);
+                let asked = self.samples.iter().map(|&rung| rung as f64);
                 let all = asked.sum::<f64>() * (runs * measured.series.len() as u64) as f64;
                 done.sum::<f64>() / all
             }
@@ -276,48 +265,37 @@ impl Session<'_> {
 }
 
 /// Computes the exact picture.
-fn exact(scene: &Scene, control: &Control, times: &mut Times) -> Result<Exact, RenderError> {
-    timed(times, || {
-        let world = World::new_unless(scene, control.cancel)?;
-        render_exact(&world, whole(scene), control)
-    })
+fn exact(scene: &Scene, control: &Control) -> Result<Exact, RenderError> {
+    let world = World::new_unless(scene, control.cancel)?;
+    render_exact(&world, whole(scene), control)
 }
 
-/// Renders by a method with so many samples per pixel and a seed; also how many samples were traced.
+/// Renders by a method with so many samples per pixel and a seed.
 fn sampled(
     scene: &Scene,
     method: Method,
     [per_pixel, seed]: [u64; 2],
     control: &Control,
-    times: &mut Times,
-) -> Result<(Film, u64), RenderError> {
+) -> Result<Film, RenderError> {
     let sampler = Sampler {
         method,
         count: Count::PerPixel(per_pixel),
         seed,
     };
-    timed(times, || {
-        let world = World::new_unless(scene, control.cancel)?;
-        let sampling = Sampling::new(&sampler, scene.image.width, scene.image.height);
-        render_and_count(&world, &sampling, whole(scene), control)
-    })
+    let world = World::new_unless(scene, control.cancel)?;
+    let sampling = Sampling::new(&sampler, scene.image.width, scene.image.height);
+    render(&world, &sampling, whole(scene), control)
 }
 
 fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Does work, and notes how long it took. Nothing else runs in the process meanwhile, but for a progress bar.
-fn timed<T>(
-    times: &mut Times,
-    work: impl FnOnce() -> Result<T, RenderError>,
-) -> Result<T, RenderError> {
+/// Does work, and tells its CPU and wall time in seconds. Nothing else runs in the process meanwhile, but for a progress bar.
+fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, [f64; 2]), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;
-    times.wall.push(wall.elapsed().as_secs_f64());
+    let wall = wall.elapsed().as_secs_f64();
     let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
-    times
-        .cpu
-        .push(cpu.map_or(f64::NAN, |cpu| cpu.as_secs_f64()));
-    Ok(done)
+    Ok((done, [cpu.map_or(f64::NAN, |cpu| cpu.as_secs_f64()), wall]))
 }

@@ -1,19 +1,27 @@
 //! How errors, times, numbers of samples and slopes are written.
 
-use super::{needed::Needed, statistics::PowerLaw};
+use super::{estimate::Estimate, statistics::PowerLaw};
 use crate::numbers;
 
 /// What stands for a number that is not known.
 pub const UNKNOWN: &str = "–";
 
-/// An error: whole fractions of light that somebody asks for as such, others with two digits.
-pub fn error(error: f64) -> String {
-    let inverse = 1.0 / error;
-    let is_step = (64.0..=65536.0).contains(&inverse) && inverse % 64.0 == 0.0;
-    match is_step {
+/// An error that somebody asks for, in full: as a fraction of light where that is shorter, such as 1/256.
+pub fn asked_error(error: f64) -> String {
+    let decimal = match error < 1e-4 {
+        true => format!("{error:e}"),
+        false => format!("{error}"),
+    };
+    let inverse = (1.0 / error).round();
+    match 1.0 / inverse == error && inverse < 1e6 && decimal.len() > 6 {
         true => format!("1/{inverse}"),
-        false => significant(error, 2),
+        false => decimal,
     }
+}
+
+/// An error that was measured, with two digits.
+pub fn error(error: f64) -> String {
+    significant(error, 2)
 }
 
 /// A time in seconds or milliseconds, with so many digits.
@@ -26,18 +34,18 @@ pub fn seconds(seconds: f64, digits: usize) -> String {
 }
 
 /// How long an error takes: of what is extrapolated no more than two digits are worth reading.
-pub fn time(needed: &Needed, time: f64) -> String {
-    match needed.is_extrapolated {
+pub fn time(estimate: &Estimate, time: f64) -> String {
+    match estimate.is_extrapolated {
         true => format!("~{}", seconds(time, 2)),
         false => seconds(time, 3),
     }
 }
 
 /// The samples per pixel that an error takes; nothing of the exact method.
-pub fn samples(needed: &Needed) -> String {
-    match needed.per_pixel {
+pub fn samples(estimate: &Estimate) -> String {
+    match estimate.per_pixel {
         None => String::new(),
-        Some(count) if needed.is_extrapolated => format!("~{}", significant(count, 2)),
+        Some(count) if estimate.is_extrapolated => format!("~{}", significant(count, 2)),
         Some(count) => format!("{count}"),
     }
 }
@@ -84,11 +92,15 @@ mod tests {
     fn numbers_have_the_digits_that_are_worth_reading() {
         for (number, text) in [
             (1.0 / 256.0, "1/256"),
-            (0.012_84, "0.013"),
-            (0.5, "0.50"),
-            (0.0, "0"),
-            (1e-6, "1.0e-6"),
+            (1.0 / 3.0, "1/3"),
+            (0.0101, "0.0101"),
+            (0.0104, "0.0104"),
+            (0.5, "0.5"),
+            (1e-6, "1e-6"),
         ] {
+            assert_eq!(asked_error(number), text);
+        }
+        for (number, text) in [(0.012_84, "0.013"), (0.5, "0.50"), (0.0, "0")] {
             assert_eq!(error(number), text);
         }
         for (time, digits, text) in [

@@ -1,6 +1,6 @@
 //! What is asked for and what was measured: plain data, and the numbers that follow from it.
 
-use std::{num::NonZero, time::Duration};
+use std::time::Duration;
 
 use super::{
     machine::Machine,
@@ -35,8 +35,6 @@ pub struct Request {
     pub errors: Vec<f64>,
     /// How long it may take, as far as there is a choice.
     pub budget: Duration,
-    /// How many threads render; as many as there are processors if this is `None`.
-    pub threads: Option<NonZero<usize>>,
 }
 
 /// What came out.
@@ -48,7 +46,7 @@ pub struct Measurement {
     pub machine: Machine,
     /// How many threads rendered.
     pub threads: usize,
-    /// The seed of the first run; each further one has the next.
+    /// The scene's seed, of which the seeds of the runs are made.
     pub seed: u64,
     /// Samples per pixel, ascending.
     pub rungs: Vec<u64>,
@@ -56,16 +54,12 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture.
     pub reference: Exact,
-    /// The times of the exact method, if that is asked for.
+    /// The times of the exact method, if that was measured.
     pub exact: Option<Times>,
-    /// The sampled methods, in the order of the language's table.
+    /// The sampled methods that were measured, in the order of the language's table.
     pub series: Vec<Series>,
-    /// The part of the picture that is shown of every method.
-    pub crop: Area,
     /// Whether the user ended it.
     pub interrupted: bool,
-    /// How long it took in all, in seconds.
-    pub seconds: f64,
 }
 
 /// What was measured of a sampled method.
@@ -84,8 +78,6 @@ pub struct Series {
 pub struct Point {
     /// Samples per pixel, of `scatter` on average.
     pub per_pixel: u64,
-    /// How many of all samples were traced in the first run: the others lie in pixels that are certain to show one colour.
-    pub rays: u64,
     /// How long it took.
     pub times: Times,
     /// The error of each run: the root of the mean squared difference to the exact picture, in linear light.
@@ -110,11 +102,19 @@ pub struct Shown {
     pub cpu: f64,
     /// The error of the whole picture.
     pub rmse: f64,
-    /// The part that is shown.
-    pub crop: Film,
+    /// The part that is shown, the same of every method.
+    pub part: Area,
+    /// What is seen there.
+    pub film: Film,
 }
 
 impl Times {
+    /// Adds the CPU and the wall time of a run.
+    pub fn push(&mut self, [cpu, wall]: [f64; 2]) {
+        self.cpu.push(cpu);
+        self.wall.push(wall);
+    }
+
     /// The median CPU time.
     pub fn cpu(&self) -> f64 {
         median(&self.cpu)
@@ -166,7 +166,7 @@ impl Measurement {
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
         let most = sampled.map(|point| point.rmse.len()).max();
-        most.or(self.exact.as_ref().map(|exact| exact.cpu.len()))
-            .unwrap_or(0)
+        let exact = self.exact.as_ref().map(|exact| exact.wall.len());
+        most.max(exact).unwrap_or(0)
     }
 }

@@ -1,0 +1,157 @@
+//! A picture in memory: a row of pixels after the other.
+
+use super::{
+    memory::{self, TooLarge},
+    srgb::Encoder,
+};
+use crate::area::Area;
+
+/// What a film keeps of a pixel: its mean in linear light, or that as bytes of sRGB, which take an eighth of the memory.
+pub trait Pixel: Copy + Default + Send + Sync {
+    /// From the mean.
+    fn of(light: [f64; 3], encoder: &Encoder) -> Self;
+
+    /// Whether a mean that may be off by a bound in each channel is certain to become the same.
+    fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
+
+    /// The bytes of a row; `room` is for those that are not there yet.
+    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
+}
+
+impl Pixel for [f64; 3] {
+    fn of(light: [f64; 3], _: &Encoder) -> Self {
+        light
+    }
+
+    fn is_certain(_: [f64; 3], bound: f64, _: &Encoder) -> bool {
+        bound == 0.0
+    }
+
+    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
+        room.clear();
+        let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
+        for &light in row {
+            // Most pixels are as the one before.
+            if light != before {
+                (before, last) = (light, encoder.pixel(light));
+            }
+            room.extend(last);
+        }
+        room
+    }
+}
+
+impl Pixel for [u8; 3] {
+    fn of(light: [f64; 3], encoder: &Encoder) -> Self {
+        encoder.pixel(light)
+    }
+
+    fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
+        let ends = [-bound, bound].map(|off| encoder.pixel(light.map(|light| light + off)));
+        ends[0] == ends[1]
+    }
+
+    fn bytes<'a>(row: &'a [Self], _: &Encoder, _: &'a mut Vec<u8>) -> &'a [u8] {
+        row.as_flattened()
+    }
+}
+
+/// A picture: of each pixel the mean in linear light, or what else is kept of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film<P = [f64; 3]> {
+    width: u32,
+    height: u32,
+    /// Row by row from the top.
+    pixels: Vec<P>,
+}
+
+impl<P: Pixel> Film<P> {
+    /// A black picture, if the memory for it is there.
+    pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
+        memory::reserve::<P>(width, height)?;
+        // The system has zeros at hand, so that a page is touched only when something is put there.
+        Ok(Self {
+            width,
+            height,
+            pixels: vec![P::default(); width as usize * height as usize],
+        })
+    }
+
+    /// A picture of which each pixel, named by column and row, is given.
+    pub fn from_fn(
+        width: u32,
+        height: u32,
+        pixel: impl Fn(u32, u32) -> P,
+    ) -> Result<Self, TooLarge> {
+        let mut pixels = memory::reserve(width, height)?;
+        pixels.extend((0..height).flat_map(|y| {
+            let pixel = &pixel;
+            (0..width).map(move |x| pixel(x, y))
+        }));
+        Ok(Self {
+            width,
+            height,
+            pixels,
+        })
+    }
+
+    /// How many columns it has.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// How many rows it has.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// A pixel's red, green and blue.
+    pub fn pixel(&self, x: u32, y: u32) -> P {
+        self.row(y)[x as usize]
+    }
+
+    /// The pixels of a row, from the left.
+    pub fn row(&self, y: u32) -> &[P] {
+        let width = self.width as usize;
+        &self.pixels[y as usize * width..][..width]
+    }
+
+    /// All pixels, row by row.
+    pub fn pixels(&self) -> &[P] {
+        &self.pixels
+    }
+
+    /// The same, to be changed.
+    pub fn pixels_mut(&mut self) -> &mut [P] {
+        &mut self.pixels
+    }
+
+    /// Sets the pixels of a part of the picture, row by row.
+    pub fn put(&mut self, part: Area, pixels: &[P]) {
+        let (left, width) = (part.x as usize, part.width as usize);
+        for (y, row) in (part.y as usize..).zip(pixels.chunks_exact(width)) {
+            let start = y * self.width as usize + left;
+            self.pixels[start..start + width].copy_from_slice(row);
+        }
+    }
+}
+
+/// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
+pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
+    let encoder = Encoder::new();
+    count_certain(film, bounds, |light| encoder.encode(light))
+}
+
+/// The same of the 32-bit floats of an EXR file.
+pub fn certified_floats(film: &Film, bounds: &[f32]) -> u64 {
+    count_certain(film, bounds, |light| light.clamp(0.0, 1.0) as f32)
+}
+
+fn count_certain<T: PartialEq>(film: &Film, bounds: &[f32], round: impl Fn(f64) -> T) -> u64 {
+    let is_certain = |&(light, &bound): &(&[f64; 3], &f32)| {
+        let bound = f64::from(bound);
+        let same = |light: &f64| round(light - bound) == round(light + bound);
+        light.iter().all(same)
+    };
+    film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
+}
