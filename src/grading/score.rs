@@ -89,7 +89,13 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
         let (mean, variance) = (model.moments.mean[at], model.moments.variance[at]);
         let variance = variance.map(|one| if one < FLAT { 0.0 } else { one });
         if last.0 != mean {
-            last = (mean, mean.map(|light| rounding(light, model.curve).powi(2)));
+            last = (
+                mean,
+                mean.map(|light| {
+                    let deviation = rounding(light, model.curve);
+                    deviation * deviation
+                }),
+            );
         }
         Known {
             difference: [0, 1, 2].map(|i| model.difference(seen[at][i], mean[i], variance)),

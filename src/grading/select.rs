@@ -51,8 +51,8 @@ const AS_GOOD: f64 = 1e-3;
 /// Fewer pixels than this are not taken for something too many.
 const SMALLEST: usize = 4;
 
-/// More samples than this in a pixel are not one.
-const ONE: f64 = 1.5;
+/// A sample in the middle of a pixel makes as little noise as two random ones; more than this come of several.
+const ONE: f64 = 3.0;
 
 /// A move of less than this, in pixels, is not named.
 pub const HALF_PIXEL: f64 = 0.5;
@@ -233,13 +233,16 @@ impl<'a> Search<'a> {
         let Some(null) = self.judged_on(&self.edges, candidate, None) else {
             return Ok(None);
         };
-        // What is done to light makes other noise at edges, of which too little is known to tell these. One sample is its own mean, whatever is averaged.
+        // What is done to light makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
         let may = null.candidate.looks.is_empty() && null.candidate.curve == Curve::Right;
-        let is_averaged = null.score.samples > ONE;
-        let rows = ROWS.iter().filter(|row| may && row.shows != Shows::InAreas);
+        let is_one = null.score.samples < ONE;
+        let shows = |row: &&Row| match row.shows {
+            Shows::InAreas => false,
+            Shows::AtEdges => may && !is_one,
+            Shows::Everywhere => may,
+        };
+        let rows = ROWS.iter().filter(shows);
         let candidates = rows.filter_map(|row| null.candidate.with(row.named()));
-        let candidates =
-            candidates.filter(|other| is_averaged || other.average == null.candidate.average);
         let judged = candidates
             .filter_map(|candidate| self.judged_on(&self.edges, candidate, Some(&null.made)));
         let judged: Vec<Found> = judged.collect();
@@ -356,7 +359,7 @@ impl<'a> Search<'a> {
         };
         let shown = self.middle.model(&from.made);
         let is_read = |parameter: &Parameter| parameter.is_color() && candidate.looks.is_empty();
-        let tried = all.filter_map(|parameter| {
+        let tried = all.map(|parameter| {
             let numbers = parameter.numbers(&candidate.scene);
             let starts = match parameter.is_color() {
                 true => vec![self.colors(&numbers, &shown)],
@@ -372,7 +375,7 @@ impl<'a> Search<'a> {
             let mut tried: Vec<_> = tried.collect();
             tried.sort_by(|one, other| one.0.total_cmp(&other.0));
             tried.truncate(STARTS);
-            Some((parameter, tried))
+            (parameter, tried)
         });
         let on_tiny = tried.filter_map(|(parameter, tried)| {
             let rounds = if is_read(&parameter) { 0 } else { 4 };

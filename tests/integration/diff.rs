@@ -453,7 +453,7 @@ fn what_cannot_be_compared_is_trouble() {
         (
             &["a.jpg", "a.png"],
             2,
-            "it begins as a JPEG file does, but is",
+            "it begins as JPEG files do, but is",
         ),
         (
             &["nan.exr", "a.png"],
