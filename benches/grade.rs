@@ -10,7 +10,13 @@ mod mistakes;
 #[path = "../tests/integration/grade/textbook.rs"]
 mod textbook;
 
-use std::{collections::BTreeMap, env, fs, path::Path, process::Command, time::Instant};
+use std::{
+    collections::BTreeMap,
+    env, fs,
+    path::Path,
+    process::Command,
+    time::{Duration, Instant},
+};
 
 use corpus::{Case, SIZES, cases, samplings};
 use serde_json::{Value, json};
@@ -46,14 +52,18 @@ fn main() {
                 if count > 1 && size != SIZES[1] {
                     continue;
                 }
-                let cases = cases(count, size, sampling);
+                let cases: Vec<Case> = cases(count, size, sampling)
+                    .into_iter()
+                    .filter(Case::is_seen)
+                    .collect();
                 if let Some(folder) = after("--write") {
                     truth.extend(cases.iter().map(|case| write(case, Path::new(&folder))));
                     continue;
                 }
-                let (mut table, begun) = (BTreeMap::new(), Instant::now());
+                let (mut table, mut time) = (BTreeMap::new(), Duration::ZERO);
                 for case in &cases {
-                    let answer = ask(&program, case, folder.path());
+                    let (answer, taken) = ask(&program, case, folder.path());
+                    time += taken;
                     let judgement = case.judge(&answer);
                     *table.entry(judgement).or_insert(0) += 1;
                     if judgement != corpus::Judgement::Right {
@@ -68,7 +78,7 @@ fn main() {
                     sampling.1,
                     sampling.0,
                     cases.len(),
-                    begun.elapsed().as_secs_f64(),
+                    time.as_secs_f64(),
                 );
             }
         }
@@ -79,8 +89,8 @@ fn main() {
     }
 }
 
-/// What the program says of a picture.
-fn ask(program: &str, case: &Case, folder: &Path) -> Value {
+/// What the program says of a picture, and how long it takes.
+fn ask(program: &str, case: &Case, folder: &Path) -> (Value, Duration) {
     let (picture, scene) = (folder.join("a.png"), folder.join("a.scn"));
     case.picture().save(&picture).expect("a picture");
     fs::write(&scene, case.right.scene()).expect("a scene");
@@ -90,17 +100,21 @@ fn ask(program: &str, case: &Case, folder: &Path) -> Value {
         .arg("diff")
         .args(arguments)
         .args(["--format", "json"]);
+    let begun = Instant::now();
     let output = command.output().expect("the program");
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}: {output:?}", case.title))
+    let taken = begun.elapsed();
+    let answer = serde_json::from_slice(&output.stdout);
+    let answer = answer.unwrap_or_else(|_| panic!("{}: {output:?}", case.title));
+    (answer, taken)
 }
 
 fn told(answer: &Value) -> String {
-    let likely = answer["likely"].as_array().map_or(&[][..], Vec::as_slice);
-    let told: Vec<String> = likely
+    let mistakes = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
+    let told: Vec<String> = mistakes
         .iter()
-        .map(|said| said["mistake"].to_string())
+        .map(|m| format!("{} {}", m["id"], m["set"]))
         .collect();
-    told.join("; ")
+    format!("{} {}", answer["verdict"], told.join("; "))
 }
 
 /// Writes a picture and its scene; answers what is wrong with it.

@@ -22,7 +22,7 @@ pub(crate) fn is_set(cancel: &AtomicBool) -> bool {
 }
 
 /// What was made, if it was wanted to the end.
-pub(crate) fn unless_set<T>(cancel: &AtomicBool, made: T) -> Result<T, Cancelled> {
+pub fn unless_set<T>(cancel: &AtomicBool, made: T) -> Result<T, Cancelled> {
     match is_set(cancel) {
         false => Ok(made),
         true => Err(Cancelled),

@@ -28,8 +28,8 @@
 //! - Who has no more use for a result sets a flag, and all of these are given up soon after it: [`cancel`].
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`mod@format`] lays a text out in the one canonical way.
-//! - [`inspect`] and [`probe`] answer questions about a scene, [`grade`] one about a picture of it: what went wrong; and
-//!   [`report`] about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
+//! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] one about a picture of it: what went wrong; and [`report`]
+//!   about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
 //! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
 //!   to editors in the Language Server Protocol, and `preview` tells when a file has changed.
 
@@ -60,7 +60,7 @@ pub mod render;
 pub mod film;
 
 pub mod format;
-pub mod grade;
+pub mod grading;
 pub mod inspect;
 pub mod probe;
 pub mod report;

@@ -76,13 +76,6 @@ pub fn found_near(is: f64, should: f64) -> String {
     beside(to_unit(is, unit), &[should])
 }
 
-/// The same of a point or a vector, whose coordinates have three digits of the size of `scale`.
-pub fn found_vector(is: DVec3, should: DVec3, scale: f64) -> String {
-    let unit = f64::min(digit(scale, 2), digit((is - should).length(), 0));
-    let [x, y, z] = is.to_array().map(|x| short(to_unit(x, unit)));
-    format!("({x}, {y}, {z})")
-}
-
 /// What one is worth in a number's digit that so many others stand before; infinite if it has none.
 fn digit(x: f64, before: i32) -> f64 {
     let first = libm::log10(x.abs()).floor();
@@ -156,10 +149,6 @@ mod tests {
         ] {
             assert_eq!(found_near(is, should), text);
         }
-        let should = DVec3::new(3.0, 3.5, 8.0);
-        let is = DVec3::new(3.00298, 3.50203, 8.00001);
-        assert_eq!(found_vector(is, should, 9.2), "(3.003, 3.502, 8)");
-        assert_eq!(found_vector(1.2 * should, should, 9.2), "(3.6, 4.2, 9.6)");
     }
 
     #[test]

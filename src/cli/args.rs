@@ -58,6 +58,9 @@ pub enum Command {
     /// Compare two pictures, or a picture with a scene's exact one
     #[command(after_help = DIFF_EXAMPLES)]
     Diff(DiffArgs),
+    /// Judge a class's pictures of a scene
+    #[command(after_help = GRADE_EXAMPLES)]
+    Grade(GradeArgs),
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
@@ -94,6 +97,7 @@ impl Command {
             #[cfg(feature = "preview")]
             Self::Watch(args) => args.threads,
             Self::Diff(args) => args.threads,
+            Self::Grade(args) => args.threads,
             Self::Report(args) => args.threads,
             _ => None,
         };
@@ -153,21 +157,38 @@ Examples:
   pinhole diff a.png b.exr                       two pictures
   pinhole diff mine.png figure.scn               a picture with what the scene means, without noise
   pinhole diff mine.png figure.scn -o where.png  also a heat map of the differences
-  pinhole diff mine.png figure.scn --tolerance 8 --format json
+  pinhole diff mine.png figure.scn --strict --format json
 
-Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white. Where B is a \
-scene, simple mistakes that explain the difference are named: a mirrored picture, a wrong distance or \
-roll, colours averaged without decoding them, an object in the wrong place, too few samples.
+Where B is a scene, the verdict comes first: the picture is right, right but for sampling noise, or wrong. Mistakes that explain \
+the difference are named, with the --set arguments that make the scene give that picture; then what is right and what is not, \
+object by object. A picture that carries a crop is compared with that part of the scene.
+
+Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white.
 
 JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
 a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be judged, as the exact picture's bound is too \
-large there), tolerance (in steps), equal, likely [{mistake, message, help, rmse, explains, sure, off {right, \
-down, outwards}}] with the best explanation first, thin (whether a simple mistake or noise would explain it, of which too few \
-pixels tell), may_be_noise (whether noise would: then nothing need be wrong); rmse is what an explanation leaves, explains its \
-share of the squared difference, 0 to 1, sure whether that share is a half or more, and off is by how many pixels an object is \
-off: its middle, and its outline, away from there. Of pictures of different sizes rmse, largest, beyond and undecided are null.
+large there), tolerance (in steps), equal (whether no pixel is beyond it). Of two pictures of different sizes rmse, largest, beyond and \
+undecided are null. With a scene also verdict (right, noise, wrong, or unknown: wrong, and not by a mistake known here), line (the \
+verdict in words), samples_per_pixel (independent ones that make as much noise), mistakes [{id, message, help, set, explains}] \
+(explains is the share of the squared difference beyond noise, 0 to 1), rest (the share that mistakes leave, if that is more than \
+noise), objects [{index, name, right, off}] (off in pixels), limited (whether not all mistakes were tried, as the scene has too \
+much in it).
 
-Exit status: 0 within the tolerance; 1 not, or the scene has errors; 2 trouble.";
+Exit status: 0 for pictures within the tolerance, and for one that is right, but for noise; 1 if not, or the scene has errors; \
+2 trouble, also where a picture has another size than the scene's.";
+
+const GRADE_EXAMPLES: &str = "\
+Examples:
+  pinhole grade figure.scn anna.png ben.png
+  pinhole grade figure.scn handed_in/ -o graded  also writes graded/index.html, grade.csv and grade.jsonl
+  pinhole grade figure.scn handed_in/ --format json
+
+Each picture is compared with the scene's exact one, as diff does it, and has a line: its name, the verdict, the root mean \
+square of its differences in linear light, and the samples in a pixel that make as much noise.
+
+JSON, an object a line: what diff prints, with file in front; error instead of the rest where a picture cannot be compared.
+
+Exit status: 0 all are right, but for noise; 1 one is wrong, or the scene has errors; 2 one could not be compared, or other trouble.";
 
 const REPORT_USAGE: &str = "\
 pinhole report [OPTIONS] <SCENE>...
@@ -383,7 +404,7 @@ pub struct DiffArgs {
     pub a: PathBuf,
     /// Another picture, or a scene whose exact picture A is compared with
     pub b: PathBuf,
-    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, logarithmic
+    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, linear in steps of sRGB
     #[arg(short, long = "output", value_name = "HEATMAP")]
     pub output: Option<PathBuf>,
     /// How much a pixel may differ, in steps of 8-bit sRGB
@@ -392,6 +413,29 @@ pub struct DiffArgs {
     /// nothing, always comes on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
+    /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance implies it
+    #[arg(long)]
+    pub strict: bool,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// How many threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
+    pub threads: Option<u64>,
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// Arguments of `grade`.
+#[derive(Debug, clap::Args)]
+pub struct GradeArgs {
+    /// The scene: a .scn file, or a PNG that Pinhole wrote
+    pub scene: PathBuf,
+    /// The pictures, or folders of them
+    #[arg(required = true, value_name = "PICTURE")]
+    pub pictures: Vec<PathBuf>,
+    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: Option<PathBuf>,
     #[command(flatten)]
     pub overrides: Overrides,
     /// How many threads to use [default: one for each processor]

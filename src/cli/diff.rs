@@ -7,22 +7,20 @@ use std::{
 };
 
 use pinhole::{
-    area::Area,
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grade::{self, Grade},
+    grading::{self, Kind, ObjectVerdict, Verdict},
     numbers::{grouped, short, significant},
-    render::{self, Control, Exact, RenderError},
-    scene::Scene,
-    tracer::World,
+    render::RenderError,
 };
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::{
     Status, Trouble,
     args::{DiffArgs, Format},
     input::{self, Input, is_standard, shown},
     interrupt::Interrupt,
+    judge::{self, Judge, quoted},
     output, progress,
 };
 
@@ -45,12 +43,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let a = read(&args.a, &a)?;
     let b = input::whole(&args.b).map_err(|error| unreadable(&args.b, &error))?;
     let cancel = interrupt.watch();
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel,
-    };
-    let other = if film::is_picture(&b) || is_named_as_picture(&args.b) {
+    let is_strict = args.strict || args.tolerance.is_some();
+    if film::is_picture(&b) || is_named_as_picture(&args.b) {
         if !args.overrides.sets.is_empty() {
             let message = format!(
                 "`--set` changes a scene, and {} is a picture",
@@ -58,90 +52,71 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             );
             return Err(Trouble(message));
         }
-        Other::Picture(read(&args.b, &b)?)
-    } else {
-        let input = Input::of(&args.b, b, &args.overrides);
-        let Some(scene) = input.scene().scene else {
-            return Ok(Status::SceneErrors);
+        let b = read(&args.b, &b)?;
+        let steps = args.tolerance;
+        let steps = steps.unwrap_or_else(|| a.rounding.steps() + b.rounding.steps());
+        let tolerance = Tolerance {
+            steps,
+            bounds: None,
         };
-        match exact(&scene, cancel) {
-            Ok(exact) => Other::Scene(Box::new(scene), exact),
-            Err(error) => return ended(error),
-        }
-    };
+        let comparison = film::compare(&a.film, &b.film, tolerance);
+        let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
+        let report = Report {
+            names: [shown(&args.a), shown(&args.b)],
+            sizes: [&a.film, &b.film].map(|film| [film.width(), film.height()]),
+            comparison,
+            tolerance: steps,
+            verdict: None,
+            is_strict,
+        };
+        report.print(args.format.format)?;
+        write_heat_map(args, [&a.film, &b.film], tolerance, is_equal, cancel)?;
+        return Ok(status(is_equal));
+    }
 
-    let steps = args
-        .tolerance
-        .unwrap_or_else(|| a.rounding.steps() + other.rounding_steps());
-    let tolerance = Tolerance {
-        steps,
-        bounds: other.bounds(),
+    let input = Input::of(&args.b, b, &args.overrides);
+    let Some(scene) = input.scene().scene else {
+        return Ok(Status::SceneErrors);
     };
-    let comparison = film::compare(&a.film, other.film(), tolerance);
-    let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
-    let grade = match (&other, is_equal) {
-        (_, true) => Ok(Grade::default()),
-        (Other::Picture(b), false) => Ok(grade::pictures(&a.film, &b.film)),
-        (Other::Scene(scene, exact), false) => grade::scene(&a.film, scene, &exact.film, &control),
-    };
-    let grade = match grade {
-        Ok(grade) => grade,
+    let part = judge::part(&a, &scene)
+        .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
+    let judge = progress::watched(part.pixels(), |done| {
+        Judge::new(&scene, part, cancel, &|more| {
+            done.fetch_add(more, Ordering::Relaxed);
+        })
+    });
+    let judge = match judge {
+        Ok(judge) => judge,
         Err(error) => return ended(error),
     };
+    let steps = args.tolerance.unwrap_or_else(|| a.rounding.steps());
+    let comparison = judge
+        .compare(&a, steps)
+        .map_err(|error| Trouble(error.to_string()))?;
+    let verdict = match judge.judge(&a, &comparison, cancel) {
+        Ok(verdict) => verdict,
+        Err(error) => return ended(error),
+    };
+    let is_equal = comparison.is_equal();
+    let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
     let report = Report {
         names: [shown(&args.a), shown(&args.b)],
-        sizes: [&a.film, other.film()].map(|film| [film.width(), film.height()]),
-        is_scene: matches!(other, Other::Scene(..)),
-        comparison,
+        sizes: [[part.width, part.height]; 2],
+        comparison: Ok(comparison),
         tolerance: steps,
-        grade,
+        verdict: Some(verdict),
+        is_strict,
     };
-    match args.format.format {
-        Format::Human => output::to_people(&report.human()),
-        Format::Json => output::to_programs(format!("{}\n", report.json()).as_bytes())?,
-    }
-    if let Some(path) = &args.output {
-        match report.comparison {
-            Err(_) => output::warning(&"pictures of different sizes have no heat map"),
-            Ok(_) => {
-                let map = film::heat_map(&a.film, other.film(), tolerance)
-                    .map_err(|error| Trouble(error.to_string()))?;
-                write_heat_map(path, &map, legend(is_equal), cancel)?;
-            }
-        }
-    }
-    Ok(match is_equal {
+    report.print(args.format.format)?;
+    let films = [&a.film, &judge.exact.film];
+    write_heat_map(args, films, judge.tolerance(steps), is_equal, cancel)?;
+    Ok(status(if is_strict { is_equal } else { is_right }))
+}
+
+fn status(is_accepted: bool) -> Status {
+    match is_accepted {
         true => Status::Done,
         false => Status::SceneErrors,
-    })
-}
-
-/// What A is compared with.
-enum Other {
-    Picture(Picture),
-    Scene(Box<Scene>, Exact),
-}
-
-impl Other {
-    fn film(&self) -> &Film {
-        match self {
-            Self::Picture(picture) => &picture.film,
-            Self::Scene(_, exact) => &exact.film,
-        }
-    }
-
-    fn rounding_steps(&self) -> f64 {
-        match self {
-            Self::Picture(picture) => picture.rounding.steps(),
-            Self::Scene(..) => 0.0,
-        }
-    }
-
-    fn bounds(&self) -> Option<&[f32]> {
-        match self {
-            Self::Picture(_) => None,
-            Self::Scene(_, exact) => Some(&exact.bounds),
-        }
     }
 }
 
@@ -181,20 +156,6 @@ fn ended(error: RenderError) -> Result<Status, Trouble> {
     }
 }
 
-fn exact(scene: &Scene, cancel: &AtomicBool) -> Result<Exact, RenderError> {
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    progress::watched(whole.pixels(), |done| {
-        let control = Control {
-            threads: None,
-            progress: &|more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            },
-            cancel,
-        };
-        render::render_exact(&World::new_unless(scene, cancel)?, whole, &control)
-    })
-}
-
 /// Whether the heat map may be written there, before the work and not after it.
 fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     if !path
@@ -228,13 +189,23 @@ fn legend(is_equal: bool) -> &'static str {
 }
 
 fn write_heat_map(
-    path: &Path,
-    map: &Film,
-    legend: &str,
+    args: &DiffArgs,
+    [a, b]: [&Film; 2],
+    tolerance: Tolerance,
+    is_equal: bool,
     cancel: &AtomicBool,
 ) -> Result<(), Trouble> {
-    film::write_whole(path, cancel, |out| film::write_plain_png(map, out))
+    let Some(path) = &args.output else {
+        return Ok(());
+    };
+    if [a.width(), a.height()] != [b.width(), b.height()] {
+        output::warning(&"pictures of different sizes have no heat map");
+        return Ok(());
+    }
+    let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
+    film::write_whole(path, cancel, |out| film::write_plain_png(&map, out))
         .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))?;
+    let legend = legend(is_equal);
     output::to_people(&format!("{}: {legend}\n", visible(&shown(path))));
     Ok(())
 }
@@ -243,13 +214,22 @@ fn write_heat_map(
 struct Report {
     names: [String; 2],
     sizes: [[u32; 2]; 2],
-    is_scene: bool,
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    grade: Grade,
+    /// Where B is a scene.
+    verdict: Option<Verdict>,
+    is_strict: bool,
 }
 
 impl Report {
+    fn print(&self, format: Format) -> Result<(), Trouble> {
+        match format {
+            Format::Human => output::to_people(&self.human()),
+            Format::Json => output::to_programs(format!("{}\n", self.json()).as_bytes())?,
+        }
+        Ok(())
+    }
+
     fn human(&self) -> String {
         let mut text = String::new();
         let _ = self.write(&mut text);
@@ -258,14 +238,24 @@ impl Report {
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
         let [a, b] = self.names.each_ref().map(|name| visible(name));
-        let b = match self.is_scene {
-            true => format!("the exact picture of {b}"),
-            false => b.into_owned(),
+        let b = match self.verdict {
+            Some(_) => format!("the exact picture of {b}"),
+            None => b.into_owned(),
         };
         let tolerance = match self.tolerance {
             1.0 => "1 step".to_owned(),
             steps => format!("{} steps", short(steps)),
         };
+        if let Some(verdict) = &self.verdict {
+            let line = match (verdict.kind, self.is_strict) {
+                (Kind::Right, true) => format!("right: no pixel differs by more than {tolerance}"),
+                (Kind::Noise, true) => format!("beyond the tolerance, but {}", verdict.line()),
+                _ => verdict.line(),
+            };
+            writeln!(out, "{}", visible(&line))?;
+            write_mistakes(verdict, out)?;
+            writeln!(out)?;
+        }
         match &self.comparison {
             Err(SizesDiffer([w, h], [other_w, other_h])) => {
                 writeln!(out, "{a} and {b} differ in size")?;
@@ -328,103 +318,127 @@ impl Report {
                 )?;
             }
         }
-        for (place, verdict) in self.grade.likely.iter().enumerate() {
-            let word = match (place, verdict.is_sure()) {
-                (0, true) => "likely",
-                (0, false) => "perhaps",
-                _ => "or",
-            };
-            writeln!(out)?;
-            writeln!(out, "{word:<9} {}", verdict.message)?;
-            if let Some(explains) = verdict.explains {
-                writeln!(
-                    out,
-                    "          explains {} % of the squared difference{}",
-                    percent(explains),
-                    match verdict.is_sure() {
-                        true => "",
-                        false => "; the rest is more, and something else",
-                    }
-                )?;
-            }
-            writeln!(out, "          help: {}", verdict.help)?;
-        }
-        let differs = self
-            .comparison
-            .as_ref()
-            .is_ok_and(|found| !found.is_equal());
-        if self.grade.may_be_noise && self.grade.is_thin {
-            writeln!(out)?;
-            writeln!(
-                out,
-                "Sampling noise would explain it, though so few pixels differ that they do not say that it is noise."
-            )?;
-        } else if self.grade.may_be_noise {
-            writeln!(out)?;
-            writeln!(
-                out,
-                "Samples at the same places in all pixels may explain it: it is wrong only where colours meet, and nothing says what else it is."
-            )?;
-        } else if self.grade.is_thin {
-            writeln!(out)?;
-            writeln!(
-                out,
-                "A simple mistake would explain it, but so few pixels tell of it that chance would, too."
-            )?;
-        } else if self.grade.likely.is_empty() && self.is_scene && differs {
-            writeln!(out)?;
-            writeln!(
-                out,
-                "No simple mistake explains it; `-o HEATMAP` shows where the pictures differ."
-            )?;
-        }
         Ok(())
     }
 
     fn json(&self) -> Value {
-        let found = self.comparison.as_ref().ok();
-        let largest = found.map(|found| {
-            let largest = found.largest;
-            json!({
-                "error": plain(largest.steps),
-                "x": largest.x,
-                "y": largest.y,
-                "channel": CHANNELS[largest.channel],
-                "a": plain(largest.a),
-                "b": plain(largest.b),
-            })
-        });
-        let likely = self.grade.likely.iter().map(|verdict| {
-            json!({
-                "mistake": verdict.mistake,
-                "message": verdict.message,
-                "help": verdict.help,
-                "rmse": verdict.rmse,
-                "explains": verdict.explains,
-                "sure": verdict.is_sure(),
-                "off": verdict.off.map(|off| json!({
-                    "right": off.right,
-                    "down": off.down,
-                    "outwards": off.outwards,
-                })),
-            })
-        });
+        Value::Object(json(
+            self.names.each_ref().map(String::as_str),
+            self.sizes,
+            self.comparison.as_ref().ok(),
+            self.tolerance,
+            self.verdict.as_ref(),
+        ))
+    }
+}
+
+/// What programs read of a comparison, field by field.
+pub fn json(
+    [a, b]: [&str; 2],
+    sizes: [[u32; 2]; 2],
+    found: Option<&Comparison>,
+    tolerance: f64,
+    verdict: Option<&Verdict>,
+) -> Map<String, Value> {
+    let largest = found.map(|found| {
+        let largest = found.largest;
         json!({
-            "a": self.names[0],
-            "b": self.names[1],
-            "width": self.sizes[0][0],
-            "height": self.sizes[0][1],
-            "size_b": self.sizes[1],
-            "rmse": found.map(|found| found.rmse),
-            "largest": largest,
-            "beyond": found.map(|found| json!({ "pixels": found.beyond, "share": found.share() })),
-            "undecided": found.map(|found| found.undecided),
-            "tolerance": self.tolerance,
-            "equal": found.is_some_and(Comparison::is_equal),
-            "likely": likely.collect::<Vec<_>>(),
-            "thin": self.grade.is_thin,
-            "may_be_noise": self.grade.may_be_noise,
+            "error": plain(largest.steps),
+            "x": largest.x,
+            "y": largest.y,
+            "channel": CHANNELS[largest.channel],
+            "a": plain(largest.a),
+            "b": plain(largest.b),
         })
+    });
+    let beyond = found.map(|found| json!({ "pixels": found.beyond, "share": found.share() }));
+    let figures = [
+        ("a", json!(a)),
+        ("b", json!(b)),
+        ("width", json!(sizes[0][0])),
+        ("height", json!(sizes[0][1])),
+        ("size_b", json!(sizes[1])),
+        ("rmse", json!(found.map(|found| found.rmse))),
+        ("largest", json!(largest)),
+        ("beyond", json!(beyond)),
+        ("undecided", json!(found.map(|found| found.undecided))),
+        ("tolerance", json!(tolerance)),
+        ("equal", json!(found.is_some_and(Comparison::is_equal))),
+    ];
+    let figures = figures.map(|(name, value)| (name.to_owned(), value));
+    figures
+        .into_iter()
+        .chain(verdict.map(grading::json).unwrap_or_default())
+        .collect()
+}
+
+/// What is wrong, mistake by mistake and object by object.
+fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
+    for mistake in &verdict.mistakes {
+        writeln!(out)?;
+        writeln!(out, "mistake   {}", visible(&mistake.message))?;
+        writeln!(
+            out,
+            "          explains {} % of the squared difference beyond noise",
+            percent(mistake.explains)
+        )?;
+        writeln!(out, "          help: {}", visible(&mistake.help))?;
+        if !mistake.set.is_empty() {
+            let sets = mistake.set.iter();
+            let sets: Vec<_> = sets.map(|set| format!("--set {}", quoted(set))).collect();
+            writeln!(out, "          {}", visible(&sets.join(" ")))?;
+        }
+    }
+    if let Some(rest) = verdict.rest {
+        writeln!(out)?;
+        writeln!(out, "rest      {} % is something else", percent(rest))?;
+    }
+    if verdict.is_cut {
+        writeln!(out)?;
+        writeln!(
+            out,
+            "limit     the scene has so much in it that not all mistakes were tried"
+        )?;
+    }
+    if verdict.kind == Kind::Wrong {
+        writeln!(out)?;
+        writeln!(out, "objects   {}", visible(&objects(verdict)))?;
+    }
+    Ok(())
+}
+
+/// What is right and what is not: all objects, or, where they are many, some of those that are not right.
+fn objects(verdict: &Verdict) -> String {
+    /// More are not listed.
+    const MOST: usize = 12;
+    let all = &verdict.objects;
+    let is_all = all.len() <= MOST;
+    let is_listed = |object: &&ObjectVerdict| is_all || !object.is_right;
+    let listed: Vec<_> = all.iter().filter(is_listed).take(MOST).collect();
+    let mut parts: Vec<String> = listed.iter().map(|object| state(object)).collect();
+    let right = all.iter().filter(|object| object.is_right).count();
+    let unlisted = all.len() - right - listed.iter().filter(|object| !object.is_right).count();
+    if unlisted > 0 {
+        parts.push(format!("{} others not right", grouped(unlisted as u64)));
+    }
+    if !is_all {
+        parts.push(format!("{} right", grouped(right as u64)));
+    }
+    parts.push(match verdict.is_background_right {
+        true => "background right".to_owned(),
+        false => "background wrong".to_owned(),
+    });
+    parts.join(", ")
+}
+
+fn state(object: &ObjectVerdict) -> String {
+    let title = || object.title.trim_start_matches("the ").to_owned();
+    let name = object.name.clone().unwrap_or_else(title);
+    match (object.is_right, object.off.round()) {
+        (true, _) => format!("{name} right"),
+        (false, 0.0) => format!("{name} wrong"),
+        (false, 1.0) => format!("{name} off by 1 pixel"),
+        (false, pixels) => format!("{name} off by {} pixels", short(pixels)),
     }
 }
 

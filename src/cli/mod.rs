@@ -8,9 +8,12 @@ mod check;
 mod diff;
 mod explain;
 mod fmt;
+mod grade;
+mod grade_page;
 mod input;
 mod inspect;
 mod interrupt;
+mod judge;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod manual;
@@ -62,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
+        Command::Grade(args) => grade::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, &interrupt),

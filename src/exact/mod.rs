@@ -37,6 +37,7 @@ use std::{
 
 use crate::{
     area::Area,
+    color::Color,
     tracer::{Candidate, Curve, Part, Quartering, Scratch, SubPixel, World},
 };
 
@@ -70,22 +71,22 @@ const PIECE_WORK: f64 = 100.0;
 const OBJECT_WORK: f64 = 4.0;
 const LOOK_WORK: f64 = 8.0;
 
-/// A pixel computed.
+/// A pixel computed: of N numbers from 0 to 1 that each colour has, its channels in linear light if nothing else is said.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExactPixel {
-    /// Its mean in linear light.
-    pub mean: [f64; 3],
-    /// How far each channel may be from the true mean.
+pub struct ExactPixel<const N: usize = 3> {
+    /// Their means.
+    pub mean: [f64; N],
+    /// How far each may be from the true mean.
     pub bound: f64,
 }
 
 /// Computes pixels of one picture.
 #[derive(Debug)]
-pub struct Integrator<'a> {
+pub struct Integrator<'a, const N: usize = 3> {
     world: &'a World,
     quartering: Quartering<'a>,
-    /// Of the palette, in linear light.
-    colors: Vec<[f64; 3]>,
+    /// Of the palette.
+    colors: Vec<[f64; N]>,
 }
 
 /// A part of a pixel.
@@ -122,21 +123,24 @@ impl Piece {
 impl<'a> Integrator<'a> {
     /// For the pixels of a prepared scene.
     pub fn new(world: &'a World) -> Self {
+        Self::of(world, Color::to_linear)
+    }
+}
+
+impl<'a, const N: usize> Integrator<'a, N> {
+    /// For the means of other numbers than its light that a colour has.
+    pub fn of(world: &'a World, numbers: impl Fn(Color) -> [f64; N]) -> Self {
         Self {
             world,
             quartering: Quartering::new(world),
-            colors: world
-                .palette()
-                .iter()
-                .map(|color| color.to_linear())
-                .collect(),
+            colors: world.palette().iter().copied().map(numbers).collect(),
         }
     }
 
     /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends within a pixel, too.
-    pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel>> {
+    pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel<N>>> {
         let black = ExactPixel {
-            mean: [0.0; 3],
+            mean: [0.0; N],
             bound: 0.0,
         };
         let mut film = PartPixels {
@@ -191,7 +195,7 @@ impl<'a> Integrator<'a> {
         candidates: &[Candidate],
         curves: &mut Vec<Curve>,
         cancel: &AtomicBool,
-    ) -> ExactPixel {
+    ) -> ExactPixel<N> {
         let budget = Budget::of_pixel(candidates.len(), cancel);
         let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
@@ -239,7 +243,7 @@ impl<'a> Integrator<'a> {
         &self,
         pixel: BoardPixel,
         sum: Option<Sum>,
-        film: &mut PartPixels,
+        film: &mut PartPixels<N>,
         others: &mut Vec<BoardPixel>,
     ) {
         // A share is rounded once, and the mean of two.
@@ -300,8 +304,8 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> ExactPixel {
-        let mut mean = [0.0; 3];
+    fn mean(&self, by_slot: &[(usize, f64)], bound: f64) -> ExactPixel<N> {
+        let mut mean = [0.0; N];
         match by_slot {
             [(slot, _)] => mean = self.colors[*slot],
             by_slot => {
@@ -328,20 +332,20 @@ fn rounding(colors: usize) -> f64 {
 }
 
 /// The pixels of a part of the picture.
-struct PartPixels {
+struct PartPixels<const N: usize> {
     part: Area,
-    pixels: Vec<ExactPixel>,
+    pixels: Vec<ExactPixel<N>>,
 }
 
-impl PartPixels {
-    fn fill(&mut self, part: Area, mean: [f64; 3]) {
+impl<const N: usize> PartPixels<N> {
+    fn fill(&mut self, part: Area, mean: [f64; N]) {
         for y in part.y..part.y + part.height {
             let start = self.part.index(part.x, y);
             self.pixels[start..start + part.width as usize].fill(ExactPixel { mean, bound: 0.0 });
         }
     }
 
-    fn set(&mut self, x: u32, y: u32, pixel: ExactPixel) {
+    fn set(&mut self, x: u32, y: u32, pixel: ExactPixel<N>) {
         let index = self.part.index(x, y);
         self.pixels[index] = pixel;
     }

@@ -154,8 +154,8 @@ pub fn rmse(a: &Film, b: &Film) -> f64 {
     (sum / (3.0 * a.pixels().len() as f64)).sqrt()
 }
 
-/// A picture of the differences of two pictures of one size: a pixel's is that of its channel that differs most. What lies within the tolerance
-/// is black; from there on the colour goes through red and yellow to white at 255 steps, on a logarithmic scale, ever brighter.
+/// A picture of the differences of two pictures of one size: a pixel's is that of its channel that differs most. What lies within the tolerance is black; from there
+/// on the colour goes through red and yellow to white at 255 steps, linearly in what can be seen: noise stays dark.
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
     let mut map = Film::new(a.width(), a.height())?;
     let pairs = a.pixels().iter().zip(b.pixels());
@@ -169,12 +169,12 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
 }
 
 /// What the colours of a heat map stand for.
-pub const HEAT_LEGEND: &str = "black: within the tolerance; dark red: 1 step; red: 5; orange: 16; yellow: 39; white: 255 (logarithmic)";
+pub const HEAT_LEGEND: &str =
+    "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
 /// The light of a colour for a difference in steps.
 fn heat(steps: f64) -> [f64; 3] {
-    // log2(1 + 255) is 8.
-    let t = 3.0 * libm::log2(1.0 + steps) / 8.0;
+    let t = 3.0 * steps / STEPS;
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 

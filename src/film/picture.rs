@@ -59,6 +59,8 @@ pub enum Coding {
     Lossy,
     /// It replaces them by the nearest of at most 256: GIF.
     Palette,
+    /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA` or `iCCP`.
+    OtherCurve,
 }
 
 impl Coding {
@@ -70,6 +72,9 @@ impl Coding {
                 "its coding is lossy and changes colours, most of all where they meet: a PNG keeps them",
             ),
             Self::Palette => Some("it has 256 colours at most: a PNG keeps all of them"),
+            Self::OtherCurve => Some(
+                "its gAMA or iCCP says that its numbers follow another curve than sRGB's, and they are read as sRGB",
+            ),
         }
     }
 }

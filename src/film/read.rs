@@ -96,10 +96,48 @@ fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
         coding: match format {
             _ if is_lossy => Coding::Lossy,
             ImageFormat::Gif => Coding::Palette,
+            ImageFormat::Png if says_other_curve(bytes) => Coding::OtherCurve,
             _ => Coding::Exact,
         },
         crop: read_recipe(bytes).ok().and_then(|recipe| recipe.crop),
     })
+}
+
+/// Whether a PNG says that its numbers follow another curve than sRGB's. A chunk `sRGB` overrules `gAMA`, and `iCCP` both.
+fn says_other_curve(bytes: &[u8]) -> bool {
+    let reader = png::Decoder::new(Cursor::new(bytes)).read_info();
+    reader.is_ok_and(|reader| {
+        let info = reader.info();
+        match (&info.icc_profile, info.srgb, info.gama_chunk) {
+            (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
+            (None, None, Some(gamma)) => (gamma.into_value() - 1.0 / 2.2).abs() > 0.01,
+            _ => false,
+        }
+    })
+}
+
+/// Whether the curve of red, or of gray, in an ICC profile (ICC.1:2010, 10.5 and 10.15) is far from sRGB's; none if there is none.
+fn is_other_profile(profile: &[u8]) -> Option<bool> {
+    let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
+    let count = number(128)?.min(100) as usize;
+    // A tag has 12 bytes: its name, its place and its length.
+    let tag = (0..count)
+        .map(|index| 132 + 12 * index)
+        .find(|&at| matches!(profile.get(at..at + 4), Some(b"rTRC" | b"kTRC")))?;
+    let at = number(tag + 4)? as usize;
+    let word = |at: usize| Some(u16::from_be_bytes(*profile.get(at..)?.first_chunk()?));
+    let fixed = |index: usize| Some(f64::from(number(at + 12 + 4 * index)? as i32) / 65536.0);
+    // The light of one half, which is 0.2140 by sRGB and 0.2176 by a power of 2.2.
+    let light = match (profile.get(at..at + 4)?, number(at + 8)?) {
+        (b"curv", 0) => 0.5,
+        (b"curv", 1) => libm::pow(0.5, f64::from(word(at + 12)?) / 256.0),
+        (b"curv", count) => f64::from(word(at + 12 + 2 * (count as usize / 2))?) / 65535.0,
+        (b"para", 0) => libm::pow(0.5, fixed(0)?),
+        // The other functions are (a x + b)^g there, and more in the last but one and the last.
+        (b"para", _) => libm::pow(0.5 * fixed(1)? + fixed(2)?, fixed(0)?),
+        _ => return None,
+    };
+    Some((light - srgb_to_linear(0.5)).abs() > 0.01)
 }
 
 /// Fills a film with samples of red, green, blue and opacity.

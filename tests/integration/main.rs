@@ -19,6 +19,7 @@ mod film;
 mod fixes;
 mod fmt;
 mod format;
+mod grade;
 mod images;
 #[cfg(unix)]
 mod interrupt;

@@ -399,6 +399,7 @@ fn help_has_examples_and_the_manual_all_commands() {
         "inspect",
         "probe",
         "diff",
+        "grade",
         "report",
         "completions",
         "man",

@@ -25,43 +25,76 @@ pub struct Case {
 impl Case {
     /// Its picture.
     pub fn picture(&self) -> RgbImage {
+        self.program(|_| true).render()
+    }
+
+    /// Whether each of the mistakes shows: the picture without it differs by more than the step that rounding may cost.
+    pub fn is_seen(&self) -> bool {
+        let program = self.program(|_| true);
+        let picture = program.render();
+        // Bytes that are cut off differ by one step.
+        let least = u8::from(!program.cuts_bytes);
+        (0..self.mistakes.len()).all(|left_out| {
+            let other = self.program(|index| index != left_out).render();
+            let mut bytes = picture.as_raw().iter().zip(other.as_raw());
+            bytes.any(|(a, b)| a.abs_diff(*b) > least)
+        })
+    }
+
+    /// The program with some of its mistakes.
+    fn program(&self, is_made: impl Fn(usize) -> bool) -> Program {
         let mut program = self.right.clone();
-        for mistake in &self.mistakes {
+        for (_, mistake) in self
+            .mistakes
+            .iter()
+            .enumerate()
+            .filter(|one| is_made(one.0))
+        {
             (mistake.make)(&mut program);
         }
-        program.render()
+        program
     }
 
     /// Judges what `diff` says.
     pub fn judge(&self, answer: &Value) -> Judgement {
-        let likely = answer["likely"].as_array().map_or(&[][..], Vec::as_slice);
-        let is_noise = likely.iter().any(|said| said["mistake"] == "noise");
-        let is_right = answer["equal"] == true || is_noise;
-        let said: Vec<&Value> = likely
+        let said = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
+        if self.mistakes.is_empty() {
+            return match answer["verdict"].as_str() {
+                Some("right" | "noise") => Judgement::Right,
+                _ => Judgement::False,
+            };
+        }
+        if answer["verdict"] == "right" || answer["verdict"] == "noise" {
+            return Judgement::Missed;
+        }
+        let found = self
+            .mistakes
             .iter()
-            .filter(|said| said["mistake"] != "noise")
-            .collect();
-        let is_said = |mistake: &&&Mistake| said.iter().any(|said| names(mistake, said));
-        let count = self.mistakes.iter().filter(is_said).count();
-        match (self.mistakes.is_empty(), is_right) {
-            (true, true) => Judgement::Right,
-            (true, false) => Judgement::False,
-            (false, true) if said.is_empty() => Judgement::Missed,
-            _ if count == self.mistakes.len() && said.len() == count => Judgement::Right,
-            _ if count == self.mistakes.len() => Judgement::TooMany,
-            _ if said.is_empty() => Judgement::Unknown,
-            _ if count == 0 => Judgement::False,
+            .filter(|mistake| is_said(mistake, said));
+        match found.count() {
+            count if count == self.mistakes.len() && said.len() == count => Judgement::Right,
+            count if count == self.mistakes.len() => Judgement::TooMany,
+            0 if said.is_empty() => Judgement::Unknown,
+            0 => Judgement::False,
             _ => Judgement::Partly,
         }
     }
 }
 
-/// Whether what is said names a mistake.
-fn names(mistake: &Mistake, said: &Value) -> bool {
-    let message = said["message"].as_str().unwrap_or_default();
+/// Whether a mistake is among those that were said.
+fn is_said(mistake: &Mistake, said: &[Value]) -> bool {
     mistake.name.split('|').any(|name| {
         let (id, object) = name.split_once(' ').unwrap_or((name, ""));
-        said["mistake"] == id && message.contains(object)
+        said.iter().any(|said| {
+            let sets = said["set"].as_array().map_or(&[][..], Vec::as_slice);
+            let message = said["message"].as_str().unwrap_or_default();
+            let is_set = |set: &Value| {
+                set.as_str()
+                    .and_then(|set| set.split_once('='))
+                    .is_some_and(|set| set.0 == name)
+            };
+            sets.iter().any(is_set) || (said["id"] == id && message.contains(object))
+        })
     })
 }
 
@@ -131,7 +164,7 @@ pub fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
         .collect()
 }
 
-/// The pictures with so many mistakes, of a size and a way of sampling.
+/// The pictures with so many mistakes, of a size and a way of sampling; also those in which a mistake is not seen.
 pub fn cases(count: usize, size: [u32; 2], (sampling, samples): (Sampling, u32)) -> Vec<Case> {
     let mut cases = Vec::new();
     for (scene, program) in [("figure", figure()), ("street", street())] {
@@ -142,12 +175,17 @@ pub fn cases(count: usize, size: [u32; 2], (sampling, samples): (Sampling, u32))
             ..program
         };
         for mistakes in sets(count) {
-            let names: Vec<&str> = mistakes.iter().map(|mistake| mistake.name).collect();
+            let names = mistakes
+                .iter()
+                .map(|mistake| mistake.name.split('|').next());
+            let names: Vec<&str> = names.flatten().collect();
+            let names = match names.as_slice() {
+                [] => "right".to_owned(),
+                names => names.join(", "),
+            };
             let title = format!(
-                "{scene} {}x{} {samples} {sampling:?}: {}",
-                size[0],
-                size[1],
-                names.join(", ")
+                "{scene} {}x{} {samples} {sampling:?}: {names}",
+                size[0], size[1],
             );
             let right = right.clone();
             cases.push(Case {

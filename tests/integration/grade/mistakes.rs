@@ -7,7 +7,7 @@ use super::textbook::{Encoding, Object, Program, Sampling, Shape};
 
 /// A mistake.
 pub struct Mistake {
-    /// What `diff` is to say, one of these between bars: a mistake's name, with the object's name behind it, or what it is to `--set`.
+    /// What `diff` is to say, one of these between bars: a mistake's id, with the object's name behind it, or what it is to `--set`.
     pub name: &'static str,
     /// Makes it.
     pub make: fn(&mut Program),
@@ -25,7 +25,9 @@ pub const OF_THE_PICTURE: &[Mistake] = &[
     row("upside_down", |p| {
         p.afterwards = Some(imageops::flip_vertical)
     }),
-    row("turned_180", |p| p.afterwards = Some(imageops::rotate180)),
+    row("turned_180|up_negated", |p| {
+        p.afterwards = Some(imageops::rotate180)
+    }),
     row("channels", |p| {
         p.afterwards = Some(|picture| each(picture, |[r, g, b]| [b, g, r]));
     }),
@@ -47,8 +49,8 @@ pub const OF_THE_PICTURE: &[Mistake] = &[
     }),
     row("gamma_22_averaged", |p| p.encoding = Encoding::Power(2.2)),
     row("averaged_encoded", |p| p.averages_encoded = true),
-    row("cut_off|truncated", |p| p.cuts_bytes = true),
-    row("half_pixel|shifted", |p| p.offset = 0.5),
+    row("cut_off", |p| p.cuts_bytes = true),
+    row("half_pixel", |p| p.offset = 0.5),
 ];
 
 /// Of the camera.
@@ -58,30 +60,21 @@ pub const OF_THE_CAMERA: &[Mistake] = &[
         p.roll = p.roll.to_degrees().round()
     }),
     row("roll_ignored|camera.roll", |p| p.roll = 0.0),
-    row(
-        "fov_of_width|camera.d|camera.fov|distance|field_of_view",
-        |p| p.is_wide = true,
-    ),
+    row("fov_of_width|camera.d|camera.fov", |p| p.is_wide = true),
     row("up_ignored|camera.up", |p| p.up = DVec3::Z),
-    row("behind|not_clipped", |p| p.sees_behind = true),
-    row("camera.d|camera.fov|distance|field_of_view", |p| {
-        p.distance *= 0.8
-    }),
-    row("camera.eye|eye", |p| p.eye += dvec3(0.4, -0.3, 0.5)),
-    row("camera.lookat|lookat", |p| {
-        p.lookat += dvec3(0.3, 0.2, -0.1)
-    }),
+    row("behind_seen", |p| p.sees_behind = true),
+    row("camera.d|camera.fov", |p| p.distance *= 0.8),
+    row("camera.eye", |p| p.eye += dvec3(0.4, -0.3, 0.5)),
+    row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
 ];
 
 /// Of the board.
 pub const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.is_truncated = true),
-    row("Floor.square|board_square", |p| {
-        board(p, |_, square, _| *square *= 2.0)
-    }),
-    row("Floor.y|board_height", |p| board(p, |y, _, _| *y -= 0.3)),
-    row("Floor.colors|colors", |p| {
+    row("Floor.square", |p| board(p, |_, square, _| *square *= 2.0)),
+    row("Floor.y", |p| board(p, |y, _, _| *y -= 0.3)),
+    row("Floor.colors", |p| {
         board(p, |_, _, color| *color = [192, 192, 160])
     }),
 ];
@@ -106,8 +99,8 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
             color,
         });
     }),
-    row("painter|depth_ignored", |p| p.is_painter = true),
-    row("box_corner|Crate.center|object_place Crate", |p| {
+    row("depth_ignored", |p| p.is_painter = true),
+    row("box_corner|Crate.center", |p| {
         change(p, "Crate", |shape| {
             if let Shape::Box(least, greatest) = shape {
                 let half = (*greatest - *least) / 2.0;
@@ -116,35 +109,27 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
             }
         });
     }),
-    row("Ball.color|color Ball", |p| color(p, "Ball", [128, 0, 0])),
-    row("Sail.color|color Sail", |p| color(p, "Sail", [0, 64, 255])),
-    row("Crate.color|color Crate", |p| {
-        color(p, "Crate", [255, 200, 40])
-    }),
-    row("Ball.center|object_place Ball", |p| {
-        shift(p, "Ball", dvec3(0.2, 0.3, -0.3))
-    }),
-    row("Crate.center|object_place Crate", |p| {
-        shift(p, "Crate", dvec3(-0.3, 0.1, 0.2))
-    }),
-    row("Sail.centroid|object_place Sail", |p| {
-        shift(p, "Sail", dvec3(-0.2, 0.3, 0.1))
-    }),
-    row("Ball.radius|object_size Ball", |p| {
+    row("Ball.color", |p| color(p, "Ball", [128, 0, 0])),
+    row("Sail.color", |p| color(p, "Sail", [0, 64, 255])),
+    row("Crate.color", |p| color(p, "Crate", [255, 200, 40])),
+    row("Ball.center", |p| shift(p, "Ball", dvec3(0.2, 0.3, -0.3))),
+    row("Crate.center", |p| shift(p, "Crate", dvec3(-0.3, 0.1, 0.2))),
+    row("Sail.centroid", |p| shift(p, "Sail", dvec3(-0.2, 0.3, 0.1))),
+    row("Ball.radius", |p| {
         change(p, "Ball", |shape| {
             if let Shape::Sphere(_, radius) = shape {
                 *radius *= 1.2;
             }
         });
     }),
-    row("Crate.size|object_size Crate", |p| {
+    row("Crate.size", |p| {
         change(p, "Crate", |shape| {
             if let Shape::Box(_, greatest) = shape {
                 greatest.y += 0.4;
             }
         });
     }),
-    row("Sail.spin|object_orientation Sail", |p| {
+    row("Sail.spin", |p| {
         change(p, "Sail", |shape| {
             if let Shape::Triangle(corners) = shape {
                 let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
@@ -152,7 +137,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
             }
         });
     }),
-    row("Sail.normal|object_orientation Sail", |p| {
+    row("Sail.normal", |p| {
         change(p, "Sail", |shape| {
             if let Shape::Triangle(corners) = shape {
                 let middle = (corners[0] + corners[1] + corners[2]) / 3.0;

@@ -1,0 +1,342 @@
+//! `grade`: a class's pictures against one scene.
+
+use std::{
+    fs, iter,
+    num::NonZero,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+};
+
+use pinhole::{
+    area::Area,
+    diagnostic::visible,
+    film::{self, Comparison, Picture},
+    grading::{Kind, Verdict},
+    numbers::short,
+    render::RenderError,
+    scene::Scene,
+};
+use rayon::{ThreadPoolBuilder, prelude::*};
+use serde_json::{Map, Value, json};
+
+use super::{
+    Status, Trouble,
+    args::{Format, GradeArgs},
+    diff,
+    grade_page::{Thumbnails, page},
+    input::{self, Input, shown},
+    interrupt::Interrupt,
+    judge::{self, Judge},
+    output, progress,
+};
+
+/// Judges them.
+pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    let input = Input::read(&args.scene, &args.overrides)?;
+    let Some(scene) = input.scene().scene else {
+        return Ok(Status::SceneErrors);
+    };
+    let paths = pictures(&args.pictures)?;
+    if let Some(folder) = &args.output {
+        let made = fs::create_dir_all(folder);
+        made.map_err(|error| Trouble(format!("cannot make {}: {error}", shown(folder))))?;
+    }
+    let cancel = interrupt.watch();
+    let graded = match graded(args, &scene, &paths, cancel) {
+        Ok(Ok(graded)) => graded,
+        Ok(Err(RenderError::Cancelled)) => return Ok(Status::Interrupted),
+        Ok(Err(error)) => return Err(Trouble(error.to_string())),
+        Err(error) => return Err(Trouble(format!("cannot start threads: {error}"))),
+    };
+    for (name, judged) in graded.iter().filter_map(Graded::judged) {
+        if let Some(warning) = judged.warning {
+            output::warning(&format!("{name}: {warning}"));
+        }
+    }
+    let lines: String = graded
+        .iter()
+        .map(|one| format!("{}\n", one.json()))
+        .collect();
+    match args.format.format {
+        Format::Human => output::to_people(&table(&graded)),
+        Format::Json => output::to_programs(lines.as_bytes())?,
+    }
+    if let Some(folder) = &args.output {
+        let html = page(&shown(&args.scene), &graded)
+            .map_err(|error| Trouble(format!("cannot make the page: {error}")))?;
+        for (name, text) in [
+            ("index.html", html),
+            ("grade.csv", csv(&graded)),
+            ("grade.jsonl", lines),
+        ] {
+            let path = folder.join(name);
+            fs::write(&path, text)
+                .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(&path))))?;
+        }
+    }
+    Ok(graded
+        .iter()
+        .map(Graded::status)
+        .max()
+        .unwrap_or(Status::Done))
+}
+
+/// A picture that was judged, or why it could not be.
+pub struct Graded {
+    pub name: String,
+    pub result: Result<Judged, String>,
+}
+
+/// What is known of a picture.
+pub struct Judged {
+    pub comparison: Comparison,
+    pub verdict: Verdict,
+    /// What there is for programs.
+    fields: Map<String, Value>,
+    /// What its format does to colours.
+    warning: Option<&'static str>,
+    /// Whether it carries the text that Pinhole writes into its pictures.
+    is_ours: bool,
+    /// If there will be a page.
+    pub thumbnails: Option<Thumbnails>,
+}
+
+/// Each picture by itself, on as many threads as there are processors.
+fn graded(
+    args: &GradeArgs,
+    scene: &Scene,
+    paths: &[PathBuf],
+    cancel: &AtomicBool,
+) -> Result<Result<Vec<Graded>, RenderError>, rayon::ThreadPoolBuildError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let judge = progress::watched(whole.pixels(), |done| {
+        Judge::new(scene, whole, cancel, &|more| {
+            done.fetch_add(more, Ordering::Relaxed);
+        })
+    });
+    let judge = match judge {
+        Ok(judge) => judge,
+        Err(error) => return Ok(Err(error)),
+    };
+    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = args.threads.map(usize::try_from);
+    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
+    let threads = threads.min(paths.len());
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+    Ok(progress::watched(paths.len() as u64, |done| {
+        let grade = |path: &PathBuf| {
+            let result = grade(path, scene, &judge, args, cancel)?;
+            done.fetch_add(1, Ordering::Relaxed);
+            let name = shown(path);
+            Ok(Graded { name, result })
+        };
+        pool.install(|| paths.par_iter().map(grade).collect())
+    }))
+}
+
+/// A picture judged, or why it cannot be.
+fn grade(
+    path: &Path,
+    scene: &Scene,
+    whole: &Judge,
+    args: &GradeArgs,
+    cancel: &AtomicBool,
+) -> Result<Result<Judged, String>, RenderError> {
+    let (picture, part, is_ours) = match read(path, scene) {
+        Ok(read) => read,
+        Err(error) => return Ok(Err(error)),
+    };
+    let own;
+    let judge = if part == whole.part {
+        whole
+    } else {
+        own = Judge::new(scene, part, cancel, &|_| {})?;
+        &own
+    };
+    let steps = picture.rounding.steps();
+    let comparison = match judge.compare(&picture, steps) {
+        Ok(comparison) => comparison,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let verdict = judge.judge(&picture, &comparison, cancel)?;
+    let thumbnails = match args.output {
+        Some(_) => {
+            let (film, exact) = (&picture.film, &judge.exact.film);
+            match Thumbnails::new(film, exact, judge.tolerance(steps)) {
+                Ok(thumbnails) => Some(thumbnails),
+                Err(error) => return Ok(Err(error.to_string())),
+            }
+        }
+        None => None,
+    };
+    let mut fields = diff::json(
+        [&shown(path), &shown(&args.scene)],
+        [[part.width, part.height]; 2],
+        Some(&comparison),
+        steps,
+        Some(&verdict),
+    );
+    fields.insert("rendered_by_pinhole".to_owned(), json!(is_ours));
+    Ok(Ok(Judged {
+        comparison,
+        verdict,
+        fields,
+        warning: picture.coding.warning(),
+        is_ours,
+        thumbnails,
+    }))
+}
+
+/// A picture, the part of the scene that it shows, and whether Pinhole rendered it.
+fn read(path: &Path, scene: &Scene) -> Result<(Picture, Area, bool), String> {
+    let bytes = input::whole(path).map_err(|error| error.to_string())?;
+    let picture = film::read_picture(&bytes).map_err(|error| error.to_string())?;
+    let part = judge::part(&picture, scene).map_err(|misfit| format!("it {misfit}"))?;
+    Ok((picture, part, film::read_recipe(&bytes).is_ok()))
+}
+
+/// The pictures, and those in folders by name.
+fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
+    let mut pictures = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            pictures.push(path.clone());
+            continue;
+        }
+        let unreadable = |error| Trouble(format!("cannot read {}: {error}", shown(path)));
+        let mut found = Vec::new();
+        for entry in fs::read_dir(path).map_err(unreadable)? {
+            let entry = entry.map_err(unreadable)?.path();
+            let is_picture = entry
+                .extension()
+                .is_some_and(|ending| ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own)));
+            if is_picture && entry.is_file() {
+                found.push(entry);
+            }
+        }
+        found.sort();
+        pictures.extend(found);
+    }
+    match pictures.is_empty() {
+        true => Err(Trouble("there are no pictures in what is named".to_owned())),
+        false => Ok(pictures),
+    }
+}
+
+/// What pictures in a folder end with.
+const ENDINGS: [&str; 14] = [
+    "png", "exr", "jpg", "jpeg", "ppm", "pgm", "pnm", "pam", "bmp", "tif", "tiff", "webp", "gif",
+    "pbm",
+];
+
+impl Graded {
+    fn judged(&self) -> Option<(&str, &Judged)> {
+        let judged = self.result.as_ref().ok()?;
+        Some((&self.name, judged))
+    }
+
+    fn status(&self) -> Status {
+        match &self.result {
+            Err(_) => Status::Trouble,
+            Ok(judged) => match judged.verdict.kind {
+                Kind::Right | Kind::Noise => Status::Done,
+                Kind::Wrong | Kind::Unknown => Status::SceneErrors,
+            },
+        }
+    }
+
+    fn json(&self) -> Value {
+        let mut fields = Map::new();
+        fields.insert("file".to_owned(), json!(self.name));
+        match &self.result {
+            Err(error) => {
+                fields.insert("error".to_owned(), json!(error));
+            }
+            Ok(judged) => fields.extend(judged.fields.clone()),
+        }
+        Value::Object(fields)
+    }
+
+    /// Its cells in a table: name, verdict, error, samples.
+    pub fn cells(&self) -> [String; 4] {
+        match &self.result {
+            Err(error) => [
+                self.name.clone(),
+                format!("not compared: {error}"),
+                String::new(),
+                String::new(),
+            ],
+            Ok(judged) => {
+                let flag = if judged.is_ours {
+                    " (rendered by Pinhole)"
+                } else {
+                    ""
+                };
+                let samples = judged.verdict.samples.filter(|samples| *samples < 1e5);
+                [
+                    self.name.clone(),
+                    judged.verdict.line() + flag,
+                    format!("{:.5}", judged.comparison.rmse),
+                    samples.map_or_else(String::new, |samples| {
+                        short((10.0 * samples).round() / 10.0)
+                    }),
+                ]
+            }
+        }
+    }
+}
+
+fn table(graded: &[Graded]) -> String {
+    let rows: Vec<[String; 4]> = graded
+        .iter()
+        .map(|one| one.cells().map(|cell| visible(&cell).into_owned()))
+        .collect();
+    let widest = rows
+        .iter()
+        .map(|row| row[0].chars().count())
+        .max()
+        .unwrap_or(0)
+        .max("picture".len());
+    let line = |[name, verdict, error, samples]: [&str; 4]| {
+        format!("{name:<widest$}  {error:>8}  {samples:>8}  {verdict}\n")
+    };
+    let head = line(["picture", "verdict", "error", "samples"]);
+    let rows = rows
+        .iter()
+        .map(|row| line(row.each_ref().map(String::as_str)));
+    iter::once(head).chain(rows).collect()
+}
+
+fn csv(graded: &[Graded]) -> String {
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    let row = |one: &Graded| {
+        let [name, _, error, samples] = one.cells();
+        let (verdict, line, set) = match &one.result {
+            Err(error) => ("error", error.clone(), String::new()),
+            Ok(judged) => {
+                let sets = judged
+                    .verdict
+                    .mistakes
+                    .iter()
+                    .flat_map(|mistake| &mistake.set);
+                let sets: Vec<_> = sets.map(String::as_str).collect();
+                (
+                    judged.verdict.kind.word(),
+                    judged.verdict.line(),
+                    sets.join(" "),
+                )
+            }
+        };
+        format!(
+            "{},{verdict},{error},{samples},{},{}\n",
+            quoted(&name),
+            quoted(&line),
+            quoted(&set)
+        )
+    };
+    let rows = graded.iter().map(row);
+    iter::once("file,verdict,rmse,samples_per_pixel,line,set\n".to_owned())
+        .chain(rows)
+        .collect()
+}

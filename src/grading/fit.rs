@@ -1,0 +1,233 @@
+//! Least absolute differences: numbers for which a model comes nearest to a picture.
+//!
+//! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
+//! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can.
+
+/// A move by less than this part of a step is the last one.
+const CLOSE: f64 = 0.01;
+
+/// Numbers that were fitted.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The numbers.
+    pub numbers: Vec<f64>,
+    /// The sum of the absolute differences.
+    pub left: f64,
+    /// How far each may be off: a standard deviation, if an error is that of rounding.
+    pub errors: Vec<f64>,
+}
+
+/// The sum of absolute differences.
+pub fn absolute(differences: &[f64]) -> f64 {
+    differences.iter().map(|d| d.abs()).sum()
+}
+
+/// What is to be small: the sum of squares of what is below a bend, and of absolute differences beyond it (Huber, Robust estimation of a location
+/// parameter, 1964).
+fn loss(differences: &[f64], bend: f64) -> f64 {
+    differences.iter().map(|d| weight(*d, bend) * d * d).sum()
+}
+
+/// The weight of a square.
+fn weight(difference: f64, bend: f64) -> f64 {
+    (bend / difference.abs()).min(1.0)
+}
+
+/// What a model makes of numbers.
+pub trait Trial {
+    /// Its differences from a picture.
+    fn differences(&self) -> Vec<f64>;
+
+    /// The standard deviations that are to be expected of them.
+    fn deviations(&self) -> Vec<f64>;
+}
+
+/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives none for numbers that cannot be.
+///
+/// By squares first, which have one valley; then in standard deviations, of which more than one counts by its absolute value, so that what the numbers
+/// cannot explain does not draw them away from what they can.
+pub fn fit<T: Trial>(
+    start: Vec<f64>,
+    steps: &[f64],
+    rounds: [usize; 2],
+    trial: &dyn Fn(&[f64]) -> Option<T>,
+) -> Option<Fitted> {
+    let even = vec![1.0; trial(&start)?.differences().len()];
+    let mut best = round(start, steps, rounds[0], f64::INFINITY, &even, trial)?;
+    if rounds[1] > 0 {
+        let deviations = trial(&best.0)?.deviations();
+        best = round(best.0, steps, rounds[1], 1.0, &deviations, trial)?;
+    }
+    let (numbers, normal) = best;
+    let left = absolute(&trial(&numbers)?.differences());
+    let errors = (0..numbers.len())
+        .map(|i| {
+            let mut unit = vec![0.0; numbers.len()];
+            unit[i] = 1.0;
+            let inverse = solve(normal.clone(), unit).map_or(0.0, |column| column[i].max(0.0));
+            steps[i].abs() * inverse.sqrt()
+        })
+        .collect();
+    Some(Fitted {
+        numbers,
+        left,
+        errors,
+    })
+}
+
+/// Rounds of Levenberg and Marquardt's method from a start: the numbers, and the normal matrix there.
+fn round<T: Trial>(
+    mut numbers: Vec<f64>,
+    steps: &[f64],
+    rounds: usize,
+    bend: f64,
+    deviations: &[f64],
+    trial: &dyn Fn(&[f64]) -> Option<T>,
+) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let count = numbers.len();
+    let differences = |numbers: &[f64]| {
+        let differences = trial(numbers)?.differences().into_iter();
+        let scaled = differences
+            .zip(deviations)
+            .map(|(difference, deviation)| difference / deviation);
+        Some(scaled.collect::<Vec<f64>>())
+    };
+    let mut now = differences(&numbers)?;
+    let mut left = loss(&now, bend);
+    let mut normal = vec![vec![0.0; count]; count];
+    let mut damping = 1e-3;
+    let mut slopes: Vec<Vec<f64>> = Vec::new();
+    for at in 0..rounds {
+        // Slopes serve for two rounds: to find them takes most of the time.
+        if at % 2 == 0 {
+            slopes.clear();
+        }
+        for i in slopes.len()..count {
+            let varied = |by: f64| {
+                let mut other = numbers.clone();
+                other[i] += by;
+                Some((by, differences(&other)?))
+            };
+            let (by, other) = varied(steps[i]).or_else(|| varied(-steps[i]))?;
+            // In units of the step, so that all numbers are alike.
+            let sign = steps[i] / by;
+            let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
+            slopes.push(slope.collect::<Vec<_>>());
+        }
+        let weights: Vec<f64> = now.iter().map(|d| weight(*d, bend)).collect();
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            let terms = a.iter().zip(b).zip(&weights);
+            terms.map(|((a, b), weight)| a * b * weight).sum()
+        };
+        for i in 0..count {
+            for j in 0..count {
+                normal[i][j] = product(&slopes[i], &slopes[j]);
+            }
+        }
+        let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
+        let mut is_moving = false;
+        for _ in 0..4 {
+            let mut damped = normal.clone();
+            for (i, row) in damped.iter_mut().enumerate() {
+                row[i] += damping * row[i] + 1e-12;
+            }
+            let Some(moves) = solve(damped, gradient.clone()) else {
+                break;
+            };
+            let moved = numbers.iter().zip(steps).zip(&moves);
+            let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
+            if let Some(other) = differences(&moved)
+                && loss(&other, bend) < left
+            {
+                (left, now, numbers) = (loss(&other, bend), other, moved);
+                damping *= 0.1;
+                is_moving = moves.iter().any(|by| by.abs() > CLOSE);
+                break;
+            }
+            damping *= 10.0;
+        }
+        if !is_moving {
+            break;
+        }
+    }
+    Some((numbers, normal))
+}
+
+/// Solves a small system of linear equations by elimination with the largest pivot.
+fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+    let count = right.len();
+    for i in 0..count {
+        let pivot = (i..count).max_by(|&a, &b| rows[a][i].abs().total_cmp(&rows[b][i].abs()))?;
+        rows.swap(i, pivot);
+        right.swap(i, pivot);
+        if rows[i][i].abs() < 1e-300 {
+            return None;
+        }
+        for j in i + 1..count {
+            let factor = rows[j][i] / rows[i][i];
+            let (above, below) = rows.split_at_mut(j);
+            for (to, from) in below[0][i..].iter_mut().zip(&above[i][i..]) {
+                *to -= factor * from;
+            }
+            right[j] -= factor * right[i];
+        }
+    }
+    for i in (0..count).rev() {
+        for k in i + 1..count {
+            right[i] -= rows[i][k] * right[k];
+        }
+        right[i] /= rows[i][i];
+    }
+    right.iter().all(|x| x.is_finite()).then_some(right)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Line(Vec<f64>);
+
+    impl Trial for Line {
+        fn differences(&self) -> Vec<f64> {
+            self.0.clone()
+        }
+
+        fn deviations(&self) -> Vec<f64> {
+            vec![1e-3; self.0.len()]
+        }
+    }
+
+    #[test]
+    fn a_line_is_found_among_points_of_which_some_are_elsewhere() {
+        let points: Vec<f64> = (0..40)
+            .map(|x| {
+                if x % 8 == 3 {
+                    9.0
+                } else {
+                    2.0 + 0.25 * f64::from(x)
+                }
+            })
+            .collect();
+        let trial = |numbers: &[f64]| {
+            let line = |(x, y): (usize, &f64)| numbers[0] + numbers[1] * x as f64 - y;
+            Some(Line(points.iter().enumerate().map(line).collect()))
+        };
+        let fitted = fit(vec![0.0, 0.0], &[0.1, 0.1], [30, 30], &trial).unwrap();
+        assert!(
+            (fitted.numbers[0] - 2.0).abs() < 0.02 && (fitted.numbers[1] - 0.25).abs() < 0.002,
+            "{fitted:?}"
+        );
+    }
+
+    #[test]
+    fn a_system_without_a_solution_has_none() {
+        assert_eq!(
+            solve(vec![vec![0.0, 2.0], vec![4.0, 0.0]], vec![2.0, 4.0]),
+            Some(vec![1.0, 1.0])
+        );
+        assert_eq!(
+            solve(vec![vec![0.0, 0.0], vec![0.0, 0.0]], vec![1.0, 1.0]),
+            None
+        );
+    }
+}

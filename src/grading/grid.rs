@@ -1,0 +1,136 @@
+//! A grid over the part of a picture that is compared, of cells of some pixels each: a coarse one to search on, the pixels themselves to judge on.
+//!
+//! The cells are the pixels of a smaller picture of the scene, around the same middle, so whatever makes pictures makes that of the cells.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::{
+    area::Area,
+    math::Angle,
+    scene::{Image, Lens, Scene},
+};
+
+/// The grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// The pixels along a cell's side.
+    pub factor: u32,
+    /// The cells that lie in the part, of those of the whole picture.
+    pub cells: Area,
+    /// How many cells the whole picture has in a row and in a column.
+    size: [u32; 2],
+    /// What is left over of the whole picture on each side, in pixels.
+    margin: DVec2,
+    /// The part's corner.
+    corner: DVec2,
+}
+
+impl Grid {
+    /// The grid over a part of a picture, of which the longer side has so many cells at most.
+    pub fn new(image: &Image, part: Area, longest: u32) -> Self {
+        let of = |factor: u32| {
+            let size = [image.width / factor, image.height / factor];
+            let left = |pixels: u32, cells: u32| f64::from(pixels - cells * factor) / 2.0;
+            let margin = DVec2::new(left(image.width, size[0]), left(image.height, size[1]));
+            let within = |start: u32, length: u32, margin: f64| {
+                let cell = |at: u32| (f64::from(at) - margin) / f64::from(factor);
+                let first = cell(start).ceil().max(0.0) as u32;
+                first..(cell(start + length).floor() as u32).max(first)
+            };
+            let columns = within(part.x, part.width, margin.x);
+            let rows = within(part.y, part.height, margin.y);
+            Self {
+                factor,
+                cells: Area {
+                    x: columns.start,
+                    y: rows.start,
+                    width: columns.len() as u32,
+                    height: rows.len() as u32,
+                },
+                size,
+                margin,
+                corner: DVec2::new(f64::from(part.x), f64::from(part.y)),
+            }
+        };
+        let factor = part.width.max(part.height).div_ceil(longest).max(1);
+        let factor = factor.min(image.width).min(image.height);
+        Some(of(factor))
+            .filter(|grid| grid.count() > 0)
+            .unwrap_or_else(|| of(1))
+    }
+
+    /// How many cells lie in the part.
+    pub fn count(&self) -> usize {
+        self.cells.pixels() as usize
+    }
+
+    /// How many of them lie in a row.
+    pub fn width(&self) -> usize {
+        self.cells.width as usize
+    }
+
+    /// How many cells the whole picture has in a row and in a column.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The pixel of the whole picture in the middle of the cell of an index.
+    pub fn middle(&self, index: usize) -> DVec2 {
+        let (x, y) = (index % self.width(), index / self.width());
+        let cell = DVec2::new(
+            f64::from(self.cells.x) + x as f64,
+            f64::from(self.cells.y) + y as f64,
+        );
+        self.margin + (cell + 0.5) * f64::from(self.factor)
+    }
+
+    /// The scene whose pixels the cells are, with one more column and row if that is wished, half of it on each side.
+    pub fn scene(&self, scene: &Scene, more: bool) -> Scene {
+        let mut scene = scene.clone();
+        if self.factor == 1 && !more {
+            return scene;
+        }
+        let (image, camera) = (&mut scene.image, &mut scene.camera);
+        let [width, height] = [image.width, image.height].map(f64::from);
+        let tangent = |angle: Angle| libm::tan((angle.degrees.to_radians() + angle.radians) / 2.0);
+        let window = match camera.lens {
+            Lens::Distance(d) => camera.view_height / d,
+            Lens::Fov(angle) => 2.0 * tangent(angle),
+            Lens::HorizontalFov(angle) => 2.0 * tangent(angle) * height / width,
+        };
+        [image.width, image.height] = self.size.map(|cells| cells + u32::from(more));
+        camera.lens = Lens::Distance(1.0);
+        camera.view_height = window * f64::from(image.height * self.factor) / height;
+        scene
+    }
+
+    /// The means of the part's pixels, told by column and row in it.
+    pub fn reduce(&self, pixel: impl Fn(u32, u32) -> [f64; 3]) -> Vec<[f64; 3]> {
+        let factor = f64::from(self.factor);
+        // From where to where a cell reaches, and the pixels that it has a share of.
+        let reach = |cell: u32, margin: f64, corner: f64| {
+            let start = margin + f64::from(cell) * factor - corner;
+            let end = start + factor;
+            (start, end, start.floor() as u32..end.ceil() as u32)
+        };
+        let share = |pixel: u32, (start, end, _): &(f64, f64, Range<u32>)| {
+            (f64::from(pixel) + 1.0).min(*end) - f64::from(pixel).max(*start)
+        };
+        let cell = |(x, y): (u32, u32)| {
+            let columns = reach(x, self.margin.x, self.corner.x);
+            let rows = reach(y, self.margin.y, self.corner.y);
+            let mut sum = [0.0; 3];
+            for row in rows.2.clone() {
+                for column in columns.2.clone() {
+                    let weight = share(row, &rows) * share(column, &columns) / (factor * factor);
+                    let pixel = pixel(column, row);
+                    sum = [0, 1, 2].map(|i| sum[i] + weight * pixel[i]);
+                }
+            }
+            sum
+        };
+        self.cells.iter().map(cell).collect()
+    }
+}

@@ -1,0 +1,318 @@
+//! How likely a picture is if a model of it is right.
+//!
+//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that of one sample within it and r² that of rounding to a step,
+//! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
+//! errors are taken to have Student's distribution with four degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
+//! 1989). Of two
+//! models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz, Estimating the
+//! dimension of a model, 1978. It is the only rule of significance here.
+
+use std::sync::OnceLock;
+
+use super::{candidate::Curve, textbook::Moments};
+use crate::color::{linear_to_srgb, srgb_to_linear};
+
+/// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
+pub const STEP: f64 = 1.0 / 255.0;
+
+/// Degrees of freedom of errors.
+const FREEDOM: f64 = 4.0;
+
+/// Fitting goes on for so many rounds: each leaves less than half of what is missing.
+const ROUNDS: usize = 8;
+
+/// The variance below which a pixel shows one colour: a part of 1e-9 of it may be another.
+pub const FLAT: f64 = 1e-9;
+
+/// What a picture should show, if something is right.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Means and variances.
+    pub moments: Moments,
+    /// The variances of the means themselves; empty if they are exact.
+    pub doubt: Vec<[f64; 3]>,
+    /// By how much bytes are cut off on an average, in steps.
+    pub cut: f64,
+    /// How light is encoded: what is seen is compared as the light that was encoded so.
+    pub curve: Curve,
+}
+
+/// How well a model fits.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// The logarithm of the likelihood.
+    pub likelihood: f64,
+    /// The number of independent samples in a pixel that make as much noise.
+    pub samples: f64,
+    /// How far each pixel is off, in standard deviations of its error: the sum of the squares of its channels.
+    pub off: Vec<f64>,
+    /// The squared difference.
+    pub squares: f64,
+    /// The part of it that noise of so many samples makes.
+    pub noise: f64,
+}
+
+impl Score {
+    /// What is to be small, with so many numbers fitted to so many pixels.
+    pub fn cost(&self, fitted: usize, pixels: usize) -> f64 {
+        0.5 * fitted as f64 * libm::log(pixels as f64) - self.likelihood
+    }
+}
+
+/// The standard deviation of light that a step of the encoding of what is seen in its place rounds off.
+fn rounding(light: f64, curve: Curve) -> f64 {
+    /// Lights in steps of this are told apart: none of them has twice the rounding of the one before.
+    const LIGHTS: usize = 4096;
+    static ROUNDINGS: [OnceLock<Vec<f64>>; Curve::ALL.len()] =
+        [const { OnceLock::new() }; Curve::ALL.len()];
+    let of = |at: usize| {
+        let encoded = linear_to_srgb(curve.seen(at as f64 / LIGHTS as f64));
+        let light = |encoded: f64| curve.light(srgb_to_linear(encoded.max(0.0)));
+        (light(encoded + STEP / 2.0) - light(encoded - STEP / 2.0)) / libm::sqrt(12.0)
+    };
+    let roundings = ROUNDINGS[curve as usize].get_or_init(|| (0..=LIGHTS).map(of).collect());
+    roundings[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
+}
+
+/// What is known of a pixel: its difference, its variance, and that of rounding and of the model itself.
+#[derive(Clone, Copy)]
+struct Known {
+    difference: [f64; 3],
+    variance: [f64; 3],
+    rounding: [f64; 3],
+}
+
+/// Judges a model of a picture of so many pixels in a row.
+pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
+    let mut last = ([f64::NAN; 3], [0.0; 3]);
+    let known = |at: usize| {
+        let (mean, variance) = (model.moments.mean[at], model.moments.variance[at]);
+        let variance = variance.map(|one| if one < FLAT { 0.0 } else { one });
+        if last.0 != mean {
+            last = (
+                mean,
+                mean.map(|light| {
+                    let deviation = rounding(light, model.curve);
+                    deviation * deviation
+                }),
+            );
+        }
+        Known {
+            difference: [0, 1, 2].map(|i| model.difference(seen[at][i], mean[i], variance)),
+            variance,
+            rounding: match model.doubt.get(at) {
+                Some(doubt) => [0, 1, 2].map(|i| last.1[i] + doubt[i]),
+                None => last.1,
+            },
+        }
+    };
+    let known: Vec<Known> = (0..seen.len()).map(known).collect();
+    // What pixels have that are of one colour and right is counted once.
+    let is_plain = |one: &Known| {
+        one.variance == [0.0; 3]
+            && one
+                .difference
+                .iter()
+                .zip(one.rounding)
+                .all(|(d, r)| d * d <= r)
+    };
+    let others: Vec<(usize, Known)> = known
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(_, one)| !is_plain(one))
+        .collect();
+    let plain: f64 = known
+        .iter()
+        .filter(|one| is_plain(one))
+        .map(|one| one.density(0.0))
+        .sum();
+    // 1/n, which is 1 at most.
+    let mut noise: f64 = 1.0;
+    for _ in 0..ROUNDS {
+        let (mut above, mut below) = (0.0, 0.0);
+        for (_, one) in &others {
+            let weight = (FREEDOM + 3.0) / (FREEDOM + one.off(noise));
+            for i in 0..3 {
+                let total = one.variance[i] * noise + one.rounding[i];
+                let part = one.variance[i] / (total * total);
+                above += part * (weight * one.difference[i] * one.difference[i] - total);
+                below += part * one.variance[i];
+            }
+        }
+        if below > 0.0 {
+            noise = (noise + above / below).clamp(1e-6, 1.0);
+        }
+    }
+    // Densities are told of the picture's own light.
+    let stretch = |light: &f64| {
+        let own = rounding(model.curve.seen(*light), Curve::Right);
+        libm::log(own / rounding(*light, model.curve))
+    };
+    let mut likelihood = plain
+        - match model.curve {
+            Curve::Right => 0.0,
+            _ => seen.iter().flatten().map(stretch).sum::<f64>(),
+        };
+    let mut off = vec![0.0; known.len()];
+    let (mut squares, mut expected) = (0.0, 0.0);
+    // Of pixels of several colours: the variances of a sample, and the squared differences beyond rounding.
+    let (mut of_samples, mut beyond) = (0.0, 0.0);
+    for (at, one) in &others {
+        likelihood += one.density(noise);
+        off[*at] = one.off(noise);
+        for i in 0..3 {
+            let square = one.difference[i] * one.difference[i];
+            squares += square;
+            expected += one.variance[i] * noise + one.rounding[i];
+            if one.variance[i] > 0.0 {
+                of_samples += one.variance[i];
+                beyond += square - one.rounding[i];
+            }
+        }
+    }
+    let samples = match beyond > 1e-6 * of_samples {
+        true => (of_samples / beyond).max(1.0),
+        false => 1e6,
+    };
+    Score {
+        likelihood,
+        samples,
+        off,
+        squares,
+        noise: expected.min(squares),
+    }
+}
+
+impl Known {
+    /// The sum of the squares in standard deviations, if an error has this share of a sample's variance.
+    fn off(&self, noise: f64) -> f64 {
+        let channel = |i: usize| {
+            self.difference[i] * self.difference[i] / (self.variance[i] * noise + self.rounding[i])
+        };
+        (0..3).map(channel).sum()
+    }
+
+    /// The logarithm of the density, but for a number that all have.
+    fn density(&self, noise: f64) -> f64 {
+        let volume: f64 = (0..3)
+            .map(|i| self.variance[i] * noise + self.rounding[i])
+            .product();
+        -0.5 * libm::log(volume) - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.off(noise) / FREEDOM)
+    }
+}
+
+impl Model {
+    /// The differences in light of what is seen from what is expected, of each channel of each pixel.
+    pub fn differences(&self, seen: &[[f64; 3]]) -> Vec<f64> {
+        let Moments { mean, variance } = &self.moments;
+        let pixels = seen.iter().zip(mean).zip(variance);
+        let differences = pixels.flat_map(|((seen, mean), variance)| {
+            [0, 1, 2].map(|i| self.difference(seen[i], mean[i], *variance))
+        });
+        differences.collect()
+    }
+
+    /// The standard deviations that these may have, as the mean of a single sample: an edge may be one pixel off.
+    pub fn deviations(&self, width: usize) -> Vec<f64> {
+        let around = around(&self.moments.variance, width);
+        let deviations = around.iter().enumerate().flat_map(|(at, variance)| {
+            let doubt = self.doubt.get(at).copied().unwrap_or_default();
+            [0, 1, 2].map(|i| (variance[i] + doubt[i] + STEP * STEP).sqrt())
+        });
+        deviations.collect()
+    }
+
+    fn difference(&self, seen: f64, mean: f64, variance: [f64; 3]) -> f64 {
+        if self.cut == 0.0 {
+            return seen - mean;
+        }
+        let steps = (linear_to_srgb(seen) - linear_to_srgb(mean)) / STEP;
+        // A colour alone is cut off or not, by the last bit of its number; mixtures lose half a step.
+        let is_alone = variance == [0.0; 3];
+        let from = if is_alone {
+            steps.clamp(2.0 * self.cut, 0.0)
+        } else {
+            self.cut
+        };
+        (steps - from) * rounding(mean, self.curve) * libm::sqrt(12.0)
+    }
+}
+
+/// The greatest variance of each cell and its eight neighbours.
+pub fn around(variances: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
+    let most = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|i| f64::max(one[i], other[i]));
+    let in_rows: Vec<_> = variances
+        .chunks_exact(width)
+        .flat_map(|row| {
+            (0..width).map(move |x| {
+                let near = &row[x.saturating_sub(1)..(x + 2).min(width)];
+                near.iter().copied().fold([0.0; 3], most)
+            })
+        })
+        .collect();
+    let height = variances.len() / width;
+    (0..variances.len())
+        .map(|at| {
+            let (x, y) = (at % width, at / width);
+            let rows = y.saturating_sub(1)..(y + 2).min(height);
+            rows.map(|y| in_rows[y * width + x]).fold([0.0; 3], most)
+        })
+        .collect()
+}
+
+/// The pixels that no sampling explains: those of one colour that show another.
+#[derive(Debug, Default)]
+pub struct Strays {
+    /// Those with more of their colour around them. An edge that is off by less than half a pixel does not reach so far.
+    pub inside: Vec<usize>,
+    /// How many there are beside edges.
+    beside: usize,
+    /// How many pixels show several colours.
+    edges: usize,
+}
+
+impl Strays {
+    /// Those of a picture.
+    pub fn new(seen: &[[f64; 3]], model: &Model, width: usize) -> Self {
+        /// In steps: half of one is rounding, and half of that another way to decode.
+        const WRONG: f64 = 0.75;
+        /// In standard deviations of a model that is sampled itself.
+        const DOUBTS: f64 = 4.0;
+        let variances = &model.moments.variance;
+        let around = around(variances, width);
+        let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
+        let is_off = |at: usize| {
+            let doubt = model.doubt.get(at).copied().unwrap_or_default();
+            (0..3).any(|i| {
+                let mean = model.moments.mean[at][i];
+                let off = model.difference(seen[at][i], mean, variances[at]).abs();
+                // The root of 12 standard deviations of rounding are a step.
+                let step = libm::sqrt(12.0) * rounding(mean, model.curve);
+                off > WRONG * step + DOUBTS * doubt[i].sqrt()
+            })
+        };
+        let mut strays = Self::default();
+        for at in 0..seen.len() {
+            if !is_flat(&variances[at]) {
+                strays.edges += 1;
+            } else if is_off(at) {
+                match is_flat(&around[at]) {
+                    true => strays.inside.push(at),
+                    false => strays.beside += 1,
+                }
+            }
+        }
+        strays
+    }
+
+    /// Whether there are none at all.
+    pub fn is_empty(&self) -> bool {
+        self.inside.is_empty() && self.beside == 0
+    }
+
+    /// Whether there are no more than edges leave that are off by a fiftieth of a pixel.
+    pub fn is_negligible(&self) -> bool {
+        self.inside.is_empty() && self.beside * 50 <= self.edges
+    }
+}
