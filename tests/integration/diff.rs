@@ -450,11 +450,7 @@ fn what_cannot_be_compared_is_trouble() {
             2,
             "cannot read empty.EXR: it is no",
         ),
-        (
-            &["a.jpg", "a.png"],
-            2,
-            "it begins as JPEG files do, but is",
-        ),
+        (&["a.jpg", "a.png"], 2, "it begins as JPEG files do, but is"),
         (
             &["nan.exr", "a.png"],
             2,
