@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    candidate::{Average, Candidate, Cause, Curve, Look, Named},
+    candidate::{Candidate, Cause, Named},
+    light::{Average, Curve, Look},
     textbook::{Behind, Squares, Visible},
 };
 use crate::{

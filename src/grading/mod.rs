@@ -3,16 +3,23 @@
 //! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: a verdict: right, right but for sampling noise, wrong by mistakes that
 //! are named, or wrong for an unknown reason; and how far each object is off.
 //!
-//! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong.
-//! `textbook` makes its picture on a `grid`, `score` says how likely somebody's picture is then, `fit` finds numbers, and `select` chooses. `words` says it.
-//! The pictures of candidates are made with a few samples in plain `f64`; the null model, noise, is judged by the exact picture and its exact variance.
+//! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
+//! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
+//! where it behaves as no scene can say; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search` holds
+//! the picture, `select` chooses mistakes, a `patch` being the last of them, and `words` says them.
 
 mod candidate;
 mod fit;
 mod grid;
+mod layout;
+mod light;
+mod made;
 mod mistakes;
+mod numbers;
 mod parameters;
+mod patch;
 mod score;
+mod search;
 mod select;
 mod textbook;
 mod words;
@@ -29,9 +36,11 @@ use crate::{
 };
 
 use self::{
-    candidate::{Average, Candidate, Curve, exact_moments},
+    candidate::Candidate,
+    light::{Average, Curve},
+    made::exact_moments,
     score::{Model, Strays, score},
-    select::{Found, Search},
+    search::{Found, Search},
     textbook::Moments,
 };
 
@@ -172,8 +181,8 @@ fn judged(
     let strays = Strays::new(film.pixels(), &model, width);
     let found = match strays.is_empty() {
         // All that differs lies where colours meet. Only what shows there can be wrong.
-        true => search.with_edges(Candidate::right(scene))?,
-        false => search.run()?,
+        true => select::with_edges(&search, Candidate::right(scene))?,
+        false => select::run(&search)?,
     };
     let mut verdict = match found {
         Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
@@ -236,7 +245,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         ObjectVerdict {
             is_right: own.shape == other.shape
                 && before.is_drawn[object]
-                && off < select::HALF_PIXEL,
+                && off < words::HALF_PIXEL,
             off: if before.is_drawn[object] { off } else { 0.0 },
             ..ObjectVerdict::right(scene, object)
         }

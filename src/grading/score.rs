@@ -9,11 +9,11 @@
 
 use std::sync::OnceLock;
 
-use super::{candidate::Curve, textbook::Moments};
+use super::{
+    light::{Curve, STEP},
+    textbook::Moments,
+};
 use crate::color::{linear_to_srgb, srgb_to_linear};
-
-/// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
-pub const STEP: f64 = 1.0 / 255.0;
 
 /// Degrees of freedom of errors.
 const FREEDOM: f64 = 4.0;

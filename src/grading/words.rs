@@ -5,13 +5,15 @@ use glam::{DVec2, DVec3};
 use super::{
     candidate::{Candidate, Cause, Named},
     parameters::Parameter,
-    select::HALF_PIXEL,
     textbook::{Axes, vertices},
 };
 use crate::{
     numbers::{found_near, short},
     scene::{Scene, Shape},
 };
+
+/// A move of less than this, in pixels, is not named.
+pub const HALF_PIXEL: f64 = 0.5;
 
 /// A parameter with other numbers, as a mistake.
 pub fn numbers(scene: &Scene, parameter: &Parameter, numbers: Vec<f64>) -> Named {

@@ -1,0 +1,157 @@
+//! Numbers of the scene that may be others: those that come nearest to a picture.
+//!
+//! A start on the tiny grid leads to a fit there, and that to one on the coarse grid.
+
+use super::{
+    candidate::{Candidate, Cause},
+    fit::{Trial, absolute},
+    made::Made,
+    parameters::{self, Owner, Parameter},
+    score::Model,
+    search::{Found, Search, TINY, steps},
+    words,
+};
+use crate::color::{Color, linear_to_srgb};
+
+/// From so many starts numbers are fitted on the tiny grid.
+const STARTS: usize = 3;
+
+/// Of so many parameters of objects, and of so many others, numbers are fitted on the coarse grid.
+const FITTED: usize = 4;
+
+/// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
+pub fn numbers(
+    search: &Search,
+    from: &Found,
+    like: &Made,
+    suspects: &[usize],
+) -> Vec<(f64, Candidate)> {
+    let candidate = &from.candidate;
+    let is_suspect = |parameter: &Parameter| match parameter.owner {
+        Owner::Object(object) => suspects.contains(&object),
+        _ => true,
+    };
+    let all = parameters::all(&candidate.scene).into_iter();
+    let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
+    let Some(tiny) = candidate.made_to_compare(&search.tiny.grid, TINY.1, search.cancel) else {
+        return Vec::new();
+    };
+    let shown = search.middle.model(&from.made);
+    let is_read = |parameter: &Parameter| parameter.is_color() && candidate.looks.is_empty();
+    let tried = all.map(|parameter| {
+        let numbers = parameter.numbers(&candidate.scene);
+        let starts = match parameter.is_color() {
+            true => vec![colors(search, &numbers, &shown)],
+            false => {
+                let steps = steps(candidate, &parameter, &search.coarse);
+                starts(&parameter, &numbers, &steps)
+            }
+        };
+        let tried = starts.into_iter().filter_map(|start| {
+            let shown = search.changed(&tiny, &parameter, &start, &search.tiny)?;
+            Some((absolute(&shown.differences()), start))
+        });
+        let mut tried: Vec<_> = tried.collect();
+        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+        tried.truncate(STARTS);
+        (parameter, tried)
+    });
+    let on_tiny = tried.filter_map(|(parameter, tried)| {
+        let rounds = if is_read(&parameter) { 0 } else { 4 };
+        let fitted = tried.into_iter().filter_map(|(_, start)| {
+            search.fit_one(&tiny, &parameter, &search.tiny, start, [rounds, 0])
+        });
+        let best = fitted.min_by(|one, other| one.left.total_cmp(&other.left))?;
+        Some((best.left, (parameter, best.numbers)))
+    });
+    let (local, others): (Vec<_>, Vec<_>) =
+        on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
+    let on_coarse = [local, others]
+        .into_iter()
+        .flat_map(|fitted| least(fitted.into_iter(), FITTED));
+    let on_coarse = on_coarse.filter_map(|(parameter, start)| {
+        let rounds = if is_read(&parameter) { [0, 0] } else { [5, 2] };
+        let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
+        let named = words::numbers(search.scene, &parameter, fitted.numbers);
+        Some((fitted.left, candidate.with(named)?))
+    });
+    on_coarse.collect()
+}
+
+/// The colours that a picture has where these colours alone should be seen: the medians of their channels.
+fn colors(search: &Search, numbers: &[f64], model: &Model) -> Vec<f64> {
+    let seen = search.middle.seen(model.curve);
+    let color = |own: &[f64]| {
+        let light = Color {
+            srgb: [own[0], own[1], own[2]],
+        }
+        .to_linear();
+        let cells = seen
+            .iter()
+            .zip(&model.moments.mean)
+            .zip(&model.moments.variance);
+        let alone = cells.filter(|((_, mean), variance)| **mean == light && **variance == [0.0; 3]);
+        let mut seen: Vec<[f64; 3]> = alone.map(|((seen, _), _)| *seen).collect();
+        let mut median = |i: usize| {
+            seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
+            let middle = seen.get(seen.len() / 2)?;
+            // A byte, if the picture has bytes.
+            Some((255.0 * linear_to_srgb(middle[i]) * 1024.0).round() / 1024.0)
+        };
+        [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
+    };
+    numbers.chunks_exact(3).flat_map(color).collect()
+}
+
+/// Those of which least is left, in this order.
+fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> impl Iterator<Item = T> {
+    let mut all: Vec<(f64, T)> = all.collect();
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    all.into_iter().take(most).map(|(_, one)| one)
+}
+
+fn is_named(candidate: &Candidate, parameter: &Parameter) -> bool {
+    candidate
+        .named
+        .iter()
+        .any(|named| matches!(&named.cause, Cause::Numbers(own, _) if own == parameter))
+}
+
+/// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.
+fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+    let mut starts = vec![numbers.to_vec()];
+    // A single number costs little: all within reach are tried.
+    let far = match numbers.len() {
+        1 => 10,
+        _ => 3,
+    };
+    let mut with = |change: &dyn Fn(&mut Vec<f64>)| {
+        let mut other = numbers.to_vec();
+        change(&mut other);
+        if !starts.contains(&other) {
+            starts.push(other);
+        }
+    };
+    if let (["normal"], [x, y, z]) = (&parameter.fields[..], numbers) {
+        for turn in 1..12 {
+            let angle = std::f64::consts::FRAC_PI_6 * f64::from(turn);
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            with(&|other| *other = vec![cos * x + sin * z, *y, cos * z - sin * x]);
+        }
+    }
+    if let ["roll" | "spin"] = parameter.fields[..] {
+        (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
+    }
+    for i in 0..numbers.len() {
+        with(&|other| other[i] = -other[i]);
+        with(&|other| other[i] = 0.0);
+        with(&|other| other[i] *= 2.0);
+        with(&|other| other[i] *= 0.5);
+        with(&|other| other.swap(i, (i + 1) % numbers.len()));
+        for by in 1..=far {
+            with(&|other| other[i] += 3.0 * f64::from(by) * steps[i]);
+            with(&|other| other[i] -= 3.0 * f64::from(by) * steps[i]);
+        }
+    }
+    starts
+}

@@ -1,0 +1,72 @@
+//! Something too many in a picture.
+
+use glam::DVec2;
+
+use super::{
+    candidate::{Cause, Named},
+    light::{Look, is_near},
+    score::Strays,
+    search::{Found, Search},
+};
+use crate::color::{Color, linear_to_srgb};
+
+/// Fewer pixels than this are not taken for something too many.
+const SMALLEST: usize = 4;
+
+/// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
+pub fn patch(search: &Search, from: &Found) -> Option<Named> {
+    let (grid, seen) = (&search.fine.grid, search.fine.seen(from.candidate.curve));
+    let made = search.made(&from.candidate, &search.fine, None)?;
+    let model = search.fine.model(&made);
+    let strays = Strays::new(seen, &model, grid.width()).inside;
+    let pairs = seen.iter().zip(&model.moments.mean);
+    let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
+    let mut largest: Vec<usize> = Vec::new();
+    for start in strays {
+        if !std::mem::replace(&mut is_left[start], false) {
+            continue;
+        }
+        let mut piece = vec![start];
+        let mut at = 0;
+        while at < piece.len() {
+            let (width, height) = (grid.width(), grid.cells.height as usize);
+            let (x, y) = (piece[at] % width, piece[at] / width);
+            let beside = [
+                (x > 0).then(|| piece[at] - 1),
+                (x + 1 < width).then_some(piece[at] + 1),
+                (y > 0).then(|| piece[at] - width),
+                (y + 1 < height).then_some(piece[at] + width),
+            ];
+            for next in beside.into_iter().flatten() {
+                if is_left[next] && is_near(seen[next], seen[start]) {
+                    is_left[next] = false;
+                    piece.push(next);
+                }
+            }
+            at += 1;
+        }
+        if piece.len() > largest.len().max(SMALLEST - 1) {
+            largest = piece;
+        }
+    }
+    let light = seen[*largest.first()?];
+    let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for place in largest.iter().map(|&at| grid.middle(at)) {
+        (least, most) = (least.min(place), most.max(place));
+    }
+    let reach = f64::from(grid.factor);
+    let area = [(least - reach).to_array(), (most + reach).to_array()];
+    let at = (least + most) / 2.0;
+    let color = Color {
+        srgb: light.map(|light| 255.0 * linear_to_srgb(light)),
+    };
+    Some(Named {
+        id: "object_extra",
+        message: format!(
+            "there is something too many, of the colour {color}, around the pixel ({:.0}, {:.0})",
+            at.x, at.y
+        ),
+        help: "the scene has nothing of the kind there".to_owned(),
+        cause: Cause::Patch(Look::Patch { light, area }),
+    })
+}

@@ -1,0 +1,327 @@
+//! A picture that is compared with a scene: what it shows on grids, and how well candidates explain it.
+
+use std::{
+    cell::{Cell, OnceCell, RefCell},
+    collections::HashMap,
+    sync::atomic::AtomicBool,
+};
+
+use super::{
+    candidate::{Candidate, Cause, Named},
+    fit::{Fitted, Trial, fit},
+    grid::Grid,
+    light::Curve,
+    made::Made,
+    mistakes::{ROWS, Shows},
+    parameters::Parameter,
+    score::{Model, Score, Strays, score},
+};
+use crate::{area::Area, film::Film, scene::Scene};
+
+/// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
+pub const TINY: (u32, usize) = (32, 5);
+const COARSE: u32 = 48;
+const MIDDLE: u32 = 128;
+
+/// Of so many pixels in the middle of a picture, those tell of edges.
+const PIXELS_OF_EDGES: u64 = 20_000;
+
+/// A search looks for no more after so much work: cells that were computed, times the objects and so many more. Measured: a unit takes 0.05 to 0.1 μs in scenes with a
+/// checkerboard.
+const MOST_WORK: f64 = 3e7;
+const OBJECTS: usize = 4;
+
+/// A grid over a part of a picture.
+pub struct Level<'a> {
+    pub grid: Grid,
+    film: &'a Film,
+    /// The part's corner in the film.
+    corner: [u32; 2],
+    /// What it shows in the cells, as light that was encoded in each way, where that was asked for.
+    seen: [OnceCell<Vec<[f64; 3]>>; Curve::ALL.len()],
+    /// How many samples a cell has; none if it is computed exactly.
+    samples: Option<usize>,
+}
+
+impl Level<'_> {
+    /// What the picture shows in the cells, as light that was encoded in a way.
+    pub fn seen(&self, curve: Curve) -> &[[f64; 3]] {
+        self.seen[curve as usize].get_or_init(|| {
+            let [left, top] = self.corner;
+            let pixel = |x, y| self.film.pixel(left + x, top + y);
+            if curve == Curve::Right {
+                return self.grid.reduce(pixel);
+            }
+            // Most pixels have one of a few bytes.
+            let known: RefCell<HashMap<u64, f64>> = RefCell::default();
+            let light = |seen: f64| {
+                let mut known = known.borrow_mut();
+                *known
+                    .entry(seen.to_bits())
+                    .or_insert_with(|| curve.light(seen))
+            };
+            self.grid.reduce(|x, y| pixel(x, y).map(light))
+        })
+    }
+
+    /// What a candidate shows on it.
+    pub fn model(&self, made: &Made) -> Model {
+        made.model(&self.grid, self.seen(made.candidate.curve))
+    }
+}
+
+/// A picture that is compared with a scene.
+pub struct Search<'a> {
+    pub scene: &'a Scene,
+    pub tiny: Level<'a>,
+    pub coarse: Level<'a>,
+    pub middle: Level<'a>,
+    pub fine: Level<'a>,
+    /// The pixels in the middle of the picture.
+    pub edges: Level<'a>,
+    /// What was made last of all pixels.
+    last: Cell<Option<Made>>,
+    work: Cell<f64>,
+    /// Whether something was left out for that.
+    pub is_cut: Cell<bool>,
+    pub cancel: &'a AtomicBool,
+}
+
+/// What was found.
+pub struct Found {
+    pub candidate: Candidate,
+    pub score: Score,
+    pub cost: f64,
+    /// What it makes on the grid that it was judged on.
+    pub made: Made,
+}
+
+impl<'a> Search<'a> {
+    /// For a picture of a part of a scene's.
+    pub fn new(scene: &'a Scene, film: &'a Film, part: Area, cancel: &'a AtomicBool) -> Self {
+        let level = |area: Area, longest, samples| Level {
+            grid: Grid::new(&scene.image, area, longest),
+            film,
+            corner: [area.x - part.x, area.y - part.y],
+            seen: std::array::from_fn(|_| OnceCell::new()),
+            samples,
+        };
+        Self {
+            scene,
+            tiny: level(part, TINY.0, Some(TINY.1)),
+            coarse: level(part, COARSE, None),
+            middle: level(part, MIDDLE, None),
+            fine: level(part, u32::MAX, None),
+            edges: level(middle(part), u32::MAX, None),
+            last: Cell::new(None),
+            work: Cell::new(0.0),
+            is_cut: Cell::new(false),
+            cancel,
+        }
+    }
+
+    /// What a candidate makes on a level; none if it is cancelled.
+    pub fn made(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
+        candidate.made(&level.grid, level.samples, like, self.cancel)
+    }
+
+    /// What a candidate makes on a level, if there was not too much work before.
+    pub fn tried(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
+        let may = self.work.get() < MOST_WORK;
+        self.is_cut.set(self.is_cut.get() || !may);
+        let made = may.then(|| self.made(candidate, level, like))??;
+        let objects = (OBJECTS + self.scene.objects.len()) as f64;
+        self.work.set(self.work.get() + made.work * objects);
+        Some(made)
+    }
+
+    /// By how much the picture differs from what was made.
+    pub fn differences(&self, made: &Made, level: &Level) -> Vec<f64> {
+        level
+            .model(made)
+            .differences(level.seen(made.candidate.curve))
+    }
+
+    /// Judges a candidate.
+    pub fn judged(&self, candidate: Candidate) -> Option<Found> {
+        self.judged_on(&self.middle, candidate, None)
+    }
+
+    /// Judges a candidate on a level.
+    pub fn judged_on(
+        &self,
+        level: &Level,
+        candidate: Candidate,
+        like: Option<&Made>,
+    ) -> Option<Found> {
+        let made = self.made(&candidate, level, like)?;
+        let score = score(level.seen(candidate.curve), &level.model(&made));
+        let cost = score.cost(candidate.fitted(), level.grid.count());
+        Some(Found {
+            candidate,
+            score,
+            cost,
+            made,
+        })
+    }
+
+    /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
+    pub fn is_explained(&self, candidate: &Candidate) -> bool {
+        let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
+        let mut all = std::iter::once(candidate.clone())
+            .chain(rows.filter_map(|row| candidate.with(row.named())));
+        all.any(|candidate| self.strays(&candidate).is_negligible())
+    }
+
+    /// The pixels that show something else than a candidate for certain.
+    pub fn strays(&self, candidate: &Candidate) -> Strays {
+        let like = self.last.take();
+        let Some(made) = self.made(candidate, &self.fine, like.as_ref()) else {
+            return Strays::default();
+        };
+        let seen = self.fine.seen(candidate.curve);
+        let strays = Strays::new(seen, &self.fine.model(&made), self.fine.grid.width());
+        self.last.set(Some(made));
+        strays
+    }
+
+    /// What differs if a parameter has other numbers than in what was made.
+    pub fn changed<'l>(
+        &self,
+        like: &Made,
+        parameter: &Parameter,
+        numbers: &[f64],
+        level: &'l Level,
+    ) -> Option<Shown<'l>> {
+        let changed = Candidate {
+            scene: parameter.put(&like.candidate.scene, numbers)?,
+            ..like.candidate.clone()
+        };
+        self.trial(&changed, level, like)
+    }
+
+    fn trial<'l>(
+        &self,
+        candidate: &Candidate,
+        level: &'l Level<'l>,
+        like: &Made,
+    ) -> Option<Shown<'l>> {
+        let model = level.model(&self.tried(candidate, level, Some(like))?);
+        Some(Shown { level, model })
+    }
+
+    /// The numbers of a parameter fitted on a level, on which something else was made.
+    pub fn fit_one(
+        &self,
+        like: &Made,
+        parameter: &Parameter,
+        level: &Level,
+        start: Vec<f64>,
+        rounds: [usize; 2],
+    ) -> Option<Fitted> {
+        let steps = steps(&like.candidate, parameter, level);
+        let trial = |numbers: &[f64]| self.changed(like, parameter, numbers, level);
+        fit(start, &steps, rounds, &trial)
+    }
+
+    /// All numbers of a candidate fitted together on a level, on which it was made.
+    pub fn fitted(
+        &self,
+        candidate: Candidate,
+        level: &Level,
+        made: Made,
+        rounds: [usize; 2],
+    ) -> Option<Candidate> {
+        let (named, start) = (&candidate.named, joined(&candidate.named));
+        if start.is_empty() {
+            return Some(candidate);
+        }
+        let fitted = self.fit_all(&candidate, level, &made, rounds)?;
+        Candidate::of(self.scene, &split(named, &fitted.numbers))
+    }
+
+    /// The same, with how far each may be off.
+    pub fn fit_all(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        made: &Made,
+        rounds: [usize; 2],
+    ) -> Option<Fitted> {
+        let named = &candidate.named;
+        let of = |named: &Named| match &named.cause {
+            Cause::Numbers(parameter, _) => steps(candidate, parameter, level),
+            _ => Vec::new(),
+        };
+        let steps: Vec<f64> = named.iter().flat_map(of).map(|step| step / 2.0).collect();
+        let trial = |numbers: &[f64]| {
+            let candidate = Candidate::of(self.scene, &split(named, numbers))?;
+            self.trial(&candidate, level, made)
+        };
+        fit(joined(named), &steps, rounds, &trial)
+    }
+}
+
+/// The middle of a part of a picture, of its proportions and of so many pixels at most.
+fn middle(part: Area) -> Area {
+    let by = (PIXELS_OF_EDGES as f64 / part.pixels() as f64)
+        .sqrt()
+        .min(1.0);
+    let [width, height] =
+        [part.width, part.height].map(|length| ((f64::from(length) * by) as u32).max(1));
+    Area {
+        x: part.x + (part.width - width) / 2,
+        y: part.y + (part.height - height) / 2,
+        width,
+        height,
+    }
+}
+
+/// What a candidate shows on a level.
+pub struct Shown<'l> {
+    level: &'l Level<'l>,
+    model: Model,
+}
+
+impl Trial for Shown<'_> {
+    fn differences(&self) -> Vec<f64> {
+        self.model.differences(self.level.seen(self.model.curve))
+    }
+
+    fn deviations(&self) -> Vec<f64> {
+        self.model.deviations(self.level.grid.width())
+    }
+}
+
+/// By how much each number of a parameter is varied on a level.
+pub fn steps(candidate: &Candidate, parameter: &Parameter, level: &Level) -> Vec<f64> {
+    let steps = parameter.steps(&candidate.scene).into_iter();
+    match parameter.is_color() {
+        true => steps.collect(),
+        false => steps
+            .map(|step| step * f64::from(level.grid.factor) / 2.0)
+            .collect(),
+    }
+}
+
+/// All numbers of mistakes, one after the other.
+pub fn joined(named: &[Named]) -> Vec<f64> {
+    let numbers = |named: &Named| match &named.cause {
+        Cause::Numbers(_, numbers) => numbers.clone(),
+        _ => Vec::new(),
+    };
+    named.iter().flat_map(numbers).collect()
+}
+
+/// Mistakes with other numbers.
+pub fn split(named: &[Named], mut numbers: &[f64]) -> Vec<Named> {
+    let mut named = named.to_vec();
+    for one in &mut named {
+        if let Cause::Numbers(_, own) = &mut one.cause {
+            let (first, rest) = numbers.split_at(own.len());
+            own.copy_from_slice(first);
+            numbers = rest;
+        }
+    }
+    named
+}
