@@ -41,7 +41,7 @@ impl Cause {
             Self::Row(_) | Self::ObjectRow(..) => 1,
             // Which numbers they are, and they themselves.
             Self::Numbers(_, numbers) => 1 + numbers.len(),
-            // A colour and a rectangle.
+            // A row, a colour and a rectangle.
             Self::Patch(_) => 8,
         }
     }

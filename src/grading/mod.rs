@@ -336,7 +336,10 @@ pub fn json(verdict: &Verdict) -> Map<String, Value> {
     let mut fields = Map::new();
     fields.insert("verdict".to_owned(), json!(verdict.kind.word()));
     fields.insert("line".to_owned(), json!(verdict.line()));
-    fields.insert("samples_per_pixel".to_owned(), json!(verdict.samples));
+    fields.insert(
+        "samples_per_pixel".to_owned(),
+        json!(verdict.samples.filter(|samples| *samples < 1e5)),
+    );
     fields.insert("mistakes".to_owned(), mistakes.collect());
     fields.insert("objects".to_owned(), objects.collect());
     if let Some(rest) = verdict.rest {

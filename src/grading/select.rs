@@ -40,7 +40,11 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     let Some(mut best) = search.judged_on(&search.middle, right, None) else {
         return Ok(None);
     };
-    while best.candidate.named.len() < MOST_MISTAKES && !search.is_explained(&best.candidate) {
+    // A picture comes here because a pixel is wrong for certain. Few such pixels do not say that nothing more is wrong.
+    let is_doubtful = search.strays(&best.candidate).is_negligible();
+    while best.candidate.named.len() < MOST_MISTAKES
+        && (is_doubtful && best.candidate.named.is_empty() || !search.is_explained(&best.candidate))
+    {
         let Some(next) = step(search, &best) else {
             break;
         };
