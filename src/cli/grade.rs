@@ -1,7 +1,7 @@
 //! `grade`: a class's pictures against one scene.
 
 use std::{
-    fs, iter,
+    fs,
     num::NonZero,
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
@@ -10,25 +10,24 @@ use std::{
 
 use pinhole::{
     area::Area,
-    diagnostic::visible,
-    film::{self, Comparison, Picture},
-    grading::{Kind, Verdict},
-    numbers::short,
+    film::{self, Picture},
     render::RenderError,
     scene::Scene,
 };
 use rayon::{ThreadPoolBuilder, prelude::*};
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
 use super::{
     Status, Trouble,
     args::{Format, GradeArgs},
     diff,
-    grade_page::{Thumbnails, page},
+    grade_page::page,
+    graded::{Graded, Judged, csv, table},
     input::{self, Input, shown},
     interrupt::Interrupt,
     judge::{self, Judge},
     output, progress,
+    thumbnails::Thumbnails,
 };
 
 /// Judges them.
@@ -80,26 +79,6 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         .map(Graded::status)
         .max()
         .unwrap_or(Status::Done))
-}
-
-/// A picture that was judged, or why it could not be.
-pub struct Graded {
-    pub name: String,
-    pub result: Result<Judged, String>,
-}
-
-/// What is known of a picture.
-pub struct Judged {
-    pub comparison: Comparison,
-    pub verdict: Verdict,
-    /// What there is for programs.
-    fields: Map<String, Value>,
-    /// What its format does to colours.
-    warning: Option<&'static str>,
-    /// Whether it carries the text that Pinhole writes into its pictures.
-    is_ours: bool,
-    /// If there will be a page.
-    pub thumbnails: Option<Thumbnails>,
 }
 
 /// Each picture by itself, on as many threads as there are processors.
@@ -229,114 +208,3 @@ const ENDINGS: [&str; 14] = [
     "png", "exr", "jpg", "jpeg", "ppm", "pgm", "pnm", "pam", "bmp", "tif", "tiff", "webp", "gif",
     "pbm",
 ];
-
-impl Graded {
-    fn judged(&self) -> Option<(&str, &Judged)> {
-        let judged = self.result.as_ref().ok()?;
-        Some((&self.name, judged))
-    }
-
-    fn status(&self) -> Status {
-        match &self.result {
-            Err(_) => Status::Trouble,
-            Ok(judged) => match judged.verdict.kind {
-                Kind::Right | Kind::Noise => Status::Done,
-                Kind::Wrong | Kind::Unknown => Status::SceneErrors,
-            },
-        }
-    }
-
-    fn json(&self) -> Value {
-        let mut fields = Map::new();
-        fields.insert("file".to_owned(), json!(self.name));
-        match &self.result {
-            Err(error) => {
-                fields.insert("error".to_owned(), json!(error));
-            }
-            Ok(judged) => fields.extend(judged.fields.clone()),
-        }
-        Value::Object(fields)
-    }
-
-    /// Its cells in a table: name, verdict, error, samples.
-    pub fn cells(&self) -> [String; 4] {
-        match &self.result {
-            Err(error) => [
-                self.name.clone(),
-                format!("not compared: {error}"),
-                String::new(),
-                String::new(),
-            ],
-            Ok(judged) => {
-                let flag = if judged.is_ours {
-                    " (rendered by Pinhole)"
-                } else {
-                    ""
-                };
-                let samples = judged.verdict.samples.filter(|samples| *samples < 1e5);
-                [
-                    self.name.clone(),
-                    judged.verdict.line() + flag,
-                    format!("{:.5}", judged.comparison.rmse),
-                    samples.map_or_else(String::new, |samples| {
-                        short((10.0 * samples).round() / 10.0)
-                    }),
-                ]
-            }
-        }
-    }
-}
-
-fn table(graded: &[Graded]) -> String {
-    let rows: Vec<[String; 4]> = graded
-        .iter()
-        .map(|one| one.cells().map(|cell| visible(&cell).into_owned()))
-        .collect();
-    let widest = rows
-        .iter()
-        .map(|row| row[0].chars().count())
-        .max()
-        .unwrap_or(0)
-        .max("picture".len());
-    let line = |[name, verdict, error, samples]: [&str; 4]| {
-        format!("{name:<widest$}  {error:>8}  {samples:>8}  {verdict}\n")
-    };
-    let head = line(["picture", "verdict", "error", "samples"]);
-    let rows = rows
-        .iter()
-        .map(|row| line(row.each_ref().map(String::as_str)));
-    iter::once(head).chain(rows).collect()
-}
-
-fn csv(graded: &[Graded]) -> String {
-    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-    let row = |one: &Graded| {
-        let [name, _, error, samples] = one.cells();
-        let (verdict, line, set) = match &one.result {
-            Err(error) => ("error", error.clone(), String::new()),
-            Ok(judged) => {
-                let sets = judged
-                    .verdict
-                    .mistakes
-                    .iter()
-                    .flat_map(|mistake| &mistake.set);
-                let sets: Vec<_> = sets.map(String::as_str).collect();
-                (
-                    judged.verdict.kind.word(),
-                    judged.verdict.line(),
-                    sets.join(" "),
-                )
-            }
-        };
-        format!(
-            "{},{verdict},{error},{samples},{},{}\n",
-            quoted(&name),
-            quoted(&line),
-            quoted(&set)
-        )
-    };
-    let rows = graded.iter().map(row);
-    iter::once("file,verdict,rmse,samples_per_pixel,line,set\n".to_owned())
-        .chain(rows)
-        .collect()
-}

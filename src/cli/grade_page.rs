@@ -2,19 +2,16 @@
 
 use std::{fmt::Write, io};
 
-use base64::{Engine, prelude::BASE64_STANDARD};
-use pinhole::film::{self, Film, HEAT_LEGEND, Tolerance};
+use pinhole::film::HEAT_LEGEND;
 
 use super::{
-    grade::{Graded, Judged},
+    graded::{Graded, Judged},
     judge::quoted,
+    thumbnails::Thumbnails,
 };
 
 const STYLE: &str = include_str!("grade_page.css");
 const SCRIPT: &str = include_str!("grade_page.js");
-
-/// The widest thumbnail, in pixels.
-const WIDEST: u32 = 320;
 
 /// The page.
 pub fn page(scene: &str, graded: &[Graded]) -> io::Result<String> {
@@ -57,48 +54,6 @@ pub fn page(scene: &str, graded: &[Graded]) -> io::Result<String> {
     )
     .map_err(io::Error::other)?;
     Ok(html)
-}
-
-/// A picture and its heat map, as `data:` URIs.
-pub struct Thumbnails {
-    picture: String,
-    heat: String,
-}
-
-impl Thumbnails {
-    /// Of a picture and the exact one.
-    pub fn new(film: &Film, exact: &Film, tolerance: Tolerance) -> io::Result<Self> {
-        let heat = film::heat_map(film, exact, tolerance).map_err(io::Error::other)?;
-        Ok(Self {
-            picture: data(film)?,
-            heat: data(&heat)?,
-        })
-    }
-}
-
-/// A picture as a `data:` URI, of some pixels' means where it is large.
-fn data(film: &Film) -> io::Result<String> {
-    let factor = film.width().div_ceil(WIDEST);
-    let (width, height) = (film.width() / factor, (film.height() / factor).max(1));
-    let small = Film::from_fn(width, height, |x, y| {
-        let mut sum = [0.0; 3];
-        let mut count = 0.0;
-        for row in (y * factor..(y + 1) * factor).take_while(|row| *row < film.height()) {
-            for column in x * factor..(x + 1) * factor {
-                let pixel = film.pixel(column, row);
-                sum = [0, 1, 2].map(|i| sum[i] + pixel[i]);
-                count += 1.0;
-            }
-        }
-        sum.map(|sum| sum / count)
-    });
-    let small = small.map_err(io::Error::other)?;
-    let mut png = Vec::new();
-    film::write_plain_png(&small, &mut png)?;
-    Ok(format!(
-        "data:image/png;base64,{}",
-        BASE64_STANDARD.encode(png)
-    ))
 }
 
 fn escaped(text: &str) -> String {

@@ -10,6 +10,7 @@ mod explain;
 mod fmt;
 mod grade;
 mod grade_page;
+mod graded;
 mod input;
 mod inspect;
 mod interrupt;
@@ -28,6 +29,7 @@ mod report;
 mod show;
 #[cfg(feature = "report")]
 mod speed;
+mod thumbnails;
 #[cfg(feature = "preview")]
 mod watch;
 

@@ -9,6 +9,7 @@
 //! the picture, `select` chooses mistakes, a `patch` being the last of them, and `words` says them.
 
 mod candidate;
+mod changes;
 mod fit;
 mod grid;
 mod layout;
@@ -127,7 +128,7 @@ pub struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    /// From the exact picture of the part.
+    /// Of a part of a scene's picture.
     pub fn new(scene: &'a Scene, part: Area) -> Self {
         Self {
             scene,
@@ -187,7 +188,7 @@ fn judged(
     let mut verdict = match found {
         Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
         _ if strays.is_negligible() => Verdict {
-            samples: Some(noise.samples),
+            samples: noise.samples,
             ..Verdict::of(Kind::Noise, scene)
         },
         _ => Verdict::of(Kind::Unknown, scene),
@@ -251,7 +252,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         }
     };
     Verdict {
-        samples: Some(found.score.samples),
+        samples: found.score.samples,
         rest: rest.filter(|rest| *rest > 0.0),
         mistakes,
         objects: (0..scene.objects.len()).map(of).collect(),
@@ -296,7 +297,7 @@ impl Verdict {
         match self.kind {
             Kind::Right => "right: equal to the exact picture".to_owned(),
             Kind::Noise => match self.samples {
-                Some(samples) if samples < 1e5 => {
+                Some(samples) => {
                     let count = crate::numbers::short(if samples < 9.5 {
                         (2.0 * samples).round() / 2.0
                     } else {
@@ -304,7 +305,7 @@ impl Verdict {
                     });
                     format!("right but for sampling noise: about {count} samples per pixel")
                 }
-                _ => "right but for sampling noise".to_owned(),
+                None => "right but for sampling noise".to_owned(),
             },
             Kind::Wrong => {
                 let mistakes: Vec<_> = self
@@ -336,10 +337,7 @@ pub fn json(verdict: &Verdict) -> Map<String, Value> {
     let mut fields = Map::new();
     fields.insert("verdict".to_owned(), json!(verdict.kind.word()));
     fields.insert("line".to_owned(), json!(verdict.line()));
-    fields.insert(
-        "samples_per_pixel".to_owned(),
-        json!(verdict.samples.filter(|samples| *samples < 1e5)),
-    );
+    fields.insert("samples_per_pixel".to_owned(), json!(verdict.samples));
     fields.insert("mistakes".to_owned(), mistakes.collect());
     fields.insert("objects".to_owned(), objects.collect());
     if let Some(rest) = verdict.rest {

@@ -43,7 +43,7 @@ pub struct Score {
     /// The logarithm of the likelihood.
     pub likelihood: f64,
     /// The number of independent samples in a pixel that make as much noise.
-    pub samples: f64,
+    pub samples: Option<f64>,
     /// How far each pixel is off, in standard deviations of its error: the sum of the squares of its channels.
     pub off: Vec<f64>,
     /// The squared difference.
@@ -171,10 +171,9 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
             }
         }
     }
-    let samples = match beyond > 1e-6 * of_samples {
-        true => (of_samples / beyond).max(1.0),
-        false => 1e6,
-    };
+    // What is left of less than a sample in a hundred thousand is rounding.
+    let is_known = beyond > 1e-5 * of_samples;
+    let samples = is_known.then(|| (of_samples / beyond).max(1.0));
     Score {
         likelihood,
         samples,

@@ -76,7 +76,7 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
     };
     // What is done to light makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
     let may = null.candidate.looks.is_empty() && null.candidate.curve == Curve::Right;
-    let is_one = null.score.samples < ONE;
+    let is_one = null.score.samples.is_some_and(|samples| samples < ONE);
     let shows = |row: &&Row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges => may && !is_one,
