@@ -31,7 +31,7 @@
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] one about a picture of it: what went wrong; and [`report`]
 //!   about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
 //! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
-//!   to editors in the Language Server Protocol, and `preview` tells when a file has changed.
+//!   to editors in the Language Server Protocol, `preview` tells when a file has changed, and `studio` serves a page that edits one.
 
 pub mod area;
 pub mod cancel;
@@ -70,3 +70,5 @@ pub mod editor;
 pub mod lsp;
 #[cfg(feature = "preview")]
 pub mod preview;
+#[cfg(feature = "lsp")]
+pub mod studio;

@@ -78,6 +78,10 @@ pub enum Command {
         #[arg(long)]
         stdio: bool,
     },
+    /// Edit a scene as a page in the browser: text, picture, mouse
+    #[cfg(feature = "studio")]
+    #[command(after_help = STUDIO_EXAMPLES)]
+    Studio(StudioArgs),
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -234,6 +238,16 @@ Editors start it themselves; grammar/editors/ has what they need for that.
 
 Exit status: 0 after shutdown and exit; 1 if the editor left without; 2 trouble.";
 
+#[cfg(feature = "studio")]
+const STUDIO_EXAMPLES: &str = "\
+Examples:
+  pinhole studio figure.scn                      opens a browser
+  pinhole studio                                 a new scene; Save asks for a name in the current folder
+  pinhole studio figure.scn --no-open --port 8000
+
+Serves this machine alone, and a browser that was given the printed address; no file but the scene is read or written. \
+Ctrl-C ends it, with status 130.";
+
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
   pinhole completions bash > ~/.local/share/bash-completion/completions/pinhole
@@ -312,6 +326,20 @@ pub struct WatchArgs {
     /// How many threads to use [default: one for each processor]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..))]
     pub threads: Option<u64>,
+}
+
+/// Arguments of `studio`.
+#[cfg(feature = "studio")]
+#[derive(Debug, clap::Args)]
+pub struct StudioArgs {
+    /// The scene: a .scn file [default: a new scene]
+    pub scene: Option<PathBuf>,
+    /// Print the address only; open no browser
+    #[arg(long)]
+    pub no_open: bool,
+    /// The port to serve at [default: one that is free]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u16).range(1..))]
+    pub port: Option<u16>,
 }
 
 /// Arguments of `inspect`.

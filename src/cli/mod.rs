@@ -29,6 +29,8 @@ mod report;
 mod show;
 #[cfg(feature = "report")]
 mod speed;
+#[cfg(feature = "studio")]
+mod studio;
 mod thumbnails;
 #[cfg(feature = "preview")]
 mod watch;
@@ -73,6 +75,8 @@ pub fn run() -> ExitCode {
         Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]
         Command::Lsp { .. } => lsp::run(),
+        #[cfg(feature = "studio")]
+        Command::Studio(args) => studio::run(&args, &interrupt),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });

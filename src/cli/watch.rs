@@ -94,7 +94,7 @@ fn output(args: &WatchArgs) -> Result<Output, Trouble> {
 }
 
 /// What can be known at the start: later, files come and go.
-fn check_scene(scene: &Path) -> Result<(), Trouble> {
+pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
     let cannot_read = |error| Trouble(format!("cannot read {}: {error}", shown(scene)));
     let found = fs::metadata(scene).map_err(cannot_read)?;
     if !found.is_file() {

@@ -6,6 +6,7 @@
 mod answers;
 mod convert;
 mod documents;
+pub mod json;
 mod params;
 mod server;
 pub mod stdio;

@@ -10,13 +10,16 @@ use std::{
     thread,
 };
 
-use lsp_server::{ErrorCode, Message};
-use serde_json::{Value, json};
+use lsp_server::Message;
+use serde_json::Value;
 
-use super::server::Server;
+use super::{
+    json::{self, Malformed},
+    server::Server,
+};
 
-/// A message, or something that came in its place.
-type Incoming = Result<Message, Malformed>;
+/// A message, or the response to something that came in its place.
+type Incoming = Result<Message, Value>;
 
 /// Has a server talk to a client until it ends. Says whether it ended properly: by `exit` after `shutdown`.
 ///
@@ -34,11 +37,8 @@ pub fn serve(
     while let Some(incoming) = next_message(&receiver, &mut server, output)? {
         match incoming {
             Ok(message) => say(output, server.handle(message))?,
-            Err(malformed) => {
-                let Malformed { id, code, message } = malformed;
-                let error = json!({ "code": code as i32, "message": message });
-                // A response of lsp-server cannot have the id null.
-                let response = json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string();
+            Err(response) => {
+                let response = response.to_string();
                 write!(
                     output,
                     "Content-Length: {}\r\n\r\n{response}",
@@ -103,17 +103,6 @@ const LONGEST: u64 = 1 << 30;
 /// The longest line of a header; those that are known take some thirty bytes.
 const LONGEST_HEADER: u64 = 4096;
 
-/// Something that is not a message, and has an answer.
-#[derive(Debug)]
-struct Malformed {
-    /// The id that it has; null if it has none.
-    id: Value,
-    /// What it lacks.
-    code: ErrorCode,
-    /// The same in words.
-    message: String,
-}
-
 /// Why nothing was read.
 enum Failed {
     /// The next message may be a right one.
@@ -140,7 +129,11 @@ fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
         let what = format!("the input ends after {read} of {length} bytes of a message");
         return Err(Failed::ForGood(what));
     }
-    message(&content).map(Some)
+    match json::read(&content) {
+        Ok(message) => Ok(Some(Ok(message))),
+        Err(Malformed::Answered(response)) => Ok(Some(Err(response))),
+        Err(Malformed::Unanswered(what)) => Err(Failed::Once(what)),
+    }
 }
 
 /// The length that a header announces; none at the end of the input.
@@ -169,41 +162,5 @@ fn length(input: &mut impl BufRead) -> Result<Option<u64>, Failed> {
             "a message of {length} bytes is announced, and at most {LONGEST} can be read"
         ))),
         Some(length) => Ok(Some(length)),
-    }
-}
-
-fn message(content: &[u8]) -> Result<Incoming, Failed> {
-    let malformed = |id, code, message: String| Ok(Err(Malformed { id, code, message }));
-    let value: Value = match serde_json::from_slice(content) {
-        Ok(value) => value,
-        Err(error) => {
-            let message = format!("this is not JSON: {error}");
-            return malformed(Value::Null, ErrorCode::ParseError, message);
-        }
-    };
-    if value.is_array() {
-        let message = "messages come one by one".to_owned();
-        return malformed(Value::Null, ErrorCode::InvalidRequest, message);
-    }
-    let has = |name: &str| value.get(name).is_some();
-    // A response is never answered.
-    let is_response = !has("method") && (has("result") || has("error"));
-    let id = value
-        .get("id")
-        .filter(|id| id.is_string() || id.is_number());
-    let id = id.cloned().unwrap_or_default();
-    // What has an identifier and nothing else would pass for a response, and a request with an odd one for a notification; the
-    // protocol's whole numbers have 32 bits.
-    let is_whole = |id: &Value| id.as_i64().is_some_and(|id| i32::try_from(id).is_ok());
-    let is_odd = |id: &Value| !id.is_string() && !is_whole(id);
-    let is_call =
-        value.get("method").is_some_and(Value::is_string) && !value.get("id").is_some_and(is_odd);
-    match serde_json::from_value(value) {
-        Ok(message) if is_call || is_response => Ok(Ok(message)),
-        _ if is_response => Err(Failed::Once("a response to nothing".to_owned())),
-        _ => {
-            let message = "this is neither a request nor a notification".to_owned();
-            malformed(id, ErrorCode::InvalidRequest, message)
-        }
     }
 }

@@ -40,6 +40,8 @@ mod render;
 mod report;
 mod robustness;
 mod sampling;
+#[cfg(feature = "studio")]
+mod studio;
 mod syntax;
 mod texts;
 #[cfg(target_os = "linux")]

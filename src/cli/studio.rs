@@ -1,0 +1,83 @@
+//! `studio`: a scene as a page in the browser.
+
+use std::{
+    env,
+    process::{Command, Stdio},
+    sync::mpsc,
+};
+
+use pinhole::studio::{Host, SceneFile};
+
+use super::{
+    Status, Trouble,
+    args::StudioArgs,
+    input::{self, is_standard, shown},
+    interrupt::Interrupt,
+    output, watch,
+};
+
+/// Serves the page until Ctrl-C.
+pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    let file = file(args)?;
+    let name = args
+        .scene
+        .as_deref()
+        .map_or("a new scene".to_owned(), shown);
+    let host = Host::new(args.port.unwrap_or(0), file).map_err(|error| {
+        let port = args
+            .port
+            .map_or(String::new(), |port| format!(" at port {port}"));
+        Trouble(format!("cannot serve a page{port}: {error}"))
+    })?;
+    let address = host.address();
+    let (sender, ended) = mpsc::channel();
+    interrupt.then(move || {
+        let _ = sender.send(());
+    });
+    output::to_people(&format!(
+        "editing {name} at this address; Ctrl-C ends it\n{address}\n"
+    ));
+    if !args.no_open && !open(&address) {
+        output::warning(&"no browser could be started: open the address in one");
+    }
+    let wait = move || {
+        let _ = ended.recv();
+    };
+    host.serve(wait)
+        .map_err(|error| Trouble(format!("cannot serve a page: {error}")))?;
+    Ok(Status::Interrupted)
+}
+
+/// The scene's file; a new scene is saved in the current folder.
+fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
+    let Some(scene) = &args.scene else {
+        let folder = env::current_dir()
+            .map_err(|error| Trouble(format!("there is no current folder: {error}")))?;
+        return Ok(SceneFile::new(folder, input::bytes));
+    };
+    if is_standard(scene) {
+        let message = "standard input cannot be edited: it is read once; give a file";
+        return Err(Trouble(message.to_owned()));
+    }
+    watch::check_scene(scene)?;
+    SceneFile::open(scene, input::bytes)
+        .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(scene))))
+}
+
+/// Has the system open an address in its browser. Says whether it could be asked to.
+fn open(address: &str) -> bool {
+    let (program, before): (_, &[&str]) = if cfg!(target_os = "macos") {
+        ("open", &[])
+    } else if cfg!(windows) {
+        ("rundll32", &["url.dll,FileProtocolHandler"])
+    } else {
+        ("xdg-open", &[])
+    };
+    let mut command = Command::new(program);
+    command.args(before).arg(address);
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.spawn().is_ok()
+}

@@ -1,0 +1,195 @@
+//! The scene's own file: the only one that Studio reads or writes.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
+
+use crate::{film, scene::SMALLEST};
+
+/// What reads a file, up to the length that scenes have.
+pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
+
+/// A scene's file, or a new scene that has none yet.
+#[derive(Debug)]
+pub struct SceneFile {
+    read: Read,
+    /// Where a new scene is saved.
+    folder: PathBuf,
+    path: Option<PathBuf>,
+    /// What was in it when it was looked at last; none where it cannot be read as a text.
+    text: Option<String>,
+}
+
+/// Why a text was not saved.
+#[derive(Debug, PartialEq, Eq)]
+pub enum NotSaved {
+    /// What is in the file is not what the text was made from.
+    Changed(Option<String>),
+    /// Why it cannot be done, in words.
+    Refused(String),
+}
+
+impl SceneFile {
+    /// The file at a path.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be read, or holds no text.
+    pub fn open(path: &Path, read: Read) -> io::Result<Self> {
+        let text = String::from_utf8(read(path)?)
+            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8"))?;
+        Ok(Self {
+            read,
+            folder: PathBuf::new(),
+            path: Some(path.to_owned()),
+            text: Some(text),
+        })
+    }
+
+    /// A new scene, the smallest one. It is saved in this folder.
+    pub fn new(folder: PathBuf, read: Read) -> Self {
+        Self {
+            read,
+            folder,
+            path: None,
+            text: Some(SMALLEST.to_owned()),
+        }
+    }
+
+    /// Where it is, if it is anywhere.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// What reads it.
+    pub fn reader(&self) -> Read {
+        self.read
+    }
+
+    /// What it is called; for a new scene what it might be called.
+    pub fn name(&self) -> String {
+        let name = self.path().and_then(Path::file_name);
+        name.map_or("scene.scn".into(), |name| name.to_string_lossy())
+            .into_owned()
+    }
+
+    /// What was in it when it was looked at last.
+    pub fn text(&self) -> Option<&str> {
+        self.text.as_deref()
+    }
+
+    /// Takes in what is in it now. Says whether that is new.
+    pub fn look(&mut self, bytes: io::Result<Vec<u8>>) -> bool {
+        let text = as_text(bytes);
+        let is_new = self.text != text;
+        self.text = text;
+        is_new
+    }
+
+    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a name that no file has.
+    ///
+    /// # Errors
+    ///
+    /// It is not saved, and no file has changed.
+    pub fn save(
+        &mut self,
+        text: &str,
+        base: Option<&str>,
+        name: Option<&str>,
+    ) -> Result<(), NotSaved> {
+        let refused = |error: io::Error| NotSaved::Refused(error.to_string());
+        match &self.path {
+            Some(_) if name.is_some_and(|name| name != self.name()) => {
+                let message = format!("this scene is in {}", self.name());
+                return Err(NotSaved::Refused(message));
+            }
+            Some(path) => {
+                let found = as_text((self.read)(path));
+                if found.as_deref() != Some(text) {
+                    if found.as_deref() != base {
+                        return Err(NotSaved::Changed(found));
+                    }
+                    film::write_whole(path, &AtomicBool::new(false), |file| {
+                        file.write_all(text.as_bytes())
+                    })
+                    .map_err(refused)?;
+                }
+            }
+            None => {
+                let name = name.unwrap_or_default();
+                check_name(name).map_err(|message| NotSaved::Refused(message.to_owned()))?;
+                let path = self.folder.join(name);
+                create(&path, text).map_err(refused)?;
+                self.path = Some(path);
+            }
+        }
+        self.text = Some(text.to_owned());
+        Ok(())
+    }
+}
+
+fn as_text(bytes: io::Result<Vec<u8>>) -> Option<String> {
+    String::from_utf8(bytes.ok()?).ok()
+}
+
+/// A name for a new file in a folder, and no path that leads elsewhere, on any system.
+fn check_name(name: &str) -> Result<(), &'static str> {
+    let is_elsewhere = |letter: char| matches!(letter, '/' | '\\' | ':') || letter.is_control();
+    let stem = name.strip_suffix(".scn");
+    match stem {
+        None | Some("") => Err("the name of a scene's file ends in .scn"),
+        Some(_) if name.contains(is_elsewhere) || name.starts_with('.') => {
+            Err("the name is that of a file in the current folder, and no path")
+        }
+        Some(_) => Ok(()),
+    }
+}
+
+/// Makes a file, whole or not at all, where there is none.
+fn create(path: &Path, text: &str) -> io::Result<()> {
+    // It holds the name until the text is there; who had it before keeps it.
+    fs::OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(path)?;
+    let written = film::write_whole(path, &AtomicBool::new(false), |file| {
+        file.write_all(text.as_bytes())
+    });
+    if written.is_err() {
+        let _ = fs::remove_file(path);
+    }
+    written
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_leads_nowhere_else() {
+        for right in ["a.scn", "my scene.scn", "ä.b.scn"] {
+            assert_eq!(check_name(right), Ok(()), "{right}");
+        }
+        let wrong = [
+            "",
+            ".scn",
+            "a",
+            "a.png",
+            "a.scn/",
+            "/a.scn",
+            "../a.scn",
+            "..\\a.scn",
+            "b/a.scn",
+            "c:a.scn",
+            "a\0.scn",
+            "a\n.scn",
+            ".a.scn",
+            "..scn",
+        ];
+        for wrong in wrong {
+            assert!(check_name(wrong).is_err(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! `pinhole studio` as a browser meets it: who is let in, what the conversation says, and what becomes of the file.
+
+mod access;
+mod client;
+mod conversation;
+mod files;
