@@ -3,7 +3,6 @@
 use std::{
     io, mem,
     net::{Ipv4Addr, TcpListener, TcpStream},
-    path::Path,
     sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc::Sender},
     thread,
     time::Duration,
@@ -17,7 +16,6 @@ use super::{
     page::{Event, converse, notification},
     scene_file::{NotSaved, SceneFile},
 };
-use crate::preview;
 
 /// So many connections are served at once. A page has one, and for a moment one for each of its files.
 const MOST: usize = 64;
@@ -180,18 +178,17 @@ impl Pages {
 
     /// From now on the pages are told when the file changes, if there is one.
     fn watch(self: &Arc<Self>) {
-        let shared = self.lock();
-        let (path, read) = (shared.file.path().map(Path::to_owned), shared.file.reader());
-        drop(shared);
+        let watched = self.lock().file.watch();
         // Without a watch, a file that has changed is found when it is saved.
-        let Some(Ok(latest)) = path.map(|path| preview::watch(&path, read)) else {
+        let Some(latest) = watched else {
             return;
         };
         let pages = Arc::clone(self);
         let follow = move || {
-            while let Some(content) = latest.take() {
+            while latest.take().is_some() {
                 let mut shared = pages.lock();
-                if shared.file.look(content.bytes) {
+                // What was seen may be older than what a page has saved since.
+                if shared.file.look() {
                     let message = shared.about_text();
                     shared.tell(&message, |_| true);
                 }

@@ -36,7 +36,7 @@ impl Request {
         loop {
             let left = end.saturating_duration_since(Instant::now());
             // A timeout of zero would be none.
-            if left.is_zero() || head.len() > LONGEST_HEAD {
+            if left.is_zero() {
                 return None;
             }
             stream.set_read_timeout(Some(left)).ok()?;
@@ -45,6 +45,9 @@ impl Request {
                 Ok(length) => head.extend_from_slice(&piece[..length]),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
                 Err(_) => return None,
+            }
+            if head.len() > LONGEST_HEAD {
+                return None;
             }
             if let Some(request) = Self::parse(&head)? {
                 return Some(request);

@@ -14,19 +14,14 @@ use std::{
     thread,
 };
 
-use base64::{Engine as _, engine::general_purpose::STANDARD};
-use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use lsp_server::{ErrorCode, Message, Notification, Request, Response};
 use serde_json::{Value, json};
 use tungstenite::{
     Bytes, Error, Message as Frame, Utf8Bytes, WebSocket,
     protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::CloseCode},
 };
 
-use super::{
-    host::Pages,
-    picture::{self, Format},
-    scene_file::NotSaved,
-};
+use super::{host::Pages, picture, scene_file::NotSaved};
 use crate::lsp::{
     Server,
     json::{self, Malformed},
@@ -200,6 +195,9 @@ impl Page {
 
     /// Answers what is asked of the host.
     fn answer(&mut self, request: Request) -> Result<(), Error> {
+        if picture::is_asked_for(&request) {
+            return self.render(request);
+        }
         let Request { id, method, params } = request;
         let field = |name| params.get(name).and_then(Value::as_str);
         let failed =
@@ -222,9 +220,7 @@ impl Page {
                     }
                 }
             }
-            ("studio/png", Some(text)) => return self.render(id, text, Format::Png),
-            ("studio/exr", Some(text)) => return self.render(id, text, Format::Exr),
-            ("studio/save" | "studio/png" | "studio/exr", None) => {
+            ("studio/save", None) => {
                 failed(ErrorCode::InvalidParams, "there is no `text`".to_owned())
             }
             _ => failed(
@@ -236,16 +232,16 @@ impl Page {
     }
 
     /// Makes a picture's file while the conversation goes on.
-    fn render(&mut self, id: RequestId, text: &str, format: Format) -> Result<(), Error> {
+    fn render(&mut self, request: Request) -> Result<(), Error> {
         if self.rendering.swap(true, Ordering::SeqCst) {
             let message = "another picture is being made".to_owned();
-            let response = Response::new_err(id, ErrorCode::RequestFailed as i32, message);
-            return self.say(vec![response.into()]);
+            let code = ErrorCode::RequestFailed as i32;
+            return self.say(vec![Response::new_err(request.id, code, message).into()]);
         }
-        let (text, sender) = (text.to_owned(), self.sender.clone());
+        let sender = self.sender.clone();
         let (rendering, is_gone) = (Arc::clone(&self.rendering), Arc::clone(&self.is_gone));
         let work = move || {
-            let response = picture_response(id, &text, format, &is_gone);
+            let response = picture::answer(request, &is_gone);
             rendering.store(false, Ordering::SeqCst);
             let _ = sender.send(Event::Tell(json::written(&response.into())));
         };
@@ -254,18 +250,6 @@ impl Page {
             .spawn(work)
             .map(|_| ())
             .map_err(Error::Io)
-    }
-}
-
-/// The answer to who asks for a picture's file.
-fn picture_response(id: RequestId, text: &str, format: Format, cancel: &AtomicBool) -> Response {
-    let name = match format {
-        Format::Png => "png",
-        Format::Exr => "exr",
-    };
-    match picture::file(text, format, cancel) {
-        Ok(bytes) => Response::new_ok(id, json!({ name: STANDARD.encode(bytes) })),
-        Err(message) => Response::new_err(id, ErrorCode::RequestFailed as i32, message),
     }
 }
 

@@ -1,74 +1,89 @@
 //! A text's picture as a file, rendered as the scene asks for.
 
-use std::{io::Cursor, sync::atomic::AtomicBool};
+use std::{error::Error, io::Cursor, sync::atomic::AtomicBool};
+
+use base64::{Engine as _, engine::general_purpose::STANDARD};
+use lsp_server::{ErrorCode, Request, Response};
+use serde_json::{Value, json};
 
 use crate::{
     area::Area,
-    film::{self, Film, Recipe},
-    render::{self, Control, RenderError},
+    film::{self, Recipe},
+    render::{self, Control},
     sampling::Sampling,
     scene::{self, Method, Scene},
     source::{Source, Sources},
     tracer::World,
 };
 
-/// A format of pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Bytes of sRGB, and the scene.
-    Png,
-    /// Linear light.
-    Exr,
+/// The requests for a picture's file.
+const PNG: &str = "studio/png";
+const EXR: &str = "studio/exr";
+
+/// Whether a request is for a picture's file.
+pub fn is_asked_for(request: &Request) -> bool {
+    [PNG, EXR].contains(&&*request.method)
 }
 
-/// The file of the picture that `pinhole render` makes of a text.
-///
-/// # Errors
-///
-/// The text has errors, the picture is too large, or `cancel` was set: why there is none, in words.
-pub fn file(text: &str, format: Format, cancel: &AtomicBool) -> Result<Vec<u8>, String> {
-    let sources = Sources::new(Source::from_text("scene.scn", text));
-    let scene = scene::read(&sources).scene.ok_or("the scene has errors")?;
-    let whole = Area::whole(scene.image.width, scene.image.height);
-    let mut bytes = Vec::new();
-    let out = Cursor::new(&mut bytes);
-    let written = match format {
-        Format::Png => {
-            let film = bytes_of(&scene, whole, cancel).map_err(|error| error.to_string())?;
-            let recipe = Recipe {
-                scene: text.to_owned(),
-                overrides: Vec::new(),
-                crop: None,
-            };
-            film::write_png(&film, &recipe, out)
-        }
-        Format::Exr => {
-            let film = light_of(&scene, whole, cancel).map_err(|error| error.to_string())?;
-            film::write_exr(&film, whole, whole, out)
-        }
+/// The answer to such a request: the file of the picture that `pinhole render` makes of the text.
+pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
+    let Request { id, method, params } = request;
+    let failed = |code: ErrorCode, message| Response::new_err(id.clone(), code as i32, message);
+    let Some(text) = params.get("text").and_then(Value::as_str) else {
+        return failed(ErrorCode::InvalidParams, "there is no `text`".to_owned());
     };
-    written.map_err(|error| error.to_string())?;
-    Ok(bytes)
-}
-
-fn bytes_of(scene: &Scene, whole: Area, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderError> {
-    let world = World::new_unless(scene, cancel)?;
-    match scene.sampler.method {
-        Method::Exact => {
-            render::render_exact_bytes(&world, whole, &control(cancel)).map(|exact| exact.film)
-        }
-        _ => render::render_bytes(&world, &sampling(scene), whole, &control(cancel)),
+    let (name, write): (_, Write) = match &*method {
+        EXR => ("exr", write_exr),
+        _ => ("png", write_png),
+    };
+    let sources = Sources::new(Source::from_text("scene.scn", text));
+    let Some(scene) = scene::read(&sources).scene else {
+        return failed(ErrorCode::RequestFailed, "the scene has errors".to_owned());
+    };
+    let mut bytes = Vec::new();
+    match write(&scene, text, cancel, Cursor::new(&mut bytes)) {
+        Ok(()) => Response::new_ok(id, json!({ name: STANDARD.encode(bytes) })),
+        Err(error) => failed(ErrorCode::RequestFailed, error.to_string()),
     }
 }
 
-fn light_of(scene: &Scene, whole: Area, cancel: &AtomicBool) -> Result<Film, RenderError> {
-    let world = World::new_unless(scene, cancel)?;
-    match scene.sampler.method {
-        Method::Exact => {
-            render::render_exact(&world, whole, &control(cancel)).map(|exact| exact.film)
-        }
-        _ => render::render(&world, &sampling(scene), whole, &control(cancel)),
-    }
+type Write = fn(&Scene, &str, &AtomicBool, Cursor<&mut Vec<u8>>) -> Result<(), Box<dyn Error>>;
+
+fn write_png(
+    scene: &Scene,
+    text: &str,
+    cancel: &AtomicBool,
+    out: Cursor<&mut Vec<u8>>,
+) -> Result<(), Box<dyn Error>> {
+    let (world, whole) = (World::new_unless(scene, cancel)?, whole(scene));
+    let film = match scene.sampler.method {
+        Method::Exact => render::render_exact_bytes(&world, whole, &control(cancel))?.film,
+        _ => render::render_bytes(&world, &sampling(scene), whole, &control(cancel))?,
+    };
+    let recipe = Recipe {
+        scene: text.to_owned(),
+        overrides: Vec::new(),
+        crop: None,
+    };
+    Ok(film::write_png(&film, &recipe, out)?)
+}
+
+fn write_exr(
+    scene: &Scene,
+    _: &str,
+    cancel: &AtomicBool,
+    out: Cursor<&mut Vec<u8>>,
+) -> Result<(), Box<dyn Error>> {
+    let (world, whole) = (World::new_unless(scene, cancel)?, whole(scene));
+    let film = match scene.sampler.method {
+        Method::Exact => render::render_exact(&world, whole, &control(cancel))?.film,
+        _ => render::render(&world, &sampling(scene), whole, &control(cancel))?,
+    };
+    Ok(film::write_exr(&film, whole, whole, out)?)
+}
+
+fn whole(scene: &Scene) -> Area {
+    Area::whole(scene.image.width, scene.image.height)
 }
 
 fn sampling(scene: &Scene) -> Sampling {

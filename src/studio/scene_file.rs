@@ -3,10 +3,14 @@
 use std::{
     fs, io,
     path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
+    sync::{Arc, atomic::AtomicBool},
 };
 
-use crate::{film, scene::SMALLEST};
+use crate::{
+    film,
+    preview::{self, Content, Latest},
+    scene::SMALLEST,
+};
 
 /// What reads a file, up to the length that scenes have.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
@@ -63,9 +67,9 @@ impl SceneFile {
         self.path.as_deref()
     }
 
-    /// What reads it.
-    pub fn reader(&self) -> Read {
-        self.read
+    /// Watches the file, if there is one and the system can.
+    pub fn watch(&self) -> Option<Arc<Latest<Content>>> {
+        preview::watch(self.path()?, self.read).ok()
     }
 
     /// What it is called; for a new scene what it might be called.
@@ -80,9 +84,9 @@ impl SceneFile {
         self.text.as_deref()
     }
 
-    /// Takes in what is in it now. Says whether that is new.
-    pub fn look(&mut self, bytes: io::Result<Vec<u8>>) -> bool {
-        let text = as_text(bytes);
+    /// Looks at what is in it now. Says whether that is new.
+    pub fn look(&mut self) -> bool {
+        let text = self.path().and_then(|path| as_text((self.read)(path)));
         let is_new = self.text != text;
         self.text = text;
         is_new

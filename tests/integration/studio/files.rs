@@ -144,7 +144,7 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
         file,
         json!({ "name": "scene.scn", "text": SCENE, "uri": uri, "saved": false })
     );
-    let mut save = |page: &mut Page, name: Value| {
+    let save = |page: &mut Page, name: Value| {
         let params = json!({ "text": "// new", "base": SCENE, "name": name });
         page.respond("studio/save", params)
     };
