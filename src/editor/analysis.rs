@@ -3,7 +3,7 @@
 use super::tokens::{self, Token};
 use crate::{
     diagnostic::Diagnostic,
-    scene::{self, SemanticModel},
+    scene::{self, Parts, Scene, SemanticModel},
     schema::{self, Value},
     source::{Source, SourceId, Sources, Span},
     syntax::tree::{self, Block, Definition, Field, Item},
@@ -60,6 +60,13 @@ impl<'s> Analysis<'s> {
     /// What is wrong with it: the same list as everywhere.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.model.diagnostics
+    }
+
+    /// What it means; none where it has errors.
+    pub fn scene(&self) -> Option<Scene> {
+        let has_errors = self.diagnostics().iter().any(Diagnostic::is_error);
+        let parts = (!has_errors).then(|| self.model.parts.clone());
+        parts.and_then(Parts::into_scene)
     }
 
     /// The comments.

@@ -91,7 +91,7 @@ pub fn write_png<P: Pixel>(film: &Film<P>, recipe: &Recipe, out: impl Write) -> 
 }
 
 /// Writes a picture that no scene makes.
-pub fn write_plain_png(film: &Film, out: impl Write) -> io::Result<()> {
+pub fn write_plain_png<P: Pixel>(film: &Film<P>, out: impl Write) -> io::Result<()> {
     write(film, [].into_iter(), out)
 }
 

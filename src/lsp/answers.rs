@@ -16,16 +16,11 @@ use crate::{
 /// The answer to a request about a document.
 pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Answer {
     let Request { method, params, .. } = request;
-    let unknown = || {
-        let refusal = format!("`{method}` is not known here");
-        Err(Refusal(ErrorCode::MethodNotFound, refusal))
-    };
     let Some(about) = method.strip_prefix("textDocument/") else {
-        return unknown();
+        return Err(unknown(&method));
     };
     let Some((page, analysis)) = known else {
-        let refusal = "the document is not open".to_owned();
-        return Err(Refusal(ErrorCode::InvalidParams, refusal));
+        return Err(not_open());
     };
     let at = || {
         let position = params.get("position").cloned().unwrap_or_default();
@@ -103,8 +98,20 @@ pub fn answer(request: Request, known: Option<(Page<'_>, &Analysis<'_>)>) -> Ans
             written(&edits)
         }
         "semanticTokens/full" => written(&page.semantic_tokens(&editor::semantic_tokens(analysis))),
-        _ => unknown(),
+        _ => Err(unknown(&method)),
     }
+}
+
+/// A request about a document of which the client has not said that it is open.
+pub fn not_open() -> Refusal {
+    let refusal = "the document is not open".to_owned();
+    Refusal(ErrorCode::InvalidParams, refusal)
+}
+
+/// A request of a method that there is not.
+pub fn unknown(method: &str) -> Refusal {
+    let refusal = format!("`{method}` is not known here");
+    Refusal(ErrorCode::MethodNotFound, refusal)
 }
 
 fn list<T: serde::Serialize>(items: impl Iterator<Item = T>) -> Answer {

@@ -20,3 +20,13 @@ pub fn written(result: &impl serde::Serialize) -> Answer {
     serde_json::to_value(result)
         .map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
 }
+
+/// A field of the parameters; none where it is left out or null.
+pub fn optional<T: serde::de::DeserializeOwned>(
+    params: &Value,
+    name: &str,
+) -> Result<Option<T>, Refusal> {
+    let field = params.get(name).cloned().unwrap_or_default();
+    serde_json::from_value(field)
+        .map_err(|error| Refusal(ErrorCode::InvalidParams, format!("`{name}`: {error}")))
+}

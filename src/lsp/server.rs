@@ -2,9 +2,11 @@
 //!
 //! What a client tells is taken in at once, and what it asks is put into a queue, of which [`Server::advance`] answers a slice; so a host can
 //! see what has come in the meantime, as a request's cancelling. Each answer is about the text as it was when it was asked for: before a text changes, what waits
-//! about it is answered. Diagnostics are computed for a text's last version alone.
+//! about it is answered. Diagnostics are computed for a text's last version alone. A frame, which takes longer than all else, is made in slices when nothing else is to
+//! be done, and given up where its text changes.
 
 use std::{
+    cell::LazyCell,
     collections::{BTreeSet, HashMap, VecDeque},
     panic::{self, AssertUnwindSafe},
 };
@@ -14,10 +16,13 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response}
 use serde_json::{Value, json};
 
 use super::{
-    answers::{answer, diagnostics},
+    answers::{answer, diagnostics, not_open},
     convert::{self, Client, Page},
     documents::Document,
+    frames::{Frames, Wanted},
     params::{Refusal, parsed, written},
+    pictures,
+    prepared::Prepared,
 };
 use crate::editor::Analysis;
 
@@ -43,6 +48,9 @@ pub struct Server {
     waiting: VecDeque<Request>,
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
+    /// What the pictures of documents are made from, where one was asked for; none where a text has errors.
+    prepared: HashMap<lsp::Uri, Option<Prepared>>,
+    frames: Frames,
     log: fn(&str),
 }
 
@@ -54,6 +62,8 @@ impl Server {
             documents: HashMap::new(),
             waiting: VecDeque::new(),
             changed: BTreeSet::new(),
+            prepared: HashMap::new(),
+            frames: Frames::default(),
             log,
         }
     }
@@ -75,6 +85,7 @@ impl Server {
             }
             (Message::Request(request), _) => {
                 let mut said = self.answer_all(|_| true);
+                said.extend(self.frames.drop_of(None).into_iter().map(cancelled));
                 said.push(self.answer_about_life(request));
                 said
             }
@@ -86,16 +97,16 @@ impl Server {
 
     /// Whether there is work left.
     pub fn is_busy(&self) -> bool {
-        !self.waiting.is_empty() || !self.changed.is_empty()
+        !self.waiting.is_empty() || !self.changed.is_empty() || !self.frames.is_empty()
     }
 
     /// Does a piece of the work that is left, and returns what is to be said of it. A piece is one text: everything that was asked about it, and what is wrong
-    /// with it.
+    /// with it; or, where nothing else is left, a slice of a frame.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(lsp::Uri(uri.clone())));
         let Some(next) = asked.or_else(changed) else {
-            return Vec::new();
+            return self.advance_frame().into_iter().collect();
         };
         let is_changed = next.as_ref().is_some_and(|uri| self.changed.remove(&uri.0));
         self.work_on(next.as_ref(), is_changed)
@@ -126,23 +137,69 @@ impl Server {
                 document: self.documents.get(uri)?,
             })
         });
-        let analysis = page.map(|page| Analysis::new(&page.document.sources));
-        let known = page.zip(analysis.as_ref());
-        let answers = asked.into_iter().map(|request| {
+        let analysis =
+            page.map(|page| LazyCell::new(move || Analysis::new(&page.document.sources)));
+        let analysis = analysis.as_ref();
+        let mut said = Vec::new();
+        for request in asked {
             let id = request.id.clone();
-            response(id, unharmed(|| answer(request, known)))
-        });
-        let mut said: Vec<Message> = answers.collect();
+            let Some(about) = request.method.strip_prefix(pictures::NAMESPACE) else {
+                let known = page.zip(analysis.map(|analysis| &**analysis));
+                said.push(response(id, unharmed(|| answer(request, known))));
+                continue;
+            };
+            let Some((page, analysis)) = page.zip(analysis) else {
+                said.push(response(id, Err(not_open())));
+                continue;
+            };
+            let (uri, version) = (page.uri.clone(), page.document.version);
+            let prepared = self.prepared.entry(uri.clone());
+            let prepared = prepared.or_insert_with(|| Prepared::new(analysis, version));
+            let params = &request.params;
+            match (prepared, about) {
+                (Some(_), "frame") => match Wanted::new(params) {
+                    Ok(wanted) => {
+                        let superseded = self.frames.push(id, uri, wanted);
+                        said.extend(superseded.map(cancelled));
+                    }
+                    Err(refusal) => said.push(response(id, Err(refusal))),
+                },
+                (prepared, _) => {
+                    let answer = || pictures::answer(about, params, page, analysis, prepared);
+                    said.push(response(id, unharmed(answer)));
+                }
+            }
+        }
         if is_changed {
             let mut params = json!({ "uri": wanted, "diagnostics": [] });
             // Nothing is wrong with a text that was closed.
-            if let Some((page, analysis)) = known {
+            if let Some((page, analysis)) = page.zip(analysis) {
                 params["version"] = page.document.version.into();
                 params["diagnostics"] = json!(diagnostics(page, analysis));
             }
             said.push(published(params));
         }
         said
+    }
+
+    /// Makes a slice of a frame. Says the frame if it is done.
+    fn advance_frame(&mut self) -> Option<Message> {
+        let id = self.frames.oldest()?;
+        let (frames, prepared) = (&mut self.frames, &mut self.prepared);
+        let answer = unharmed(|| frames.advance(prepared)).transpose()?;
+        self.frames.cancel(&id);
+        Some(response(id, answer))
+    }
+
+    /// Forgets what was prepared for a text that has changed. Answers those who wait for a frame of it.
+    fn forget(&mut self, uri: &lsp::Uri) -> Vec<Message> {
+        self.prepared.remove(uri);
+        let dropped = self.frames.drop_of(Some(uri)).into_iter();
+        let changed = |id| {
+            let message = "the text has changed".to_owned();
+            response(id, Err(Refusal(ErrorCode::ContentModified, message)))
+        };
+        dropped.map(changed).collect()
     }
 
     /// The requests that begin and end a conversation, and all others before and after it.
@@ -199,20 +256,18 @@ impl Server {
             "textDocument/didOpen" => self.open(params, &client),
             "textDocument/didChange" => self.change(&params),
             "textDocument/didClose" => self.close(params),
-            "$/cancelRequest" => {
-                said = self.cancel(&params);
-                Ok(())
-            }
+            "$/cancelRequest" => Ok(self.cancel(&params).into_iter().collect()),
             // Others are for servers that know more.
-            _ => Ok(()),
+            _ => Ok(Vec::new()),
         };
-        if let Err(Refusal(_, message)) = noticed {
-            (self.log)(&format!("{method}: {message}"));
+        match noticed {
+            Ok(more) => said.extend(more),
+            Err(Refusal(_, message)) => (self.log)(&format!("{method}: {message}")),
         }
         said
     }
 
-    fn open(&mut self, params: Value, client: &Client) -> Result<(), Refusal> {
+    fn open(&mut self, params: Value, client: &Client) -> Result<Vec<Message>, Refusal> {
         let params: lsp::DidOpenTextDocumentParams = parsed(params)?;
         let lsp::TextDocumentItem {
             uri, version, text, ..
@@ -220,11 +275,12 @@ impl Server {
         let name = uri.0.rsplit('/').next().unwrap_or_default().to_owned();
         self.changed.insert(uri.0.clone());
         let document = Document::new(&name, version, text, client.encoding);
+        let said = self.forget(&uri);
         self.documents.insert(uri, document);
-        Ok(())
+        Ok(said)
     }
 
-    fn change(&mut self, params: &Value) -> Result<(), Refusal> {
+    fn change(&mut self, params: &Value) -> Result<Vec<Message>, Refusal> {
         let refuse = |message| Err(Refusal(ErrorCode::InvalidParams, message));
         let text_document = params.get("textDocument").cloned().unwrap_or_default();
         let lsp::VersionedTextDocumentIdentifier {
@@ -242,28 +298,33 @@ impl Server {
         if let Err(message) = document.change(version, &changes) {
             return refuse(message);
         }
+        let said = self.forget(&uri);
         self.changed.insert(uri.0);
-        Ok(())
+        Ok(said)
     }
 
-    fn close(&mut self, params: Value) -> Result<(), Refusal> {
+    fn close(&mut self, params: Value) -> Result<Vec<Message>, Refusal> {
         let params: lsp::DidCloseTextDocumentParams = parsed(params)?;
-        self.documents.remove(&params.text_document.uri);
-        self.changed.insert(params.text_document.uri.0);
-        Ok(())
+        let uri = params.text_document.uri;
+        self.documents.remove(&uri);
+        let said = self.forget(&uri);
+        self.changed.insert(uri.0);
+        Ok(said)
     }
 
-    /// Says of a request that still waits that it was cancelled.
-    fn cancel(&mut self, params: &Value) -> Vec<Message> {
+    /// Says of a request that still waits, or of a frame that is not done, that it was cancelled.
+    fn cancel(&mut self, params: &Value) -> Option<Message> {
         let id = params.get("id").cloned().unwrap_or_default();
-        let id: Option<RequestId> = serde_json::from_value(id).ok();
-        let is_cancelled = |request: &Request| Some(&request.id) == id.as_ref();
-        let place = self.waiting.iter().position(is_cancelled);
-        let cancelled = place.and_then(|place| self.waiting.remove(place));
-        let refusal = Refusal(ErrorCode::RequestCanceled, "cancelled".to_owned());
-        let cancelled = cancelled.map(|request| response(request.id, Err(refusal)));
-        cancelled.into_iter().collect()
+        let id: RequestId = serde_json::from_value(id).ok()?;
+        let place = self.waiting.iter().position(|request| request.id == id);
+        let was_waiting = place.and_then(|place| self.waiting.remove(place)).is_some();
+        (was_waiting || self.frames.cancel(&id)).then(|| cancelled(id))
     }
+}
+
+fn cancelled(id: RequestId) -> Message {
+    let message = "cancelled".to_owned();
+    response(id, Err(Refusal(ErrorCode::RequestCanceled, message)))
 }
 
 fn response(id: RequestId, answer: Result<Value, Refusal>) -> Message {
@@ -290,7 +351,7 @@ fn uri(request: &Request) -> Option<lsp::Uri> {
 }
 
 /// An answer, or the refusal if giving it failed: the next request may fare better, and no text is touched by an answer.
-fn unharmed(answer: impl FnOnce() -> Result<Value, Refusal>) -> Result<Value, Refusal> {
+fn unharmed<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();
         Err(Refusal(ErrorCode::InternalError, message))

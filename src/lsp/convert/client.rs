@@ -2,7 +2,7 @@
 
 use gen_lsp_types as lsp;
 use line_index::WideEncoding;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
 
@@ -99,6 +99,8 @@ pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
                 ..Default::default()
             },
         )),
+        // docs/protocol.md
+        experimental: Some(json!({ "pinhole": 1 })),
         ..Default::default()
     }
 }

@@ -101,7 +101,7 @@ fn of_several_states_the_last_is_judged_and_each_request_is_about_its_own() {
 
 #[test]
 fn an_answer_that_fails_is_an_answer() {
-    let answer = unharmed(|| panic!("on purpose"));
+    let answer = unharmed::<Value>(|| panic!("on purpose"));
     let code = answer.err().map(|Refusal(code, _)| code as i32);
     assert_eq!(code, Some(ErrorCode::InternalError as i32));
 }

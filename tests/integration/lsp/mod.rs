@@ -1,5 +1,7 @@
 //! The language server from outside: the binary, and what goes through its standard input and output.
 
 mod client;
+mod frames;
 mod neovim;
+mod pictures;
 mod session;

@@ -1,0 +1,257 @@
+//! Frames: pictures of an open text, made in slices, so that other messages are answered in between.
+//!
+//! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does not depend on the rectangle that is asked for, and
+//! no clock is needed, which a web worker's Rust does not have. A frame that is not wanted any more is dropped between two slices.
+
+use std::collections::{HashMap, VecDeque};
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use gen_lsp_types as lsp;
+use lsp_server::{ErrorCode, RequestId};
+use serde_json::{Value, json};
+
+use super::{
+    params::{Refusal, optional},
+    prepared::Prepared,
+};
+use crate::{
+    area::Area,
+    cancel,
+    film::{self, Film},
+    render::{Control, RenderError, render_bytes, render_exact_bytes},
+    sampling::Sampling,
+    scene::{Count, Method, Sampler, Scene},
+    tracer::{GRID, World},
+};
+
+/// The samples of a slice: some 10 ms of two processors for a few objects. No pixel may have more, since a pixel is not divided.
+const SLICE: u64 = 1 << 20;
+
+/// A pixel without samples takes as long as so many samples, for figure 9.9.
+const EXACT: u64 = 64;
+
+/// The most pixels of a frame. More than a page can show is a file's business.
+const MOST_PIXELS: u64 = 1 << 24;
+
+/// The frames that are asked for and not done, the oldest first. Only that one has pixels.
+#[derive(Debug, Default)]
+pub struct Frames(VecDeque<Frame>);
+
+#[derive(Debug)]
+struct Frame {
+    id: RequestId,
+    uri: lsp::Uri,
+    wanted: Wanted,
+    begun: Option<Begun>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    scale: u32,
+    /// What the scene asks for if it is none.
+    samples: Option<u64>,
+}
+
+/// A frame of which some slices are done.
+#[derive(Debug)]
+struct Begun {
+    film: Film<[u8; 3]>,
+    sampling: Option<Sampling>,
+    slices: VecDeque<Area>,
+}
+
+impl Wanted {
+    /// Reads the parameters of a request.
+    pub fn new(params: &Value) -> Result<Self, Refusal> {
+        let invalid = |name: &str| {
+            let message = format!("`{name}` is a whole number of at least 1");
+            Err(Refusal(ErrorCode::InvalidParams, message))
+        };
+        let scale = optional(params, "scale")?.unwrap_or(1);
+        let samples = optional(params, "samples")?;
+        match (scale, samples) {
+            (0, _) => invalid("scale"),
+            (_, Some(0)) => invalid("samples"),
+            _ => Ok(Self { scale, samples }),
+        }
+    }
+
+    fn sampler(&self, scene: &Scene) -> Sampler {
+        match self.samples {
+            None => scene.sampler,
+            Some(samples) => Sampler {
+                method: Method::Regular,
+                count: Count::PerPixel(samples),
+                ..scene.sampler
+            },
+        }
+    }
+}
+
+impl Frames {
+    /// Takes a frame in. Returns the request that it supersedes.
+    pub fn push(&mut self, id: RequestId, uri: lsp::Uri, wanted: Wanted) -> Option<RequestId> {
+        let is_same = |frame: &Frame| frame.uri == uri && frame.wanted == wanted;
+        let place = self.0.iter().position(is_same);
+        let superseded = place.and_then(|place| self.0.remove(place));
+        self.0.push_back(Frame {
+            id,
+            uri,
+            wanted,
+            begun: None,
+        });
+        superseded.map(|frame| frame.id)
+    }
+
+    /// Whether any is to be made.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Drops the frame that a request asked for. Says whether there was one.
+    pub fn cancel(&mut self, id: &RequestId) -> bool {
+        let before = self.0.len();
+        self.0.retain(|frame| frame.id != *id);
+        self.0.len() < before
+    }
+
+    /// Drops the frames of a text, or of all if it is none. Returns who asked for them.
+    pub fn drop_of(&mut self, uri: Option<&lsp::Uri>) -> Vec<RequestId> {
+        let mut dropped = Vec::new();
+        self.0.retain(|frame| {
+            let is_kept = uri.is_some_and(|uri| frame.uri != *uri);
+            if !is_kept {
+                dropped.push(frame.id.clone());
+            }
+            is_kept
+        });
+        dropped
+    }
+
+    /// Who asked for the oldest one.
+    pub fn oldest(&self) -> Option<RequestId> {
+        self.0.front().map(|frame| frame.id.clone())
+    }
+
+    /// Makes a slice of the oldest one. Returns its answer once it is done.
+    pub fn advance(
+        &mut self,
+        prepared: &mut HashMap<lsp::Uri, Option<Prepared>>,
+    ) -> Result<Option<Value>, Refusal> {
+        let Some(frame) = self.0.front_mut() else {
+            return Ok(None);
+        };
+        match prepared.get_mut(&frame.uri) {
+            Some(Some(prepared)) => frame.advance(prepared),
+            _ => Ok(Some(Value::Null)),
+        }
+    }
+}
+
+impl Frame {
+    fn advance(&mut self, prepared: &mut Prepared) -> Result<Option<Value>, Refusal> {
+        let begun = match &mut self.begun {
+            Some(begun) => begun,
+            none => none.insert(Begun::new(self.wanted, prepared)?),
+        };
+        let (_, world) = prepared.world(self.wanted.scale);
+        begun.advance(world).map_err(refused)?;
+        if !begun.slices.is_empty() {
+            return Ok(None);
+        }
+        let mut png = Vec::new();
+        film::write_plain_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
+        let image = &prepared.scene.image;
+        Ok(Some(json!({
+            "version": prepared.version,
+            "width": begun.film.width(),
+            "height": begun.film.height(),
+            "size": [image.width, image.height],
+            "png": BASE64_STANDARD.encode(png),
+        })))
+    }
+}
+
+impl Begun {
+    fn new(wanted: Wanted, prepared: &Prepared) -> Result<Self, Refusal> {
+        let (width, height) = prepared.size(wanted.scale);
+        let whole = Area::whole(width, height);
+        if whole.pixels() > MOST_PIXELS {
+            let message = format!(
+                "a frame of {width} × {height} pixels is more than a page can show; at most {MOST_PIXELS} pixels can be asked for, by a larger `scale`"
+            );
+            return Err(failed(message));
+        }
+        let sampler = wanted.sampler(&prepared.scene);
+        let sampling =
+            (sampler.method != Method::Exact).then(|| Sampling::new(&sampler, width, height));
+        let work = match &sampling {
+            Some(sampling) => sampling.samples_per_pixel().max(1),
+            None => EXACT,
+        };
+        if work > SLICE {
+            let message = format!(
+                "{work} samples a pixel take too long for a frame; at most {SLICE} can be asked for, by `samples`"
+            );
+            return Err(failed(message));
+        }
+        Ok(Self {
+            film: Film::new(width, height).map_err(|error| failed(error.to_string()))?,
+            sampling,
+            slices: slices(whole, SLICE / work).collect(),
+        })
+    }
+
+    /// Makes the next slice.
+    fn advance(&mut self, world: &World) -> Result<(), RenderError> {
+        let control = Control {
+            threads: None,
+            progress: &|_| {},
+            cancel: &cancel::NEVER,
+        };
+        let Some(part) = self.slices.pop_front() else {
+            return Ok(());
+        };
+        let made = match &self.sampling {
+            Some(sampling) => render_bytes(world, sampling, part, &control)?,
+            None => render_exact_bytes(world, part, &control)?.film,
+        };
+        self.film.put(part, made.pixels());
+        Ok(())
+    }
+}
+
+/// Rectangles of about so many pixels, at least one: bands of the tracer's grid where these fit, or parts of them.
+fn slices(whole: Area, pixels: u64) -> impl Iterator<Item = Area> {
+    let grid = u64::from(GRID);
+    let rows = pixels / u64::from(whole.width);
+    let (width, height) = if rows >= grid {
+        (u64::from(whole.width), rows - rows % grid)
+    } else {
+        let side = grid.min(1 << (pixels.ilog2() / 2));
+        (pixels / side, side)
+    };
+    // No side of a picture is longer than 2^20.
+    let [width, height] = [width, height].map(|side| side.min(1 << 20) as u32);
+    let starts = |length: u32, side: u32| (0..length).step_by(side as usize);
+    starts(whole.height, height).flat_map(move |y| {
+        starts(whole.width, width).map(move |x| {
+            Area {
+                x,
+                y,
+                width,
+                height,
+            }
+            .common(whole)
+        })
+    })
+}
+
+fn failed(message: String) -> Refusal {
+    Refusal(ErrorCode::RequestFailed, message)
+}
+
+fn refused(error: RenderError) -> Refusal {
+    failed(error.to_string())
+}

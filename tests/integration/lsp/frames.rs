@@ -1,0 +1,229 @@
+//! Frames: the pixels of a render, in slices, as long as they are wanted.
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use serde_json::{Value, json};
+
+use super::pictures::{Talk, URI};
+use crate::program::command;
+
+const SCENE: &str = "\
+image { width 83  height 61 }
+camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  d 2.75 }
+sampler { method multi_jittered  per_pixel 9  seed 3 }
+sphere Ball { center (-1.6, 1, 0)  radius 1  color olive }
+box { center (2, 0.75, -0.5)  size (0.5, 1.5, 2)  color orange }
+checkerboard {}
+";
+
+const CONTENT_MODIFIED: i32 = -32801;
+const CANCELLED: i32 = -32800;
+
+/// The bytes of a picture with its size.
+fn pixels(png: &[u8]) -> (u32, u32, Vec<u8>) {
+    let picture = image::load_from_memory(png).expect("a picture");
+    let rgb = picture.to_rgb8();
+    (rgb.width(), rgb.height(), rgb.into_raw())
+}
+
+fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
+    let png = frame["png"].as_str().expect("a picture");
+    let found = pixels(&BASE64_STANDARD.decode(png).expect("base64"));
+    assert_eq!(
+        (&frame["width"], &frame["height"]),
+        (&found.0.into(), &found.1.into())
+    );
+    found
+}
+
+/// What `pinhole render` makes of a scene.
+fn rendered(text: &str, sets: &[&str]) -> (u32, u32, Vec<u8>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a.scn"), text).expect("it is written");
+    let mut arguments = vec!["render", "a.scn", "-o", "a.png"];
+    arguments.extend(sets.iter().flat_map(|set| ["--set", set]));
+    let output = command(folder.path(), &arguments)
+        .output()
+        .expect("it runs");
+    assert!(output.status.success(), "{output:?}");
+    pixels(&std::fs::read(folder.path().join("a.png")).expect("it is there"))
+}
+
+#[test]
+fn a_frame_has_the_pixels_of_a_render() {
+    let exact = SCENE.replace("multi_jittered", "exact");
+    let scattered = SCENE.replace("multi_jittered", "scatter");
+    let many = SCENE.replace("per_pixel 9", "per_pixel 9000");
+    let wide = SCENE.replace("width 83  height 61", "width 100_000  height 2");
+    for (text, params, sets) in [
+        (SCENE, json!({}), &[][..]),
+        (SCENE, json!({ "scale": 1, "samples": null }), &[]),
+        (
+            SCENE,
+            json!({ "scale": 4 }),
+            &["image.width=21", "image.height=16"],
+        ),
+        (
+            SCENE,
+            json!({ "scale": 1000 }),
+            &["image.width=1", "image.height=1"],
+        ),
+        (
+            SCENE,
+            json!({ "samples": 4 }),
+            &["sampler.method=regular", "sampler.per_pixel=4"],
+        ),
+        (
+            SCENE,
+            json!({ "scale": 8, "samples": 1 }),
+            &[
+                "image.width=11",
+                "image.height=8",
+                "sampler.method=regular",
+                "sampler.per_pixel=1",
+            ],
+        ),
+        (&exact, json!({}), &[]),
+        (
+            &exact,
+            json!({ "scale": 3 }),
+            &["image.width=28", "image.height=21"],
+        ),
+        (&scattered, json!({}), &[]),
+        // So many that a slice is a small part of the picture.
+        (
+            &many,
+            json!({ "scale": 2 }),
+            &["image.width=42", "image.height=31"],
+        ),
+        (&wide, json!({}), &[]),
+    ] {
+        let mut talk = Talk::new(text);
+        let frame = talk.ask("pinhole/frame", params.clone());
+        assert!(shown(&frame) == rendered(text, sets), "{params} {sets:?}");
+        assert_eq!(frame["version"], 0);
+        if text != wide {
+            assert_eq!(frame["size"], json!([83, 61]));
+        }
+    }
+}
+
+#[test]
+fn a_frame_is_made_of_the_newest_text_or_not_at_all() {
+    let mut talk = Talk::new(SCENE);
+    let old = talk.post("pinhole/frame", json!({}));
+    // Its diagnostics, and what is begun of the frame.
+    assert!(talk.step() && talk.said(old).is_none());
+    let changed = SCENE.replace("olive", "teal");
+    talk.change(&changed);
+    let new = talk.post("pinhole/frame", json!({}));
+    assert_eq!(talk.response(old)["error"]["code"], CONTENT_MODIFIED);
+    let frame = talk.response(new)["result"].clone();
+    assert_eq!(frame["version"], 1);
+    assert!(shown(&frame) == rendered(&changed, &[]));
+
+    talk.tell(
+        "textDocument/didClose",
+        json!({ "textDocument": { "uri": URI } }),
+    );
+    let closed = talk.refused("pinhole/frame", json!({}));
+    assert_eq!(closed, "the document is not open");
+}
+
+#[test]
+fn a_frame_is_superseded_by_the_same_request_alone() {
+    let mut talk = Talk::new(SCENE);
+    let first = talk.post("pinhole/frame", json!({ "scale": 2 }));
+    let coarse = talk.post("pinhole/frame", json!({ "scale": 4 }));
+    let fine = talk.post("pinhole/frame", json!({ "scale": 2, "samples": 1 }));
+    let second = talk.post("pinhole/frame", json!({ "scale": 2 }));
+    assert_eq!(talk.response(first)["error"]["code"], CANCELLED);
+    for id in [coarse, fine, second] {
+        assert!(talk.response(id)["result"]["png"].is_string());
+    }
+}
+
+#[test]
+fn a_frame_that_is_cancelled_ends_at_once() {
+    // Ten thousand slices, which would take minutes.
+    let text = SCENE
+        .replace("width 83  height 61", "width 1000  height 1000")
+        .replace("per_pixel 9", "per_pixel 10_000");
+    let mut talk = Talk::new(&text);
+    let frame = talk.post("pinhole/frame", json!({}));
+    let hover = talk.post(
+        "textDocument/hover",
+        json!({ "position": { "line": 0, "character": 1 } }),
+    );
+    for _ in 0..4 {
+        assert!(talk.step());
+    }
+    // What comes later is answered in between.
+    assert!(talk.said(hover).is_some() && talk.said(frame).is_none());
+    let later = talk.post(
+        "textDocument/hover",
+        json!({ "position": { "line": 0, "character": 1 } }),
+    );
+    assert!(talk.step() && talk.said(later).is_some());
+    talk.tell("$/cancelRequest", json!({ "id": frame }));
+    assert_eq!(
+        talk.said(frame).expect("an answer")["error"]["code"],
+        CANCELLED
+    );
+    assert!(!talk.step());
+
+    let frame = talk.post("pinhole/frame", json!({}));
+    talk.step();
+    let shutdown = talk.post("shutdown", json!({}));
+    assert_eq!(
+        talk.said(frame).expect("an answer")["error"]["code"],
+        CANCELLED
+    );
+    assert!(talk.said(shutdown).is_some());
+}
+
+#[test]
+fn there_is_no_frame_of_a_text_with_errors() {
+    for broken in [
+        "",
+        "camera {",
+        "sphere { center (0, 0, 0) }",
+        &SCENE.replace("eye", "eys"),
+    ] {
+        let mut talk = Talk::new(broken);
+        assert_eq!(talk.ask("pinhole/frame", json!({})), Value::Null);
+        talk.change(SCENE);
+        assert!(talk.ask("pinhole/frame", json!({ "scale": 8 }))["png"].is_string());
+    }
+}
+
+#[test]
+fn what_is_too_much_for_a_frame_is_refused() {
+    let large = SCENE.replace("width 83  height 61", "width 1_048_576  height 1_048_576");
+    let mut talk = Talk::new(&large);
+    assert_eq!(
+        talk.refused("pinhole/frame", json!({})),
+        "a frame of 1048576 × 1048576 pixels is more than a page can show; at most 16777216 pixels can be asked for, by a larger `scale`"
+    );
+    let frame = talk.ask("pinhole/frame", json!({ "scale": 65536, "samples": 1 }));
+    assert_eq!(
+        (&frame["width"], &frame["size"]),
+        (&json!(16), &json!([1_048_576, 1_048_576]))
+    );
+    let many = SCENE.replace("per_pixel 9", "per_pixel 1_000_000_000");
+    let mut talk = Talk::new(&many);
+    assert_eq!(
+        talk.refused("pinhole/frame", json!({})),
+        "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`"
+    );
+    for (params, name) in [
+        (json!({ "scale": 0 }), "scale"),
+        (json!({ "scale": 0.5 }), "scale"),
+        (json!({ "scale": -1 }), "scale"),
+        (json!({ "scale": 1e300 }), "scale"),
+        (json!({ "samples": 0 }), "samples"),
+        (json!({ "samples": "4" }), "samples"),
+    ] {
+        let message = talk.refused("pinhole/frame", params);
+        assert!(message.starts_with(&format!("`{name}`")), "{message}");
+    }
+}
