@@ -16,6 +16,7 @@ const { metafile } = await build({
   target: ["chrome111", "firefox113", "safari16.4"],
   minify: true,
   legalComments: "none",
+  loader: { ".scn": "text" },
   metafile: true,
   logLevel: "warning",
   outdir: folder,
