@@ -1,9 +1,9 @@
 // What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
 
-import { setDiagnostics, type Action, type Diagnostic } from "@codemirror/lint";
-import type { EditorView, KeyBinding } from "@codemirror/view";
-import { forEachDiagnostic } from "@codemirror/lint";
+import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
+import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
+import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
 import { isSuperseded, type Range, type TextEdit } from "./protocol";
 
@@ -26,21 +26,22 @@ interface Published {
   diagnostics: ServerDiagnostic[];
 }
 
-/** Shows diagnostics of the newest text at once, and again with their fixes when the server has answered what these are. */
+/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip closes when there are new diagnostics. */
 export async function publishDiagnostics(editor: SceneEditor, connection: Connection, published: Published): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined && published.version !== file.version)) return;
-  show(editor, published.diagnostics, []);
-  if (published.diagnostics.length === 0) return;
-  const range = { start: { line: 0, character: 0 }, end: { line: doc.lines, character: 0 } };
-  try {
-    const actions = await connection.request<CodeAction[] | null>("textDocument/codeAction", editor.about({ range, context: { diagnostics: [] } }));
-    if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
-  } catch (error) {
-    // Without an answer the diagnostics stay as they are.
-    if (!isSuperseded(error)) console.warn(error);
+  let actions: CodeAction[] | null = null;
+  if (published.diagnostics.length > 0) {
+    const range = { start: { line: 0, character: 0 }, end: { line: doc.lines, character: 0 } };
+    try {
+      actions = await connection.request<CodeAction[] | null>("textDocument/codeAction", editor.about({ range, context: { diagnostics: [] } }));
+    } catch (error) {
+      // Without an answer they are shown without fixes.
+      if (!isSuperseded(error)) console.warn(error);
+    }
   }
+  if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
 }
 
 function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
@@ -74,11 +75,43 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
   };
 }
 
-/** How many diagnostics there are. */
-export function countDiagnostics(view: EditorView): number {
-  let count = 0;
-  forEachDiagnostic(view.state, () => count++);
-  return count;
+/** Whether an update of the editor brings other diagnostics, or moves them. */
+export function changesDiagnostics(update: ViewUpdate): boolean {
+  return update.docChanged || update.transactions.some(it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
+}
+
+/** The list of all that is wrong, which the button in the status line opens: each message leads to its place, and has its fixes. */
+export class Problems {
+  private readonly button = byId("problems");
+  private readonly list = byId("problem-list");
+
+  constructor(private readonly view: () => EditorView) {
+    this.button.addEventListener("click", () => {
+      this.button.setAttribute("aria-expanded", String(this.list.hidden));
+      this.list.hidden = !this.list.hidden;
+      this.update();
+    });
+  }
+
+  update(): void {
+    const view = this.view();
+    const items: HTMLLIElement[] = [];
+    forEachDiagnostic(view.state, (diagnostic, from, to) => {
+      const item = create("li", diagnostic.severity);
+      const jump = () => {
+        view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
+        view.focus();
+      };
+      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`, "place", jump));
+      for (const { name, apply } of diagnostic.actions ?? []) item.append(createButton(name, "fix", () => apply(view, from, to)));
+      items.push(item);
+    });
+    const count = items.length;
+    this.button.textContent = count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`;
+    this.button.toggleAttribute("data-some", count > 0);
+    // While it is closed nobody sees it: a drag changes the text many times a second.
+    this.list.replaceChildren(...(this.list.hidden ? [] : items));
+  }
 }
 
 /** Applies the first fix of the diagnostic at the cursor, or else of the first one that has any. */

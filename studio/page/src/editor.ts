@@ -3,7 +3,7 @@
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
-import { lintGutter, lintKeymap } from "@codemirror/lint";
+import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { ChangeSet, Compartment, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
@@ -97,7 +97,7 @@ export class SceneEditor {
         sceneLanguage,
         sceneHighlighting,
         EditorView.lineWrapping,
-        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", spellcheck: "false", autocapitalize: "off" }),
+        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
         keymap.of([
           ...formatKeymap,
           ...renameKeymap,
@@ -105,7 +105,7 @@ export class SceneEditor {
           { key: "Mod-/", run: toggleComment },
           ...closeBracketsKeymap,
           ...completionKeymap,
-          ...lintKeymap,
+          { key: "F8", run: nextDiagnostic, shift: previousDiagnostic },
           ...searchKeymap,
           ...historyKeymap,
           ...defaultKeymap,

@@ -67,13 +67,22 @@ class SwatchWidget extends WidgetType {
     const input = create("input", "swatch");
     input.type = "color";
     let gesture: Gesture | null = null;
+    let wanted: string | null = null;
+    let work = Promise.resolve();
     input.addEventListener("input", () => {
-      gesture ??= new Gesture(view);
-      void this.hints.pick(view.posAtDOM(input), input.value, gesture);
+      const going = (gesture ??= new Gesture(view));
+      wanted = input.value;
+      // One after the other, and of those that wait the newest alone.
+      work = work.then(async () => {
+        const color = wanted;
+        wanted = null;
+        if (color !== null) await this.hints.pick(view.posAtDOM(input), color, going);
+      });
     });
     input.addEventListener("change", () => {
-      gesture?.end();
+      const going = gesture;
       gesture = null;
+      void work.then(() => going?.end());
     });
     this.updateDOM(input);
     return input;
@@ -137,9 +146,13 @@ export class Hints {
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
     const range = { start, end: { line: start.line, character: start.character + written.length } };
-    const ways = await this.connection.request<{ label: string; textEdit?: TextEdit }[]>("textDocument/colorPresentation", editor.about({ color, range }));
-    const way = ways.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb")) ?? ways[0];
-    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(editor.changes([way.textEdit]));
+    try {
+      const ways = await this.connection.request<{ label: string; textEdit?: TextEdit }[]>("textDocument/colorPresentation", editor.about({ color, range }));
+      const way = ways.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb")) ?? ways[0];
+      if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(editor.changes([way.textEdit]));
+    } catch (error) {
+      if (!isSuperseded(error)) console.warn(error);
+    }
   }
 }
 

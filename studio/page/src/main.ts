@@ -1,9 +1,8 @@
 // Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes the other. This file puts the parts together.
 
-import { openLintPanel } from "@codemirror/lint";
 import { keymap } from "@codemirror/view";
 import { Connection, webSocket, worker } from "./connection";
-import { countDiagnostics, fixKey } from "./diagnostics";
+import { changesDiagnostics, fixKey, Problems } from "./diagnostics";
 import { byId } from "./dom";
 import { SceneEditor } from "./editor";
 import { Files } from "./files";
@@ -35,9 +34,10 @@ const editor = new SceneEditor(
   update => {
     if (update.docChanged) changed();
     else if (update.selectionSet) hands.followCursor();
-    status.problems(countDiagnostics(update.view));
+    if (changesDiagnostics(update)) problems.update();
   },
 );
+const problems = new Problems(() => editor.view);
 const hints = new Hints(editor, connection);
 const frames = new Frames(
   editor,
@@ -112,7 +112,6 @@ connection.onNotification = async (method, params) => {
   if (method === "studio/changed") files.changed((params as { text: string | null }).text);
 };
 
-byId("problems").addEventListener("click", () => openLintPanel(editor.view));
 document.addEventListener("keydown", event => {
   if ((event.ctrlKey || event.metaKey) && event.key === "s") {
     event.preventDefault();

@@ -33,12 +33,6 @@ export class Status {
     byId("stage").toggleAttribute("data-stale", why !== null);
   }
 
-  problems(count: number): void {
-    const button = byId("problems");
-    button.textContent = count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`;
-    button.toggleAttribute("data-some", count > 0);
-  }
-
   connection(state: ConnectionState): void {
     const note = byId("connection");
     note.hidden = state === "open";
