@@ -126,6 +126,7 @@ export class Hands {
     const { stage } = picture;
     stage.addEventListener("pointerdown", event => this.press(event));
     stage.addEventListener("pointermove", event => this.moved(event));
+    for (const end of ["pointerup", "pointercancel"] as const) stage.addEventListener(end, event => this.pointers.delete(event.pointerId));
     stage.addEventListener("pointerleave", () => this.leave());
     stage.addEventListener("keydown", event => this.key(event));
     stage.addEventListener("keyup", event => this.keyUp(event));
@@ -279,8 +280,7 @@ export class Hands {
   private moved(event: PointerEvent): void {
     const before = this.pointers.get(event.pointerId);
     const at = this.picture.local(event);
-    if (before !== undefined && event.buttons === 0) this.pointers.delete(event.pointerId);
-    else if (before !== undefined) {
+    if (before !== undefined) {
       const others = [...this.pointers].filter(([id]) => id !== event.pointerId);
       const other = others[0]?.[1];
       if (other !== undefined) {

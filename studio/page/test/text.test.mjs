@@ -67,8 +67,9 @@ test("completion, hints, swatches and format come from the server", async t => {
   // Completion passes over keys that come too soon after it has opened.
   await page.waitForTimeout(200);
   await page.keyboard.press("Enter");
-  assert.match(await text(page), /center \(0, 0, 0\) radius$/);
-  await andFinished(page, () => page.keyboard.insertText(" 2 }"));
+  assert.match(await text(page), /center \(0, 0, 0\) radius 1$/);
+  // The value is selected, to be typed over.
+  await andFinished(page, () => page.keyboard.insertText("2 }"));
   await page.keyboard.press("Shift+Alt+f");
   await page.waitForFunction(() => /sphere \{ center \(0, 0, 0\) {2}radius 2 \}/.test(document.querySelector(".cm-content").innerText));
 });
