@@ -86,8 +86,10 @@ export class Files {
   /** Shows whether everything is saved. */
   show(): void {
     byId("file-name").textContent = this.name;
-    byId("file-state").textContent = this.isUnsaved ? "not saved" : "";
-    document.title = `${this.isUnsaved ? "• " : ""}${this.name} – Pinhole Studio`;
+    const { isUnsaved } = this;
+    byId("file-state").textContent = isUnsaved ? "not saved" : "";
+    const title = `${isUnsaved ? "• " : ""}${this.name} – Pinhole Studio`;
+    if (document.title !== title) document.title = title;
   }
 
   async save(): Promise<void> {

@@ -101,6 +101,8 @@ class Drag {
 export class Hands {
   private tool: Tool = "move";
   private selected: number | null = null;
+  /** Whether the object at the cursor is not to be selected, until the cursor moves. */
+  private deselected = false;
   private drag: Drag | null = null;
   private readonly pointers = new Map<number, Point>();
   private readonly handles = byId("handles");
@@ -148,13 +150,18 @@ export class Hands {
       const options = objects.map((object, i) => new Option(names[i], String(object.index)));
       this.objects.replaceChildren(new Option("Nothing selected", ""), ...options);
     }
-    this.followCursor();
+    this.follow();
   }
 
-  /** Selects the object that the cursor is in. */
-  followCursor(): void {
+  /** Selects the object that the cursor has been moved into. */
+  cursorMoved(): void {
+    this.deselected = false;
+    this.follow();
+  }
+
+  private follow(): void {
     const { head } = this.editor.view.state.selection.main;
-    const found = this.overlays.data?.objects.find(it => this.editor.contains(it.range, head));
+    const found = this.deselected ? undefined : this.overlays.data?.objects.find(it => this.editor.contains(it.range, head));
     this.selected = found?.index ?? null;
     this.objects.value = found === undefined ? "" : String(found.index);
     this.overlays.select(found ?? null);
@@ -204,10 +211,8 @@ export class Hands {
       this.editor.jump(object.selection.start);
       return;
     }
-    this.selected = null;
-    this.objects.value = "";
-    this.overlays.select(null);
-    this.place();
+    this.deselected = true;
+    this.follow();
   }
 
   private press(event: PointerEvent): void {
@@ -229,13 +234,13 @@ export class Hands {
     const start = this.picture.toPicture(at);
     const object = this.selectedObject();
     const handle = object?.handles.find(it => it.handle === button?.dataset["handle"]);
-    if (object !== undefined && handle !== undefined) this.follow(event, object, handle);
+    if (object !== undefined && handle !== undefined) this.followHandle(event, object, handle);
     else if (this.tool === "move") void this.grab(event, start);
     else this.followPointer(event, new Drag(this, null, this.tool, start), start);
   }
 
   /** Has a handle go where the pointer goes, at the distance from it that it has now. */
-  private follow(event: PointerEvent, object: DrawnObject, { handle, at }: Handle, begin: Point = this.picture.toPicture(this.picture.local(event))): void {
+  private followHandle(event: PointerEvent, object: DrawnObject, { handle, at }: Handle, begin: Point = this.picture.toPicture(this.picture.local(event))): void {
     if (at !== null) this.followPointer(event, new Drag(this, object.index, handle, at), begin, at);
   }
 
@@ -264,17 +269,13 @@ export class Hands {
 
   /** Selects what is under the pointer, and drags it by its centre if the pointer moves on. */
   private async grab(event: PointerEvent, start: Point): Promise<void> {
-    const released = new Promise<void>(resolve => {
-      this.picture.stage.addEventListener("pointerup", () => resolve(), { once: true });
-      this.picture.stage.addEventListener("pointercancel", () => resolve(), { once: true });
-    });
-    let up = false;
-    void released.then(() => (up = true));
     const pick = await this.pick(start);
     this.select(pick?.object?.index ?? null);
     const object = this.selectedObject();
     const middle = object?.handles.find(({ handle }) => handle === "center" || handle === "centroid");
-    if (!up && object !== undefined && middle !== undefined && this.drag === null && this.pointers.size === 1) this.follow(event, object, middle, start);
+    // The button may be up by now, or a second finger down.
+    const isHeld = this.pointers.size === 1 && this.pointers.has(event.pointerId);
+    if (isHeld && object !== undefined && middle !== undefined && this.drag === null) this.followHandle(event, object, middle, start);
   }
 
   private moved(event: PointerEvent): void {

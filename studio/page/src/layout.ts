@@ -1,4 +1,4 @@
-// The layout: the divider between text and picture, the zoom buttons, and the menus.
+// The layout: the divider between text and picture, the zoom buttons, the menus, and the list of keys.
 
 import { byId, create, remember, remembered } from "./dom";
 import { LAYERS, type Layer, type OverlayLayer } from "./overlays";
@@ -43,6 +43,8 @@ export function layOut(picture: Picture): void {
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
   byId("zoom-fit").addEventListener("click", () => picture.fit());
   byId("zoom-actual").addEventListener("click", () => picture.actualSize());
+
+  byId("keys").addEventListener("click", () => byId<HTMLDialogElement>("keys-dialog").showModal());
 
   // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.
   for (const menu of document.querySelectorAll<HTMLDetailsElement>("details.menu")) {

@@ -1,5 +1,6 @@
 // Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes the other. This file puts the parts together.
 
+import { redo, undo } from "@codemirror/commands";
 import { keymap } from "@codemirror/view";
 import { Connection, webSocket, worker } from "./connection";
 import { changesDiagnostics, fixKey, Problems } from "./diagnostics";
@@ -33,7 +34,7 @@ const editor = new SceneEditor(
   [keymap.of([fixKey]), numberControls(), hintField, themeExtension()],
   update => {
     if (update.docChanged) changed();
-    else if (update.selectionSet) hands.followCursor();
+    else if (update.selectionSet) hands.cursorMoved();
     if (changesDiagnostics(update)) problems.update();
   },
 );
@@ -112,11 +113,17 @@ connection.onNotification = async (method, params) => {
   if (method === "studio/changed") files.changed((params as { text: string | null }).text);
 };
 
+byId("undo").addEventListener("click", () => undo(editor.view));
+byId("redo").addEventListener("click", () => redo(editor.view));
 document.addEventListener("keydown", event => {
-  if ((event.ctrlKey || event.metaKey) && event.key === "s") {
-    event.preventDefault();
-    void files.save();
-  }
+  const key = event.key.toLowerCase();
+  if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+  const isElsewhere = !editor.view.hasFocus && !(event.target instanceof HTMLInputElement && event.target.type === "text");
+  if (key === "s") void files.save();
+  else if (isElsewhere && key === "z") (event.shiftKey ? redo : undo)(editor.view);
+  else if (isElsewhere && key === "y") redo(editor.view);
+  else return;
+  event.preventDefault();
 });
 followTheme(editor.view);
 layOut(picture);

@@ -23,8 +23,20 @@ test("a drag moves a ball that is a let, in one step of undo, and nothing else o
   assert.equal(moved.replace(/let ball = .*/, ""), FIGURE.replace(/let ball = .*/, ""));
   await comparing(page);
   assert.equal(await pixels(page), await decoded(page, rendered(started.folder, moved)));
-  await page.click(".cm-content");
   await page.keyboard.press("Control+z");
+  assert.equal(await text(page), FIGURE);
+});
+
+test("Escape takes back a drag that goes on", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.mouse.move(...(await onPage(page, BALL)));
+  await page.mouse.down();
+  await page.waitForSelector('.handle[aria-label="Ball: center"]');
+  await page.waitForTimeout(200);
+  await andFinished(page, async () => page.mouse.move(...(await onPage(page, [BALL[0] + 150, BALL[1]])), { steps: 4 }));
+  assert.notEqual(await text(page), FIGURE);
+  await andFinished(page, () => page.keyboard.press("Escape"));
+  await page.mouse.up();
   assert.equal(await text(page), FIGURE);
 });
 
@@ -86,7 +98,6 @@ test("all of it goes by keyboard", async t => {
   await page.focus("#stage");
   await andFinished(page, () => page.keyboard.press("ArrowRight"));
   assert.notDeepEqual(vector(await text(page), "eye"), [3, 3.5, 8]);
-  await page.focus(".cm-content");
   await page.keyboard.press("Control+z");
   await andFinished(page, () => page.keyboard.press("Control+z"));
   assert.equal(await text(page), FIGURE);
