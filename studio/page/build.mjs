@@ -10,7 +10,8 @@ if (host !== "served" && host !== "static") throw new Error(`there is no host ${
 mkdirSync(folder, { recursive: true });
 
 const { metafile } = await build({
-  entryPoints: { studio: "src/main.ts" },
+  // The served host runs the engine itself; a site has it in a worker.
+  entryPoints: { studio: "src/main.ts", ...(host === "static" ? { engine: "src/worker.ts" } : {}) },
   bundle: true,
   format: "esm",
   target: ["chrome111", "firefox113", "safari16.4"],

@@ -2,6 +2,7 @@
 
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { chromium } from "playwright-core";
@@ -42,6 +43,25 @@ export async function serve(file, port = 0) {
     child.on("exit", () => reject(new Error(`the host ended: ${said}`)));
   });
   return { address, stop: () => child.kill(), pid: child.pid };
+}
+
+/** A site: a folder served as files, as any web host does. It collects what it is asked for. */
+export async function site(context, folder) {
+  const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", wasm: "application/wasm" };
+  const requests = [];
+  const server = createServer((request, response) => {
+    requests.push(request.url);
+    const name = request.url === "/" ? "index.html" : path.basename(request.url);
+    try {
+      const content = readFileSync(path.join(folder, name));
+      response.writeHead(200, { "content-type": types[name.split(".").pop()] ?? "text/plain" }).end(content);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise(resolve => server.listen(0, "127.0.0.1", resolve));
+  context.after(() => server.close());
+  return { address: `http://127.0.0.1:${server.address().port}/`, requests };
 }
 
 /** The page of a host, as soon as its picture is finished. What the browser complains of is collected in `page.complaints`. */

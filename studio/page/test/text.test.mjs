@@ -29,13 +29,13 @@ test("a slip is mended by its fix, by mouse and by key", async t => {
   await type(page, slip);
   await page.waitForSelector(".cm-lintRange-error");
   assert.equal(await page.textContent("#problems"), "1 problem");
+  // The hints come a little later, and may move the line.
+  await page.waitForTimeout(500);
   await page.hover(".cm-lintRange-error");
   await andFinished(page, () => page.click(".cm-tooltip-lint .cm-diagnosticAction"));
   assert.equal(await text(page), FIGURE);
   await type(page, slip);
   await page.waitForSelector(".cm-lintRange-error");
-  // The fixes come after the message.
-  await page.waitForTimeout(500);
   await andFinished(page, () => page.keyboard.press("Control+."));
   assert.equal(await text(page), FIGURE);
 });
