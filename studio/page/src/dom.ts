@@ -28,12 +28,12 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K, attribut
   return element;
 }
 
+/** Browsers that read base64 themselves do it many times faster. */
+const native = Uint8Array as unknown as { fromBase64?(text: string): Uint8Array<ArrayBuffer> };
+
 /** The bytes that a text in base64 stands for. */
 export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
-  const binary = atob(text);
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);
-  return bytes;
+  return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
 /** A setting that this browser remembers; browsers that forbid it start anew each time. */

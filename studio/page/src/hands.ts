@@ -28,14 +28,16 @@ export function nameOf(object: SceneObject): string {
 
 /** A drag that goes on. It asks for one edit at a time, always about the newest place of the hand. */
 class Drag {
-  private done: Point;
+  /** Where the hand is, what was asked for last, and up to where the text follows. */
   private target: Point;
+  private asked: Point;
+  private reached: Point;
   private busy = false;
   private ending = false;
   private readonly gesture: Gesture;
 
   constructor(private readonly hands: Hands, private readonly object: number | null, private readonly handle: string, start: Point) {
-    this.done = this.target = start;
+    this.target = this.asked = this.reached = start;
     this.gesture = new Gesture(hands.editor.view);
     hands.frames.dragging = true;
   }
@@ -57,7 +59,7 @@ class Drag {
   }
 
   cancel(): void {
-    this.target = this.done;
+    this.target = this.asked;
     this.hands.frames.dragging = false;
     this.gesture.cancel();
   }
@@ -65,27 +67,24 @@ class Drag {
   private async run(): Promise<void> {
     if (this.busy) return;
     this.busy = true;
-    while (this.target !== this.done) await this.step();
+    while (this.target !== this.asked) await this.step(this.target);
     this.busy = false;
     if (this.ending) this.finish();
   }
 
-  private async step(): Promise<void> {
-    const { editor, connection, frames, status } = this.hands;
-    const { target, done: from } = this;
+  private async step(to: Point): Promise<void> {
+    const { editor, connection, frames, status, along } = this.hands;
     const { doc } = editor.view.state;
-    this.done = target;
+    this.asked = to;
     try {
-      const about = { object: this.object, handle: this.handle, from, to: target, along: this.hands.along };
-      const { edits, values } = await connection.request<Dragged>("pinhole/drag", editor.about(about));
-      if (editor.view.state.doc !== doc) return;
-      if (edits.length === 0) {
-        // The camera has not moved as far as a digit: the hand's way counts on from there.
-        if (this.object === null && this.target === target) this.target = this.done = from;
-        return;
-      }
-      this.gesture.apply(editor.changes(edits));
-      status.say(values.join(", "));
+      const about = { object: this.object, handle: this.handle, from: this.reached, to, along };
+      const answer = await connection.request<Dragged | null>("pinhole/drag", editor.about(about));
+      if (answer === null) return status.say("The text has errors. Mend them, then the picture can be changed by hand.", "warning");
+      // An answer about another text does not count. A way too short for another digit counts on with the next one.
+      if (editor.view.state.doc !== doc || answer.edits.length === 0) return;
+      this.reached = to;
+      this.gesture.apply(editor.changes(answer.edits));
+      status.say(answer.values.join(", "));
       await frames.coarse;
     } catch (error) {
       if (!isSuperseded(error)) status.say((error as Error).message, "warning");

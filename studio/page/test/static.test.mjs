@@ -41,7 +41,7 @@ test("the static page draws, drags, downloads and links without a request", { sk
 test("the static page opens a file of this computer", { skip }, async t => {
   const page = await open(await launch(t), await site(t, process.env.SITE));
   // What browsers without access to files do.
-  await page.evaluate(() => delete window.showOpenFilePicker);
+  await page.evaluate(() => (window.showOpenFilePicker = undefined));
   const scene = FIGURE.replace("radius 1", "radius 1.5");
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("#open")]);
   await andFinished(page, () => chooser.setFiles({ name: "other.scn", mimeType: "text/plain", buffer: Buffer.from(scene) }));
