@@ -1,0 +1,130 @@
+// What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
+
+import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
+import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
+import type { Connection } from "./connection";
+import { byId, create, createButton } from "./dom";
+import type { SceneEditor } from "./editor";
+import { isSuperseded, type Range, type TextEdit } from "./protocol";
+
+interface ServerDiagnostic {
+  range: Range;
+  severity?: number;
+  message: string;
+}
+
+interface CodeAction {
+  title: string;
+  kind: string;
+  diagnostics?: ServerDiagnostic[];
+  edit: { changes?: Record<string, TextEdit[]> };
+}
+
+interface Published {
+  uri: string;
+  version?: number;
+  diagnostics: ServerDiagnostic[];
+}
+
+/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip closes when there are new diagnostics. */
+export async function publishDiagnostics(editor: SceneEditor, connection: Connection, published: Published): Promise<void> {
+  const file = editor.client.workspace.getFile(published.uri);
+  const { doc } = editor.view.state;
+  if (file === null || file.doc !== doc || (published.version !== undefined && published.version !== file.version)) return;
+  let actions: CodeAction[] | null = null;
+  if (published.diagnostics.length > 0) {
+    const range = { start: { line: 0, character: 0 }, end: { line: doc.lines, character: 0 } };
+    try {
+      actions = await connection.request<CodeAction[] | null>("textDocument/codeAction", editor.about({ range, context: { diagnostics: [] } }));
+    } catch (error) {
+      // Without an answer they are shown without fixes.
+      if (!isSuperseded(error)) console.warn(error);
+    }
+  }
+  if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
+}
+
+function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
+  const shown = diagnostics.map((diagnostic): Diagnostic => {
+    const fixes = actions.filter(action => action.diagnostics?.some(it => isSame(it, diagnostic)));
+    const all = fixes.length > 0 ? actions.filter(action => action.diagnostics === undefined) : [];
+    return {
+      from: editor.offset(diagnostic.range.start),
+      to: editor.offset(diagnostic.range.end),
+      severity: diagnostic.severity === 2 ? "warning" : "error",
+      message: diagnostic.message,
+      actions: [...fixes, ...all].map(action => fix(editor, action)),
+    };
+  });
+  editor.view.dispatch(setDiagnostics(editor.view.state, shown));
+}
+
+function isSame(one: ServerDiagnostic, other: ServerDiagnostic): boolean {
+  return one.message === other.message && JSON.stringify(one.range) === JSON.stringify(other.range);
+}
+
+function fix(editor: SceneEditor, action: CodeAction): Action {
+  const { doc } = editor.view.state;
+  const edits = action.edit.changes?.[editor.uri] ?? [];
+  return {
+    name: action.title,
+    apply(view) {
+      // The edits are for the text that was judged; a newer one is being judged now.
+      if (view.state.doc === doc) view.dispatch({ changes: editor.changes(edits), userEvent: "input.fix" });
+    },
+  };
+}
+
+/** Whether an update of the editor brings other diagnostics, or moves them. */
+export function changesDiagnostics(update: ViewUpdate): boolean {
+  return update.docChanged || update.transactions.some(it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
+}
+
+/** The list of all that is wrong, which the button in the status line opens: each message leads to its place, and has its fixes. */
+export class Problems {
+  private readonly button = byId("problems");
+  private readonly list = byId("problem-list");
+
+  constructor(private readonly view: () => EditorView) {
+    this.button.addEventListener("click", () => {
+      this.button.setAttribute("aria-expanded", String(this.list.hidden));
+      this.list.hidden = !this.list.hidden;
+      this.update();
+    });
+  }
+
+  update(): void {
+    const view = this.view();
+    const items: HTMLLIElement[] = [];
+    forEachDiagnostic(view.state, (diagnostic, from, to) => {
+      const item = create("li", diagnostic.severity);
+      const jump = () => {
+        view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
+        view.focus();
+      };
+      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`, "place", jump));
+      for (const { name, apply } of diagnostic.actions ?? []) item.append(createButton(name, "fix", () => apply(view, from, to)));
+      items.push(item);
+    });
+    const count = items.length;
+    this.button.textContent = count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`;
+    this.button.toggleAttribute("data-some", count > 0);
+    // While it is closed nobody sees it: a drag changes the text many times a second.
+    this.list.replaceChildren(...(this.list.hidden ? [] : items));
+  }
+}
+
+/** Applies the first fix of the diagnostic at the cursor, or else of the first one that has any. */
+export const fixKey: KeyBinding = {
+  key: "Mod-.",
+  run(view) {
+    const { head } = view.state.selection.main;
+    const fixable: { diagnostic: Diagnostic; from: number; to: number }[] = [];
+    forEachDiagnostic(view.state, (diagnostic, from, to) => {
+      if (diagnostic.actions?.length) fixable.push({ diagnostic, from, to });
+    });
+    const chosen = fixable.find(({ from, to }) => from <= head && head <= to) ?? fixable[0];
+    chosen?.diagnostic.actions?.[0]?.apply(view, chosen.from, chosen.to);
+    return chosen !== undefined;
+  },
+};

@@ -1,0 +1,190 @@
+// The editor: CodeMirror with what the server gives through the language client. Fixes and hints have files of their own.
+
+import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
+import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
+import { bracketMatching } from "@codemirror/language";
+import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
+import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
+import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
+import { ChangeSet, Compartment, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
+import type { Connection } from "./connection";
+import { publishDiagnostics } from "./diagnostics";
+import { gestureHistory } from "./gesture";
+import { sceneHighlighting, sceneLanguage } from "./language";
+import type { Position, Range, TextEdit } from "./protocol";
+import { sanitized } from "./sanitize";
+
+class SceneFile implements WorkspaceFile {
+  constructor(readonly uri: string, readonly languageId: string, public version: number, public doc: Text, readonly view: EditorView) {}
+
+  getView(): EditorView {
+    return this.view;
+  }
+}
+
+/** The one file that the page has open. */
+class SceneWorkspace extends Workspace {
+  override files: SceneFile[] = [];
+  private version = 0;
+
+  override syncFiles(): { file: SceneFile; prevDoc: Text; changes: ChangeSet }[] {
+    return this.files.flatMap(file => {
+      const plugin = LSPPlugin.get(file.view);
+      if (plugin === null || plugin.unsyncedChanges.empty) return [];
+      const update = { file, prevDoc: file.doc, changes: plugin.unsyncedChanges };
+      file.doc = file.view.state.doc;
+      file.version = ++this.version;
+      plugin.clear();
+      return [update];
+    });
+  }
+
+  override openFile(uri: string, languageId: string, view: EditorView): void {
+    const file = new SceneFile(uri, languageId, ++this.version, view.state.doc, view);
+    this.files = [file];
+    this.client.didOpen(file);
+  }
+
+  override closeFile(uri: string): void {
+    this.files = this.files.filter(file => file.uri !== uri);
+    this.client.didClose(uri);
+  }
+
+  /** A server that is new knows nothing yet. */
+  override connected(): void {
+    this.syncFiles();
+    super.connected();
+  }
+}
+
+export class SceneEditor {
+  readonly view: EditorView;
+  readonly client: LSPClient;
+  /** The address of the scene, by which the server knows it. */
+  uri = "";
+  private readonly plugin = new Compartment();
+
+  constructor(parent: HTMLElement, private readonly connection: Connection, nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
+    this.client = new LSPClient({
+      workspace: client => new SceneWorkspace(client),
+      sanitizeHTML: sanitized,
+      notificationHandlers: {
+        "textDocument/publishDiagnostics": (_, params) => {
+          void publishDiagnostics(this, connection, params);
+          return true;
+        },
+      },
+      extensions: [serverCompletion(), hoverTooltips(), signatureHelp()],
+    });
+    connection.ready = () => this.client.initializing;
+    this.view = new EditorView({
+      parent,
+      extensions: [
+        nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
+        extensions,
+        lineNumbers(),
+        lintGutter(),
+        highlightActiveLine(),
+        highlightActiveLineGutter(),
+        highlightSpecialChars(),
+        highlightSelectionMatches(),
+        drawSelection(),
+        dropCursor(),
+        bracketMatching(),
+        closeBrackets(),
+        gestureHistory(),
+        sceneLanguage,
+        sceneHighlighting,
+        EditorView.lineWrapping,
+        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
+        keymap.of([
+          ...formatKeymap,
+          ...renameKeymap,
+          ...jumpToDefinitionKeymap,
+          { key: "Mod-/", run: toggleComment },
+          ...closeBracketsKeymap,
+          ...completionKeymap,
+          { key: "F8", run: nextDiagnostic, shift: previousDiagnostic },
+          ...searchKeymap,
+          ...historyKeymap,
+          ...defaultKeymap,
+        ]),
+        this.plugin.of([]),
+        EditorView.updateListener.of(it => {
+          if (it.docChanged) this.sync();
+          update(it);
+        }),
+      ],
+    });
+  }
+
+  get text(): string {
+    return this.view.state.doc.toString();
+  }
+
+  /** The parameters of a request about the scene. */
+  about<T extends object>(params: T): T & { textDocument: { uri: string } } {
+    return { textDocument: { uri: this.uri }, ...params };
+  }
+
+  /** Puts a text in place that no undo takes away, and tells the server its address. */
+  open(uri: string, text: string): void {
+    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, annotations: Transaction.addToHistory.of(false) });
+    this.moveTo(uri);
+  }
+
+  /** Gives the text another address. */
+  moveTo(uri: string): void {
+    if (uri === this.uri) return;
+    this.view.dispatch({ effects: this.plugin.reconfigure([]) });
+    this.uri = uri;
+    this.view.dispatch({ effects: this.plugin.reconfigure(this.client.plugin(uri, "pinhole")) });
+  }
+
+  /** Puts another text in place, changing no more than differs, so that the cursor stays where it is. */
+  replace(text: string): void {
+    const old = this.text;
+    const shorter = Math.min(old.length, text.length);
+    let start = 0;
+    while (start < shorter && old[start] === text[start]) start++;
+    let end = 0;
+    while (end < shorter - start && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
+    if (start < old.length - end || start < text.length - end) {
+      this.view.dispatch({ changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
+    }
+  }
+
+  connected(): void {
+    this.client.connect(this.connection);
+  }
+
+  disconnected(): void {
+    this.client.disconnect();
+  }
+
+  /** Moves the cursor to a place of the text, and shows it. */
+  jump(position: Position): void {
+    this.view.dispatch({ selection: { anchor: this.offset(position) }, scrollIntoView: true });
+  }
+
+  offset({ line, character }: Position): number {
+    const { doc } = this.view.state;
+    if (line >= doc.lines) return doc.length;
+    const { from, to } = doc.line(line + 1);
+    return Math.min(from + character, to);
+  }
+
+  contains(range: Range, offset: number): boolean {
+    return this.offset(range.start) <= offset && offset <= this.offset(range.end);
+  }
+
+  changes(edits: readonly TextEdit[]): ChangeSpec {
+    return edits.map(({ range, newText }) => ({ from: this.offset(range.start), to: this.offset(range.end), insert: newText }));
+  }
+
+  /** Tells the server what has changed. What changes without a connection is told with the whole text, when there is one. */
+  private sync(): void {
+    if (this.connection.state === "open") this.client.sync();
+  }
+}

@@ -1,0 +1,77 @@
+// The scene language as the editor colours it while one types. What names mean is the server's business.
+
+import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
+import { tags } from "@lezer/highlight";
+
+export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
+
+const KINDS = new Set(["image", "camera", "sampler", "sphere", "triangle", "box", "checkerboard"]);
+const FIELDS = new Set(
+  ("width height background eye lookat direction up roll d view_height fov hfov near far method per_pixel total seed center radius color " +
+    "centroid normal sides spin v0 v1 v2 size min max y square colors").split(" "),
+);
+const FUNCTIONS = new Set("sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb".split(" "));
+
+interface State {
+  comment: boolean;
+  block: boolean;
+  parentheses: number;
+  defines: boolean;
+}
+
+const number = new RegExp(`^${NUMBER.source}`);
+
+export const sceneLanguage = StreamLanguage.define<State>({
+  name: "pinhole",
+  startState: () => ({ comment: false, block: false, parentheses: 0, defines: false }),
+  token(stream, state) {
+    if (state.comment || stream.match("/*")) {
+      state.comment = !stream.match(/^.*?\*\//);
+      if (state.comment) stream.skipToEnd();
+      return "comment";
+    }
+    if (stream.eatSpace()) return null;
+    if (stream.match("//")) {
+      stream.skipToEnd();
+      return "comment";
+    }
+    if (stream.match(number)) {
+      stream.match(/^\s*(deg|rad)\b/);
+      return "number";
+    }
+    if (stream.match(/^#[\da-fA-F]+/)) return "atom";
+    const word = stream.match(/^[A-Za-z_]\w*/);
+    if (word && word !== true) {
+      const { defines } = state;
+      state.defines = word[0] === "let" || (!state.block && KINDS.has(word[0]));
+      if (word[0] === "let") return "keyword";
+      if (!state.block && KINDS.has(word[0])) return "keyword";
+      if (defines) return "typeName";
+      if (FUNCTIONS.has(word[0]) && /^\s*\(/.test(stream.string.slice(stream.pos)) && (state.parentheses > 0 || !FIELDS.has(word[0]))) return "variableName.standard";
+      if (state.block && state.parentheses === 0 && FIELDS.has(word[0])) return "propertyName";
+      return "variableName";
+    }
+    const character = stream.next();
+    if (character === "{") state.block = true;
+    if (character === "}") state.block = false;
+    if (character === "(") state.parentheses++;
+    if (character === ")" && state.parentheses > 0) state.parentheses--;
+    if (character === "{" || character === "}") state.parentheses = 0;
+    state.defines = false;
+    return "+-*/=".includes(character ?? "") ? "operator" : "punctuation";
+  },
+  languageData: { commentTokens: { line: "//", block: { open: "/*", close: "*/" } }, closeBrackets: { brackets: ["(", "{"] } },
+});
+
+export const sceneHighlighting = syntaxHighlighting(
+  HighlightStyle.define([
+    { tag: tags.comment, color: "var(--code-comment)", fontStyle: "italic" },
+    { tag: tags.keyword, color: "var(--code-keyword)" },
+    { tag: tags.propertyName, color: "var(--code-field)" },
+    { tag: tags.typeName, color: "var(--code-name)", fontWeight: "600" },
+    { tag: tags.number, color: "var(--code-number)" },
+    { tag: tags.atom, color: "var(--code-number)" },
+    { tag: tags.standard(tags.variableName), color: "var(--code-keyword)" },
+    { tag: [tags.operator, tags.punctuation], color: "var(--code-punctuation)" },
+  ]),
+);

@@ -1,0 +1,132 @@
+// Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes the other. This file puts the parts together.
+
+import { redo, undo } from "@codemirror/commands";
+import { keymap } from "@codemirror/view";
+import { Connection, webSocket, worker } from "./connection";
+import { changesDiagnostics, fixKey, Problems } from "./diagnostics";
+import { byId } from "./dom";
+import { SceneEditor } from "./editor";
+import { Files } from "./files";
+import { Frames } from "./frames";
+import { Hands } from "./hands";
+import { hintField, Hints } from "./hints";
+import { layOut, offerLayers } from "./layout";
+import { numberControls } from "./numbers";
+import { OverlayLayer } from "./overlays";
+import { Picture } from "./picture";
+import type { HostedFile, Overlays } from "./protocol";
+import { offerSharing, sceneInAddress } from "./share";
+import { Status } from "./status";
+import { followTheme, themeExtension } from "./theme";
+
+const meta = (name: string) => document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
+const isServed = meta("host") !== "static";
+
+const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));
+const status = new Status();
+const picture = new Picture(byId("stage"), document.querySelector("canvas") as HTMLCanvasElement);
+const overlays = new OverlayLayer(document.querySelector("#lines") as SVGSVGElement, picture);
+
+const editor = new SceneEditor(
+  byId("editor"),
+  connection,
+  meta("nonce"),
+  [keymap.of([fixKey]), numberControls(), hintField, themeExtension()],
+  update => {
+    if (update.docChanged) changed();
+    else if (update.selectionSet) hands.cursorMoved();
+    if (changesDiagnostics(update)) problems.update();
+  },
+);
+const problems = new Problems(() => editor.view);
+const hints = new Hints(editor, connection);
+const frames = new Frames(
+  editor,
+  connection,
+  shown => {
+    status.picture(shown.size, shown.fineness);
+    picture.show(shown);
+  },
+  state => {
+    if (state === "good") status.stale(null);
+    else if (state === "broken") status.stale("The text has errors. This is its last good picture.");
+    else status.stale(`No picture of the newest text: ${state.message}`);
+  },
+);
+const hands = new Hands(editor, connection, frames, picture, overlays, status);
+const files = new Files(editor, connection, status, isServed);
+
+/** Whether overlays are being asked for, and whether the text has changed since. */
+let asking = false;
+let outdated = false;
+
+async function refreshOverlays(): Promise<void> {
+  outdated = true;
+  if (asking) return;
+  asking = true;
+  while (outdated && connection.state === "open") {
+    outdated = false;
+    try {
+      const answer = await connection.request<Overlays | null>("pinhole/overlays", editor.about({}));
+      if (answer === null) continue;
+      overlays.data = answer;
+      frames.resized(answer.size);
+      hands.refresh();
+    } catch (error) {
+      if (connection.state === "open") console.warn(error);
+    }
+  }
+  asking = false;
+}
+
+function changed(): void {
+  if (editor.uri === "") return;
+  frames.changed();
+  void refreshOverlays();
+  hints.changed();
+  files.show();
+}
+
+picture.onView = () => {
+  overlays.draw();
+  hands.place();
+};
+
+connection.onState = state => {
+  status.connection(state);
+  if (state === "open") {
+    editor.connected();
+    changed();
+  } else {
+    editor.disconnected();
+  }
+};
+
+const linked = sceneInAddress(status);
+connection.onNotification = async (method, params) => {
+  if (method === "studio/file") {
+    const text = await linked;
+    const first = editor.uri === "";
+    files.hosted(params as HostedFile, text);
+    if (first) changed();
+  }
+  if (method === "studio/changed") files.changed((params as { text: string | null }).text);
+};
+
+byId("undo").addEventListener("click", () => undo(editor.view));
+byId("redo").addEventListener("click", () => redo(editor.view));
+document.addEventListener("keydown", event => {
+  const key = event.key.toLowerCase();
+  if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+  const isElsewhere = !editor.view.hasFocus && !(event.target instanceof HTMLInputElement && event.target.type === "text");
+  if (key === "s") void files.save();
+  else if (isElsewhere && key === "z") (event.shiftKey ? redo : undo)(editor.view);
+  else if (isElsewhere && key === "y") redo(editor.view);
+  else return;
+  event.preventDefault();
+});
+followTheme(editor.view);
+layOut(picture);
+offerLayers(overlays);
+offerSharing(editor, connection, status, () => files.name);
+connection.open();

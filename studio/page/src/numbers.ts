@@ -1,0 +1,224 @@
+// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that opens below a number on a click or by Alt-Enter.
+
+import { syntaxTree } from "@codemirror/language";
+import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
+import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type ViewUpdate } from "@codemirror/view";
+import { create, createButton } from "./dom";
+import { Gesture } from "./gesture";
+import { NUMBER } from "./language";
+
+/** A number literal, with the sign that belongs to it. */
+interface Literal {
+  from: number;
+  to: number;
+  value: number;
+  step: number;
+}
+
+/** So many screen pixels of a drag are one step. */
+const DRAG_PIXELS = 4;
+
+/** Fields that take whole numbers. */
+const WHOLE = /\b(?:width|height|per_pixel|total|seed)\s+$/;
+/** A minus sign that belongs to the number: nothing stands before it that it could subtract from. */
+const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
+
+function literalAt(state: EditorState, at: number): Literal | null {
+  const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1)).find(it => it.name === "number");
+  if (node === undefined) return null;
+  const written = NUMBER.exec(state.sliceDoc(node.from, node.to))?.[0];
+  if (written === undefined) return null;
+  const line = state.doc.lineAt(node.from);
+  const before = state.sliceDoc(line.from, node.from);
+  const isNegative = SIGN.test(before);
+  const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
+  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value, step: stepOf(value, written, WHOLE.test(before)) };
+}
+
+/** A hundredth to a tenth of the number, and no coarser than how it is written. */
+function stepOf(value: number, written: string, isWhole: boolean): number {
+  if (isWhole) return 1;
+  const decimals = /\.(\d*)$/.exec(written)?.[1]?.length ?? 0;
+  const exponent = Math.floor(Math.log10(Math.max(Math.abs(value), 0.1))) - 1;
+  return 10 ** Math.min(exponent, decimals > 0 ? -decimals : exponent);
+}
+
+function format(value: number, step: number): string {
+  const decimals = Math.max(0, Math.round(-Math.log10(step)));
+  const rounded = Number(value.toFixed(Math.min(decimals, 20)));
+  return String(Object.is(rounded, -0) ? 0 : rounded);
+}
+
+/** Turns one number through a gesture. */
+class Turn {
+  private readonly gesture: Gesture;
+  private to: number;
+
+  constructor(private readonly view: EditorView, readonly literal: Literal) {
+    this.gesture = new Gesture(view);
+    this.to = literal.to;
+  }
+
+  set(value: number): void {
+    const { from, step } = this.literal;
+    const text = format(value, step);
+    if (text === this.view.state.sliceDoc(from, this.to)) return;
+    this.gesture.apply({ from, to: this.to, insert: text });
+    this.to = from + text.length;
+  }
+
+  end(): void {
+    this.gesture.end();
+  }
+}
+
+const openSlider = StateEffect.define<number | null>();
+
+const sliderField = StateField.define<Tooltip | null>({
+  create: () => null,
+  update(tooltip, transaction) {
+    let next = tooltip;
+    // Typing closes it; what the slider itself writes does not.
+    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
+    if (next !== null && transaction.selection !== undefined) next = null;
+    for (const effect of transaction.effects) if (effect.is(openSlider)) next = effect.value === null ? null : { pos: effect.value, create: createSlider, strictSide: false };
+    return next;
+  },
+  provide: field => showTooltip.from(field),
+});
+
+function createSlider(view: EditorView): TooltipView {
+  const dom = create("div", "slider");
+  const range = create("input");
+  range.type = "range";
+  let turn: Turn | null = null;
+  let shown: number | null = null;
+  const literal = () => literalAt(view.state, (view.state.field(sliderField)?.pos ?? 0) + 1);
+  const begin = () => {
+    const found = literal();
+    if (turn === null && found !== null) turn = new Turn(view, found);
+  };
+  const end = () => {
+    turn?.end();
+    turn = null;
+  };
+  const adapt = () => {
+    const found = literal();
+    if (found === null || turn !== null || found.value === shown) return;
+    const span = Math.max(Math.abs(found.value), 50 * found.step);
+    range.min = String(found.value - span);
+    range.max = String(found.value + span);
+    range.step = String(found.step);
+    range.value = String(found.value);
+    range.setAttribute("aria-label", `Value ${found.value}`);
+    shown = found.value;
+  };
+  range.addEventListener("input", () => {
+    begin();
+    turn?.set(Number(range.value));
+  });
+  range.addEventListener("change", end);
+  range.addEventListener("keydown", event => {
+    if (event.key !== "Escape" && event.key !== "Enter") return;
+    event.preventDefault();
+    view.dispatch({ effects: openSlider.of(null) });
+    view.focus();
+  });
+  const nudge = (direction: number) => {
+    begin();
+    if (turn !== null) turn.set(turn.literal.value + direction * turn.literal.step);
+    end();
+    adapt();
+  };
+  const less = createButton("−", "", () => nudge(-1));
+  less.setAttribute("aria-label", "Less");
+  const more = createButton("+", "", () => nudge(1));
+  more.setAttribute("aria-label", "More");
+  const grip = create("span", "grip", "↔");
+  grip.title = "Drag to the side; in the text, drag a number with the Alt key";
+  grip.addEventListener("pointerdown", event => {
+    const found = literal();
+    if (found !== null) scrub(event, view, found);
+  });
+  dom.append(less, range, more, grip);
+  return {
+    dom,
+    mount: adapt,
+    update: (update: ViewUpdate) => {
+      if (update.docChanged) adapt();
+    },
+  };
+}
+
+/** Turns a number by the way of the pointer to the side, until it is let go. */
+function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
+  event.preventDefault();
+  const turn = new Turn(view, literal);
+  const target = event.target as Element;
+  const move = (next: Event) => turn.set(literal.value + Math.round(((next as PointerEvent).clientX - event.clientX) / DRAG_PIXELS) * literal.step);
+  const up = () => {
+    document.removeEventListener("pointermove", move);
+    document.body.classList.remove("scrubbing");
+    turn.end();
+  };
+  if (target.isConnected) document.body.classList.add("scrubbing");
+  document.addEventListener("pointermove", move);
+  document.addEventListener("pointerup", up, { once: true });
+}
+
+/** Turns the number at the cursor by a step; elsewhere the key does what it does without. */
+function turnBy(direction: number): Command {
+  return view => {
+    const literal = literalAt(view.state, view.state.selection.main.head);
+    if (literal === null) return false;
+    const turn = new Turn(view, literal);
+    turn.set(literal.value + direction * literal.step);
+    turn.end();
+    return true;
+  };
+}
+
+const openAtCursor: Command = view => {
+  const literal = literalAt(view.state, view.state.selection.main.head);
+  if (literal === null) return false;
+  view.dispatch({ effects: openSlider.of(literal.from) });
+  requestAnimationFrame(() => view.dom.querySelector<HTMLInputElement>(".slider input")?.focus());
+  return true;
+};
+
+export function numberControls(): Extension {
+  return [
+    sliderField,
+    EditorView.domEventHandlers({
+      pointerdown(event, view) {
+        if (!event.altKey || event.button !== 0) return false;
+        const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
+        const literal = at === null ? null : literalAt(view.state, at);
+        if (literal === null) return false;
+        scrub(event, view, literal);
+        return true;
+      },
+      // With the alt key the editor would begin to select.
+      mousedown: event => event.altKey,
+      click(event, view) {
+        const { main } = view.state.selection;
+        const literal = main.empty && !event.altKey ? literalAt(view.state, main.head) : null;
+        if (literal !== null) view.dispatch({ effects: openSlider.of(literal.from) });
+        return false;
+      },
+    }),
+    keymap.of([
+      { key: "Alt-ArrowUp", run: turnBy(1) },
+      { key: "Alt-ArrowDown", run: turnBy(-1) },
+      { key: "Alt-Enter", run: openAtCursor },
+      {
+        key: "Escape",
+        run: view => {
+          if (view.state.field(sliderField) === null) return false;
+          view.dispatch({ effects: openSlider.of(null) });
+          return true;
+        },
+      },
+    ]),
+  ];
+}

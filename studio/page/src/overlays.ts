@@ -1,0 +1,158 @@
+// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the horizon, the view axis, the pixel grid, the planes near and far,
+// and the samples of a pixel.
+
+import { createSvg, remember, remembered } from "./dom";
+import type { Picture } from "./picture";
+import type { DrawnObject, Overlays, Point, Polyline, Samples } from "./protocol";
+
+/** What can be switched on, with its name in the menu. */
+export const LAYERS = {
+  outlines: "Outlines of all objects",
+  vanishing: "Vanishing points",
+  horizon: "Horizon",
+  axis: "View axis",
+  grid: "Pixel grid",
+  near: "Near and far",
+  samples: "Samples of the pixel under the pointer",
+} as const;
+
+export type Layer = keyof typeof LAYERS;
+
+/** From this zoom on a grid of pixels can be seen. */
+const GRID_ZOOM = 6;
+
+/** Lines are cut off so many picture sizes outside of it, because what draws them counts with few digits. */
+const REACH = 50;
+
+export class OverlayLayer {
+  /** The newest overlays; those of the last good text while there is none. */
+  data: Overlays | null = null;
+  private selected: DrawnObject | null = null;
+  private hovered: number | null = null;
+  private samples: { pixel: Point; samples: Samples } | null = null;
+  private readonly on = new Set<Layer>();
+
+  constructor(private readonly svg: SVGSVGElement, private readonly picture: Picture) {
+    const layers = remembered("layers")?.split(" ") ?? [];
+    for (const layer of Object.keys(LAYERS) as Layer[]) if (layers.includes(layer)) this.on.add(layer);
+  }
+
+  isOn(layer: Layer): boolean {
+    return this.on.has(layer);
+  }
+
+  turn(layer: Layer, on: boolean): void {
+    if (on) this.on.add(layer);
+    else this.on.delete(layer);
+    remember("layers", [...this.on].join(" "));
+    this.draw();
+  }
+
+  select(selected: DrawnObject | null): void {
+    this.selected = selected;
+    this.draw();
+  }
+
+  hover(hovered: number | null): void {
+    if (hovered === this.hovered) return;
+    this.hovered = hovered;
+    this.draw();
+  }
+
+  showSamples(pixel: Point, samples: Samples | null): void {
+    this.samples = samples === null ? null : { pixel, samples };
+    this.draw();
+  }
+
+  draw(): void {
+    const { data, picture, svg } = this;
+    svg.replaceChildren();
+    if (data === null) return;
+    const group = createSvg("g", { transform: picture.matrix });
+    svg.append(group);
+    const path = (name: string, lines: readonly Polyline[]) => {
+      const d = lines.map(line => pathOf(line, picture.size)).join("");
+      if (d === "") return;
+      // A dark line under a light one is seen on every ground.
+      group.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }));
+    };
+    if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid(picture));
+    if (this.isOn("near")) {
+      path("near", data.near);
+      path("far", data.far);
+    }
+    if (this.isOn("horizon") && data.horizon !== null) path("horizon", [data.horizon]);
+    if (this.isOn("vanishing")) for (const { axis, lines } of data.vanishing) path(`axis-${axis}`, lines);
+    if (this.isOn("outlines")) for (const { outline } of data.objects) path("outline", outline);
+    const hovered = data.objects.find(it => it.index === this.hovered);
+    if (hovered !== undefined) path("outline hovered", hovered.outline);
+    if (this.selected !== null) path("outline selected", this.selected.outline);
+    if (this.isOn("vanishing")) for (const { axis, point } of data.vanishing) if (point !== null) this.mark(point, `axis-${axis}`, axis);
+    if (this.isOn("axis") && data.axis !== null) this.mark(data.axis, "view-axis", "view axis");
+    if (this.isOn("samples")) this.drawSamples();
+  }
+
+  private mark(point: Point, name: string, text: string): void {
+    const [x, y] = this.picture.toScreen(point);
+    if (Math.abs(x) > 1e6 || Math.abs(y) > 1e6) return;
+    const d = `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`;
+    const label = createSvg("text", { x: x + 9, y: y - 7, class: `mark ${name}` });
+    label.textContent = text;
+    this.svg.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }), label);
+  }
+
+  private drawSamples(): void {
+    if (this.samples === null) return;
+    const { pixel, samples } = this.samples;
+    const [x, y] = this.picture.toScreen(pixel);
+    const size = this.picture.zoom;
+    this.svg.append(createSvg("rect", { x, y, width: size, height: size, class: "line sampled" }));
+    samples.points.forEach(([dx, dy], i) => {
+      const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size, r: Math.max(2, Math.min(5, size / 12)), class: "sample" });
+      dot.style.fill = samples.colors[i] ?? "";
+      this.svg.append(dot);
+    });
+  }
+}
+
+/** The lines between the pixels that can be seen. */
+function grid(picture: Picture): Polyline[] {
+  const { stage, size } = picture;
+  const [left, top] = picture.toPicture([0, 0]);
+  const [right, bottom] = picture.toPicture([stage.clientWidth, stage.clientHeight]);
+  const [x0, x1] = [Math.max(0, Math.floor(left)), Math.min(size[0], Math.ceil(right))];
+  const [y0, y1] = [Math.max(0, Math.floor(top)), Math.min(size[1], Math.ceil(bottom))];
+  const lines: Polyline[] = [];
+  for (let x = x0; x <= x1; x++) lines.push([[x, y0], [x, y1]]);
+  for (let y = y0; y <= y1; y++) lines.push([[x0, y], [x1, y]]);
+  return lines;
+}
+
+/** The path of a line for SVG, with a gap where a point cannot be seen. */
+function pathOf(line: Polyline, [width, height]: [number, number]): string {
+  let path = "";
+  for (let i = 1; i < line.length; i++) {
+    const [from, to] = [line[i - 1], line[i]];
+    if (from == null || to == null) continue;
+    const cut = clip(from, to, [-REACH * width, -REACH * height], [(REACH + 1) * width, (REACH + 1) * height]);
+    if (cut === null) continue;
+    const [[x0, y0], [x1, y1]] = cut;
+    path += `M${x0} ${y0}L${x1} ${y1}`;
+  }
+  return path;
+}
+
+/** The part of a segment in a rectangle (Liang and Barsky's algorithm). */
+function clip(from: Point, to: Point, least: Point, most: Point): [Point, Point] | null {
+  let [t0, t1] = [0, 1];
+  const at = (t: number): Point => [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])];
+  for (const axis of [0, 1] as const) {
+    const d = to[axis] - from[axis];
+    for (const [p, q] of [[-d, from[axis] - least[axis]], [d, most[axis] - from[axis]]] as const) {
+      if (p === 0 && q < 0) return null;
+      if (p < 0) t0 = Math.max(t0, q / p);
+      if (p > 0) t1 = Math.min(t1, q / p);
+    }
+  }
+  return t0 > t1 ? null : [at(t0), at(t1)];
+}

@@ -1,0 +1,125 @@
+// The picture: a canvas in a stage, and the view of it, which can be zoomed into single pixels.
+
+import type { Shown } from "./frames";
+import type { Point } from "./protocol";
+
+/** From this zoom on, in screen pixels a pixel, pixels are shown as squares. */
+const SQUARES = 3;
+const MOST_ZOOM = 64;
+/** The space between the picture and the stage's border, in screen pixels. */
+const MARGIN = 12;
+
+export class Picture {
+  /** Called when the view or the size of the picture has changed. */
+  onView: () => void = () => {};
+  size: [number, number] = [1280, 720];
+  zoom = 1;
+
+  private left = 0;
+  private top = 0;
+  private fitted = true;
+  private readonly context: CanvasRenderingContext2D;
+
+  constructor(readonly stage: HTMLElement, readonly canvas: HTMLCanvasElement) {
+    const context = canvas.getContext("2d", { alpha: false });
+    if (context === null) throw new Error("this browser has no canvas");
+    this.context = context;
+    new ResizeObserver(() => (this.fitted ? this.fit() : this.place())).observe(stage);
+    stage.addEventListener(
+      "wheel",
+      event => {
+        event.preventDefault();
+        this.zoomBy(2 ** (-event.deltaY / (event.deltaMode === 0 ? 300 : 10)), this.local(event));
+      },
+      { passive: false },
+    );
+  }
+
+  show({ bitmap, size, fineness, version }: Shown): void {
+    const { canvas } = this;
+    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+      canvas.width = bitmap.width;
+      canvas.height = bitmap.height;
+    }
+    this.context.drawImage(bitmap, 0, 0);
+    bitmap.close();
+    canvas.dataset["fineness"] = fineness;
+    canvas.dataset["version"] = String(version);
+    if (size[0] !== this.size[0] || size[1] !== this.size[1]) {
+      this.size = size;
+      this.fit();
+    }
+    canvas.dispatchEvent(new CustomEvent("pinhole-frame", { bubbles: true, detail: { fineness, version } }));
+  }
+
+  /** A point of the stage, in screen pixels, from a point of the picture. */
+  toScreen([x, y]: Point): Point {
+    return [this.left + x * this.zoom, this.top + y * this.zoom];
+  }
+
+  toPicture([x, y]: Point): Point {
+    return [(x - this.left) / this.zoom, (y - this.top) / this.zoom];
+  }
+
+  /** Where on the stage an event is. */
+  local(event: { clientX: number; clientY: number }): Point {
+    const { left, top } = this.stage.getBoundingClientRect();
+    return [event.clientX - left, event.clientY - top];
+  }
+
+  isInside([x, y]: Point): boolean {
+    return x >= 0 && y >= 0 && x < this.size[0] && y < this.size[1];
+  }
+
+  /** The matrix that takes points of the picture to the stage, for SVG. */
+  get matrix(): string {
+    return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`;
+  }
+
+  /** Shows the whole picture, as large as the stage allows. */
+  fit(): void {
+    this.fitted = true;
+    const { clientWidth, clientHeight } = this.stage;
+    const [width, height] = this.size;
+    this.zoom = Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width, (clientHeight - 2 * MARGIN) / height));
+    this.center();
+  }
+
+  /** Shows a pixel of the picture on each of the screen. */
+  actualSize(): void {
+    this.fitted = false;
+    this.zoom = 1 / devicePixelRatio;
+    this.center();
+  }
+
+  zoomBy(factor: number, about: Point = [this.stage.clientWidth / 2, this.stage.clientHeight / 2]): void {
+    const [x, y] = this.toPicture(about);
+    this.fitted = false;
+    this.zoom = Math.min(MOST_ZOOM, Math.max(0.02, this.zoom * factor));
+    this.left = about[0] - x * this.zoom;
+    this.top = about[1] - y * this.zoom;
+    this.place();
+  }
+
+  panBy(dx: number, dy: number): void {
+    this.fitted = false;
+    this.left += dx;
+    this.top += dy;
+    this.place();
+  }
+
+  private center(): void {
+    this.left = (this.stage.clientWidth - this.size[0] * this.zoom) / 2;
+    this.top = (this.stage.clientHeight - this.size[1] * this.zoom) / 2;
+    this.place();
+  }
+
+  private place(): void {
+    const { style } = this.canvas;
+    style.width = `${this.size[0] * this.zoom}px`;
+    style.height = `${this.size[1] * this.zoom}px`;
+    style.transform = `translate(${this.left}px, ${this.top}px)`;
+    style.imageRendering = this.zoom >= SQUARES ? "pixelated" : "auto";
+    this.onView();
+  }
+}

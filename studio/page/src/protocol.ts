@@ -1,0 +1,101 @@
+// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and `studio/…`, as docs/protocol.md describes them.
+
+export interface Position {
+  line: number;
+  character: number;
+}
+
+export interface Range {
+  start: Position;
+  end: Position;
+}
+
+export interface TextEdit {
+  range: Range;
+  newText: string;
+}
+
+/** A point of the picture, in pixels of the scene, from the top left corner. */
+export type Point = readonly [number, number];
+
+/** A line through points; one that cannot be seen is null. */
+export type Polyline = readonly (Point | null)[];
+
+export interface Frame {
+  version: number;
+  width: number;
+  height: number;
+  size: [number, number];
+  png: string;
+}
+
+export interface SceneObject {
+  index: number;
+  kind: string;
+  name: string | null;
+  range: Range;
+  selection: Range;
+}
+
+export interface Handle {
+  handle: string;
+  at: Point | null;
+  label: string;
+}
+
+export interface DrawnObject extends SceneObject {
+  outline: Polyline[];
+  handles: Handle[];
+}
+
+export interface Overlays {
+  size: [number, number];
+  axis: Point | null;
+  horizon: Polyline | null;
+  vanishing: { axis: "x" | "y" | "z"; point: Point | null; lines: Polyline[] }[];
+  near: Polyline[];
+  far: Polyline[];
+  objects: DrawnObject[];
+}
+
+export interface Pick {
+  object: SceneObject | null;
+  point: [number, number, number] | null;
+  distance: number | null;
+  depth: number | null;
+  color: string;
+}
+
+/** What a drag may be held to: an axis of the world, or the plane of equal y. */
+export type Along = "x" | "y" | "z" | "floor";
+
+export interface Dragged {
+  edits: TextEdit[];
+  values: string[];
+}
+
+export interface Samples {
+  points: Point[];
+  colors: string[];
+  color: string;
+}
+
+/** The file that a served page edits: its text is null while it does not exist. */
+export interface HostedFile {
+  name: string;
+  text: string | null;
+  uri: string;
+  saved: boolean;
+}
+
+/** An error that the server answered with. */
+export class Refusal extends Error {
+  constructor(readonly code: number, message: string, readonly data: unknown) {
+    super(message);
+  }
+}
+
+/** Codes of answers that a newer question has made pointless. */
+export function isSuperseded(error: unknown): boolean {
+  return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
+}

@@ -1,0 +1,88 @@
+// Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent anywhere.
+
+import { byId, create, createButton, fromBase64 } from "./dom";
+import type { Connection } from "./connection";
+import type { SceneEditor } from "./editor";
+import type { Status } from "./status";
+
+/** A scene in a link may have so many characters unpacked. */
+const LONGEST = 1_000_000;
+const KEY = "#scene=";
+
+export async function packed(text: string): Promise<string> {
+  const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+  let binary = "";
+  for (const byte of bytes) binary += String.fromCharCode(byte);
+  return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+async function unpacked(text: string): Promise<string> {
+  const bytes = fromBase64(text.replaceAll("-", "+").replaceAll("_", "/"));
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")).pipeThrough(new TextDecoderStream("utf-8", { fatal: true })).getReader();
+  let scene = "";
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return scene;
+    scene += value;
+    if (scene.length > LONGEST) throw new Error("it is too long");
+  }
+}
+
+/** The scene in the page's own address; null if there is none. */
+export async function sceneInAddress(status: Status): Promise<string | null> {
+  if (!location.hash.startsWith(KEY)) return null;
+  const held = location.hash.slice(KEY.length);
+  history.replaceState(null, "", location.pathname + location.search);
+  try {
+    return await unpacked(held);
+  } catch {
+    status.say("The link is damaged: its scene cannot be read.", "warning");
+    return null;
+  }
+}
+
+export function download(name: string, content: BlobPart, type: string): void {
+  const link = create("a");
+  link.href = URL.createObjectURL(new Blob([content], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+export function offerSharing(editor: SceneEditor, connection: Connection, status: Status, name: () => string): void {
+  const stem = () => name().replace(/\.scn$/, "");
+  const picture = async (kind: "png" | "exr", type: string) => {
+    status.say(`Rendering ${stem()}.${kind}…`);
+    try {
+      const answer = await connection.request<Record<string, string> | null>(`studio/${kind}`, { text: editor.text });
+      const bytes = answer?.[kind];
+      if (bytes === undefined) return status.say("The text has errors: it has no picture.", "warning");
+      download(`${stem()}.${kind}`, fromBase64(bytes), type);
+      status.say(`${stem()}.${kind} is downloaded.`);
+    } catch (error) {
+      status.say((error as Error).message, "warning");
+    }
+  };
+  byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
+  byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));
+  byId("download-scene").addEventListener("click", () => download(`${stem()}.scn`, editor.text, "text/plain"));
+
+  const dialog = byId<HTMLDialogElement>("share-dialog");
+  const field = byId<HTMLInputElement>("share-link");
+  dialog.append(
+    createButton("Copy", "primary", () => {
+      field.select();
+      void navigator.clipboard.writeText(field.value).then(
+        () => (dialog.close(), status.say("The link is copied.")),
+        () => status.say("The browser does not let the page copy: copy the selected link yourself.", "warning"),
+      );
+    }),
+    createButton("Close", "", () => dialog.close()),
+  );
+  byId("share").addEventListener("click", async () => {
+    field.value = `${location.origin}${location.pathname}${KEY}${await packed(editor.text)}`;
+    dialog.showModal();
+    field.select();
+  });
+}

@@ -1,0 +1,35 @@
+// Dark or light: as the system has it, until one chooses.
+
+import { Compartment, type Extension } from "@codemirror/state";
+import { EditorView } from "@codemirror/view";
+import { byId, remember, remembered } from "./dom";
+
+const compartment = new Compartment();
+const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
+
+function isDark(): boolean {
+  const chosen = remembered("theme");
+  return chosen === null ? systemIsDark.matches : chosen === "dark";
+}
+
+/** The editor's part of the theme; all colours are variables of studio.css. */
+export function themeExtension(): Extension {
+  return compartment.of(EditorView.darkTheme.of(isDark()));
+}
+
+export function followTheme(view: EditorView): void {
+  const button = byId("theme");
+  const apply = () => {
+    const dark = isDark();
+    document.documentElement.dataset["theme"] = dark ? "dark" : "light";
+    button.textContent = dark ? "Light" : "Dark";
+    button.setAttribute("aria-label", dark ? "Light colours" : "Dark colours");
+    view.dispatch({ effects: compartment.reconfigure(EditorView.darkTheme.of(dark)) });
+  };
+  button.addEventListener("click", () => {
+    remember("theme", isDark() ? "light" : "dark");
+    apply();
+  });
+  systemIsDark.addEventListener("change", apply);
+  apply();
+}

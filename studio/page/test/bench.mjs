@@ -1,0 +1,96 @@
+// Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key, and from a step of a drag, to the first coarse picture and to the finished
+// one, as medians of 100; how many coarse pictures a second a drag has; and whether memory grows over many pictures. `node test/bench.mjs [drags of 100 steps]`.
+
+import { chromium } from "playwright-core";
+import { readFileSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { FIGURE, finished, onPage, open, serve } from "./helpers.mjs";
+
+const TIMES = 100;
+const DRAGS = Number(process.argv[2] ?? 100);
+const median = numbers => numbers.toSorted((a, b) => a - b)[Math.floor(numbers.length / 2)];
+const round = number => Number(number.toFixed(1));
+
+const folder = mkdtempSync(path.join(tmpdir(), "pinhole-bench-"));
+const file = path.join(folder, "scene.scn");
+writeFileSync(file, FIGURE);
+const host = process.env.PAGE ? { address: process.env.PAGE, stop() {} } : await serve(file);
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--enable-precise-memory-info", "--js-flags=--expose-gc"] });
+try {
+  const page = await open(browser, host);
+  // Times count from the event that the browser got to the picture on the canvas.
+  await page.evaluate(() => {
+    window.begin = 0;
+    window.frames = [];
+    for (const type of ["keydown", "pointermove"]) addEventListener(type, event => (window.begin = event.timeStamp), true);
+    addEventListener("pinhole-frame", ({ detail: { fineness, version } }) => window.frames.push({ fineness, version, at: performance.now(), after: performance.now() - window.begin }));
+  });
+  const measure = async act => {
+    const times = { coarse: [], final: [] };
+    for (let i = 0; i < TIMES; i++) {
+      await page.evaluate(() => (window.frames = []));
+      await act(i);
+      await page.waitForFunction(() => window.frames.some(frame => frame.fineness === "final"), null, { polling: 20 });
+      const frames = await page.evaluate(() => window.frames);
+      for (const fineness of ["coarse", "final"]) times[fineness].push(frames.find(frame => frame.fineness === fineness).after);
+    }
+    return `first coarse picture ${round(median(times.coarse))} ms, finished ${round(median(times.final))} ms (medians of ${TIMES})`;
+  };
+
+  await page.locator(".cm-line").getByText("2.75", { exact: true }).click();
+  await page.keyboard.press("End");
+  await finished(page);
+  console.log("key: ", await measure(i => page.keyboard.press(i % 2 === 0 ? "Backspace" : "5")));
+
+  const [x, y] = await onPage(page, [455, 320]);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.waitForTimeout(500);
+  await page.mouse.move(x + 20, y, { steps: 3 });
+  console.log("drag:", await measure(i => page.mouse.move(x + 20 + (i % 2 === 0 ? 15 : 0), y)));
+
+  // A hand that does not rest: the browser's own frames give the pace.
+  const moving = steps =>
+    page.evaluate(
+      async ([x, y, steps]) => {
+        const stage = document.querySelector("#stage");
+        window.frames = [];
+        const begin = performance.now();
+        for (let i = 0; i < steps; i++) {
+          await new Promise(requestAnimationFrame);
+          const at = { clientX: x + 40 * Math.sin(i / 10), clientY: y, pointerId: 1, pointerType: "mouse", isPrimary: true, buttons: 1, bubbles: true };
+          stage.dispatchEvent(new PointerEvent("pointermove", at));
+        }
+        const coarse = window.frames.filter(frame => frame.fineness === "coarse").length;
+        return { coarse, seconds: (performance.now() - begin) / 1000 };
+      },
+      [x, y, steps],
+    );
+  const { coarse, seconds } = await moving(300);
+  console.log(`rate: ${round(coarse / seconds)} coarse pictures a second while dragging (${coarse} in ${round(seconds)} s)`);
+
+  const session = await page.context().newCDPSession(page);
+  const memory = async () => {
+    await session.send("HeapProfiler.collectGarbage");
+    const heap = await page.evaluate(() => performance.memory.usedJSHeapSize);
+    const resident = host.pid ? Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${host.pid}/status`, "utf8"))[1]) / 1024 : NaN;
+    return { heap: round(heap / 2 ** 20), host: round(resident) };
+  };
+  await moving(100);
+  const before = await memory();
+  let pictures = 0;
+  for (let i = 0; i < DRAGS; i++) {
+    pictures += (await moving(100)).coarse;
+    if (i % 25 === 24) {
+      const now = await memory();
+      console.log(`memory after ${pictures} pictures: page ${now.heap} MiB (${before.heap} at first), host ${now.host} MiB (${before.host})`);
+    }
+  }
+  await page.mouse.up();
+} finally {
+  await browser.close();
+  host.stop();
+  rmSync(folder, { recursive: true, force: true });
+}

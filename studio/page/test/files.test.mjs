@@ -1,0 +1,85 @@
+// Files of the served host: saved whole, changed outside, both changed, and a connection that is lost.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { andFinished, comparing, decoded, FIGURE, host, launch, open, pixels, rendered, serve, text, type } from "./helpers.mjs";
+
+const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
+const LARGER = FIGURE.replace("radius 1", "radius 1.5");
+
+test("saving in another editor changes the page", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => started.write(NEARER));
+  assert.equal(await text(page), NEARER);
+  await comparing(page);
+  assert.equal(await pixels(page), await decoded(page, rendered(started.folder, NEARER)));
+  assert.equal(await page.textContent("#file-state"), "");
+});
+
+test("Save writes the file, by key and by button", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, LARGER));
+  assert.equal(await page.textContent("#file-state"), "not saved");
+  assert.equal(started.text(), FIGURE);
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), LARGER);
+  await type(page, NEARER);
+  await page.click("#save");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), NEARER);
+});
+
+for (const [choice, onDisk, onPage] of [
+  ["Keep the page's text and save it", LARGER, LARGER],
+  ["Take the file's text", NEARER, NEARER],
+  ["Decide later", NEARER, LARGER],
+]) {
+  test(`both changed: ${choice}`, async t => {
+    const started = await host(t);
+    const page = await open(await launch(t), started);
+    await andFinished(page, () => type(page, LARGER));
+    started.write(NEARER);
+    await page.waitForSelector("#conflict-dialog[open]");
+    const lines = page.locator("#conflict-lines");
+    assert.deepEqual(await lines.locator(".removed").allTextContents(), ["-   eye    (3, 3.5, 6)", "- sphere   Ball  { center ball  radius 1  color olive }"]);
+    assert.deepEqual(await lines.locator(".added").allTextContents(), ["+   eye    (3, 3.5, 8)", "+ sphere   Ball  { center ball  radius 1.5  color olive }"]);
+    await page.getByRole("button", { name: choice }).click();
+    await page.waitForSelector("#conflict-dialog", { state: "hidden" });
+    await page.waitForTimeout(500);
+    assert.equal(started.text(), onDisk);
+    assert.equal(await text(page), onPage);
+    if (onPage === NEARER) {
+      await page.click(".cm-content");
+      await page.keyboard.press("Control+z");
+      assert.equal(await text(page), LARGER);
+    }
+  });
+}
+
+test("a lost connection is told, the text stays, and a new one is found", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  const { port } = new URL(started.address);
+  await page.context().setOffline(true);
+  started.stop();
+  await page.waitForSelector("#connection:not([hidden])");
+  assert.match(await page.textContent("#connection"), /Connection lost/);
+  await type(page, LARGER);
+  assert.equal(await text(page), LARGER);
+  assert.equal(await page.textContent("#file-state"), "not saved");
+  await page.context().setOffline(false);
+  const again = await serve(started.file, port);
+  t.after(() => again.stop());
+  // The new host gives out a new cookie, in another tab.
+  const tab = await page.context().newPage();
+  await tab.goto(again.address);
+  await page.waitForSelector("#connection", { state: "hidden", timeout: 30_000 });
+  await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final");
+  assert.equal(await text(page), LARGER);
+  await page.click("#save");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), LARGER);
+});

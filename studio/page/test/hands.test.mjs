@@ -1,0 +1,127 @@
+// Hands: objects and the camera are moved in the picture, and the text follows.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { andFinished, comparing, decoded, drag, FIGURE, finished, host, launch, onPage, open, pixels, rendered, text } from "./helpers.mjs";
+
+/** Where the middle of figure 9.9's ball is seen: well inside of it. */
+const BALL = [455, 320];
+
+const vector = (text, before) => {
+  const found = new RegExp(`${before}\\s*\\(([^)]*)\\)`).exec(text);
+  assert.ok(found, `no vector after ${before} in\n${text}`);
+  return found[1].split(",").map(Number);
+};
+
+test("a drag moves a ball that is a let, in one step of undo, and nothing else of the text", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => drag(page, BALL, [BALL[0] + 200, BALL[1]]));
+  const moved = await text(page);
+  const [x, y] = vector(moved, "let ball =");
+  assert.ok(x > -0.5 && Math.abs(y - 1) < 0.2, moved);
+  assert.equal(moved.replace(/let ball = .*/, ""), FIGURE.replace(/let ball = .*/, ""));
+  await comparing(page);
+  assert.equal(await pixels(page), await decoded(page, rendered(started.folder, moved)));
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(page), FIGURE);
+});
+
+test("Escape takes back a drag that goes on", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.mouse.move(...(await onPage(page, BALL)));
+  await page.mouse.down();
+  await page.waitForSelector('.handle[aria-label="Ball: center"]');
+  await page.waitForTimeout(200);
+  await andFinished(page, async () => page.mouse.move(...(await onPage(page, [BALL[0] + 150, BALL[1]])), { steps: 4 }));
+  assert.notEqual(await text(page), FIGURE);
+  await andFinished(page, () => page.keyboard.press("Escape"));
+  await page.mouse.up();
+  assert.equal(await text(page), FIGURE);
+});
+
+test("a click names and selects what is seen, and jumps to its line; the cursor selects, too", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.mouse.move(...(await onPage(page, BALL)));
+  await page.waitForFunction(() => /^Ball at \(.*away/.test(document.querySelector("#pointed").textContent));
+  await page.mouse.click(...(await onPage(page, BALL)));
+  await page.waitForSelector('.handle[aria-label="Ball: center"]');
+  assert.match(await page.textContent(".cm-activeLine"), /^sphere/);
+  assert.equal(await text(page), FIGURE);
+  await page.locator(".cm-line", { hasText: "box" }).getByText("Crate").click();
+  await page.waitForSelector('.handle[aria-label="Crate: center"]');
+  assert.equal(await page.locator("#objects option:checked").textContent(), "Crate (box)");
+});
+
+test("an axis holds a drag", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.selectOption("#along", "y");
+  await andFinished(page, () => drag(page, BALL, [BALL[0] + 30, BALL[1] - 120]));
+  const [x, y, z] = vector(await text(page), "let ball =");
+  assert.deepEqual([x, z], [-1.6, 0]);
+  assert.ok(y > 1.3);
+});
+
+test("the camera orbits about what it looks at", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.check('input[value="orbit"]', { force: true });
+  await andFinished(page, () => drag(page, [640, 500], [840, 460]));
+  const moved = await text(page);
+  const eye = vector(moved, "eye");
+  const distance = ([x, y, z]) => Math.hypot(x - 0.2, y - 0.8, z);
+  assert.deepEqual(vector(moved, "lookat"), [0.2, 0.8, 0]);
+  assert.notDeepEqual(eye, [3, 3.5, 8]);
+  // The eye stays at its distance, but for the digits that are left out.
+  assert.ok(Math.abs(distance(eye) / distance([3, 3.5, 8]) - 1) < 0.01, String(eye));
+});
+
+test("all of it goes by keyboard", async t => {
+  const page = await open(await launch(t), await host(t));
+  // From the top of the page to the picture by the tab key alone.
+  for (let i = 0; i < 60; i++) {
+    await page.keyboard.press("Tab");
+    if (await page.evaluate(() => document.activeElement.id === "objects")) break;
+  }
+  assert.equal(await page.evaluate(() => document.activeElement.id), "objects");
+  await page.keyboard.press("ArrowDown");
+  await page.waitForSelector('.handle[aria-label="Ball: center"]');
+  for (let i = 0; i < 20; i++) {
+    await page.keyboard.press("Tab");
+    if (await page.evaluate(() => document.activeElement.ariaLabel === "Ball: center")) break;
+  }
+  await page.keyboard.press("x");
+  await andFinished(page, () => page.keyboard.press("ArrowRight"));
+  const [x, y, z] = vector(await text(page), "let ball =");
+  assert.deepEqual([y, z], [1, 0]);
+  assert.ok(x > -1.6 && x < -1.3, String(x));
+  await page.keyboard.press("o");
+  await page.focus("#stage");
+  await andFinished(page, () => page.keyboard.press("ArrowRight"));
+  assert.notDeepEqual(vector(await text(page), "eye"), [3, 3.5, 8]);
+  await page.keyboard.press("Control+z");
+  await andFinished(page, () => page.keyboard.press("Control+z"));
+  assert.equal(await text(page), FIGURE);
+});
+
+test("a finger drags, and two fingers zoom without a change of the text", async t => {
+  const browser = await launch(t);
+  const page = await open(browser, await host(t), { viewport: { width: 380, height: 700 }, hasTouch: true, isMobile: true });
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const before = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
+  const [x, y] = await onPage(page, BALL);
+  await touch("touchStart", [x, y]);
+  await touch("touchStart", [x, y], [x + 40, y]);
+  for (let i = 1; i <= 5; i++) await touch("touchMove", [x, y], [x + 40 + 8 * i, y]);
+  await touch("touchEnd");
+  const after = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
+  assert.ok(after > 1.7 * before, `${before} to ${after}`);
+  assert.equal(await text(page), FIGURE);
+  await page.click("#zoom-fit");
+  await touch("touchStart", [x, y]);
+  await page.waitForTimeout(300);
+  for (let i = 1; i <= 5; i++) await touch("touchMove", [x + 8 * i, y]);
+  await andFinished(page, () => touch("touchEnd"));
+  await finished(page);
+  assert.ok(vector(await text(page), "let ball =")[0] > -1.4);
+});

@@ -1,0 +1,182 @@
+// Starts the host and a browser for the tests. PINHOLE is the program (default: `pinhole` on the path), CHROMIUM the browser.
+
+import { execFileSync, spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { chromium } from "playwright-core";
+
+const PINHOLE = process.env.PINHOLE ?? "pinhole";
+
+export const FIGURE = readFileSync(new URL("../../../examples/figure_9_9.scn", import.meta.url), "utf8");
+
+/** A browser, closed when the test ends. */
+export async function launch(context) {
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+  context.after(() => browser.close());
+  return browser;
+}
+
+/** A host of a file with this text, in a folder of its own. Both go when the test ends. */
+export async function host(context, text = FIGURE, port = 0) {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
+  const file = path.join(folder, "scene.scn");
+  writeFileSync(file, text);
+  const started = { file, folder, text: () => readFileSync(file, "utf8"), write: text => writeFileSync(file, text), ...(await serve(file, port)) };
+  context.after(() => {
+    started.stop();
+    rmSync(folder, { recursive: true, force: true });
+  });
+  return started;
+}
+
+export async function serve(file, port = 0) {
+  const child = spawn(PINHOLE, ["studio", file, "--no-open", "--port", String(port)], { stdio: ["ignore", "ignore", "pipe"] });
+  let said = "";
+  const address = await new Promise((resolve, reject) => {
+    child.stderr.on("data", data => {
+      said += data;
+      const found = /http:\/\/\S+/.exec(said);
+      if (found) resolve(found[0]);
+    });
+    child.on("exit", () => reject(new Error(`the host ended: ${said}`)));
+  });
+  return { address, stop: () => child.kill(), pid: child.pid };
+}
+
+/** A site: a folder served as files, as any web host does. It collects what it is asked for. */
+export async function site(context, folder) {
+  const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", wasm: "application/wasm" };
+  const requests = [];
+  const server = createServer((request, response) => {
+    requests.push(request.url);
+    const name = request.url === "/" ? "index.html" : path.basename(request.url);
+    try {
+      const content = readFileSync(path.join(folder, name));
+      response.writeHead(200, { "content-type": types[name.split(".").pop()] ?? "text/plain" }).end(content);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise(resolve => server.listen(0, "127.0.0.1", resolve));
+  context.after(() => server.close());
+  return { address: `http://127.0.0.1:${server.address().port}/`, requests };
+}
+
+/** The page of a host, as soon as its picture is finished. What the browser complains of is collected in `page.complaints`. */
+export async function open(browser, { address }, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.on("console", message => message.type() === "error" && page.complaints.push(message.text()));
+  page.on("pageerror", error => page.complaints.push(error.message));
+  await page.goto(address);
+  await finished(page);
+  return page;
+}
+
+/** Waits for the finished picture of the newest text. */
+export async function finished(page) {
+  await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 30_000 });
+}
+
+/** Does something, and waits for the finished picture of the text that it makes. */
+export async function andFinished(page, act) {
+  const before = await version(page);
+  await act();
+  await page.waitForFunction(
+    before => {
+      const { fineness, version } = document.querySelector("canvas").dataset;
+      return fineness === "final" && Number(version) > before;
+    },
+    before,
+    { timeout: 30_000 },
+  );
+}
+
+export async function version(page) {
+  return page.evaluate(() => Number(document.querySelector("canvas").dataset.version ?? -1));
+}
+
+/** The text in the editor, without the hints between its letters. */
+export async function text(page) {
+  return page.evaluate(() => {
+    const lines = [...document.querySelectorAll(".cm-line")].map(line => {
+      const copy = line.cloneNode(true);
+      for (const hint of copy.querySelectorAll(".hint")) hint.remove();
+      return copy.textContent;
+    });
+    return lines.join("\n");
+  });
+}
+
+/** Puts another text into the editor, as pasting does. */
+export async function type(page, text) {
+  await page.click(".cm-content");
+  await page.keyboard.press("Control+a");
+  await page.keyboard.insertText(text);
+}
+
+/** Where a point of the picture is on the page, for the mouse. */
+export async function onPage(page, [x, y]) {
+  return page.evaluate(
+    ([x, y]) => {
+      const canvas = document.querySelector("canvas");
+      const { left, top, width } = canvas.getBoundingClientRect();
+      const zoom = width / Number(document.querySelector("#frame-state").textContent.split(" ")[0]);
+      return [left + x * zoom, top + y * zoom];
+    },
+    [x, y],
+  );
+}
+
+/** Drags from one point of the picture to another. */
+export async function drag(page, from, to) {
+  await page.mouse.move(...(await onPage(page, from)));
+  await page.mouse.down();
+  // The page asks what is under the pointer before it moves that.
+  await page.waitForTimeout(300);
+  const [x, y] = await onPage(page, to);
+  await page.mouse.move(x, y, { steps: 5 });
+  await page.mouse.up();
+}
+
+/** The pixels of the picture, as RGBA bytes in base64. */
+export async function pixels(page) {
+  return page.evaluate(() => {
+    const canvas = document.querySelector("canvas");
+    return window.bytesOf(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height));
+  });
+}
+
+/** The pixels of a PNG as this browser reads them. */
+export async function decoded(page, png) {
+  return page.evaluate(async png => {
+    const bytes = Uint8Array.from(atob(png), letter => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }), { colorSpaceConversion: "none" });
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    return window.bytesOf(context.getImageData(0, 0, canvas.width, canvas.height));
+  }, png.toString("base64"));
+}
+
+/** Has the page able to compare pixels. */
+export async function comparing(page) {
+  await page.evaluate(() => {
+    window.bytesOf = async ({ data, width, height }) => {
+      const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", data));
+      return `${width}x${height} ${[...digest].map(byte => byte.toString(16).padStart(2, "0")).join("")}`;
+    };
+  });
+}
+
+/** The picture of a scene by `pinhole render`, as bytes. */
+export function rendered(folder, text, kind = "png") {
+  const scene = path.join(folder, "rendered.scn");
+  const picture = path.join(folder, `rendered.${kind}`);
+  writeFileSync(scene, text);
+  execFileSync(PINHOLE, ["render", scene, "-o", picture], { stdio: "ignore" });
+  return readFileSync(picture);
+}

@@ -1,0 +1,51 @@
+// Links and downloads.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { andFinished, FIGURE, host, launch, open, rendered, text, type } from "./helpers.mjs";
+
+test("a link holds the scene, and asks nobody else", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  const page = await open(browser, started);
+  const scene = FIGURE.replace("A ball", "Ein Bällchen 🎱");
+  await andFinished(page, () => type(page, scene));
+  const requests = [];
+  page.on("request", request => requests.push(request.url()));
+  await page.click("#share");
+  const link = await page.inputValue("#share-link");
+  assert.deepEqual(requests, []);
+  assert.ok(link.startsWith(`${new URL(started.address).origin}/#scene=`), link);
+  const other = await page.context().newPage();
+  await other.goto(link);
+  await other.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final");
+  assert.equal(await text(other), scene);
+  // The file is not touched, and undo brings its text.
+  assert.equal(started.text(), FIGURE);
+  await other.click(".cm-content");
+  await other.keyboard.press("Control+z");
+  assert.equal(await text(other), FIGURE);
+});
+
+test("a damaged link is told", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await page.goto("about:blank");
+  await page.goto(`${new URL(started.address).origin}/#scene=!!`);
+  await page.waitForFunction(() => /damaged/.test(document.querySelector("#said").textContent));
+  assert.equal(await text(page), FIGURE);
+});
+
+for (const [kind, id] of [["png", "#download-png"], ["exr", "#download-exr"], ["scn", "#download-scene"]]) {
+  test(`the download as ${kind} is what the program writes`, async t => {
+    const started = await host(t);
+    const page = await open(await launch(t), started);
+    await page.click("text=Download");
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(id)]);
+    assert.equal(download.suggestedFilename(), `scene.${kind}`);
+    const bytes = readFileSync(await download.path());
+    const expected = kind === "scn" ? Buffer.from(FIGURE) : rendered(started.folder, FIGURE, kind);
+    assert.ok(bytes.equals(expected), `${bytes.length} bytes instead of ${expected.length}, or others`);
+  });
+}

@@ -1,0 +1,53 @@
+// The static page: the engine in a web worker, no host, no file. SITE is the folder that holds it.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { test } from "node:test";
+import { andFinished, comparing, decoded, drag, FIGURE, launch, open, pixels, rendered, site, text, type } from "./helpers.mjs";
+
+const skip = process.env.SITE === undefined ? "SITE names no folder" : false;
+
+test("the static page draws, drags, downloads and links without a request", { skip }, async t => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-site-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const host = await site(t, process.env.SITE);
+  const page = await open(await launch(t), host);
+  assert.equal(await text(page), FIGURE);
+  const requests = host.requests.length;
+  await comparing(page);
+  assert.equal(await pixels(page), await decoded(page, rendered(folder, FIGURE)));
+  await andFinished(page, () => drag(page, [455, 320], [600, 320]));
+  const moved = await text(page);
+  assert.notEqual(moved, FIGURE);
+  assert.equal(await pixels(page), await decoded(page, rendered(folder, moved)));
+  for (const [kind, id] of [["png", "#download-png"], ["exr", "#download-exr"], ["scn", "#download-scene"]]) {
+    await page.click("text=Download");
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(id)]);
+    const expected = kind === "scn" ? Buffer.from(moved) : rendered(folder, moved, kind);
+    assert.ok(readFileSync(await download.path()).equals(expected), kind);
+  }
+  await page.click("#share");
+  const link = await page.inputValue("#share-link");
+  assert.deepEqual(host.requests.slice(requests), []);
+  assert.deepEqual(page.complaints, []);
+  const other = await page.context().newPage();
+  await other.goto(link);
+  await other.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 60_000 });
+  assert.equal(await text(other), moved);
+});
+
+test("the static page opens a file of this computer", { skip }, async t => {
+  const page = await open(await launch(t), await site(t, process.env.SITE));
+  // What browsers without access to files do.
+  await page.evaluate(() => (window.showOpenFilePicker = undefined));
+  const scene = FIGURE.replace("radius 1", "radius 1.5");
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("#open")]);
+  await andFinished(page, () => chooser.setFiles({ name: "other.scn", mimeType: "text/plain", buffer: Buffer.from(scene) }));
+  assert.equal(await text(page), scene);
+  assert.equal(await page.textContent("#file-name"), "other.scn");
+  assert.equal(await page.textContent("#file-state"), "");
+  await type(page, FIGURE);
+  assert.equal(await page.textContent("#file-state"), "not saved");
+});

@@ -1,0 +1,115 @@
+// The text: what is wrong with it and how it is mended, what the server knows about it, and what it never becomes.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { andFinished, comparing, decoded, FIGURE, host, launch, open, pixels, rendered, text, type } from "./helpers.mjs";
+
+test("the picture is that of `pinhole render`, pixel by pixel", async t => {
+  const { address, folder } = await host(t);
+  const page = await open(await launch(t), { address });
+  await comparing(page);
+  assert.equal(await pixels(page), await decoded(page, rendered(folder, FIGURE)));
+  const other = FIGURE.replace("d      2.75", "d      1.5").replace("per_pixel 16", "per_pixel 3");
+  await andFinished(page, () => type(page, other));
+  assert.equal(await pixels(page), await decoded(page, rendered(folder, other)));
+});
+
+test("the policy of the page forbids nothing that it does", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.waitForSelector(".swatch");
+  await page.selectOption("#objects", { label: "Ball (sphere)" });
+  await page.waitForSelector(".handle");
+  await page.click("text=Share");
+  assert.deepEqual(page.complaints, []);
+});
+
+test("a slip is mended by its fix, by mouse and by key", async t => {
+  const page = await open(await launch(t), await host(t));
+  const slip = FIGURE.replace("radius 1", "radios 1");
+  await type(page, slip);
+  await page.waitForSelector(".cm-lintRange-error");
+  assert.equal(await page.textContent("#problems"), "1 problem");
+  // The hints come a little later, and may move the line.
+  await page.waitForTimeout(500);
+  await page.hover(".cm-lintRange-error");
+  await andFinished(page, () => page.click(".cm-tooltip-lint .cm-diagnosticAction"));
+  assert.equal(await text(page), FIGURE);
+  await type(page, slip);
+  await page.waitForSelector(".cm-lintRange-error");
+  await andFinished(page, () => page.keyboard.press("Control+."));
+  assert.equal(await text(page), FIGURE);
+});
+
+test("while the text is broken the last good picture stays, and says so", async t => {
+  const page = await open(await launch(t), await host(t));
+  await comparing(page);
+  const before = await pixels(page);
+  await type(page, FIGURE.replace("camera  {", "camera  "));
+  await page.waitForSelector("#stale:not([hidden])");
+  assert.equal(await pixels(page), before);
+  assert.match(await page.textContent("#stale"), /last good picture/);
+  await andFinished(page, () => type(page, FIGURE));
+  assert.ok(await page.isHidden("#stale"));
+});
+
+test("completion, hints, swatches and format come from the server", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.waitForSelector(".hint");
+  assert.ok((await page.locator(".hint").allTextContents()).includes("fov 39.9662deg"));
+  const swatch = page.getByLabel("Colour olive");
+  await andFinished(page, () => swatch.fill("#102030"));
+  assert.match(await text(page), /radius 1 {2}color #102030/);
+  await page.click(".cm-content");
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(page), FIGURE);
+  await type(page, "camera { eye (0, 1, 5) lookat (0, 0, 0) }\nsphere { center (0, 0, 0) ra");
+  await page.waitForSelector(".cm-tooltip-autocomplete");
+  // Completion passes over keys that come too soon after it has opened.
+  await page.waitForTimeout(200);
+  await page.keyboard.press("Enter");
+  assert.match(await text(page), /center \(0, 0, 0\) radius 1$/);
+  // The value is selected, to be typed over.
+  await andFinished(page, () => page.keyboard.insertText("2 }"));
+  await page.keyboard.press("Shift+Alt+f");
+  await page.waitForFunction(() => /sphere \{ center \(0, 0, 0\) {2}radius 2 \}/.test(document.querySelector(".cm-content").innerText));
+});
+
+test("numbers are turned by a slider, by keys, and by a drag with the alt key, each in one step of undo", async t => {
+  const page = await open(await launch(t), await host(t));
+  const radius = page.locator(".cm-line", { hasText: "sphere" }).getByText("1", { exact: true });
+  await radius.click();
+  const slider = page.locator(".slider input");
+  await slider.focus();
+  await andFinished(page, () => page.keyboard.press("ArrowRight"));
+  assert.match(await text(page), /radius 1\.1 /);
+  await page.keyboard.press("Escape");
+  await andFinished(page, () => page.keyboard.press("Alt+ArrowDown"));
+  assert.equal(await text(page), FIGURE);
+  const box = await radius.boundingBox();
+  await page.keyboard.down("Alt");
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 40, box.y + box.height / 2, { steps: 10 });
+  await page.mouse.up();
+  await page.keyboard.up("Alt");
+  assert.match(await text(page), /radius 2 /);
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(page), FIGURE);
+});
+
+test("texts and names of a scene are never HTML", async t => {
+  const evil = `<img src=x onerror="window.hit=1"><script>window.hit=1</script>`;
+  const scene = `// ${evil}\n${FIGURE.replace("let ball", `// ${evil}\nlet ball`)}`;
+  const page = await open(await launch(t), await host(t, scene));
+  // Comments, words that are not known, and names that are too odd to be any come back in hovers and messages.
+  await type(page, `${scene}\nsphere ${evil} { center (0, 0, 0) colour '${evil}' }\nlet a = b${evil}`);
+  await page.waitForSelector(".cm-lintRange-error");
+  await page.click("#problems");
+  await page.waitForSelector("#problem-list li");
+  for (const word of ["ball", "sphere", "Ball"]) {
+    await page.locator(".cm-line").getByText(word, { exact: true }).first().hover();
+    await page.waitForTimeout(500);
+  }
+  assert.equal(await page.evaluate(() => window.hit), undefined);
+  assert.equal(await page.locator("img:not(.cm-widgetBuffer), body script").count(), 0);
+});
