@@ -110,6 +110,34 @@ impl Edit {
         Self::new(Span::new(source, at, at), text)
     }
 
+    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their own.
+    pub fn add_fields(block: Span, sources: &Sources, fields: &[String]) -> Option<Self> {
+        if block.source != SourceId::File {
+            return None;
+        }
+        let inside = sources.text(block).strip_suffix('}')?;
+        let tight = inside.trim_end();
+        let gap = inside.get(tight.len()..)?;
+        let at = block.start + tight.len();
+        let line_end = sources.file.line_end();
+        let (end, added) = match gap.rsplit_once('\n') {
+            Some((_, indent)) => {
+                let last = tight.lines().next_back()?;
+                // On the line that the block starts on, a comment or a field may stand behind the `{`.
+                let deeper = match last.ends_with('{') || !tight.contains('\n') {
+                    true => format!("{indent}  "),
+                    false => last.chars().take_while(|c| c.is_whitespace()).collect(),
+                };
+                let lines = fields.iter();
+                let lines = lines.map(|field| format!("{line_end}{deeper}{field}"));
+                (at, lines.collect())
+            }
+            None if tight.ends_with('{') => (at + gap.len(), format!(" {} ", fields.join("  "))),
+            None => (at + gap.len(), format!("  {} ", fields.join("  "))),
+        };
+        Some(Self::new(Span::new(SourceId::File, at, end), added))
+    }
+
     /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the blanks on one side too.
     /// What stood on both sides of it stays apart.
     pub fn remove(span: Span, sources: &Sources) -> Self {

@@ -14,6 +14,7 @@ mod folding;
 mod hints;
 mod hover;
 mod names;
+pub mod picture;
 mod semantic;
 mod signature;
 mod symbols;

@@ -1,23 +1,175 @@
 //! A request about a document's picture, and its answer: docs/protocol.md has the contract.
 
-use serde_json::Value;
+use std::cell::LazyCell;
 
-use super::{answers::unknown, convert::Page, params::Answer, prepared::Prepared};
-use crate::editor::Analysis;
+use glam::DVec2;
+use lsp_server::ErrorCode;
+use serde_json::{Value, json};
+
+use super::{
+    answers::unknown,
+    convert::Page,
+    params::{Answer, Refusal, optional, parsed},
+    prepared::Prepared,
+};
+use crate::{
+    editor::{
+        Analysis,
+        picture::{self, Along, Drag},
+    },
+    source::Span,
+};
 
 /// What the names of our own requests begin with.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// The answer to a request but that for a frame; null where the text has errors.
-pub fn answer(
+/// The answer to a request but that for a frame; null where the text has errors. The analysis is not made where it is not asked.
+pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
-    _params: &Value,
-    _page: Page<'_>,
-    _analysis: &Analysis<'_>,
+    params: &Value,
+    page: Page<'_>,
+    analysis: &LazyCell<Analysis<'s>, F>,
     prepared: &mut Option<Prepared>,
 ) -> Answer {
-    let Some(_prepared) = prepared else {
+    let Some(prepared) = prepared else {
         return Ok(Value::Null);
     };
-    Err(unknown(&format!("{NAMESPACE}{about}")))
+    match about {
+        "pick" => pick(params, page, prepared),
+        "overlays" => overlays(params, page, prepared),
+        "drag" => drag(params, page, analysis, prepared),
+        "samples" => samples(params, prepared),
+        _ => Err(unknown(&format!("{NAMESPACE}{about}"))),
+    }
+}
+
+fn pick(params: &Value, page: Page<'_>, prepared: &mut Prepared) -> Answer {
+    let at = point(params, "point")?;
+    let (scene, world) = prepared.world(1);
+    let seen = picture::pick(scene, world, at);
+    let (hit, color) = seen.unzip();
+    let hit = hit.flatten();
+    Ok(json!({
+        "object": hit.map(|hit| object(hit.object, page, prepared)),
+        "point": hit.map(|hit| hit.point.to_array()),
+        "distance": hit.map(|hit| hit.t),
+        "depth": hit.map(|hit| hit.depth),
+        "color": color.map(|color| color.to_string()),
+    }))
+}
+
+/// An object of the scene, and where it stands in the text.
+fn object(index: usize, page: Page<'_>, prepared: &Prepared) -> Value {
+    let object = &prepared.scene.objects[index];
+    let range = |span: Span| json!(page.range(span));
+    json!({
+        "index": index,
+        "kind": object.shape.kind(),
+        "name": object.name,
+        "range": range(object.span),
+        "selection": range(prepared.selections[index]),
+    })
+}
+
+fn overlays(params: &Value, page: Page<'_>, prepared: &Prepared) -> Answer {
+    let only: Option<usize> = optional(params, "object")?;
+    let overlays = picture::overlays(&prepared.scene, only);
+    let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
+    let vanishing = vanishing.map(|(axis, vanishing)| {
+        let lines = vanishing.lines.iter().map(|line| written_line(line));
+        let lines: Vec<Value> = lines.collect();
+        json!({ "axis": axis, "point": vanishing.point.map(written_point), "lines": lines })
+    });
+    let objects = overlays.objects.iter().map(|outline| {
+        let mut object = object(outline.object, page, prepared);
+        let lines = outline.lines.iter().map(|line| written_line(line));
+        object["outline"] = lines.collect();
+        let handles = outline.handles.iter().map(|(name, at)| {
+            let label = name.replace('_', " ");
+            json!({ "handle": name, "at": at.map(written_point), "label": label })
+        });
+        object["handles"] = handles.collect();
+        object
+    });
+    let lines = |lines: &[[DVec2; 2]]| lines.iter().map(|line| written_line(line)).collect();
+    let [near, far]: [Value; 2] = [lines(&overlays.near), lines(&overlays.far)];
+    Ok(json!({
+        "size": overlays.size,
+        "axis": written_point(overlays.axis),
+        "horizon": overlays.horizon.map(|line| written_line(&line)),
+        "vanishing": vanishing.collect::<Vec<_>>(),
+        "near": near,
+        "far": far,
+        "objects": objects.collect::<Vec<_>>(),
+    }))
+}
+
+fn drag(params: &Value, page: Page<'_>, analysis: &Analysis<'_>, prepared: &Prepared) -> Answer {
+    let object: Option<usize> = optional(params, "object")?;
+    let handle: String = parsed(params.get("handle").cloned().unwrap_or_default())?;
+    let along: Option<String> = optional(params, "along")?;
+    let to = point(params, "to")?;
+    let from = match object {
+        Some(_) => to,
+        None => point(params, "from")?,
+    };
+    let along = match along.as_deref() {
+        None => None,
+        Some("x") => Some(Along::Axis(0)),
+        Some("y") => Some(Along::Axis(1)),
+        Some("z") => Some(Along::Axis(2)),
+        Some("floor") => Some(Along::Floor),
+        Some(other) => {
+            let message = format!("`along` is x, y, z or floor, and not `{other}`");
+            return Err(Refusal(ErrorCode::InvalidParams, message));
+        }
+    };
+    let drag = Drag {
+        object,
+        handle: &handle,
+        from,
+        to,
+        along,
+    };
+    let dragged = picture::drag(analysis, &prepared.scene, &drag)
+        .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
+    let edits: Vec<_> = page.text_edits(dragged.edits).collect();
+    Ok(json!({ "edits": edits, "values": dragged.values }))
+}
+
+fn samples(params: &Value, prepared: &mut Prepared) -> Answer {
+    let pixel: [u32; 2] = parsed(params.get("pixel").cloned().unwrap_or_default())?;
+    let image = prepared.scene.image;
+    if pixel[0] >= image.width || pixel[1] >= image.height {
+        let message = "`pixel` is no pixel of the picture".to_owned();
+        return Err(Refusal(ErrorCode::InvalidParams, message));
+    }
+    let (scene, world) = prepared.world(1);
+    let found = picture::samples(scene, world, pixel)
+        .map_err(|error| Refusal(ErrorCode::RequestFailed, error.to_string()))?;
+    let points = found.samples.iter().map(|(point, _)| point.to_array());
+    let colors = found.samples.iter().map(|(_, color)| color.to_string());
+    Ok(json!({
+        "points": points.collect::<Vec<_>>(),
+        "colors": colors.collect::<Vec<_>>(),
+        "color": found.color.to_string(),
+    }))
+}
+
+fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {
+    let point: Option<[f64; 2]> = optional(params, name)?;
+    let point = point.filter(|point| point.iter().all(|x| x.is_finite()));
+    point.map(DVec2::from).ok_or_else(|| {
+        let message = format!("`{name}` is a point of the picture, as [x, y]");
+        Refusal(ErrorCode::InvalidParams, message)
+    })
+}
+
+/// A point to a hundredth of a pixel, which nobody sees, in a third of the bytes.
+fn written_point(point: DVec2) -> Value {
+    json!(((point * 100.0).round() / 100.0).to_array())
+}
+
+fn written_line(line: &[DVec2]) -> Value {
+    line.iter().copied().map(written_point).collect()
 }

@@ -4,7 +4,12 @@
 
 use std::collections::VecDeque;
 
-use crate::{editor::Analysis, scene::Scene, tracer::World};
+use crate::{
+    editor::{Analysis, picture::selections},
+    scene::Scene,
+    source::Span,
+    tracer::World,
+};
 
 /// Worlds are kept for so many sizes: the picture's own, and those of the frames that are shown until it is done.
 const WORLDS: usize = 4;
@@ -16,15 +21,19 @@ pub struct Prepared {
     pub version: i32,
     /// What it means.
     pub scene: Scene,
+    /// For each object the name or the keyword that stands for it.
+    pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
 }
 
 impl Prepared {
     /// None where the text has errors.
     pub fn new(analysis: &Analysis<'_>, version: i32) -> Option<Self> {
+        let scene = analysis.scene()?;
         Some(Self {
             version,
-            scene: analysis.scene()?,
+            selections: selections(analysis, &scene),
+            scene,
             worlds: VecDeque::new(),
         })
     }

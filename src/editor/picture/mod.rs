@@ -1,12 +1,35 @@
-//! The picture's answers to one who is writing a scene.
+//! The picture's answers to one who is writing a scene: what is seen at a point, what to draw over it, and what moving a handle does to the text.
+//!
+//! In: a text and its scene, and points of the picture in pixels from its top left corner. Out: points, and edits of the text. Nothing here is told to anybody
+//! before it was computed from the scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
+//!
+//! `projection` leads from the world to the picture and back. `handles` knows where an object's handles are and how one moves the object, `motions`
+//! how the pointer moves the camera; `fields` makes values of fields of either, and `edits` writes these into the text. `drag` is all of that together.
+
+mod drag;
+mod edits;
+mod fields;
+mod handles;
+mod motions;
+mod overlays;
+mod pick;
+mod projection;
 
 use super::analysis::Analysis;
-use crate::{scene::Scene, source::Span};
+use crate::{
+    scene::{Object, Scene},
+    source::Span,
+};
+
+pub use drag::{Drag, Dragged, drag};
+pub use handles::Along;
+pub use overlays::{MOST_OBJECTS, Outline, Overlays, Vanishing, overlays};
+pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
 /// For each object the place that stands for it: its name, or the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
     let mut blocks = analysis.blocks();
-    let selection = |object: &crate::scene::Object| {
+    let selection = |object: &Object| {
         let block = blocks.find(|block| block.span == object.span);
         block.map_or(object.span, |block| {
             block.name.map_or(block.keyword(), |name| name.span)

@@ -38,31 +38,8 @@ impl Lowering<'_> {
         title: impl Into<String>,
         fields: &[String],
     ) -> Option<Fix> {
-        if block.span.source != SourceId::File {
-            return None;
-        }
-        let inside = self.sources.text(block.span).strip_suffix('}')?;
-        let tight = inside.trim_end();
-        let gap = inside.get(tight.len()..)?;
-        let at = block.span.start + tight.len();
-        let line_end = self.sources.file.line_end();
-        let (end, added) = match gap.rsplit_once('\n') {
-            Some((_, indent)) => {
-                let last = tight.lines().next_back()?;
-                // On the line that the block starts on, a comment or a field may stand behind the `{`.
-                let deeper = match last.ends_with('{') || !tight.contains('\n') {
-                    true => format!("{indent}  "),
-                    false => last.chars().take_while(|c| c.is_whitespace()).collect(),
-                };
-                let lines = fields.iter();
-                let lines = lines.map(|field| format!("{line_end}{deeper}{field}"));
-                (at, lines.collect())
-            }
-            None if tight.ends_with('{') => (at + gap.len(), format!(" {} ", fields.join("  "))),
-            None => (at + gap.len(), format!("  {} ", fields.join("  "))),
-        };
-        let place = Span::new(SourceId::File, at, end);
-        Some(Fix::new(title, [Edit::new(place, added)]))
+        let edit = Edit::add_fields(block.span, self.sources, fields)?;
+        Some(Fix::new(title, [edit]))
     }
 
     /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs, and nothing else stands

@@ -1,0 +1,120 @@
+//! What the pointer does to the camera: orbit, pan, dolly, roll, look, view distance.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    handles::{unit, within_half_turn},
+    projection::Projection,
+};
+use crate::{
+    math::{Angle, trig},
+    scene::{Camera, Lens, View},
+};
+
+/// So near, in radians, the view direction may come to the up vector: one degree.
+const POLE: f64 = PI / 180.0;
+
+/// What the camera's distance, or its view distance, is multiplied by over the height of the picture.
+const ZOOM: f64 = 4.0;
+
+/// A camera after the pointer has moved from one point of the picture to another; `distance` is how far away that is which it is moved about.
+pub fn moved(
+    camera: &Camera,
+    projection: &Projection,
+    handle: &str,
+    [from, to]: [DVec2; 2],
+    distance: f64,
+) -> Result<Camera, String> {
+    let Projection {
+        right,
+        top,
+        ahead,
+        pitch,
+        size,
+        ..
+    } = *projection;
+    let by = (to - from) / size.y;
+    let middle = camera.eye + ahead * distance;
+    let mut moved = *camera;
+    match handle {
+        "orbit" => {
+            let back = turned(camera, projection, -ahead, DVec2::new(-by.x, by.y));
+            moved.eye = middle + back * distance;
+            if let View::Direction(direction) = &mut moved.view {
+                *direction = -back * unit(*direction).1;
+            }
+        }
+        "look" => {
+            let ahead = turned(camera, projection, ahead, by);
+            moved.view = match camera.view {
+                View::Lookat(_) => View::Lookat(camera.eye + ahead * distance),
+                View::Direction(direction) => View::Direction(ahead * unit(direction).1),
+            };
+        }
+        "pan" => {
+            let shift = (top * by.y - right * by.x) * (size.y * pitch * distance);
+            moved.eye += shift;
+            if let View::Lookat(point) = &mut moved.view {
+                *point += shift;
+            }
+        }
+        "dolly" => moved.eye = middle - ahead * (distance * zoom(-by.y)),
+        "roll" => {
+            let [from, to] = [from, to].map(|point| point - size / 2.0);
+            if from == DVec2::ZERO || to == DVec2::ZERO {
+                return Err("the middle of the picture has no direction to roll to".to_owned());
+            }
+            // Clockwise in the picture, where y points down; the camera turns the other way.
+            let turn = trig::atan2(from.perp_dot(to), from.dot(to))
+                .radians
+                .to_degrees();
+            moved.roll = within_half_turn(camera.roll, -turn);
+        }
+        "view_distance" => {
+            let wider = |angle: Angle| {
+                let half = trig::atan(trig::tan(angle * 0.5) * zoom(by.y));
+                Angle::from_degrees(2.0 * half.radians.to_degrees())
+            };
+            moved.lens = match camera.lens {
+                Lens::Distance(d) => Lens::Distance(d * zoom(-by.y)),
+                Lens::Fov(angle) => Lens::Fov(wider(angle)),
+                Lens::HorizontalFov(angle) => Lens::HorizontalFov(wider(angle)),
+            };
+        }
+        _ => return Err(format!("a camera has no handle `{handle}`")),
+    }
+    Ok(moved)
+}
+
+fn zoom(heights: f64) -> f64 {
+    libm::pow(ZOOM, heights)
+}
+
+/// A direction along the view axis turned as the pointer has moved, in heights of the picture, each of which is half a turn: about the up vector by x, and
+/// then away from the up vector where the pointer goes up.
+fn turned(camera: &Camera, projection: &Projection, along: DVec3, by: DVec2) -> DVec3 {
+    let up = unit(camera.up).0;
+    // What right and up in the world are in the rolled picture.
+    let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
+    let level_top = projection.top * cos - projection.right * sin;
+    let pointer = DVec2::new(by.x * cos - by.y * sin, -by.x * sin - by.y * cos) * PI;
+
+    let axial = along.dot(up);
+    let radial = along - up * axial;
+    let polar = trig::atan2(radial.length(), axial).radians;
+    // Straight up or down, the picture's top says where level is.
+    let level = match radial == DVec3::ZERO {
+        true => -level_top * axial.signum(),
+        false => unit(radial).0,
+    };
+    let polar = match polar + pointer.y {
+        turned if pointer.y != 0.0 => turned.clamp(polar.min(POLE), polar.max(PI - POLE)),
+        _ => polar,
+    };
+    let about = Angle::from_radians(pointer.x);
+    let level = level * trig::cos(about) + up.cross(level) * trig::sin(about);
+    let polar = Angle::from_radians(polar);
+    level * trig::sin(polar) + up * trig::cos(polar)
+}

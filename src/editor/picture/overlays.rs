@@ -1,0 +1,212 @@
+//! What can be drawn over a picture: horizon, vanishing points with the lines that lead there, and the objects' outlines and handles.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    handles::{Handle, handles, outline_point},
+    projection::Projection,
+};
+use crate::{
+    inspect,
+    math::{Angle, trig},
+    scene::{Checkerboard, Cuboid, Image, Scene, Shape, Sphere},
+    tracer::vertices,
+};
+
+/// So many objects have outlines, unless one is asked for: nobody can tell more apart.
+pub const MOST_OBJECTS: usize = 1000;
+
+/// A sphere's outline has so many sides.
+const SIDES: u32 = 64;
+
+/// A line through some points of the picture.
+pub type Line = Vec<DVec2>;
+
+/// What can be drawn over a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlays {
+    /// The picture's width and height.
+    pub size: [u32; 2],
+    /// Where the view axis meets the picture.
+    pub axis: DVec2,
+    /// The image of all level directions.
+    pub horizon: Option<[DVec2; 2]>,
+    /// For the axes x, y and z.
+    pub vanishing: [Vanishing; 3],
+    /// Where the near plane cuts the checkerboards.
+    pub near: Vec<[DVec2; 2]>,
+    /// Where the far plane cuts the checkerboards.
+    pub far: Vec<[DVec2; 2]>,
+    /// Of each object, or of one.
+    pub objects: Vec<Outline>,
+}
+
+/// Where the lines along an axis of the world meet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vanishing {
+    /// The point; none if the axis is parallel to the view plane.
+    pub point: Option<DVec2>,
+    /// Edges of boxes along the axis, each going on to the point.
+    pub lines: Vec<Line>,
+}
+
+/// What is drawn of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Its index in the file.
+    pub object: usize,
+    /// Its outline.
+    pub lines: Vec<Line>,
+    /// Its handles by name, and where each is seen.
+    pub handles: Vec<(&'static str, Option<DVec2>)>,
+}
+
+/// What can be drawn over the picture of a scene, with the outlines of its first [`MOST_OBJECTS`] objects or of one.
+pub fn overlays(scene: &Scene, only: Option<usize>) -> Overlays {
+    let Scene { image, camera, .. } = scene;
+    let projection = Projection::new(camera, image);
+    let objects = scene.objects.iter().enumerate().take(MOST_OBJECTS);
+    let boxes = objects
+        .clone()
+        .filter_map(|(_, object)| match &object.shape {
+            Shape::Box(cuboid) => Some(cuboid),
+            _ => None,
+        });
+    let boxes: Vec<&Cuboid> = boxes.collect();
+    let (_, points) = inspect::inspect_camera(camera, image);
+    let vanishing = [0, 1, 2].map(|axis| {
+        let point = points[axis].map(DVec2::from);
+        Vanishing {
+            point,
+            lines: point.map_or_else(Vec::new, |point| {
+                let edges = boxes.iter().flat_map(|cuboid| edges_along(cuboid, axis));
+                edges
+                    .filter_map(|edge| leading(&projection, edge, point))
+                    .collect()
+            }),
+        }
+    });
+    let cut = |depth: f64| {
+        let boards = scene
+            .objects
+            .iter()
+            .filter_map(|object| match object.shape {
+                Shape::Checkerboard(Checkerboard { y, .. }) => Some(y),
+                _ => None,
+            });
+        // A depth of 0, or none at all, cuts nothing that is seen.
+        let lines = boards.filter_map(|y| projection.level((y - camera.eye.y) / depth));
+        lines.take(MOST_OBJECTS).collect()
+    };
+    let outline = |(index, object): (usize, &crate::scene::Object)| {
+        let seen = |handle: Handle| (handle.name, handle.at.and_then(|at| projection.point(at)));
+        Outline {
+            object: index,
+            lines: outline(&projection, &object.shape),
+            handles: handles(&object.shape, &projection)
+                .into_iter()
+                .map(seen)
+                .collect(),
+        }
+    };
+    Overlays {
+        size: size(image),
+        axis: projection.size / 2.0,
+        horizon: projection.level(0.0),
+        vanishing,
+        near: cut(camera.near),
+        far: camera.far.map_or_else(Vec::new, cut),
+        objects: match only {
+            None => objects.map(outline).collect(),
+            Some(only) => {
+                let object = scene.objects.get(only);
+                object
+                    .map(|object| outline((only, object)))
+                    .into_iter()
+                    .collect()
+            }
+        },
+    }
+}
+
+fn size(image: &Image) -> [u32; 2] {
+    [image.width, image.height]
+}
+
+/// An edge of a box, which goes on to where the lines along it meet.
+fn leading(projection: &Projection, [a, b]: [DVec3; 2], point: DVec2) -> Option<Line> {
+    let edge = match projection.depth(a) < projection.depth(b) {
+        true => [a, b],
+        false => [b, a],
+    };
+    let mut line = projection.line(&edge).pop()?;
+    line.push(point);
+    Some(line)
+}
+
+/// The four edges of a box along an axis.
+fn edges_along(cuboid: &Cuboid, axis: usize) -> impl Iterator<Item = [DVec3; 2]> {
+    let Cuboid { min, max, .. } = *cuboid;
+    let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+    [(0, 0), (0, 1), (1, 1), (1, 0)]
+        .into_iter()
+        .map(move |(j, k)| {
+            let corner = |i: usize| {
+                let mut corner = DVec3::ZERO;
+                for (axis, which) in [(axis, i), (second, j), (third, k)] {
+                    corner[axis] = [min, max][which][axis];
+                }
+                corner
+            };
+            [corner(0), corner(1)]
+        })
+}
+
+fn outline(projection: &Projection, shape: &Shape) -> Vec<Line> {
+    match shape {
+        Shape::Sphere(sphere) => {
+            let points: Option<Vec<DVec3>> = circle(projection, sphere).collect();
+            points.map_or_else(Vec::new, |points| projection.line(&points))
+        }
+        Shape::Triangle(triangle) => {
+            let [a, b, c] = vertices(triangle);
+            projection.line(&[a, b, c, a])
+        }
+        Shape::Box(cuboid) => {
+            let edges = (0..3).flat_map(|axis| edges_along(cuboid, axis));
+            edges.flat_map(|edge| projection.line(&edge)).collect()
+        }
+        Shape::Checkerboard(board) => square(projection, board),
+    }
+}
+
+/// The points where rays touch a sphere, all around; none from inside it.
+fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Option<DVec3>> {
+    let axis = (sphere.center - projection.eye).normalize_or(projection.ahead);
+    let (first, second) = axis.any_orthonormal_pair();
+    (0..=SIDES).map(move |side| {
+        let angle = Angle::from_degrees(360.0 * f64::from(side) / f64::from(SIDES));
+        let towards = first * trig::cos(angle) + second * trig::sin(angle);
+        outline_point(sphere, projection.eye, towards)
+    })
+}
+
+/// The square of a checkerboard that the view axis meets.
+fn square(projection: &Projection, board: &Checkerboard) -> Vec<Line> {
+    let shape = Shape::Checkerboard(*board);
+    let met = handles(&shape, projection)
+        .pop()
+        .and_then(|handle| handle.at);
+    met.map_or_else(Vec::new, |met| {
+        let side = board.square;
+        let corner = (met / side).floor() * side;
+        let at = |i: f64, k: f64| DVec3::new(corner.x + i * side, board.y, corner.z + k * side);
+        projection.line(&[
+            at(0.0, 0.0),
+            at(1.0, 0.0),
+            at(1.0, 1.0),
+            at(0.0, 1.0),
+            at(0.0, 0.0),
+        ])
+    })
+}

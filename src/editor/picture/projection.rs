@@ -1,0 +1,122 @@
+//! From points of the world to points of the picture, and back.
+
+use glam::{DVec2, DVec3};
+
+use crate::{
+    math::{Big, Real},
+    scene::{Camera, Image},
+    tracer::Basis,
+};
+
+/// Lines are cut off where they come nearer to the plane of the eye than this part of their size: a point in it is infinitely far away in the picture.
+const NEAREST: f64 = 1e-6;
+
+/// A camera in rounded numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection {
+    pub eye: DVec3,
+    /// The picture's right.
+    pub right: DVec3,
+    /// The picture's top.
+    pub top: DVec3,
+    /// The view direction, of length 1.
+    pub ahead: DVec3,
+    /// The side of a pixel at depth 1.
+    pub pitch: f64,
+    /// The picture's width and height in pixels.
+    pub size: DVec2,
+}
+
+impl Projection {
+    pub fn new(camera: &Camera, image: &Image) -> Self {
+        let basis = Basis::new(camera, image);
+        let rounded = |v: &[Big; 3]| DVec3::from(v.each_ref().map(Real::to_f64));
+        Self {
+            eye: camera.eye,
+            right: rounded(&basis.u),
+            top: rounded(&basis.v),
+            ahead: -rounded(&basis.w),
+            pitch: basis.pitch.to_f64(),
+            size: DVec2::new(f64::from(image.width), f64::from(image.height)),
+        }
+    }
+
+    /// How far ahead of the eye a point lies.
+    pub fn depth(&self, point: DVec3) -> f64 {
+        (point - self.eye).dot(self.ahead)
+    }
+
+    /// Where a point is seen; none if it is not in front of the eye.
+    pub fn point(&self, point: DVec3) -> Option<DVec2> {
+        let from_eye = point - self.eye;
+        let across = DVec2::new(from_eye.dot(self.right), -from_eye.dot(self.top));
+        let depth = self.depth(point);
+        let seen = across / (depth * self.pitch) + self.size / 2.0;
+        (depth > 0.0 && seen.is_finite()).then_some(seen)
+    }
+
+    /// The direction of the ray through a point of the picture, as long as it takes to a depth of 1.
+    pub fn ray(&self, point: DVec2) -> DVec3 {
+        let across = (point - self.size / 2.0) * self.pitch;
+        self.ahead + self.right * across.x - self.top * across.y
+    }
+
+    /// What lies at a depth on the ray through a point of the picture.
+    pub fn at_depth(&self, point: DVec2, depth: f64) -> DVec3 {
+        self.eye + self.ray(point) * depth
+    }
+
+    /// What is seen of a line through some points: several lines where parts of it are not in front of the eye.
+    pub fn line(&self, points: &[DVec3]) -> Vec<Vec<DVec2>> {
+        let far = points
+            .iter()
+            .map(|point| (point - self.eye).abs().max_element());
+        let nearest = NEAREST * far.fold(0.0, f64::max);
+        let mut lines = Vec::new();
+        let mut line: Vec<DVec2> = Vec::new();
+        for pair in points.windows(2) {
+            let depths = [self.depth(pair[0]), self.depth(pair[1])];
+            let [starts, ends] = depths.map(|depth| depth > nearest);
+            let cut = || {
+                let part = (nearest - depths[0]) / (depths[1] - depths[0]);
+                pair[0].lerp(pair[1], part)
+            };
+            if starts || ends {
+                if line.is_empty() {
+                    line.extend(self.point(if starts { pair[0] } else { cut() }));
+                }
+                line.extend(self.point(if ends { pair[1] } else { cut() }));
+            }
+            if !ends && line.len() > 1 {
+                lines.push(std::mem::take(&mut line));
+            }
+        }
+        lines.extend((line.len() > 1).then_some(line));
+        lines
+    }
+
+    /// The image of all directions whose y, at a depth of 1, is this: a line from one edge to another of the picture grown by its own size on each side.
+    /// None where there is none, or where it does not cross that.
+    pub fn level(&self, height: f64) -> Option<[DVec2; 2]> {
+        // The ray through (x, y) has the height ahead.y + (right.y (x − w/2) − top.y (y − h/2)) pitch.
+        let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
+        let middle = self.size / 2.0;
+        // The point of it that is nearest to the middle, and its direction.
+        let foot = middle + normal * ((height - self.ahead.y) / normal.length_squared());
+        let along = normal.perp().normalize_or_zero();
+        if !foot.is_finite() || along == DVec2::ZERO {
+            return None;
+        }
+        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in 0..2 {
+            let ends = [-self.size[axis], 2.0 * self.size[axis]];
+            let [a, b] = ends.map(|end| (end - foot[axis]) / along[axis]);
+            match along[axis] == 0.0 {
+                true if foot[axis] < ends[0] || foot[axis] > ends[1] => return None,
+                true => {}
+                false => (from, to) = (from.max(a.min(b)), to.min(a.max(b))),
+            }
+        }
+        (from < to).then(|| [foot + along * from, foot + along * to])
+    }
+}
