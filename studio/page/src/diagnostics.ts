@@ -1,6 +1,6 @@
 // What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
 
-import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
+import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
 import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
 import { byId, create, createButton } from "./dom";
@@ -31,6 +31,8 @@ export async function publishDiagnostics(editor: SceneEditor, connection: Connec
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined && published.version !== file.version)) return;
+  // A drag is told of every text that nothing is wrong with it.
+  if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
   let actions: CodeAction[] | null = null;
   if (published.diagnostics.length > 0) {
     const range = { start: { line: 0, character: 0 }, end: { line: doc.lines, character: 0 } };

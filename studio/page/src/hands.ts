@@ -220,8 +220,6 @@ export class Hands {
     this.pointers.set(event.pointerId, at);
     stage.setPointerCapture(event.pointerId);
     const button = (event.target as Element).closest<HTMLButtonElement>(".handle");
-    (button ?? stage).focus({ preventScroll: true });
-    event.preventDefault();
     this.shift = event.shiftKey;
     if (this.pointers.size > 1) {
       // A second finger zooms: what the first one has begun does not count.

@@ -19,11 +19,11 @@ export async function launch(context) {
 }
 
 /** A host of a file with this text, in a folder of its own. Both go when the test ends. */
-export async function host(context, text = FIGURE, port = 0) {
+export async function host(context, text = FIGURE) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
   const file = path.join(folder, "scene.scn");
   writeFileSync(file, text);
-  const started = { file, folder, text: () => readFileSync(file, "utf8"), write: text => writeFileSync(file, text), ...(await serve(file, port)) };
+  const started = { file, folder, text: () => readFileSync(file, "utf8"), write: text => writeFileSync(file, text), ...(await serve(file)) };
   context.after(() => {
     started.stop();
     rmSync(folder, { recursive: true, force: true });
@@ -31,8 +31,9 @@ export async function host(context, text = FIGURE, port = 0) {
   return started;
 }
 
-export async function serve(file, port = 0) {
-  const child = spawn(PINHOLE, ["studio", file, "--no-open", "--port", String(port)], { stdio: ["ignore", "ignore", "pipe"] });
+/** A host of a file, at a port of its own choice if none is named. */
+export async function serve(file, port) {
+  const child = spawn(PINHOLE, ["studio", file, "--no-open", ...(port === undefined ? [] : ["--port", port])], { stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
   const address = await new Promise((resolve, reject) => {
     child.stderr.on("data", data => {

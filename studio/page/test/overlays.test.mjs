@@ -1,0 +1,56 @@
+// What is drawn over the picture.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { andFinished, drag, FIGURE, host, launch, onPage, open } from "./helpers.mjs";
+
+const BOXES = readFileSync(new URL("../../../examples/three_vanishing_points.scn", import.meta.url), "utf8");
+
+const show = async (page, layer) => {
+  await page.click("summary:text('Show')");
+  await page.check(`input[name=${layer}]`);
+  await page.keyboard.press("Escape");
+};
+
+/** Where the vanishing points are marked, by axis. */
+const marked = page => page.locator("#lines text").allTextContents();
+
+test("the lines of the boxes lead to the vanishing points, which follow the camera", async t => {
+  const page = await open(await launch(t), await host(t, BOXES));
+  await show(page, "vanishing");
+  await page.waitForSelector("#lines .axis-x");
+  assert.deepEqual((await marked(page)).sort(), ["x", "y", "z"]);
+  const place = () => page.getAttribute("#lines text.axis-z", "x");
+  const before = await place();
+  await page.check('input[value="orbit"]', { force: true });
+  await andFinished(page, () => drag(page, [400, 300], [450, 300]));
+  assert.notEqual(await place(), before);
+  // The menu's choice is remembered.
+  await page.reload();
+  await page.waitForSelector("#lines .axis-x");
+});
+
+test("horizon, view axis, near and far are drawn where they are", async t => {
+  const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "d      2.75\n  near   6\n  far    30")));
+  for (const layer of ["horizon", "axis", "near"]) await show(page, layer);
+  for (const line of ["horizon", "view-axis", "near", "far"]) await page.waitForSelector(`#lines path.${line}`, { state: "attached" });
+  const middle = await onPage(page, [640, 360]);
+  const box = await page.locator("#lines path.view-axis").last().boundingBox();
+  assert.ok(Math.hypot(box.x + box.width / 2 - middle[0], box.y + box.height / 2 - middle[1]) < 1);
+});
+
+test("zoom shows pixels, their grid, and where the samples lie", async t => {
+  const page = await open(await launch(t), await host(t));
+  await show(page, "grid");
+  await show(page, "samples");
+  await page.mouse.move(...(await onPage(page, [640, 360])));
+  for (let i = 0; i < 12; i++) await page.mouse.wheel(0, -150);
+  await page.waitForSelector("#lines .grid", { state: "attached" });
+  assert.equal(await page.evaluate(() => document.querySelector("canvas").style.imageRendering), "pixelated");
+  await page.mouse.move(...(await onPage(page, [641.5, 361.5])));
+  await page.waitForSelector("#lines .sample");
+  assert.equal(await page.locator("#lines .sample").count(), 16);
+  await page.click("#zoom-fit");
+  await page.waitForSelector("#lines .grid", { state: "detached" });
+});
