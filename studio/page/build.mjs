@@ -12,6 +12,8 @@ mkdirSync(folder, { recursive: true });
 const { metafile } = await build({
   // The served host runs the engine itself; a site has it in a worker.
   entryPoints: { studio: "src/main.ts", ...(host === "static" ? { engine: "src/worker.ts" } : {}) },
+  // What `npm run site` makes of the engine.
+  alias: { "pinhole-engine": "./engine/pinhole.js" },
   bundle: true,
   format: "esm",
   target: ["chrome111", "firefox113", "safari16.4"],

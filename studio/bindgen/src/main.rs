@@ -1,4 +1,4 @@
-//! `pinhole-studio-bindgen ENGINE.wasm FOLDER`: writes the engine as a module for browsers, `engine.js` with `engine_bg.wasm`.
+//! `pinhole-studio-bindgen ENGINE.wasm FOLDER`: writes the engine as a module for browsers, `pinhole.js` with `pinhole_bg.wasm`.
 
 use std::{env, process::ExitCode};
 
@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     let mut bindgen = Bindgen::new();
     bindgen
         .input_path(engine)
-        .out_name("engine")
+        .out_name("pinhole")
         .typescript(false);
     bindgen
         .remove_name_section(true)

@@ -1,0 +1,33 @@
+// Builds the static site, studio/site: the page with the engine as WebAssembly. Wants Rust with the target wasm32-unknown-unknown, and `npm ci` before.
+
+import { execFileSync } from "node:child_process";
+import { copyFileSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import path from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
+/** The most bytes that the site may have, each file packed by itself as a server would send it. */
+const LIMIT = 900_000;
+
+const page = path.dirname(fileURLToPath(import.meta.url));
+const root = path.resolve(page, "../..");
+const site = path.join(root, "studio/site");
+const engine = path.join(page, "engine");
+const target = path.resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
+const wasm = "wasm32-unknown-unknown";
+const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio: "inherit" });
+
+run("cargo", "build", "--locked", "--profile", "site", "--target", wasm, "--package", "pinhole-studio-engine");
+run("cargo", "run", "--locked", "--quiet", "--package", "pinhole-studio-bindgen", "--", path.join(target, wasm, "site/pinhole_studio_engine.wasm"), engine);
+rmSync(site, { recursive: true, force: true });
+run("node", "build.mjs", "static", site);
+copyFileSync(path.join(engine, "pinhole_bg.wasm"), path.join(site, "pinhole_bg.wasm"));
+
+let packed = 0;
+for (const file of readdirSync(site).sort()) {
+  const { length } = gzipSync(readFileSync(path.join(site, file)), { level: 9 });
+  console.log(`${file.padEnd(20)} ${String(length).padStart(7)} bytes packed`);
+  packed += length;
+}
+console.log(`${"in all".padEnd(20)} ${String(packed).padStart(7)} of at most ${LIMIT}`);
+if (packed > LIMIT) process.exitCode = 1;
