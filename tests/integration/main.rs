@@ -40,6 +40,7 @@ mod render;
 mod report;
 mod robustness;
 mod sampling;
+mod scenes;
 mod syntax;
 mod texts;
 #[cfg(target_os = "linux")]
