@@ -3,7 +3,7 @@
 //! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
 //! of each phase once, and the memory that the world takes; with `--cube` the spheres are in a cube, not all over the picture.
 
-use std::{env, fs, hint::black_box, sync::atomic::AtomicBool};
+use std::{env, fs, hint::black_box};
 
 use pinhole::{
     area::Area,
@@ -66,11 +66,7 @@ fn read(text: String) -> Scene {
 fn picture(world: &World, scene: &Scene) {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let film = render(world, &sampling, whole, &control);
     black_box(film).expect("there is memory for it");
 }
@@ -92,11 +88,7 @@ fn phases(scene: &Scene) {
     let plain = cpu_seconds() - start;
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let exact = match env::args().any(|argument| argument == "--exact") {
         true => {
             black_box(render_exact(&world, whole, &control)).expect("there is memory for it");

@@ -1,9 +1,7 @@
 //! What placing points, threads and files take of what the plain path takes, method by method: `cargo bench --bench render`. See README.md
 //! beside this file.
 
-use std::{
-    env, hint::black_box, io::Cursor, num::NonZero, sync::atomic::AtomicBool, thread, time::Instant,
-};
+use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
 
 use glam::DVec2;
 use pinhole::{
@@ -81,7 +79,7 @@ fn main() {
         },
         &mut || write_png(&film, &recipe, &mut Vec::new()).expect("a list takes all bytes"),
         &mut || {
-            write_exr(&film, whole, whole, Cursor::new(Vec::new()))
+            write_exr(&film, whole, whole, &mut Cursor::new(Vec::new()))
                 .expect("a list takes all bytes");
         },
     ]);
@@ -128,8 +126,7 @@ fn plain(scene: &Scene) -> Film {
 fn picture(scene: &Scene, threads: usize) -> Film {
     let control = Control {
         threads: NonZero::new(threads),
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
+        ..Control::default()
     };
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     let part = Area::whole(WIDTH, HEIGHT);

@@ -4,7 +4,6 @@
 //! it. This is the whole way:
 //!
 //! ```
-//! # use std::sync::atomic::AtomicBool;
 //! use pinhole::{area::Area, film, render, sampling::Sampling, scene, source::*, tracer::World};
 //!
 //! let text = "camera { eye (0, 2, 5) lookat (0, 1, 0) } sphere { center (0, 1, 0) } checkerboard {}";
@@ -12,10 +11,8 @@
 //! let scene = scene::read(&sources).scene.expect("a scene without mistakes");
 //! let world = World::new(&scene);
 //! let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
-//! let cancel = AtomicBool::new(false);
-//! let control = render::Control { threads: None, progress: &|_| {}, cancel: &cancel };
-//! let film = render::render(&world, &sampling, Area::whole(64, 36), &control)?;
-//! film::write_exr(&film, Area::whole(64, 36), Area::whole(64, 36), std::io::Cursor::new(Vec::new()))?;
+//! let film = render::render(&world, &sampling, Area::whole(64, 36), &render::Control::default())?;
+//! film::write_exr(&film, Area::whole(64, 36), Area::whole(64, 36), &mut std::io::Cursor::new(Vec::new()))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -31,6 +31,11 @@ pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
 ) -> Option<&'c str> {
+    nearest_of(written, &mut candidates.into_iter())
+}
+
+/// Apart from what is generic, so that it is compiled once.
+fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
     // A name that nobody would mistype so: comparing it would only take long.
     const LONGEST: usize = 64;
     let length = written.chars().take(LONGEST + 1).count();
@@ -83,16 +88,15 @@ pub fn words(name: &str) -> Vec<&str> {
 
 /// Names in a sentence: `a`, `a and b`, `a, b and c`.
 pub fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
-    join(names, "and")
+    join(names.into_iter().collect(), "and")
 }
 
 /// Names to choose from in a sentence: `a`, `a or b`, `a, b or c`.
 pub fn choice<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
-    join(names, "or")
+    join(names.into_iter().collect(), "or")
 }
 
-fn join<'n>(names: impl IntoIterator<Item = &'n str>, word: &str) -> String {
-    let mut names: Vec<&str> = names.into_iter().collect();
+fn join(mut names: Vec<&str>, word: &str) -> String {
     let Some(last) = names.pop() else {
         return String::new();
     };

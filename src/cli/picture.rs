@@ -274,7 +274,7 @@ impl Output {
     }
 }
 
-fn write_png(picture: &Picture, recipe: &Recipe, out: impl io::Write) -> io::Result<()> {
+fn write_png(picture: &Picture, recipe: &Recipe, out: &mut dyn io::Write) -> io::Result<()> {
     match picture {
         Picture::Sampled(film) => film::write_png(film, recipe, out),
         Picture::Bytes(bytes) => film::write_png(bytes, recipe, out),

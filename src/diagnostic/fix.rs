@@ -23,12 +23,13 @@ pub struct Edit {
 impl Fix {
     /// A way out that takes these edits.
     pub fn new(title: impl Into<String>, edits: impl IntoIterator<Item = Edit>) -> Self {
-        let mut edits: Vec<Edit> = edits.into_iter().collect();
+        Self::sorted(title.into(), edits.into_iter().collect())
+    }
+
+    /// Apart from what is generic, so that sorting is compiled once.
+    fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         edits.sort_by_key(|edit| edit.span);
-        Self {
-            title: title.into(),
-            edits,
-        }
+        Self { title, edits }
     }
 
     /// Writes something else in a place; the title is what is written.

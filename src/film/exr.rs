@@ -2,7 +2,7 @@
 //!
 //! The display window is the whole picture, and the data window the part of it that the file holds.
 
-use std::io::{self, Cursor, Seek, Write};
+use std::io::{self, Cursor};
 
 use exr::{
     error::Error,
@@ -26,11 +26,12 @@ use super::{
     memory::TooLarge,
     picture::{Coding, Picture, Rounding, Unreadable, check_pixels},
     pixels::Film,
+    write::Sink,
 };
 use crate::area::Area;
 
 /// Writes a part of a whole picture, or all of it.
-pub fn write_exr(film: &Film, part: Area, whole: Area, out: impl Write + Seek) -> io::Result<()> {
+pub fn write_exr(film: &Film, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
         // A picture has at most 2^20 columns and rows.
         let [r, g, b] = film.pixel(x as u32, y as u32);
@@ -78,7 +79,7 @@ pub fn write_exr(film: &Film, part: Area, whole: Area, out: impl Write + Seek) -
 
 /// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not looked at.
 pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
-    let meta = MetaData::read_from_buffered(bytes, false).map_err(unreadable)?;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in &meta.headers {
         // Before anything is unpacked.
         let Vec2(width, height) = header.layer_size;

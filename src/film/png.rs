@@ -85,22 +85,35 @@ impl Recipe {
 }
 
 /// Writes a picture, with what it was made from if that [`fits`](Recipe::fits).
-pub fn write_png<P: Pixel>(film: &Film<P>, recipe: &Recipe, out: impl Write) -> io::Result<()> {
+pub fn write_png<P: Pixel>(film: &Film<P>, recipe: &Recipe, out: &mut dyn Write) -> io::Result<()> {
     let recipe = recipe.fits().then_some(recipe);
-    write(film, recipe.into_iter().flat_map(Recipe::chunks), out)
+    let chunks = recipe.into_iter().flat_map(Recipe::chunks).collect();
+    write([film.width(), film.height()], film, chunks, out)
 }
 
 /// Writes a picture that no scene makes.
-pub fn write_plain_png<P: Pixel>(film: &Film<P>, out: impl Write) -> io::Result<()> {
-    write(film, [].into_iter(), out)
+pub fn write_plain_png<P: Pixel>(film: &Film<P>, out: &mut dyn Write) -> io::Result<()> {
+    write([film.width(), film.height()], film, Vec::new(), out)
+}
+
+/// Rows of bytes, whatever a film keeps of a pixel, so that writing is compiled once.
+trait Rows {
+    fn bytes<'a>(&'a self, y: u32, encoder: &srgb::Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
+}
+
+impl<P: Pixel> Rows for Film<P> {
+    fn bytes<'a>(&'a self, y: u32, encoder: &srgb::Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
+        P::bytes(self.row(y), encoder, room)
+    }
 }
 
 fn write(
-    film: &Film<impl Pixel>,
-    chunks: impl Iterator<Item = (&'static str, String)>,
-    out: impl Write,
+    [width, height]: [u32; 2],
+    film: &dyn Rows,
+    chunks: Vec<(&'static str, String)>,
+    out: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut encoder = Encoder::new(out, film.width(), film.height());
+    let mut encoder = Encoder::new(out, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
@@ -121,8 +134,8 @@ fn write(
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
     let encoder = srgb::Encoder::new();
     let mut room = Vec::new();
-    for y in 0..film.height() {
-        rows.write_all(Pixel::bytes(film.row(y), &encoder, &mut room))?;
+    for y in 0..height {
+        rows.write_all(film.bytes(y, &encoder, &mut room))?;
     }
     rows.finish()?;
     writer.finish()?;

@@ -26,7 +26,7 @@ use crate::{area::Area, cancel::Cancelled, film::TooLarge};
 
 pub use self::{
     exact::{Exact, render_exact, render_exact_bytes},
-    sampled::{render, render_and_count, render_bytes},
+    sampled::{render, render_bytes},
 };
 
 /// How a render is watched, and by how many it is done.
@@ -37,6 +37,18 @@ pub struct Control<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
+}
+
+/// As many threads as there are processors, nobody who is told, to the end.
+impl Default for Control<'_> {
+    fn default() -> Self {
+        static NEVER: AtomicBool = AtomicBool::new(false);
+        Self {
+            threads: None,
+            progress: &|_| {},
+            cancel: &NEVER,
+        }
+    }
 }
 
 /// Why there is no picture.

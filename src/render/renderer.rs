@@ -6,7 +6,7 @@
 
 use std::{
     ops::{ControlFlow, Range},
-    sync::atomic::{AtomicU64, Ordering},
+    sync::atomic::Ordering,
 };
 
 use super::{
@@ -38,8 +38,6 @@ pub(super) struct Renderer<'a, P> {
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
-    /// How many samples were traced.
-    pub(super) rays: AtomicU64,
     pub(super) quartering: Quartering<'a>,
 }
 
@@ -61,7 +59,6 @@ impl<P: film::Pixel> Renderer<'_, P> {
             // A pixel without a sample shows the background.
             pixels: vec![background; tile.pixels() as usize],
             unreported: 0,
-            rays: 0,
         };
         let mut visit = |part: Part| match part {
             Part::OneColor { area, slot } => {
@@ -86,7 +83,6 @@ impl<P: film::Pixel> Renderer<'_, P> {
         };
         let flow = self.quartering.parts(tile, scratch, &mut visit);
         (self.control.progress)(film.unreported);
-        self.rays.fetch_add(film.rays, Ordering::Relaxed);
         flow.is_continue().then_some(film.pixels)
     }
 
@@ -116,7 +112,6 @@ impl<P: film::Pixel> Renderer<'_, P> {
             Trace::Together(candidates, _) if samples == 1 => Trace::Among(candidates),
             _ => trace,
         };
-        film.rays += samples;
         if let Trace::Together(candidates, checks) = trace {
             samples::prepare(self.world, [x, y], candidates, checks, &mut tally.pixel);
         }

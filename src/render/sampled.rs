@@ -2,7 +2,7 @@
 //!
 //! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut into tiles for the threads; `renderer` makes each.
 
-use std::sync::{Mutex, PoisonError, atomic::AtomicU64};
+use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
@@ -25,7 +25,7 @@ pub fn render(
     part: Area,
     control: &Control,
 ) -> Result<Film, RenderError> {
-    Ok(render_and_count(world, sampling, part, control)?.0)
+    render_as(world, sampling, part, control)
 }
 
 /// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
@@ -35,16 +35,15 @@ pub fn render_bytes(
     part: Area,
     control: &Control,
 ) -> Result<Film<[u8; 3]>, RenderError> {
-    Ok(render_and_count(world, sampling, part, control)?.0)
+    render_as(world, sampling, part, control)
 }
 
-/// Renders, and says how many of the samples were traced: the others lie in pixels that are certain to show one colour.
-pub fn render_and_count<P: film::Pixel>(
+fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
     control: &Control,
-) -> Result<(Film<P>, u64), RenderError> {
+) -> Result<Film<P>, RenderError> {
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors: Vec<_> = world
         .palette()
@@ -60,7 +59,6 @@ pub fn render_and_count<P: film::Pixel>(
         shown: &shown,
         encoder: &encoder,
         control,
-        rays: AtomicU64::new(0),
         quartering: Quartering::for_samples(world, sampling.mean_count()),
     };
     let side = tile_side(sampling);
@@ -76,7 +74,7 @@ pub fn render_and_count<P: film::Pixel>(
             },
         );
     })?;
-    Ok((finished(film, control)?, renderer.rays.into_inner()))
+    finished(film, control)
 }
 
 /// The side of the tiles: smaller where pixels have many samples.

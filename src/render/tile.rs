@@ -9,8 +9,6 @@ pub(super) struct Tile<P> {
     pub(super) pixels: Vec<P>,
     /// How many samples are done that progress has not been told of.
     pub(super) unreported: u64,
-    /// How many samples were traced.
-    pub(super) rays: u64,
 }
 
 /// How many samples the pixels of a tile have.

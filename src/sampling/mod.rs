@@ -185,7 +185,10 @@ impl Sampling {
     }
 }
 
-#[multiversion(targets = "simd")]
+#[multiversion(targets(
+    "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
+    "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
+))]
 fn place_simd(pattern: &Pattern, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
     pattern.place(key, range, out);
 }

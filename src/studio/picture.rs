@@ -40,20 +40,20 @@ pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
     let Some(scene) = scene::read(&sources).scene else {
         return failed(ErrorCode::RequestFailed, "the scene has errors".to_owned());
     };
-    let mut bytes = Vec::new();
-    match write(&scene, text, cancel, Cursor::new(&mut bytes)) {
-        Ok(()) => Response::new_ok(id, json!({ name: STANDARD.encode(bytes) })),
+    let mut file = Cursor::new(Vec::new());
+    match write(&scene, text, cancel, &mut file) {
+        Ok(()) => Response::new_ok(id, json!({ name: STANDARD.encode(file.into_inner()) })),
         Err(error) => failed(ErrorCode::RequestFailed, error.to_string()),
     }
 }
 
-type Write = fn(&Scene, &str, &AtomicBool, Cursor<&mut Vec<u8>>) -> Result<(), Box<dyn Error>>;
+type Write = fn(&Scene, &str, &AtomicBool, &mut Cursor<Vec<u8>>) -> Result<(), Box<dyn Error>>;
 
 fn write_png(
     scene: &Scene,
     text: &str,
     cancel: &AtomicBool,
-    out: Cursor<&mut Vec<u8>>,
+    out: &mut Cursor<Vec<u8>>,
 ) -> Result<(), Box<dyn Error>> {
     let (world, whole) = (World::new_unless(scene, cancel)?, whole(scene));
     let film = match scene.sampler.method {
@@ -72,7 +72,7 @@ fn write_exr(
     scene: &Scene,
     _: &str,
     cancel: &AtomicBool,
-    out: Cursor<&mut Vec<u8>>,
+    out: &mut Cursor<Vec<u8>>,
 ) -> Result<(), Box<dyn Error>> {
     let (world, whole) = (World::new_unless(scene, cancel)?, whole(scene));
     let film = match scene.sampler.method {

@@ -271,13 +271,13 @@ fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
 
-#[multiversion(targets = "simd")]
+#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 fn corners_simd(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
     mesh.evaluate(y, length, out);
 }
 
 /// The sign of each pixel whose corners lie in one square, and 0 for all others.
-#[multiversion(targets = "simd")]
+#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     let [a, b] = [&above.squares[0], &below.squares[0]];
     let [c, d] = [&above.squares[1], &below.squares[1]];

@@ -157,11 +157,7 @@ fn bytes_are_those_of_the_light() {
     ] {
         let scene = figure(90, 70, Method::MultiJittered, count);
         let sampling = Sampling::new(&scene.sampler, 90, 70);
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel: &AtomicBool::new(false),
-        };
+        let control = Control::default();
         let crop: Area = "7,9,80,50".parse().unwrap();
         let bytes = render_bytes(&World::new(&scene), &sampling, crop, &control).unwrap();
         let light = plain(&scene, crop);
@@ -458,26 +454,5 @@ fn dense_rows_of_squares() {
         );
         let scene = with_samples(&read(&text), Method::Jittered, Count::PerPixel(40));
         assert!(compare(&scene, "squares") > 10);
-    }
-}
-
-#[test]
-fn crops_on_any_number_of_threads() {
-    for method in [Method::Sobol, Method::Scatter] {
-        let scene = figure(150, 90, method, Count::Total(150 * 90 * 6 + 1));
-        let film = plain(&scene, whole(&scene));
-        for (crop, threads) in [
-            ("0,0,150,90", 3),
-            ("1,1,148,88", 2),
-            ("63,20,2,60", 1),
-            ("77,41,1,1", 4),
-        ] {
-            let crop: Area = crop.parse().unwrap();
-            let (cropped, _) = part(&scene, crop, threads);
-            for (x, y) in crop.iter() {
-                let (here, there) = (cropped.pixel(x - crop.x, y - crop.y), film.pixel(x, y));
-                assert_eq!(here, there, "{crop}: {x}, {y}");
-            }
-        }
     }
 }

@@ -16,21 +16,7 @@ use pinhole::{
     source::{Source, SourceId, Sources, Span},
 };
 
-fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests")
-        .join(name)
-}
-
-fn scenes(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("the folder is there");
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    let mut scenes: Vec<_> = paths
-        .filter(|path| path.extension().is_some_and(|ending| ending == "scn"))
-        .collect();
-    scenes.sort();
-    scenes
-}
+use crate::scenes::scenes;
 
 fn updating() -> bool {
     std::env::var_os("UPDATE_EXPECT").is_some()
@@ -142,7 +128,7 @@ fn annotated(bytes: &[u8]) -> Vec<u8> {
 
 #[test]
 fn fixtures_say_what_they_produce() {
-    for path in scenes(&folder("diagnostics")) {
+    for path in scenes("tests/diagnostics") {
         let bytes = fs::read(&path).expect("the fixture can be read");
         let annotated = annotated(&bytes);
         if updating() && annotated != bytes {
@@ -198,7 +184,7 @@ fn sources_in(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn every_code_has_its_fixture_and_every_fixture_its_code() {
     let mut fixtures = BTreeSet::new();
-    for path in scenes(&folder("diagnostics")) {
+    for path in scenes("tests/diagnostics") {
         let name = path.file_stem().expect("a name").to_string_lossy();
         let sources = read(&fs::read(&path).expect("the fixture can be read"));
         let code = format!("pinhole::{name}");
@@ -214,7 +200,7 @@ fn every_code_has_its_fixture_and_every_fixture_its_code() {
 
 #[test]
 fn every_report_stands_alone_and_helps() {
-    for path in scenes(&folder("diagnostics")) {
+    for path in scenes("tests/diagnostics") {
         let sources = read(&fs::read(&path).expect("the fixture can be read"));
         for diagnostic in scene::read(&sources).diagnostics {
             let help = diagnostic.help.as_deref().unwrap_or_default();
@@ -241,7 +227,7 @@ fn report(sources: &Sources, drawing: Drawing) -> String {
 
 #[test]
 fn whole_reports() {
-    for path in scenes(&folder("diagnostics/report")) {
+    for path in scenes("tests/diagnostics/report") {
         let name = path.file_name().expect("a name").to_string_lossy();
         let bytes = fs::read(&path).expect("the scene can be read");
         let plain = Sources::new(Source::from_bytes(name, bytes));

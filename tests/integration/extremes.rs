@@ -2,7 +2,7 @@
 //!
 //! The tests ask thousands; `PINHOLE_SCENES=10000000 cargo test extremes` asks ten million, for some hours.
 
-use std::{fmt::Write, num::NonZero, sync::atomic::AtomicBool};
+use std::{fmt::Write, num::NonZero};
 
 use glam::{DVec2, dvec3};
 use pinhole::{
@@ -183,8 +183,7 @@ fn assert_light(film: &Film, text: &str) {
 fn render(scene: &Scene, text: &str, is_decided: bool) {
     let control = Control {
         threads: NonZero::new(1),
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
+        ..Control::default()
     };
     let [width, height] = [scene.image.width, scene.image.height];
     let whole = Area::whole(width, height);
@@ -241,8 +240,7 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
 fn a_pixel_does_not_depend_on_the_crop() {
     let control = Control {
         threads: NonZero::new(1),
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
+        ..Control::default()
     };
     let mut compared = 0;
     let asked = std::env::var("PINHOLE_SCENES").ok();
@@ -376,8 +374,7 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
         );
         let control = Control {
             threads: NonZero::new(1),
-            progress: &|_| {},
-            cancel: &AtomicBool::new(false),
+            ..Control::default()
         };
         let world = World::new(&read(&text));
         let exact = render_exact(&world, Area::whole(1, 1), &control).unwrap();

@@ -213,25 +213,6 @@ fn pictures_are_refused() {
 
 #[cfg(unix)]
 #[test]
-fn links_and_permissions_stay() {
-    use std::os::unix::fs::{PermissionsExt, symlink};
-
-    let folder = folder(&[("a.scn", UNTIDY)]);
-    let file = folder.path().join("a.scn");
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
-    symlink("a.scn", folder.path().join("link.scn")).unwrap();
-    assert_eq!(fmt(folder.path(), "", &["link.scn"]), silent(0));
-    assert_eq!(read(&folder, "a.scn"), TIDY);
-    let link = fs::symlink_metadata(folder.path().join("link.scn")).unwrap();
-    assert!(link.is_symlink());
-    assert_eq!(
-        fs::metadata(&file).unwrap().permissions().mode() & 0o777,
-        0o640
-    );
-}
-
-#[cfg(unix)]
-#[test]
 fn the_owner_stays_and_nothing_runs_as_him() {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 
@@ -246,28 +227,4 @@ fn the_owner_stays_and_nothing_runs_as_him() {
     assert_eq!((after.uid(), after.gid()), (before.uid(), before.gid()));
     assert_eq!(after.mode() & 0o7777, 0o755);
     assert_eq!(read(&folder, "a.scn"), TIDY);
-}
-
-#[cfg(unix)]
-#[test]
-fn what_cannot_be_replaced_stays() {
-    use std::os::unix::fs::PermissionsExt;
-
-    let folder = folder(&[("a.scn", UNTIDY)]);
-    let mode = |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).unwrap();
-    mode(0o555);
-    // Who may write everywhere (root does) is not kept from it.
-    let may_write = fs::write(folder.path().join("probe"), "").is_ok();
-    let (status, output, errors) = fmt(folder.path(), "", &["a.scn"]);
-    mode(0o755);
-    assert_eq!(output, "");
-    if may_write {
-        assert_eq!((status, read(&folder, "a.scn").as_str()), (0, TIDY));
-    } else {
-        assert_eq!((status, read(&folder, "a.scn").as_str()), (2, UNTIDY));
-        assert!(
-            errors.starts_with("error: cannot write a.scn: "),
-            "{errors}"
-        );
-    }
 }

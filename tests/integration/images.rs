@@ -5,7 +5,6 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
 };
 
 use pinhole::{
@@ -29,11 +28,7 @@ fn rendered(text: &str) -> image::RgbImage {
         .scene
         .unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
     let (width, height) = (scene.image.width, scene.image.height);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let film = render(
         &World::new(&scene),
         &Sampling::new(&scene.sampler, width, height),

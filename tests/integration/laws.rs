@@ -2,8 +2,6 @@
 //!
 //! Coordinates are multiples of 1/128, so that moving and turning them is exact.
 
-use std::sync::atomic::AtomicBool;
-
 use glam::{DVec3, dvec3};
 use pinhole::{
     area::Area,
@@ -207,11 +205,7 @@ type Picture = Vec<Vec<[u64; 3]>>;
 fn film(scene: &Scene) -> Film {
     let (width, height) = (scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, width, height);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     render(
         &World::new(scene),
         &sampling,
@@ -258,11 +252,7 @@ fn exact(scene: &Scene) -> Exact {
     const EXACT_SIZE: u32 = 12;
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (EXACT_SIZE, EXACT_SIZE);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let whole = Area::whole(EXACT_SIZE, EXACT_SIZE);
     render_exact(&World::new(&scene), whole, &control).unwrap()
 }

@@ -40,6 +40,7 @@ mod render;
 mod report;
 mod robustness;
 mod sampling;
+mod scenes;
 #[cfg(feature = "studio")]
 mod studio;
 mod syntax;

@@ -24,8 +24,7 @@ const MANY_INPUTS: u64 = 10_000;
 fn run(inputs: u64, threads: Option<usize>) -> Table {
     let control = Control {
         threads: threads.and_then(NonZero::new),
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
+        ..Control::default()
     };
     numerics::run(inputs, &control).unwrap()
 }

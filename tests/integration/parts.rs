@@ -4,7 +4,6 @@
 
 use std::{
     fs,
-    path::Path,
     sync::{LazyLock, atomic::AtomicBool},
 };
 
@@ -15,22 +14,18 @@ use pinhole::{
 };
 use proptest::{prelude::*, sample::select};
 
+use crate::scenes::scenes;
+
 /// Every scene that there is beside the source.
 static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = [
         "examples",
         "tests/diagnostics",
-        "tests/syntax/ok",
         "tests/syntax/bad",
+        "tests/syntax/ok",
     ];
-    let entries = folders.map(|folder| fs::read_dir(root.join(folder)).expect("the folder"));
-    let paths = entries.into_iter().flatten();
-    let mut paths: Vec<_> = paths.map(|entry| entry.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "scn"));
-    paths.sort();
     let text = |path| String::from_utf8_lossy(&fs::read(path).expect("a scene")).into_owned();
-    paths.iter().map(text).collect()
+    folders.into_iter().flat_map(scenes).map(text).collect()
 });
 
 /// Compares the two ways; answers whether the text was parsed in parts.

@@ -20,11 +20,7 @@ fn figure_of(width: u32, height: u32) -> World {
 #[test]
 fn steps_become_finer_and_show_what_is_there() {
     let world = figure_of(101, 67);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let part: Area = "3,2,97,61".parse().unwrap();
     for (finest, sides) in [
         (1, &[16, 8, 4, 2, 1][..]),
@@ -73,11 +69,7 @@ fn a_preview_can_be_ended_at_every_step() {
 #[test]
 fn a_block_of_one_pixel_shows_its_centre() {
     let world = figure_of(16, 9);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let film = coarse(&world, Area::whole(16, 9), 1, &control)
         .unwrap()
         .film;

@@ -5,13 +5,12 @@ use std::{
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
-use glam::dvec3;
 use pinhole::{
     area::Area,
     film::Film,
     render::{Control, RenderError, render},
     sampling::Sampling,
-    scene::{Count, Method, Scene, Shape, View},
+    scene::{Count, Method, Scene},
     tracer::World,
 };
 
@@ -20,8 +19,7 @@ use crate::{figure::figure, sampling::placed};
 fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
     let control = Control {
         threads: NonZero::new(threads),
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
+        ..Control::default()
     };
     let [width, height] = [scene.image.width, scene.image.height];
     let sampling = Sampling::new(&scene.sampler, width, height);
@@ -100,37 +98,6 @@ fn pixels_without_a_sample_show_the_background() {
 }
 
 #[test]
-fn a_symmetric_scene_is_symmetric_to_the_bit() {
-    for (width, height) in [(31, 20), (32, 21)] {
-        for n in [1, 2, 3, 5, 7, 14, 16] {
-            let mut scene = figure(width, height, Method::Regular, Count::PerPixel(n));
-            scene.camera.eye = dvec3(0.0, 1.0, 6.0);
-            scene.camera.view = View::Lookat(dvec3(0.0, 1.0, 0.0));
-            scene.objects.retain_mut(|object| match &mut object.shape {
-                Shape::Sphere(sphere) => {
-                    sphere.center = dvec3(0.0, 1.0, 0.0);
-                    true
-                }
-                Shape::Box(cuboid) => {
-                    (cuboid.min, cuboid.max) = (dvec3(-1.7, 0.6, -0.5), dvec3(1.7, 1.4, 0.5));
-                    true
-                }
-                _ => false,
-            });
-            let film = picture(&scene, Area::whole(width, height), 2);
-            let mut colors = 0;
-            for (x, y) in Area::whole(width, height).iter() {
-                let pixel = film.pixel(x, y);
-                assert_eq!(pixel, film.pixel(width - 1 - x, y), "{n}: {x}, {y}");
-                assert_eq!(pixel, film.pixel(x, height - 1 - y), "{n}: {x}, {y}");
-                colors += u32::from(pixel != film.pixel(0, 0));
-            }
-            assert!(colors > 50);
-        }
-    }
-}
-
-#[test]
 fn progress_adds_up() {
     for (size, count) in [(60, Count::PerPixel(5)), (2, Count::PerPixel(10_000_000))] {
         let scene = figure(size, size, Method::Regular, count);
@@ -171,29 +138,4 @@ fn a_render_without_end_can_be_ended() {
         );
         assert!(matches!(ended, Err(RenderError::Cancelled)));
     }
-}
-
-#[test]
-fn a_picture_too_large_for_memory_is_refused() {
-    let side = 1 << 20;
-    let scene = figure(side, side, Method::Random, Count::PerPixel(1));
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
-    let sampling = Sampling::new(&scene.sampler, side, side);
-    let world = World::new(&scene);
-    let refused = render(&world, &sampling, Area::whole(side, side), &control).unwrap_err();
-    let message = refused.to_string();
-    assert!(
-        message.starts_with("a picture of 1048576 × 1048576 pixels needs 24.0 TiB of memory"),
-        "{message}"
-    );
-    // A part of it is another matter.
-    let part: Area = "1048570,524288,6,3".parse().unwrap();
-    assert_eq!(
-        render(&world, &sampling, part, &control).unwrap().width(),
-        6
-    );
 }

@@ -2,13 +2,12 @@
 //!
 //! The times hold for a release build; a build without optimization gets more.
 
-use std::{
-    fs,
-    path::Path,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
-use crate::effort::{Effort, sampled_and_exhaustive};
+use crate::{
+    effort::{Effort, sampled_and_exhaustive},
+    scenes::examples,
+};
 use pinhole::{
     diagnostic::{self, Drawing, Report, Style},
     sampling::CounterRng,
@@ -72,20 +71,6 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
         }
     }
     reading.scene.is_some()
-}
-
-fn examples() -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    let entries = fs::read_dir(folder).expect("the examples are there");
-    let mut paths: Vec<_> = entries
-        .map(|entry| entry.expect("an entry").path())
-        .collect();
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "scn"));
-    paths.sort();
-    paths
-        .iter()
-        .map(|path| fs::read(path).expect("a scene"))
-        .collect()
 }
 
 /// Garbage that is the same everywhere.
@@ -290,7 +275,7 @@ fn many_overrides() {
 #[test]
 fn every_example_is_right_and_says_what_it_shows() {
     for example in examples() {
-        assert!(example.starts_with(b"// "));
+        assert!(example.starts_with("// "));
         assert!(read(example));
     }
 }
@@ -300,7 +285,7 @@ sampled_and_exhaustive!(every_prefix_of_every_example);
 fn every_prefix_of_every_example(effort: Effort) {
     for example in effort.first(6, examples()) {
         for end in 0..example.len() {
-            read(&example[..end]);
+            read(&example.as_bytes()[..end]);
         }
     }
 }
@@ -310,7 +295,7 @@ sampled_and_exhaustive!(every_example_without_any_one_byte);
 fn every_example_without_any_one_byte(effort: Effort) {
     for example in effort.first(6, examples()) {
         for gone in 0..example.len() {
-            let mut bytes = example.clone();
+            let mut bytes = example.clone().into_bytes();
             bytes.remove(gone);
             read(bytes);
         }
@@ -320,8 +305,7 @@ fn every_example_without_any_one_byte(effort: Effort) {
 #[test]
 fn every_example_with_windows_line_ends_and_a_byte_order_mark() {
     for example in examples() {
-        let text = String::from_utf8(example).expect("a text");
-        assert!(read(format!("\u{feff}{}", text.replace('\n', "\r\n"))));
+        assert!(read(format!("\u{feff}{}", example.replace('\n', "\r\n"))));
     }
 }
 
@@ -331,7 +315,7 @@ fn random_changes_of_an_example() {
     let mut garbage = Garbage::new(2);
     let letters = b"(){}[]-+*/,.;:=\"'#a1 \n\xff";
     for _ in 0..2000 {
-        let mut bytes = example.clone();
+        let mut bytes = example.clone().into_bytes();
         for _ in 0..=garbage.next() % 3 {
             let at = (garbage.next() % bytes.len() as u64) as usize;
             bytes[at] = garbage.of(1, letters)[0];

@@ -2,11 +2,7 @@
 //!
 //! Beside each `.scn` stands its tree in `.txt`; `UPDATE_EXPECT=1 cargo test` writes the trees anew.
 
-use std::{
-    fmt::Write,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fmt::Write, fs, path::Path};
 
 use pinhole::{
     source::{Source, SourceId, Span},
@@ -17,16 +13,7 @@ use pinhole::{
     },
 };
 
-fn scenes(folder: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let entries = fs::read_dir(folder).expect("the folder is there");
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    let mut scenes: Vec<_> = paths
-        .filter(|path| path.extension().is_some_and(|ending| ending == "scn"))
-        .collect();
-    scenes.sort();
-    scenes
-}
+use crate::scenes::scenes;
 
 fn source(path: &Path) -> Source {
     Source::from_bytes("test.scn", fs::read(path).expect("the file can be read"))

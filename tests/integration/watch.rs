@@ -31,10 +31,6 @@ const RED: [u8; 3] = [255, 0, 0];
 const BLUE: [u8; 3] = [0, 0, 255];
 const LIME: [u8; 3] = [0, 255, 0];
 
-/// Takes minutes.
-const SLOW: &str = "image { width 2000  height 2000 }\ncamera { eye (0, 1, 5)  lookat (0, 1, 0) }\n\
-                    sampler { per_pixel 1_000_000 }\nsphere { center (0, 1, 0) }\ncheckerboard { square 0.01 }\n";
-
 /// A running `watch` of `a.scn` in a folder of its own.
 struct Watch {
     folder: TempDir,
@@ -310,23 +306,6 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
 }
 
 #[test]
-fn what_is_superseded_is_cancelled() {
-    let watch = Watch::start(&scene("red"), &["--threads", "1"]);
-    watch.wait_for(RED);
-    watch.save(SLOW);
-    // Nothing tells that it has begun, but a broken text that follows it is reported at once.
-    watch.save(&format!("{SLOW}sphere {{ radus 2 }}"));
-    watch.wait("the mistakes are reported", || {
-        watch.count("unknown_field]") == 1
-    });
-    watch.save(SLOW);
-    thread::sleep(Duration::from_millis(300));
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
-    assert_eq!(watch.names(), ["a.png", "a.scn"]);
-}
-
-#[test]
 fn what_is_superseded_is_cancelled_within_a_pixel() {
     let mut watch = Watch::start(&scene("red"), &["--threads", "1"]);
     watch.wait_for(RED);
@@ -368,17 +347,6 @@ fn ctrl_c_ends_a_reading_too() {
     assert_eq!(watch.end().code(), Some(130));
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
     assert_eq!(watch.names(), ["a.png", "a.scn"]);
-}
-
-#[test]
-fn ctrl_c_ends_a_render_too() {
-    let mut watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
-    watch.save(SLOW);
-    thread::sleep(Duration::from_millis(300));
-    assert_eq!(watch.end().code(), Some(130));
-    assert_eq!(watch.names(), ["a.png", "a.scn"]);
-    assert_eq!(watch.color("a.png"), Some(RED));
 }
 
 #[test]

@@ -304,7 +304,7 @@ impl Lines {
     }
 }
 
-#[multiversion(targets = "simd")]
+#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 fn sums_simd(pixels: &Lines, lines: [usize; 2], room: &mut Room) -> Sums {
     pixels.compute(lines, room)
 }

@@ -74,8 +74,11 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<Table, ThreadPoolB
             .into_par_iter()
             .take_any_while(|_| !control.cancel.load(Ordering::Relaxed))
             .fold(none, ask)
-            .reduce(none, |a, b| {
-                a.into_iter().zip(b).map(|(a, b)| a.plus(b)).collect()
+            .reduce(none, |mut a, b| {
+                for (a, b) in a.iter_mut().zip(b) {
+                    *a = a.plus(b);
+                }
+                a
             })
     })?;
     let rows = cases.into_iter().zip(tallies);

@@ -201,8 +201,8 @@ impl Trial {
             patience -= 1;
             let axis = random.below(2) as usize;
             let found = match random.below(BY_THE_ORACLE) {
-                0 => self.boundary(random, axis, |x, y, offset| self.truth(x, y, offset)),
-                _ => self.boundary(random, axis, |x, y, offset| self.ours(x, y, offset)),
+                0 => self.boundary(random, axis, &|x, y, offset| self.truth(x, y, offset)),
+                _ => self.boundary(random, axis, &|x, y, offset| self.ours(x, y, offset)),
             };
             if let Some(boundary) = found {
                 self.beside(random, axis, boundary, end - tally.inputs, tally);
@@ -218,7 +218,7 @@ impl Trial {
         &self,
         random: &mut Random,
         axis: usize,
-        seen: impl Fn(u32, u32, DVec2) -> Answer,
+        seen: &dyn Fn(u32, u32, DVec2) -> Answer,
     ) -> Option<([u32; 2], DVec2)> {
         let size = [self.scene.image.width, self.scene.image.height];
         let mut pixel = size.map(|size| random.below(size.into()) as u32);

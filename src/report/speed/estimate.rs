@@ -92,7 +92,8 @@ struct Step {
 
 impl Series {
     /// Errors are taken to fall as a power of the samples: between two numbers of samples that were measured by the line in logarithms through both,
-    /// beyond the last with the slope of the whole line. Times are taken to grow evenly with the samples. Where the least number is enough, it is that.
+    /// beyond the last with the slope of the line through the last three, as with few samples errors may fall at another rate: `scatter` leaves pixels
+    /// empty then. Times are taken to grow evenly with the samples. Where the least number is enough, it is that.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let steps = self.points.iter().map(|point| Step {
             per_pixel: point.per_pixel as f64,
@@ -128,7 +129,8 @@ impl Series {
             Some(_) if enough == 0 => first.per_pixel,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
-                let logs = steps.iter().map(|step| (step.per_pixel, step.error));
+                let many = &steps[steps.len().saturating_sub(3)..];
+                let logs = many.iter().map(|step| (step.per_pixel, step.error));
                 let slope = PowerLaw::fit(&logs.collect::<Vec<_>>())?.slope;
                 let more = libm::pow(error / last.error, 1.0 / slope);
                 (slope < 0.0).then(|| (last.per_pixel * more).ceil())?

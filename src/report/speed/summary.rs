@@ -5,7 +5,7 @@ use super::{
     notation::{UNKNOWN, asked_error, plural, samples, slope, time},
     results::Measurement,
 };
-use crate::{diagnostic::visible, numbers, scene::Method};
+use crate::{diagnostic::visible, numbers, scene::Method, suggest};
 
 /// A line for each method.
 pub struct Table {
@@ -49,7 +49,7 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
         (true, 1) => "By extrapolation of one run, use",
         (true, _) => "By extrapolation, use",
     };
-    let names = listed(fastest.iter().map(|(method, _)| method.name()));
+    let names = suggest::choice(fastest.iter().map(|(method, _)| method.name()));
     let is_exact = |(method, _): &&(Method, Estimate)| *method == Method::Exact;
     if let ([only], []) = (fastest.as_slice(), others.as_slice()) {
         let cost = cost(only);
@@ -113,15 +113,6 @@ fn per_pixel(estimate: &Estimate) -> String {
         "s"
     };
     format!("{} sample{one} per pixel", samples(estimate))
-}
-
-/// Words with commas, and an `or` before the last.
-fn listed<'a>(words: impl Iterator<Item = &'a str>) -> String {
-    let words: Vec<_> = words.collect();
-    match words.as_slice() {
-        [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
-        words => words.concat(),
-    }
 }
 
 /// For each method its slope, and for each of some errors the samples, the CPU time and the wall time that it takes.

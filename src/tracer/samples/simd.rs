@@ -15,7 +15,10 @@ use super::{
 };
 use crate::math::{ROUND, SimdWidth, UP};
 
-#[multiversion(targets = "simd")]
+#[multiversion(targets(
+    "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
+    "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
+))]
 fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
     pixel.see(points, count);
 }

@@ -9,6 +9,7 @@ use std::{
     process::{Output, Stdio},
 };
 
+use pinhole::film;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -25,9 +26,6 @@ sampler { method sobol per_pixel 4 seed 7 }
 sphere Ball { center (-1.6, h, 0) }
 checkerboard {}
 ";
-
-const SLOW: &str = "image { width 2000 height 2000 } camera { eye (0, 1, 5) lookat (0, 1, 0) }
-sampler { per_pixel 100_000 } sphere { center (0, 1, 0) }";
 
 /// A fresh folder with the scene in `a.scn`.
 fn folder() -> TempDir {
@@ -91,8 +89,8 @@ fn read(folder: &TempDir, name: &str) -> Vec<u8> {
 }
 
 fn size(picture: &[u8]) -> (u32, u32) {
-    let picture = image::load_from_memory(picture).unwrap();
-    (picture.width(), picture.height())
+    let film = film::read_picture(picture).unwrap().film;
+    (film.width(), film.height())
 }
 
 #[test]

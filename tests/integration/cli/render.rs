@@ -1,7 +1,5 @@
 //! `render`: its files, formats and pipes, and what it says.
 
-use pinhole::film;
-
 use super::*;
 
 #[test]
@@ -272,18 +270,6 @@ fn a_picture_too_large_for_memory_is_refused() {
     let part = ["-o", "part.png", "--crop", "524288,524288,3,2"];
     done(&folder, &[&["render", "a.scn"], &huge[..], &part].concat());
     assert_eq!(size(&read(&folder, "part.png")), (3, 2));
-}
-
-#[cfg(unix)]
-#[test]
-fn ctrl_c_leaves_the_old_file() {
-    let folder = folder();
-    fs::write(folder.path().join("slow.scn"), SLOW).unwrap();
-    fs::write(folder.path().join("slow.png"), b"old").unwrap();
-    let mut render = command(folder.path(), &["render", "slow.scn"]);
-    interrupted(&mut render, 700);
-    assert_eq!(read(&folder, "slow.png"), b"old");
-    assert_eq!(names(&folder), ["a.scn", "slow.png", "slow.scn"]);
 }
 
 #[test]

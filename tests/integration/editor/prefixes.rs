@@ -1,8 +1,11 @@
 //! No text that somebody types makes an answer fail: every beginning of every example, asked at its end.
 
-use std::{fs, ops::Range, path::Path};
+use std::ops::Range;
 
-use crate::effort::{Effort, sampled_and_exhaustive};
+use crate::{
+    effort::{Effort, sampled_and_exhaustive},
+    scenes::examples,
+};
 use pinhole::{
     color::Color,
     editor::{
@@ -87,17 +90,6 @@ fn ask_of_all(analysis: &Analysis<'_>) {
     for swatch in swatches(analysis) {
         assert!(!presentations(analysis, swatch.span, Color::BLACK).is_empty());
     }
-}
-
-fn examples() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    let files = fs::read_dir(folder)
-        .expect("the folder is there")
-        .map(|entry| entry.expect("an entry").path());
-    let scenes = files.filter(|path| path.extension().is_some_and(|ending| ending == "scn"));
-    scenes
-        .map(|path| fs::read_to_string(path).expect("a text"))
-        .collect()
 }
 
 sampled_and_exhaustive!(every_beginning_of_every_example_gets_its_answers);

@@ -96,11 +96,7 @@ fn bytes_are_those_of_the_means() {
     for name in examples() {
         let scene = example(&name, 70, 52);
         let area: Area = "3,1,66,50".parse().unwrap();
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel: &AtomicBool::new(false),
-        };
+        let control = Control::default();
         let bytes = render_exact_bytes(&World::new(&scene), area, &control).unwrap();
         let means = part(&scene, area);
         assert_eq!(bytes.bounds, means.bounds, "{name}");

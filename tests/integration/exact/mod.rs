@@ -8,7 +8,7 @@ mod rational;
 mod shapes;
 mod twice;
 
-use std::{f64::consts::PI, fmt::Write, num::NonZero, sync::atomic::AtomicBool};
+use std::{f64::consts::PI, fmt::Write, num::NonZero};
 
 use glam::{DVec2, dvec3};
 use pinhole::{
@@ -22,7 +22,7 @@ use pinhole::{
     tracer::World,
 };
 
-use crate::tracer::Random;
+use crate::{scenes::scenes, tracer::Random};
 
 pub fn read(text: &str) -> Scene {
     let sources = Sources::new(Source::from_text("a.scn", text));
@@ -39,14 +39,11 @@ pub fn example(name: &str, width: u32, height: u32) -> Scene {
     scene
 }
 
+/// The names of the examples.
 pub fn examples() -> Vec<String> {
-    let folder = format!("{}/examples", env!("CARGO_MANIFEST_DIR"));
-    let names = std::fs::read_dir(folder).unwrap();
-    let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<_> = names.filter(|name| name.ends_with(".scn")).collect();
-    names.sort();
-    assert!(names.len() >= 20);
-    names
+    let paths = scenes("examples").into_iter();
+    let names = paths.map(|path| path.file_name().unwrap().to_str().unwrap().to_owned());
+    names.collect()
 }
 
 fn exact(scene: &Scene) -> Exact {
@@ -60,8 +57,7 @@ fn part(scene: &Scene, area: Area) -> Exact {
 fn part_by(scene: &Scene, area: Area, threads: Option<usize>) -> Exact {
     let control = Control {
         threads: threads.and_then(NonZero::new),
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
+        ..Control::default()
     };
     render_exact(&World::new(scene), area, &control).unwrap()
 }
@@ -191,11 +187,7 @@ fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64, name: &str
         seed: 5,
     };
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let sampled = render(&World::new(&scene), &sampling, whole, &control).unwrap();
     // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By Bernstein's inequality no more than one of 10¹⁰ sums of

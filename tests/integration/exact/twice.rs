@@ -147,24 +147,6 @@ fn a_quarter_turn_sweeps_the_other_way() {
 }
 
 #[test]
-fn no_pixel_depends_on_what_was_computed_before_it() {
-    for name in ["figure_9_9.scn", "rolled.scn", "piercing.scn"] {
-        let scene = example(name, 96, 80);
-        let whole = exact(&scene);
-        for area in ["0,0,1,1", "63,7,3,40", "17,0,50,30", "5,0,1,80"] {
-            let area: Area = area.parse().unwrap();
-            let cropped = part(&scene, area);
-            for (x, y) in area.iter() {
-                let pixel = cropped.film.pixel(x - area.x, y - area.y);
-                assert_eq!(pixel, whole.film.pixel(x, y), "{name} at {x}, {y}");
-                let bound = cropped.bounds[area.index(x, y)];
-                assert_eq!(bound, whole.bounds[(y * 96 + x) as usize]);
-            }
-        }
-    }
-}
-
-#[test]
 fn any_number_of_threads_computes_the_same_picture() {
     for name in ["figure_9_9.scn", "rolled.scn", "piercing.scn"] {
         // Tiles of all sizes, and more than threads.

@@ -308,17 +308,32 @@ fn a_text_that_unpacks_without_end_is_refused() {
 
 #[test]
 fn exr_holds_the_means_as_floats() {
+    use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+
     let film = film(33, 70);
     let mut bytes = Cursor::new(Vec::new());
     let whole = Area::whole(33, 70);
     write_exr(&film, whole, whole, &mut bytes).unwrap();
-    let read = image::load_from_memory_with_format(bytes.get_ref(), image::ImageFormat::OpenExr);
-    let image::DynamicImage::ImageRgb32F(read) = read.unwrap() else {
-        panic!("not RGB of floats")
-    };
-    for (x, y, pixel) in read.enumerate_pixels() {
-        assert_eq!(pixel.0, film.pixel(x, y).map(|light| light as f32));
+    let channels = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes.get_ref()))
+        .unwrap()
+        .layer_data
+        .channel_data
+        .list;
+    for (index, name) in ["B", "G", "R"].into_iter().enumerate() {
+        assert!(channels[index].name.eq(name));
+        let FlatSamples::F32(samples) = &channels[index].sample_data else {
+            panic!("not floats of 32 bits")
+        };
+        let light = film.pixels().iter().map(|pixel| pixel[2 - index] as f32);
+        assert!(light.eq(samples.iter().copied()));
     }
+    assert_eq!(channels.len(), 3);
     let mut again = Cursor::new(Vec::new());
     write_exr(&film, whole, whole, &mut again).unwrap();
     assert_eq!(bytes, again);

@@ -1,7 +1,5 @@
 //! The warnings of cameras that see nothing, or do not know which way is up: when they come, and that they are never false.
 
-use std::sync::atomic::AtomicBool;
-
 use pinhole::{
     area::Area,
     render::{Control, render_exact},
@@ -156,11 +154,7 @@ fn a_warning_is_never_false_and_comes_often_enough() {
             random.within(10.0, 120.0)
         );
         let is_warned = codes(&text) == ["nothing_seen"];
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel: &AtomicBool::new(false),
-        };
+        let control = Control::default();
         let exact = render_exact(&World::new(&read(&text)), Area::whole(12, 8), &control).unwrap();
         let is_black = (0..8).all(|y| exact.film.row(y).iter().all(|pixel| pixel[0] <= 1e-9));
         assert!(is_black || !is_warned, "{text}");

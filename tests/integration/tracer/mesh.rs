@@ -1,7 +1,5 @@
 //! Triangles by their vertices: those that share an edge leave no gap, and all agree with the oracle.
 
-use std::sync::atomic::AtomicBool;
-
 use super::*;
 
 /// A triangle by its vertices.
@@ -25,11 +23,7 @@ fn halves(order: [usize; 3]) -> String {
 
 #[test]
 fn two_halves_of_a_square_leave_no_gap() {
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &AtomicBool::new(false),
-    };
+    let control = Control::default();
     for order in [[0, 1, 2], [1, 0, 2], [2, 1, 0]] {
         for eye in ["(0, 0, 2)", "(0.1, 0.2, -1.7)", "(1.2, 0.3, 0.9)"] {
             let scene = read(&format!(

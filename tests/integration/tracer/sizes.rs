@@ -1,7 +1,5 @@
 //! The very small, large, near and far, up to the range of numbers.
 
-use std::sync::atomic::AtomicBool;
-
 use glam::{DVec3, dvec3};
 
 use super::*;
@@ -167,11 +165,7 @@ fn triangles_too_small_or_far_away_to_be_seen_are_not_seen() {
         ));
         let world = World::new(&scene);
         let whole = Area::whole(300, 200);
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel: &AtomicBool::new(false),
-        };
+        let control = Control::default();
         let sampling = Sampling::new(&scene.sampler, 300, 200);
         for film in [
             render(&world, &sampling, whole, &control).unwrap(),
