@@ -35,8 +35,8 @@ export class Files {
   /** Whether the host's file is still to be made, under a name that Save asks for. */
   private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. */
-  private untouched = "";
+  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. Null for what was a file once. */
+  private untouched: string | null = null;
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection, private readonly status: Status, private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
@@ -59,8 +59,9 @@ export class Files {
     if (!this.opened) {
       this.opened = true;
       this.base = saved ? text : null;
-      this.untouched = this.isServed ? (text ?? "") : example;
-      this.editor.open(uri, this.untouched);
+      const start = this.isServed ? (text ?? "") : example;
+      this.untouched = saved ? null : start;
+      this.editor.open(uri, start);
       if (linked !== null) this.editor.replace(linked);
       if (text === null) this.status.say(`${name} cannot be read: it is gone, or no text.`, "warning");
     } else {
