@@ -63,7 +63,7 @@ export class Connection implements Transport {
   }
 
   /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the connection is lost. */
-  async request<Result>(method: string, params: unknown, signal?: AbortSignal): Promise<Result> {
+  async request<Result>(method: string, params: unknown): Promise<Result> {
     await this.ready();
     const id = `page-${++this.requests}`;
     return new Promise<Result>((resolve, reject) => {
@@ -73,11 +73,7 @@ export class Connection implements Transport {
       } catch (error) {
         this.waiting.delete(id);
         reject(error as Error);
-        return;
       }
-      signal?.addEventListener("abort", () => {
-        if (this.waiting.has(id)) this.wire?.send(JSON.stringify({ jsonrpc: "2.0", method: "$/cancelRequest", params: { id } }));
-      });
     });
   }
 

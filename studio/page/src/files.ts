@@ -32,9 +32,11 @@ export class Files {
   /** What is on disk, as far as the page knows; null for nothing. */
   private base: string | null = null;
   private handle: FileHandle | null = null;
+  /** Whether the host's file is still to be made, under a name that Save asks for. */
+  private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. */
-  private untouched = "";
+  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. Null for what was a file once. */
+  private untouched: string | null = null;
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection, private readonly status: Status, private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
@@ -53,12 +55,15 @@ export class Files {
   /** The host says which file it has: at first, after the connection was lost, and when a new scene has got its name. */
   hosted({ name, text, uri, saved }: HostedFile, linked: string | null): void {
     this.name = name;
+    this.isNew = this.isServed && !saved;
     if (!this.opened) {
       this.opened = true;
       this.base = saved ? text : null;
-      this.untouched = this.isServed ? (text ?? "") : example;
-      this.editor.open(uri, this.untouched);
+      const start = this.isServed ? (text ?? "") : example;
+      this.untouched = saved ? null : start;
+      this.editor.open(uri, start);
       if (linked !== null) this.editor.replace(linked);
+      if (text === null) this.status.say(`${name} cannot be read: it is gone, or no text.`, "warning");
     } else {
       this.editor.moveTo(uri);
       if (this.isServed && saved) this.changed(text);
@@ -104,14 +109,15 @@ export class Files {
 
   private async saveHosted(): Promise<void> {
     const { text } = this.editor;
-    if (this.base === null) {
+    if (this.isNew) {
       const name = await this.askName();
       if (name === null) return;
       this.name = name;
     }
     try {
-      await this.connection.request("studio/save", { text, base: this.base, ...(this.base === null ? { name: this.name } : {}) });
+      await this.connection.request("studio/save", { text, base: this.base, ...(this.isNew ? { name: this.name } : {}) });
       this.base = text;
+      this.isNew = false;
       this.status.say(`${this.name} is saved.`);
     } catch (error) {
       if (!(error instanceof Refusal) || error.code !== 1) throw error;

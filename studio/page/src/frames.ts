@@ -27,15 +27,19 @@ const LONGEST_SIDE = 8192;
 /** While something is dragged, finer pictures wait until the hand has rested for so many milliseconds. */
 const HAND_RESTS = 100;
 
+/** Where the last finished picture took less than so many milliseconds, none is shown between it and the coarse one. */
+const SOON = 200;
+
 export class Frames {
   /** Whether something is being dragged. */
   dragging = false;
-  /** Settles when the newest text's coarse picture is there, or will not come. */
-  coarse: Promise<void> = Promise.resolve();
+  /** Settles when the newest text's coarse picture has come, or will not come. */
+  coarse: Promise<unknown> = Promise.resolve();
 
   private generation = 0;
   private shown = 0;
   private size: [number, number] = [1280, 720];
+  private lastTook = Infinity;
 
   constructor(
     private readonly editor: SceneEditor,
@@ -53,28 +57,32 @@ export class Frames {
   /** The text has changed, or the server: pictures are asked for. */
   changed(): void {
     if (this.editor.uri === "" || this.connection.state !== "open") return;
-    const generation = ++this.generation;
-    this.coarse = this.refine(generation);
-  }
-
-  private async refine(generation: number): Promise<void> {
     const [width, height] = this.size;
     const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE, Math.sqrt((width * height) / MOST_PIXELS), 1));
     const coarse = Math.max(least, Math.round(Math.sqrt((width * height) / COARSE_PIXELS)));
-    if (await this.ask(generation, "coarse", { scale: coarse, samples: 1 })) void this.sharpen(generation, coarse > least, least);
+    const generation = ++this.generation;
+    const answer = this.ask({ scale: coarse, samples: 1 });
+    this.coarse = answer.catch(() => {});
+    void this.refine(generation, answer, least, coarse > least);
   }
 
-  private async sharpen(generation: number, worthwhile: boolean, scale: number): Promise<void> {
+  private async refine(generation: number, coarse: Promise<Frame | null>, least: number, isSharper: boolean): Promise<void> {
+    if (!(await this.present(generation, "coarse", coarse))) return;
     if (this.dragging) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
-    if (worthwhile && !(await this.ask(generation, "sharp", { scale, samples: 1 }))) return;
-    await this.ask(generation, "final", { scale });
+    if (generation !== this.generation) return;
+    if (isSharper && this.lastTook > SOON && !(await this.present(generation, "sharp", this.ask({ scale: least, samples: 1 })))) return;
+    const begin = performance.now();
+    if (await this.present(generation, "final", this.ask({ scale: least }))) this.lastTook = performance.now() - begin;
   }
 
-  /** Asks for a picture and shows it. Says whether it is still worth asking for finer ones. */
-  private async ask(generation: number, fineness: Fineness, how: { scale: number; samples?: number }): Promise<boolean> {
-    if (generation !== this.generation) return false;
+  private ask(how: { scale: number; samples?: number }): Promise<Frame | null> {
+    return this.connection.request("pinhole/frame", this.editor.about(how));
+  }
+
+  /** Shows a picture that was asked for. Says whether its text is still the newest, so that finer ones are worth asking for. */
+  private async present(generation: number, fineness: Fineness, answer: Promise<Frame | null>): Promise<boolean> {
     try {
-      const frame = await this.connection.request<Frame | null>("pinhole/frame", this.editor.about(how));
+      const frame = await answer;
       if (frame === null) {
         if (generation === this.generation) this.told("broken");
         return false;

@@ -49,7 +49,7 @@ const frames = new Frames(
   },
   state => {
     if (state === "good") status.stale(null);
-    else if (state === "broken") status.stale("The text has errors. This is its last good picture.");
+    else if (state === "broken") status.stale(picture.isEmpty ? "The text has errors, so there is no picture yet." : "The text has errors. This is its last good picture.");
     else status.stale(`No picture of the newest text: ${state.message}`);
   },
 );
@@ -113,6 +113,10 @@ connection.onNotification = async (method, params) => {
   if (method === "studio/changed") files.changed((params as { text: string | null }).text);
 };
 
+addEventListener("hashchange", async () => {
+  const text = await sceneInAddress(status);
+  if (text !== null) editor.replace(text);
+});
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
 document.addEventListener("keydown", event => {

@@ -52,6 +52,11 @@ export class Picture {
     canvas.dispatchEvent(new CustomEvent("pinhole-frame", { bubbles: true, detail: { fineness, version } }));
   }
 
+  /** Whether there has been no picture yet. */
+  get isEmpty(): boolean {
+    return this.canvas.dataset["fineness"] === undefined;
+  }
+
   /** A point of the stage, in screen pixels, from a point of the picture. */
   toScreen([x, y]: Point): Point {
     return [this.left + x * this.zoom, this.top + y * this.zoom];

@@ -1,6 +1,9 @@
 // Files of the served host: saved whole, changed outside, both changed, and a connection that is lost.
 
 import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
 import { test } from "node:test";
 import { andFinished, comparing, decoded, FIGURE, host, launch, open, pixels, rendered, serve, text, type } from "./helpers.mjs";
 
@@ -30,6 +33,32 @@ test("Save writes the file, by key and by button", async t => {
   await page.click("#save");
   await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
   assert.equal(started.text(), NEARER);
+});
+
+test("a file that is gone is told, and Save writes it anew", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  rmSync(started.file);
+  await page.waitForFunction(() => /is gone/.test(document.querySelector("#said").textContent));
+  assert.equal(await text(page), FIGURE);
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), FIGURE);
+});
+
+test("a new scene gets its name by Save", async t => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const started = await serve(null, { folder });
+  t.after(() => started.stop());
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, FIGURE));
+  await page.keyboard.press("Control+s");
+  await page.fill("#name-field", "other.scn");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("#file-name").textContent === "other.scn");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(readFileSync(path.join(folder, "other.scn"), "utf8"), FIGURE);
 });
 
 for (const [choice, onDisk, onPage] of [
@@ -71,7 +100,7 @@ test("a lost connection is told, the text stays, and a new one is found", async 
   assert.equal(await text(page), LARGER);
   assert.equal(await page.textContent("#file-state"), "not saved");
   await page.context().setOffline(false);
-  const again = await serve(started.file, port);
+  const again = await serve(started.file, { port });
   t.after(() => again.stop());
   // The new host gives out a new cookie, in another tab.
   const tab = await page.context().newPage();

@@ -31,9 +31,10 @@ export async function host(context, text = FIGURE) {
   return started;
 }
 
-/** A host of a file, at a port of its own choice if none is named. */
-export async function serve(file, port) {
-  const child = spawn(PINHOLE, ["studio", file, "--no-open", ...(port === undefined ? [] : ["--port", port])], { stdio: ["ignore", "ignore", "pipe"] });
+/** A host of a file, or of a new scene in a folder, at a port of its own choice if none is named. */
+export async function serve(file, { port, folder } = {}) {
+  const scene = file === null ? [] : [file];
+  const child = spawn(PINHOLE, ["studio", ...scene, "--no-open", ...(port === undefined ? [] : ["--port", port])], { cwd: folder, stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
   const address = await new Promise((resolve, reject) => {
     child.stderr.on("data", data => {
@@ -110,6 +111,13 @@ export async function text(page) {
     });
     return lines.join("\n");
   });
+}
+
+/** The link that Share offers. The dialog stays open. */
+export async function link(page) {
+  await page.click("#share");
+  await page.waitForSelector("#share-dialog[open]");
+  return page.inputValue("#share-link");
 }
 
 /** Puts another text into the editor, as pasting does. */

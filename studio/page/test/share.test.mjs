@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { andFinished, FIGURE, host, launch, open, rendered, text, type } from "./helpers.mjs";
+import { andFinished, FIGURE, host, launch, link, open, rendered, text, type } from "./helpers.mjs";
 
 test("a link holds the scene, and asks nobody else", async t => {
   const browser = await launch(t);
@@ -13,12 +13,11 @@ test("a link holds the scene, and asks nobody else", async t => {
   await andFinished(page, () => type(page, scene));
   const requests = [];
   page.on("request", request => requests.push(request.url()));
-  await page.click("#share");
-  const link = await page.inputValue("#share-link");
+  const address = await link(page);
   assert.deepEqual(requests, []);
-  assert.ok(link.startsWith(`${new URL(started.address).origin}/#scene=`), link);
+  assert.ok(address.startsWith(`${new URL(started.address).origin}/#scene=`), address);
   const other = await page.context().newPage();
-  await other.goto(link);
+  await other.goto(address);
   await other.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final");
   assert.equal(await text(other), scene);
   // The file is not touched, and undo brings its text.
@@ -26,6 +25,18 @@ test("a link holds the scene, and asks nobody else", async t => {
   await other.click(".cm-content");
   await other.keyboard.press("Control+z");
   assert.equal(await text(other), FIGURE);
+});
+
+test("a link that is pasted into an open page changes it, too", async t => {
+  const page = await open(await launch(t), await host(t));
+  const scene = FIGURE.replace("radius 1", "radius 1.5");
+  await type(page, scene);
+  const address = await link(page);
+  await page.click("#share-dialog >> text=Close");
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(page), FIGURE);
+  await andFinished(page, () => page.goto(address));
+  assert.equal(await text(page), scene);
 });
 
 test("a damaged link is told", async t => {

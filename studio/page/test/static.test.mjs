@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, drag, FIGURE, launch, open, pixels, rendered, site, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, drag, FIGURE, launch, link, open, pixels, rendered, site, text, type } from "./helpers.mjs";
 
 const skip = process.env.SITE === undefined ? "SITE names no folder" : false;
 
@@ -28,12 +28,11 @@ test("the static page draws, drags, downloads and links without a request", { sk
     const expected = kind === "scn" ? Buffer.from(moved) : rendered(folder, moved, kind);
     assert.ok(readFileSync(await download.path()).equals(expected), kind);
   }
-  await page.click("#share");
-  const link = await page.inputValue("#share-link");
+  const address = await link(page);
   assert.deepEqual(host.requests.slice(requests), []);
   assert.deepEqual(page.complaints, []);
   const other = await page.context().newPage();
-  await other.goto(link);
+  await other.goto(address);
   await other.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 60_000 });
   assert.equal(await text(other), moved);
 });

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, FIGURE, host, launch, open, pixels, rendered, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, FIGURE, finished, host, launch, open, pixels, rendered, text, type } from "./helpers.mjs";
 
 test("the picture is that of `pinhole render`, pixel by pixel", async t => {
   const { address, folder } = await host(t);
@@ -50,6 +50,18 @@ test("while the text is broken the last good picture stays, and says so", async 
   assert.match(await page.textContent("#stale"), /last good picture/);
   await andFinished(page, () => type(page, FIGURE));
   assert.ok(await page.isHidden("#stale"));
+});
+
+test("a text that is broken from the start says so, and is mended in the page", async t => {
+  const { address } = await host(t, FIGURE.replace("radius 1", "radios 1"));
+  const page = await (await launch(t)).newPage();
+  await page.goto(address);
+  await page.waitForSelector("#stale:not([hidden])");
+  assert.match(await page.textContent("#stale"), /no picture yet/);
+  await page.click("#problems");
+  await page.click("#problem-list >> text=write `radius`");
+  await finished(page);
+  assert.equal(await text(page), FIGURE);
 });
 
 test("completion, hints, swatches and format come from the server", async t => {
