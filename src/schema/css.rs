@@ -1,18 +1,22 @@
-//! The colours that CSS names (CSS Color Module Level 4, section 6.1).
-
-use csscolorparser::NAMED_COLORS;
+//! The colours that CSS names (CSS Color Module Level 4, section 6.1): a table, as a library with the same one brings ten crates that have to be compiled.
 
 use crate::color::Color;
 
+/// A name and its colour a line, in lower case and alphabetical order.
+const COLORS: &str = include_str!("css_colors.txt");
+
+fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
+    COLORS.lines().filter_map(|line| line.split_once(" #"))
+}
+
 /// The colour of a name, in upper or lower case.
 pub fn color(name: &str) -> Option<Color> {
-    NAMED_COLORS
-        .get(name.into())
-        .copied()
-        .map(Color::from_bytes)
+    let (_, digits) = rows().find(|(row, _)| row.eq_ignore_ascii_case(name))?;
+    let [_, bytes @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some(Color::from_bytes(bytes))
 }
 
 /// The names, in lower case and alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    NAMED_COLORS.keys().map(|name| name.as_str())
+    rows().map(|(name, _)| name)
 }

@@ -4,7 +4,7 @@ use std::fs;
 
 use pinhole::diagnostic::Diagnostic;
 
-use super::{counted, diagnostics, fixed, sources};
+use super::{diagnostics, sources, type_in_fixes};
 
 /// A scene with what the examples lack.
 const SCENE: &str = "\
@@ -100,32 +100,12 @@ fn every_fix_of_a_slip_helps() {
         for (at, piece) in pieces(text) {
             for slip in slips(piece) {
                 let wrong = format!("{}{slip}{}", &text[..at], &text[at + piece.len()..]);
-                let before_sources = sources(&wrong, &[]);
-                let before = diagnostics(&before_sources);
-                if before.iter().any(|found| found.is_of_syntax) {
+                let wrong = sources(&wrong, &[]);
+                if diagnostics(&wrong).iter().any(|found| found.is_of_syntax) {
                     continue;
                 }
-                let said_before = counted(&before);
-                for found in before.iter().filter(|found| found.is_error()) {
-                    for fix in &found.fixes {
-                        fixes += 1;
-                        let after = diagnostics(&fixed(&before_sources, fix));
-                        let said = counted(&after);
-                        let key = |d: &Diagnostic| (d.code.clone(), d.message.clone());
-                        let is_new = |d: &&Diagnostic| {
-                            d.is_error() && said.get(&key(d)) > said_before.get(&key(d))
-                        };
-                        let stays = said.get(&key(found)) >= said_before.get(&key(found));
-                        let new: Vec<_> = after.iter().filter(is_new).map(key).collect();
-                        if stays || !new.is_empty() {
-                            let title = &fix.title;
-                            complaints.push(format!(
-                                "{slip} for {piece}: {}: `{title}`: {new:?}",
-                                found.message
-                            ));
-                        }
-                    }
-                }
+                let name = format!("{slip} for {piece}");
+                fixes += type_in_fixes(&name, &wrong, Diagnostic::is_error, &mut complaints);
             }
         }
     }

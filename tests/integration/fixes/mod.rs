@@ -10,13 +10,15 @@ mod slips;
 mod syntax;
 mod values;
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, fs};
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
     scene,
     source::{Source, SourceId, Sources},
 };
+
+use crate::scenes::scenes;
 
 fn sources(text: &str, sets: &[String]) -> Sources {
     Sources::new(Source::from_text("a.scn", text)).with_sets(sets)
@@ -46,10 +48,8 @@ fn counted(diagnostics: &[Diagnostic]) -> BTreeMap<(String, String), usize> {
 
 /// Every fixture that is a text, with its name and the arguments that it gives.
 fn fixtures() -> Vec<(String, Sources)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics");
     let mut fixtures = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for path in scenes("tests/diagnostics") {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         if let Ok(text) = fs::read_to_string(&path) {
             let sets = text.lines().filter_map(|l| l.strip_prefix("// --set "));
