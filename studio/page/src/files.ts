@@ -63,6 +63,8 @@ export class Files {
       this.untouched = saved ? null : start;
       this.editor.open(uri, start);
       if (linked !== null) this.editor.replace(linked);
+      // Who opens a link has the scene in it, whatever happens to the page.
+      if (!this.isServed) this.untouched = this.editor.text;
       if (text === null) this.status.say(`${name} cannot be read: it is gone, or no text.`, "warning");
     } else {
       this.editor.moveTo(uri);

@@ -24,8 +24,8 @@ const COARSE_PIXELS = 320 * 180;
 const MOST_PIXELS = 16_000_000;
 const LONGEST_SIDE = 8192;
 
-/** While something is dragged, finer pictures wait until the hand has rested for so many milliseconds. */
-const HAND_RESTS = 100;
+/** While something is dragged, finer pictures wait for so many milliseconds: a hand that moves is heard of with every frame of the screen, 60 times a second. */
+const HAND_RESTS = 20;
 
 /** Where the last finished picture took less than so many milliseconds, none is shown between it and the coarse one. */
 const SOON = 200;
@@ -40,6 +40,8 @@ export class Frames {
   private shown = 0;
   private size: [number, number] = [1280, 720];
   private lastTook = Infinity;
+  /** The generation whose picture the server has refused. */
+  private refused = 0;
 
   constructor(
     private readonly editor: SceneEditor,
@@ -49,9 +51,11 @@ export class Frames {
     private readonly told: (state: "good" | "broken" | Error) => void,
   ) {}
 
-  /** The size of the scene's picture, as soon as something else knows it. */
+  /** The size of the scene's picture, as soon as something else knows it. A picture that was refused is asked for anew: it may have been too large. */
   resized(size: [number, number]): void {
+    const isOther = size[0] !== this.size[0] || size[1] !== this.size[1];
     this.size = size;
+    if (isOther && this.refused === this.generation) this.changed();
   }
 
   /** The text has changed, or the server: pictures are asked for. */
@@ -98,7 +102,9 @@ export class Frames {
       this.told("good");
       return generation === this.generation;
     } catch (error) {
-      if (!isSuperseded(error) && generation === this.generation && this.connection.state === "open") this.told(error as Error);
+      if (isSuperseded(error) || generation !== this.generation || this.connection.state !== "open") return false;
+      this.refused = generation;
+      this.told(error as Error);
       return false;
     }
   }

@@ -378,7 +378,11 @@ export class Hands {
     const object = this.selectedObject();
     const name = focused.closest<HTMLElement>(".handle")?.dataset["handle"];
     const handle = name === undefined ? object?.handles[0] : object?.handles.find(it => it.handle === name);
-    if (name === undefined && this.tool !== "move") return new Drag(this, null, this.tool, [this.picture.size[0] / 2, this.picture.size[1] / 2]);
+    if (name === undefined && this.tool !== "move") {
+      const [width, height] = this.picture.size;
+      // Roll turns about the middle: one has to take hold beside of it.
+      return new Drag(this, null, this.tool, [this.tool === "roll" ? 0.75 * width : width / 2, height / 2]);
+    }
     if (object !== undefined && handle?.at) return new Drag(this, object.index, handle.handle, handle.at);
     this.status.say("Select an object, or choose what the camera does.", "warning");
     return null;

@@ -82,7 +82,8 @@ async function refreshOverlays(): Promise<void> {
 function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
-  void refreshOverlays();
+  // The coarse picture comes first.
+  void frames.coarse.then(refreshOverlays);
   hints.changed();
   files.show();
 }

@@ -103,6 +103,44 @@ test("all of it goes by keyboard", async t => {
   assert.equal(await text(page), FIGURE);
 });
 
+test("every handle moves its object, and every tool the camera, and nothing else", async t => {
+  const page = await open(await launch(t), await host(t));
+  const handles = {
+    Ball: ["center", "radius"],
+    Sail: ["centroid", "normal", "spin"],
+    Crate: ["center", "min_x", "max_x", "min_y", "max_y", "min_z", "max_z"],
+    checkerboard: ["y"],
+  };
+  const kinds = { Ball: /let ball = .*|sphere .*/g, Sail: /triangle .*/g, Crate: /box .*/g, checkerboard: /checkerboard .*/g };
+  for (const [object, names] of Object.entries(handles)) {
+    const option = await page.locator("#objects option", { hasText: object }).getAttribute("value");
+    await page.selectOption("#objects", option);
+    assert.deepEqual(await page.locator(".handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
+    for (const name of names) {
+      await page.focus(`.handle[data-handle=${name}]`);
+      // Up or to the right: one of them is a way that every handle can go.
+      for (const key of ["ArrowUp", "ArrowRight"]) await page.keyboard.press(key);
+      await page.waitForFunction(() => document.querySelector("#file-state").textContent === "not saved", null, { timeout: 5000 }).catch(() => assert.fail(`${object}: ${name} does nothing`));
+      await finished(page);
+      const moved = await text(page);
+      assert.equal(moved.replace(kinds[object], ""), FIGURE.replace(kinds[object], ""), `${object}: ${name}`);
+      while ((await page.textContent("#file-state")) !== "") await page.keyboard.press("Control+z");
+    }
+  }
+  await page.focus("#stage");
+  for (const key of ["o", "p", "d", "r", "v", "l"]) {
+    await page.keyboard.press(key);
+    await andFinished(page, () => page.keyboard.press("ArrowDown"));
+    if (key === "p" || key === "l" || key === "o" || key === "r") await page.keyboard.press("ArrowRight");
+    await finished(page);
+    const moved = await text(page);
+    assert.notEqual(moved, FIGURE, key);
+    const camera = /camera {2}\{[^}]*\}/;
+    assert.equal(moved.replace(camera, ""), FIGURE.replace(camera, ""), key);
+    while ((await page.textContent("#file-state")) !== "") await page.keyboard.press("Control+z");
+  }
+});
+
 test("a finger drags, and two fingers zoom without a change of the text", async t => {
   const browser = await launch(t);
   const page = await open(browser, await host(t), { viewport: { width: 380, height: 700 }, hasTouch: true, isMobile: true });

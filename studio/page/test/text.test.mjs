@@ -64,6 +64,13 @@ test("a text that is broken from the start says so, and is mended in the page", 
   assert.equal(await text(page), FIGURE);
 });
 
+test("a picture that is too large to show is shown smaller", async t => {
+  const page = await open(await launch(t), await host(t));
+  await type(page, FIGURE.replace("width 1280  height 720", "width 60000  height 60000").replace("per_pixel 16", "per_pixel 1"));
+  await page.waitForFunction(() => /^60000 × 60000/.test(document.querySelector("#frame-state").textContent), null, { timeout: 60_000 });
+  assert.ok(await page.isHidden("#stale"));
+});
+
 test("completion, hints, swatches and format come from the server", async t => {
   const page = await open(await launch(t), await host(t));
   await page.waitForSelector(".hint");
