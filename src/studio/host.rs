@@ -163,12 +163,15 @@ impl Pages {
     ) -> Result<(), NotSaved> {
         let mut shared = self.lock();
         let was_new = shared.file.path().is_none();
+        let is_known = shared.file.text() == Some(text);
         shared.file.save(text, base, name)?;
-        let (message, is_for_all) = match was_new {
-            true => (shared.about_file(), true),
-            false => (shared.about_text(), false),
-        };
-        shared.tell(&message, |page| is_for_all || page != number);
+        if was_new {
+            let message = shared.about_file();
+            shared.tell(&message, |_| true);
+        } else if !is_known {
+            let message = shared.about_text();
+            shared.tell(&message, |page| page != number);
+        }
         drop(shared);
         if was_new {
             self.watch();
