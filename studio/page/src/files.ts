@@ -91,8 +91,9 @@ export class Files {
       if (!isGone) this.tellGone();
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
-      if (this.conflict.open) this.conflict.close();
+      this.conflict.close();
     } else if (this.editor.text === withLf(text) || (seen !== null && this.editor.text === withLf(seen))) {
+      this.conflict.close();
       this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.name} was changed outside; the page follows.`);

@@ -103,6 +103,13 @@ test("all of it goes by keyboard", async t => {
   assert.equal(await text(page), FIGURE);
 });
 
+test("an object after a thousand others is selected, too", async t => {
+  const others = Array.from({ length: 1000 }, (_, i) => `sphere { center (0, ${i + 10}, 20)  radius 0.1 }`).join("\n");
+  const page = await open(await launch(t), await host(t, `camera { eye (0, 0, 5)  direction (0, 0, -1) }\n${others}\nsphere Last { center (0, 0, 0) }\n`));
+  await page.mouse.click(...(await onPage(page, [400, 225])));
+  await page.waitForSelector('.handle[aria-label="Last: center"]');
+});
+
 test("taps of a key are one drag, and all of them count", async t => {
   const page = await open(await launch(t), await host(t));
   await page.selectOption("#objects", { label: "Ball (sphere)" });
