@@ -105,9 +105,10 @@ fn every_beginning_of_every_example_gets_its_answers(effort: Effort) {
     }
 }
 
-#[test]
-fn every_place_of_every_example_gets_its_answers() {
-    for text in examples() {
+sampled_and_exhaustive!(every_place_of_every_example_gets_its_answers);
+
+fn every_place_of_every_example_gets_its_answers(effort: Effort) {
+    for text in effort.first(6, examples()) {
         let sources = Sources::new(Source::from_text("test.scn", text.as_str()));
         let analysis = Analysis::new(&sources);
         for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
@@ -117,10 +118,11 @@ fn every_place_of_every_example_gets_its_answers() {
     }
 }
 
+sampled_and_exhaustive!(texts_with_a_hole_get_their_answers);
+
 /// Texts with a piece cut out, as when a line is being rewritten.
-#[test]
-fn texts_with_a_hole_get_their_answers() {
-    for text in examples() {
+fn texts_with_a_hole_get_their_answers(effort: Effort) {
+    for text in effort.first(6, examples()) {
         let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
         for window in starts.windows(9).step_by(5) {
             let cut = format!("{}{}", &text[..window[0]], &text[window[8]..]);
