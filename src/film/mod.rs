@@ -25,8 +25,8 @@ pub use self::{
     picture::{Coding, Picture, Rounding, Unreadable},
     pixels::{Film, Pixel, certified, certified_floats},
     png::{
-        NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_fast_png,
-        write_plain_png, write_png,
+        NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png,
+        write_png,
     },
     read::{is_picture, read_picture},
     srgb::Encoder,

@@ -161,7 +161,7 @@ impl Frame {
             return Ok(None);
         }
         let mut png = Vec::new();
-        film::write_fast_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
+        film::write_plain_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
         let image = &prepared.scene.image;
         Ok(Some(json!({
             "version": prepared.version,
