@@ -291,6 +291,11 @@ fn the_samples_of_a_pixel_are_those_of_its_frame() {
     );
     let edge = found["color"].as_str().expect("a colour");
     assert!(edge != "#000000" && edge != "#808000", "{edge}");
+    talk.change(&SCENE.replace("per_pixel 4", "per_pixel 1_000_000_000"));
+    assert_eq!(
+        talk.refused("pinhole/samples", json!({ "pixel": [1, 1] })),
+        "1000000000 samples of a pixel would take too long"
+    );
     for pixel in [json!([200, 0]), json!([0, 100])] {
         assert_eq!(
             talk.refused("pinhole/samples", json!({ "pixel": pixel })),
