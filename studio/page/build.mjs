@@ -41,7 +41,9 @@ let page = readFileSync("src/index.html", "utf8");
 if (host === "static") {
   page = page
     .replace('<meta name="pinhole-host" content="served">', `<meta http-equiv="Content-Security-Policy" content="${policy}">\n    <meta name="pinhole-host" content="static">`)
-    .replace('    <meta name="pinhole-nonce" content="__NONCE__">\n', "");
+    .replace('    <meta name="pinhole-nonce" content="__NONCE__">\n', "")
+    // The engine in the browser writes no EXR.
+    .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>');
 }
 writeFileSync(path.join(folder, "index.html"), page);
 
