@@ -1,6 +1,10 @@
 //! A text's picture as a file, rendered as the scene asks for.
 
-use std::{error::Error, io::Cursor, sync::atomic::AtomicBool};
+use std::{
+    error::Error,
+    io::Cursor,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use lsp_server::{ErrorCode, Request, Response};
@@ -43,6 +47,9 @@ pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
     let mut bytes = Vec::new();
     match write(&scene, text, cancel, Cursor::new(&mut bytes)) {
         Ok(()) => Response::new_ok(id, json!({ name: STANDARD.encode(bytes) })),
+        Err(_) if cancel.load(Ordering::SeqCst) => {
+            failed(ErrorCode::RequestCanceled, "cancelled".to_owned())
+        }
         Err(error) => failed(ErrorCode::RequestFailed, error.to_string()),
     }
 }
