@@ -41,7 +41,6 @@ export class Connection implements Transport {
     this.connector(
       wire => {
         this.wire = wire;
-        this.attempts = 0;
         this.enter("open");
       },
       text => this.receive(text),
@@ -78,6 +77,8 @@ export class Connection implements Transport {
   }
 
   private receive(text: string): void {
+    // What opens and closes at once has not come back.
+    this.attempts = 0;
     const message = JSON.parse(text);
     const waiting = "method" in message ? undefined : this.waiting.get(message.id);
     if (waiting !== undefined) {
@@ -123,15 +124,19 @@ export function webSocket(path: string): Connector {
   };
 }
 
-/** A web worker that runs the engine. A worker that fails is replaced. */
+/** A web worker that runs the engine. It is open when it says its first word, after it has loaded the engine; one that fails is replaced. */
 export function worker(path: string): Connector {
   return (opened, receive, closed) => {
     const engine = new Worker(new URL(path, location.href), { type: "module" });
-    engine.addEventListener("message", event => receive(String(event.data)));
+    let isOpen = false;
+    engine.addEventListener("message", event => {
+      if (!isOpen) opened({ send: text => engine.postMessage(text) });
+      isOpen = true;
+      receive(String(event.data));
+    });
     engine.addEventListener("error", () => {
       engine.terminate();
       closed();
     });
-    opened({ send: text => engine.postMessage(text) });
   };
 }

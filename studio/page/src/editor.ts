@@ -6,7 +6,7 @@ import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, Compartment, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
+import { ChangeSet, Compartment, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
 import { publishDiagnostics } from "./diagnostics";
@@ -58,16 +58,24 @@ class SceneWorkspace extends Workspace {
   }
 }
 
+/** A text with lines that end by LF, as the editor has them. */
+export function withLf(text: string): string {
+  return text.replace(/\r\n?/g, "\n");
+}
+
 export class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
   /** The address of the scene, by which the server knows it. */
   uri = "";
   private readonly plugin = new Compartment();
+  private readonly history = new Compartment();
 
   constructor(parent: HTMLElement, private readonly connection: Connection, nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
     this.client = new LSPClient({
       workspace: client => new SceneWorkspace(client),
+      // A busy machine may take its time; a lost connection is told by the connection.
+      timeout: 60_000,
       sanitizeHTML: sanitized,
       notificationHandlers: {
         "textDocument/publishDiagnostics": (_, params) => {
@@ -93,7 +101,7 @@ export class SceneEditor {
         dropCursor(),
         bracketMatching(),
         closeBrackets(),
-        gestureHistory(),
+        this.history.of(gestureHistory()),
         sceneLanguage,
         sceneHighlighting,
         EditorView.lineWrapping,
@@ -119,6 +127,7 @@ export class SceneEditor {
     });
   }
 
+  /** The text, with lines that end by LF. */
   get text(): string {
     return this.view.state.doc.toString();
   }
@@ -128,13 +137,14 @@ export class SceneEditor {
     return { textDocument: { uri: this.uri }, ...params };
   }
 
-  /** Puts a text in place that no undo takes away, and tells the server its address. */
-  open(uri: string, text: string): void {
-    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, annotations: Transaction.addToHistory.of(false) });
-    this.moveTo(uri);
+  /** Puts a text in place that no undo takes away: it has a history of its own. */
+  open(text: string): void {
+    this.view.dispatch({ effects: this.history.reconfigure([]) });
+    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, selection: { anchor: 0 } });
+    this.view.dispatch({ effects: this.history.reconfigure(gestureHistory()) });
   }
 
-  /** Gives the text another address. */
+  /** Tells the server the address of the text, or another one. */
   moveTo(uri: string): void {
     if (uri === this.uri) return;
     this.view.dispatch({ effects: this.plugin.reconfigure([]) });
@@ -143,8 +153,8 @@ export class SceneEditor {
   }
 
   /** Puts another text in place, changing no more than differs, so that the cursor stays where it is. */
-  replace(text: string): void {
-    const old = this.text;
+  replace(content: string): void {
+    const [old, text] = [this.text, withLf(content)];
     const shorter = Math.min(old.length, text.length);
     let start = 0;
     while (start < shorter && old[start] === text[start]) start++;
@@ -175,8 +185,11 @@ export class SceneEditor {
     return Math.min(from + character, to);
   }
 
-  contains(range: Range, offset: number): boolean {
-    return this.offset(range.start) <= offset && offset <= this.offset(range.end);
+  /** The object that a place of the text is in. At the border of two it is the second one. */
+  objectAt<T extends { range: Range }>(objects: readonly T[], offset: number): T | undefined {
+    const spans = (it: T) => [this.offset(it.range.start), this.offset(it.range.end)] as const;
+    const touching = objects.filter(it => spans(it)[0] <= offset && offset <= spans(it)[1]);
+    return touching.find(it => offset < spans(it)[1]) ?? touching[0];
   }
 
   changes(edits: readonly TextEdit[]): ChangeSpec {

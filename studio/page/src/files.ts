@@ -3,7 +3,7 @@
 import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
 import { byId, create, createButton } from "./dom";
-import type { SceneEditor } from "./editor";
+import { withLf, type SceneEditor } from "./editor";
 import { Refusal, type HostedFile } from "./protocol";
 import { download } from "./share";
 import type { Status } from "./status";
@@ -23,20 +23,23 @@ interface FilePickers {
 const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
 
-/** More lines than these are not compared one by one. */
+/** More lines than these are not compared one by one: the table has a place of two bytes for each pair of lines, 18 MB here. */
 const MOST_LINES = 3000;
 
 /** The host keeps a file of its own with the text as the page last saw it there; a static page has local files alone. */
 export class Files {
   name = "scene.scn";
-  /** What is on disk, as far as the page knows; null for nothing. */
-  private base: string | null = null;
+  /** What the file held when it was last seen; null where there was none. */
+  private seen: string | null = null;
+  /** Whether the file has gone since. */
+  private isGone = false;
   private handle: FileHandle | null = null;
   /** Whether the host's file is still to be made, under a name that Save asks for. */
   private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. Null for what was a file once. */
+  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. Null for a file. */
   private untouched: string | null = null;
+  private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection, private readonly status: Status, private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
@@ -49,7 +52,13 @@ export class Files {
 
   get isUnsaved(): boolean {
     const { text } = this.editor;
-    return this.opened && text !== this.base && !(this.base === null && text === this.untouched);
+    return this.opened && text !== this.untouched && (this.isGone || this.seen === null || text !== withLf(this.seen));
+  }
+
+  /** The text with its file's ends of lines. */
+  get textToSave(): string {
+    const { text } = this.editor;
+    return this.seen?.includes("\r\n") ? text.replaceAll("\n", "\r\n") : text;
   }
 
   /** The host says which file it has: at first, after the connection was lost, and when a new scene has got its name. */
@@ -58,36 +67,45 @@ export class Files {
     this.isNew = this.isServed && !saved;
     if (!this.opened) {
       this.opened = true;
-      this.base = saved ? text : null;
+      this.seen = saved ? text : null;
       const start = this.isServed ? (text ?? "") : example;
-      this.untouched = saved ? null : start;
-      this.editor.open(uri, start);
+      this.untouched = saved ? null : withLf(start);
+      this.editor.open(start);
       if (linked !== null) this.editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
       if (!this.isServed) this.untouched = this.editor.text;
-      if (text === null) this.status.say(`${name} cannot be read: it is gone, or no text.`, "warning");
-    } else {
-      this.editor.moveTo(uri);
-      if (this.isServed && saved) this.changed(text);
+      if (text === null) this.tellGone();
+    } else if (this.isServed && saved) {
+      this.untouched = null;
+      this.changed(text);
     }
+    this.editor.moveTo(uri);
     this.show();
   }
 
-  /** The file was changed by somebody else, or is gone. */
+  /** The file was changed by somebody else, is gone, or is back. */
   changed(text: string | null): void {
-    const { base } = this;
-    if (text === base) return;
+    const { seen, isGone } = this;
+    this.isGone = text === null;
     if (text === null) {
-      this.base = null;
-      this.status.say(`${this.name} cannot be read any more: it is gone, or no text. Save writes it anew.`, "warning");
-    } else if (this.editor.text === text || this.editor.text === base) {
-      this.base = text;
+      if (!isGone) this.tellGone();
+    } else if (text === seen) {
+      // It is again what the page was made from: there is nothing to decide any more.
+      this.conflict.close();
+    } else if (this.editor.text === withLf(text) || (seen !== null && this.editor.text === withLf(seen))) {
+      this.conflict.close();
+      this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.name} was changed outside; the page follows.`);
     } else {
       this.ask(text);
     }
     this.show();
+  }
+
+  private tellGone(): void {
+    this.isGone = true;
+    this.status.say(`${this.name} cannot be read: it is gone, or no text in UTF-8.`, "warning");
   }
 
   /** Shows whether everything is saved. */
@@ -110,23 +128,27 @@ export class Files {
   }
 
   private async saveHosted(): Promise<void> {
-    const { text } = this.editor;
-    if (this.isNew) {
-      const name = await this.askName();
-      if (name === null) return;
-      this.name = name;
-    }
+    const text = this.textToSave;
+    const name = this.isNew ? await this.askName() : this.name;
+    if (name === null) return;
     try {
-      await this.connection.request("studio/save", { text, base: this.base, ...(this.isNew ? { name: this.name } : {}) });
-      this.base = text;
+      await this.connection.request("studio/save", { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) });
+      this.saved(name, text);
       this.isNew = false;
-      this.status.say(`${this.name} is saved.`);
     } catch (error) {
       if (!(error instanceof Refusal) || error.code !== 1) throw error;
       const { text: held } = error.data as { text: string | null };
       if (held === null) this.changed(null);
       else this.ask(held);
     }
+  }
+
+  private saved(name: string, text: string): void {
+    this.name = name;
+    this.seen = text;
+    this.isGone = false;
+    this.untouched = null;
+    this.status.say(`${name} is saved.`);
   }
 
   /** The name that a new file shall have; null if it shall not be saved. */
@@ -143,7 +165,7 @@ export class Files {
   }
 
   private async saveLocal(): Promise<void> {
-    const { text } = this.editor;
+    const text = this.textToSave;
     this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name })) ?? null;
     if (this.handle === null) {
       download(this.name, text, "text/plain");
@@ -152,17 +174,16 @@ export class Files {
       const file = await this.handle.createWritable();
       await file.write(text);
       await file.close();
-      this.name = this.handle.name;
     }
-    this.base = text;
-    this.status.say(`${this.name} is saved.`);
+    this.saved(this.handle?.name ?? this.name, text);
   }
 
   private async open(): Promise<void> {
+    if (this.isUnsaved && !confirm("The scene on the page is not saved. Open another one in its place?")) return;
     try {
       if (pickers.showOpenFilePicker !== undefined) {
         const [handle] = await pickers.showOpenFilePicker(SCENES);
-        if (handle !== undefined) this.take(await handle.getFile(), handle);
+        if (handle !== undefined) await this.take(await handle.getFile(), handle);
         return;
       }
       const input = create("input");
@@ -179,38 +200,43 @@ export class Files {
   }
 
   private async take(file: File, handle: FileHandle | null): Promise<void> {
-    const text = await file.text();
-    this.name = file.name;
-    this.handle = handle;
-    this.editor.replace(text);
-    this.base = this.editor.text;
+    try {
+      // Other encodings would come back from Save as another text.
+      const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(await file.arrayBuffer());
+      this.editor.open(text);
+      this.handle = handle;
+      this.name = file.name;
+      this.seen = text;
+      this.untouched = null;
+    } catch {
+      this.status.say(`${file.name} is no text in UTF-8.`, "warning");
+    }
     this.show();
   }
 
   /** Both the page and the file have changed: shows the difference, and asks. Whatever is chosen, undo brings the other text back. */
   private ask(theirs: string): void {
-    const dialog = byId<HTMLDialogElement>("conflict-dialog");
-    const lines = byId("conflict-lines");
-    lines.replaceChildren(...difference(theirs, this.editor.text).map(({ sign, text }) => create("div", sign === "-" ? "removed" : sign === "+" ? "added" : "", `${sign} ${text}`)));
+    const lines = difference(withLf(theirs), this.editor.text).map(({ sign, text }) => create("div", sign === "-" ? "removed" : sign === "+" ? "added" : "", `${sign} ${text}`));
+    byId("conflict-lines").replaceChildren(...lines);
     byId("conflict-name").textContent = this.name;
     const choose = (act: () => void) => () => {
-      dialog.close();
+      this.conflict.close();
       act();
       this.show();
     };
     byId("conflict-choices").replaceChildren(
       createButton("Keep the page's text and save it", "primary", choose(() => {
-        this.base = theirs;
+        this.seen = theirs;
         void this.save();
       })),
       createButton("Take the file's text", "", choose(() => {
-        this.base = theirs;
+        this.seen = theirs;
         this.editor.replace(theirs);
       })),
-      // Saving will ask again, because the page's base is still the older one.
+      // Saving will ask again, because the page's text is still made from an older one.
       createButton("Decide later", "", choose(() => {})),
     );
-    if (!dialog.open) dialog.showModal();
+    if (!this.conflict.open) this.conflict.showModal();
   }
 }
 

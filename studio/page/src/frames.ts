@@ -31,8 +31,8 @@ const HAND_RESTS = 20;
 const SOON = 200;
 
 export class Frames {
-  /** Whether something is being dragged. */
-  dragging = false;
+  /** What is being dragged. */
+  dragging: object | null = null;
   /** Settles when the newest text's coarse picture has come, or will not come. */
   coarse: Promise<unknown> = Promise.resolve();
 
@@ -72,7 +72,7 @@ export class Frames {
 
   private async refine(generation: number, coarse: Promise<Frame | null>, least: number, isSharper: boolean): Promise<void> {
     if (!(await this.present(generation, "coarse", coarse))) return;
-    if (this.dragging) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
+    if (this.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
     if (generation !== this.generation) return;
     if (isSharper && this.lastTook > SOON && !(await this.present(generation, "sharp", this.ask({ scale: least, samples: 1 })))) return;
     const begin = performance.now();

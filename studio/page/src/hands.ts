@@ -19,6 +19,9 @@ const CLICK = 4;
 /** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
 const KEY_STEP = 10;
 
+/** A pause after which the next arrow key begins another drag, in milliseconds. */
+const KEY_PAUSE = 500;
+
 const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /** An object as it is called in sentences. */
@@ -39,7 +42,7 @@ class Drag {
   constructor(private readonly hands: Hands, private readonly object: number | null, private readonly handle: string, start: Point) {
     this.target = this.asked = this.reached = start;
     this.gesture = new Gesture(hands.editor.view);
-    hands.frames.dragging = true;
+    hands.frames.dragging = this;
   }
 
   /** Moves the handle to a point of the picture, or the pointer for the camera. */
@@ -60,7 +63,7 @@ class Drag {
 
   cancel(): void {
     this.target = this.asked;
-    this.hands.frames.dragging = false;
+    this.release();
     this.gesture.cancel();
   }
 
@@ -92,8 +95,13 @@ class Drag {
   }
 
   private finish(): void {
-    this.hands.frames.dragging = false;
+    this.release();
     this.gesture.end();
+  }
+
+  /** Another drag may have begun before this one has come to its end. */
+  private release(): void {
+    if (this.hands.frames.dragging === this) this.hands.frames.dragging = null;
   }
 }
 
@@ -102,6 +110,10 @@ export class Hands {
   private selected: number | null = null;
   /** Whether the object at the cursor is not to be selected, until the cursor moves. */
   private deselected = false;
+  /** An object that was selected although the overlays have no outline of it: they have those of the first objects alone, unless one is asked for. */
+  beyond: number | null = null;
+  /** Called when there is such an object. */
+  onBeyond: () => void = () => {};
   private drag: Drag | null = null;
   private readonly pointers = new Map<number, Point>();
   private readonly handles = byId("handles");
@@ -109,6 +121,7 @@ export class Hands {
   private readonly alongMenu = byId<HTMLSelectElement>("along");
   private shift = false;
   private space = false;
+  private pause = 0;
   private hovering = false;
   private hoverNext: Point | null = null;
 
@@ -123,7 +136,7 @@ export class Hands {
     for (const input of document.querySelectorAll<HTMLInputElement>("input[name=tool]")) {
       input.addEventListener("change", () => this.choose(input.value as Tool));
     }
-    this.objects.addEventListener("change", () => this.select(this.objects.value === "" ? null : Number(this.objects.value)));
+    this.objects.addEventListener("change", () => this.select(this.overlays.data?.objects.find(it => String(it.index) === this.objects.value) ?? null));
     const { stage } = picture;
     stage.addEventListener("pointerdown", event => this.press(event));
     stage.addEventListener("pointermove", event => this.moved(event));
@@ -131,7 +144,10 @@ export class Hands {
     stage.addEventListener("pointerleave", () => this.leave());
     stage.addEventListener("keydown", event => this.key(event));
     stage.addEventListener("keyup", event => this.keyUp(event));
-    stage.addEventListener("focusout", () => this.endDrag());
+    stage.addEventListener("focusout", () => {
+      this.endDrag();
+      this.freeSpace();
+    });
     stage.addEventListener("contextmenu", event => event.preventDefault());
   }
 
@@ -160,7 +176,7 @@ export class Hands {
 
   private follow(): void {
     const { head } = this.editor.view.state.selection.main;
-    const found = this.deselected ? undefined : this.overlays.data?.objects.find(it => this.editor.contains(it.range, head));
+    const found = this.deselected ? undefined : this.editor.objectAt(this.overlays.data?.objects ?? [], head);
     this.selected = found?.index ?? null;
     this.objects.value = found === undefined ? "" : String(found.index);
     this.overlays.select(found ?? null);
@@ -204,9 +220,12 @@ export class Hands {
   }
 
   /** Selects an object and shows its line; nothing for null. */
-  private select(index: number | null): void {
-    const object = this.overlays.data?.objects.find(it => it.index === index);
-    if (object !== undefined) {
+  private select(object: SceneObject | null): void {
+    if (object !== null) {
+      if (!this.overlays.data?.objects.some(it => it.index === object.index)) {
+        this.beyond = object.index;
+        this.onBeyond();
+      }
       this.editor.jump(object.selection.start);
       return;
     }
@@ -267,7 +286,7 @@ export class Hands {
   /** Selects what is under the pointer, and drags it by its centre if the pointer moves on. */
   private async grab(event: PointerEvent, start: Point): Promise<void> {
     const pick = await this.pick(start);
-    this.select(pick?.object?.index ?? null);
+    this.select(pick?.object ?? null);
     const object = this.selectedObject();
     const middle = object?.handles.find(({ handle }) => handle === "center" || handle === "centroid");
     // The button may be up by now, or a second finger down.
@@ -335,6 +354,8 @@ export class Hands {
   private key(event: KeyboardEvent): void {
     const arrow = ARROWS[event.key];
     this.shift = event.shiftKey;
+    clearTimeout(this.pause);
+    if (arrow === undefined && event.key !== "Escape" && event.key !== "Shift") this.endDrag();
     if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
     if (arrow !== undefined) {
       const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
@@ -360,11 +381,14 @@ export class Hands {
 
   private keyUp(event: KeyboardEvent): void {
     this.shift = event.shiftKey;
-    if (event.key === " ") {
-      this.space = false;
-      delete this.picture.stage.dataset["space"];
-    }
-    if (event.key in ARROWS) this.endDrag();
+    if (event.key === " ") this.freeSpace();
+    // Taps that follow each other are one drag.
+    if (event.key in ARROWS) this.pause = setTimeout(() => this.endDrag(), KEY_PAUSE);
+  }
+
+  private freeSpace(): void {
+    this.space = false;
+    delete this.picture.stage.dataset["space"];
   }
 
   /** Holds drags to an axis, or frees them of it. */
@@ -389,6 +413,7 @@ export class Hands {
   }
 
   private endDrag(): void {
+    clearTimeout(this.pause);
     this.drag?.end();
     this.drag = null;
   }

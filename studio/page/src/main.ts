@@ -69,6 +69,10 @@ async function refreshOverlays(): Promise<void> {
     try {
       const answer = await connection.request<Overlays | null>("pinhole/overlays", editor.about({}));
       if (answer === null) continue;
+      if (hands.beyond !== null) {
+        const one = await connection.request<Overlays | null>("pinhole/overlays", editor.about({ object: hands.beyond }));
+        answer.objects.push(...(one?.objects ?? []));
+      }
       overlays.data = answer;
       frames.resized(answer.size);
       hands.refresh();
@@ -88,6 +92,7 @@ function changed(): void {
   files.show();
 }
 
+hands.onBeyond = () => void refreshOverlays();
 picture.onView = () => {
   overlays.draw();
   hands.place();
@@ -133,5 +138,5 @@ document.addEventListener("keydown", event => {
 followTheme(editor.view);
 layOut(picture);
 offerLayers(overlays);
-offerSharing(editor, connection, status, () => files.name);
+offerSharing(editor, connection, status, files);
 connection.open();

@@ -35,17 +35,18 @@ function literalAt(state: EditorState, at: number): Literal | null {
   return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value, step: stepOf(value, written, WHOLE.test(before)) };
 }
 
-/** A hundredth to a tenth of the number, and no coarser than how it is written. */
+/** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero ends; and no coarser than how it is written. */
 function stepOf(value: number, written: string, isWhole: boolean): number {
   if (isWhole) return 1;
-  const decimals = /\.(\d*)$/.exec(written)?.[1]?.length ?? 0;
-  const exponent = Math.floor(Math.log10(Math.max(Math.abs(value), 0.1))) - 1;
-  return 10 ** Math.min(exponent, decimals > 0 ? -decimals : exponent);
+  const [, fraction = "", power = "0"] = /^[^.e]*(?:\.([\d_]*))?(?:e(.*))?$/i.exec(written) ?? [];
+  const lastDigit = Number(power) - fraction.replaceAll("_", "").length;
+  const exponent = Math.max(Math.floor(Math.log10(Math.abs(value) || 1)) - 1, -2);
+  return 10 ** (lastDigit < 0 ? Math.min(exponent, lastDigit) : exponent);
 }
 
 function format(value: number, step: number): string {
   const decimals = Math.max(0, Math.round(-Math.log10(step)));
-  const rounded = Number(value.toFixed(Math.min(decimals, 20)));
+  const rounded = Number(value.toFixed(Math.min(decimals, 100)));
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }
 
@@ -150,6 +151,8 @@ function createSlider(view: EditorView): TooltipView {
   };
 }
 
+const ENDS = ["pointerup", "pointercancel"] as const;
+
 /** Turns a number by the way of the pointer to the side, until it is let go. */
 function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   event.preventDefault();
@@ -158,12 +161,13 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   const move = (next: Event) => turn.set(literal.value + Math.round(((next as PointerEvent).clientX - event.clientX) / DRAG_PIXELS) * literal.step);
   const up = () => {
     document.removeEventListener("pointermove", move);
+    for (const end of ENDS) document.removeEventListener(end, up);
     document.body.classList.remove("scrubbing");
     turn.end();
   };
   if (target.isConnected) document.body.classList.add("scrubbing");
   document.addEventListener("pointermove", move);
-  document.addEventListener("pointerup", up, { once: true });
+  for (const end of ENDS) document.addEventListener(end, up);
 }
 
 /** Turns the number at the cursor by a step; elsewhere the key does what it does without. */

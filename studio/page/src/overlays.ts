@@ -21,8 +21,9 @@ export type Layer = keyof typeof LAYERS;
 /** From this zoom on a grid of pixels can be seen. */
 const GRID_ZOOM = 6;
 
-/** Lines are cut off so many picture sizes outside of it, because what draws them counts with few digits. */
-const REACH = 50;
+/** Lines are cut off so many picture sizes outside of it: what draws them counts in single precision, in which a tenth of a pixel is kept up to 2^20 pixels, and a
+ *  picture is shown with up to 8192 in a row. */
+const REACH = 2 ** 20 / 8192;
 
 export class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */

@@ -63,7 +63,8 @@ export interface Pick {
   point: [number, number, number] | null;
   distance: number | null;
   depth: number | null;
-  color: string;
+  /** Null outside of the picture. */
+  color: string | null;
 }
 
 /** What a drag may be held to: an axis of the world, or the plane of equal y. */

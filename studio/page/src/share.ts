@@ -3,6 +3,7 @@
 import { byId, create, createButton, fromBase64 } from "./dom";
 import type { Connection } from "./connection";
 import type { SceneEditor } from "./editor";
+import type { Files } from "./files";
 import type { Status } from "./status";
 
 /** A scene in a link may have so many characters unpacked. */
@@ -50,8 +51,8 @@ export function download(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-export function offerSharing(editor: SceneEditor, connection: Connection, status: Status, name: () => string): void {
-  const stem = () => name().replace(/\.scn$/, "");
+export function offerSharing(editor: SceneEditor, connection: Connection, status: Status, files: Files): void {
+  const stem = () => files.name.replace(/\.scn$/, "");
   const picture = async (kind: "png" | "exr", type: string) => {
     status.say(`Rendering ${stem()}.${kind}…`);
     try {
@@ -66,7 +67,7 @@ export function offerSharing(editor: SceneEditor, connection: Connection, status
   };
   byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
   byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));
-  byId("download-scene").addEventListener("click", () => download(`${stem()}.scn`, editor.text, "text/plain"));
+  byId("download-scene").addEventListener("click", () => download(`${stem()}.scn`, files.textToSave, "text/plain"));
 
   const dialog = byId<HTMLDialogElement>("share-dialog");
   const field = byId<HTMLInputElement>("share-link");
@@ -81,6 +82,7 @@ export function offerSharing(editor: SceneEditor, connection: Connection, status
     createButton("Close", "", () => dialog.close()),
   );
   byId("share").addEventListener("click", async () => {
+    if (editor.text.length > LONGEST) return status.say("The scene is too long for a link: give away its file.", "warning");
     field.value = `${location.origin}${location.pathname}${KEY}${await packed(editor.text)}`;
     dialog.showModal();
     field.select();

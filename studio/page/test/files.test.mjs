@@ -46,6 +46,44 @@ test("a file that is gone is told, and Save writes it anew", async t => {
   assert.equal(started.text(), FIGURE);
 });
 
+test("a file with lines that end by CR LF keeps them, and is compared by its text", async t => {
+  const crlf = text => text.replaceAll("\n", "\r\n");
+  const started = await host(t, crlf(FIGURE));
+  const page = await open(await launch(t), started);
+  assert.equal(await page.textContent("#file-state"), "");
+  await andFinished(page, () => started.write(crlf(NEARER)));
+  assert.equal(await text(page), NEARER);
+  assert.ok(await page.isHidden("#conflict-dialog"));
+  await andFinished(page, () => type(page, LARGER));
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), crlf(LARGER));
+});
+
+test("a file that comes back with another text is followed where nothing was written here", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  rmSync(started.file);
+  await page.waitForFunction(() => /is gone/.test(document.querySelector("#said").textContent));
+  await andFinished(page, () => started.write(NEARER));
+  assert.equal(await text(page), NEARER);
+  assert.equal(await page.textContent("#file-state"), "");
+});
+
+test("the page asks nobody but its host", async t => {
+  const started = await host(t);
+  const page = await (await launch(t)).newPage();
+  const asked = new Set();
+  page.on("request", request => asked.add(new URL(request.url()).origin));
+  page.on("websocket", socket => asked.add(new URL(socket.url()).host));
+  await page.goto(started.address);
+  await page.waitForSelector(".hint");
+  await page.click("text=Download");
+  await Promise.all([page.waitForEvent("download"), page.click("#download-png")]);
+  const { origin, host: name } = new URL(started.address);
+  assert.deepEqual([...asked].filter(it => it !== origin && it !== name && it !== "null"), []);
+});
+
 test("a new scene gets its name by Save", async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));

@@ -103,6 +103,33 @@ test("all of it goes by keyboard", async t => {
   assert.equal(await text(page), FIGURE);
 });
 
+test("an object after a thousand others is selected, too", async t => {
+  const others = Array.from({ length: 1000 }, (_, i) => `sphere { center (0, ${i + 10}, 20)  radius 0.1 }`).join("\n");
+  const page = await open(await launch(t), await host(t, `camera { eye (0, 0, 5)  direction (0, 0, -1) }\n${others}\nsphere Last { center (0, 0, 0) }\n`));
+  await page.mouse.click(...(await onPage(page, [400, 225])));
+  await page.waitForSelector('.handle[aria-label="Last: center"]');
+});
+
+test("taps of a key are one drag, and all of them count", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.selectOption("#objects", { label: "Ball (sphere)" });
+  await page.focus('.handle[aria-label="Ball: center"]');
+  const place = async () => {
+    const { x, y } = await page.locator('.handle[aria-label="Ball: center"]').boundingBox();
+    const zoom = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width / 1280);
+    return [x / zoom, y / zoom];
+  };
+  const [x, y] = await place();
+  for (let i = 0; i < 6; i++) await page.keyboard.press("ArrowRight");
+  await page.waitForTimeout(800);
+  await finished(page);
+  const [now, level] = await place();
+  // Half a pixel of the last digit, and half of the screen's.
+  assert.ok(Math.abs(now - x - 60) <= 2 && Math.abs(level - y) <= 2, `${now - x}`);
+  await andFinished(page, () => page.keyboard.press("Control+z"));
+  assert.equal(await text(page), FIGURE);
+});
+
 test("every handle moves its object, and every tool the camera, and nothing else", async t => {
   const page = await open(await launch(t), await host(t));
   const handles = {

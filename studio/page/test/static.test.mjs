@@ -47,6 +47,26 @@ test("the static page opens a file of this computer", { skip }, async t => {
   assert.equal(await text(page), scene);
   assert.equal(await page.textContent("#file-name"), "other.scn");
   assert.equal(await page.textContent("#file-state"), "");
+  // The text that was there before belongs to another file.
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(page), scene);
   await type(page, FIGURE);
   assert.equal(await page.textContent("#file-state"), "not saved");
+  // Whoever has not saved is asked, and a file in another encoding is not opened.
+  page.once("dialog", dialog => dialog.accept());
+  const [again] = await Promise.all([page.waitForEvent("filechooser"), page.click("#open")]);
+  await again.setFiles({ name: "latin1.scn", mimeType: "text/plain", buffer: Buffer.from("// caf\xe9\n", "latin1") });
+  await page.waitForFunction(() => /no text in UTF-8/.test(document.querySelector("#said").textContent));
+  assert.equal(await page.textContent("#file-name"), "other.scn");
+});
+
+test("an engine that takes long to load is waited for", { skip }, async t => {
+  const page = await (await launch(t)).newPage();
+  await page.route("**/*.wasm", async route => {
+    await new Promise(resolve => setTimeout(resolve, 5000));
+    await route.continue();
+  });
+  await page.goto((await site(t, process.env.SITE)).address);
+  assert.equal(await page.textContent("#connection"), "Connecting…");
+  await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 30_000 });
 });

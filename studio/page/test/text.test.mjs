@@ -114,6 +114,13 @@ test("numbers are turned by a slider, by keys, and by a drag with the alt key, e
   assert.match(await text(page), /radius 2 /);
   await page.keyboard.press("Control+z");
   assert.equal(await text(page), FIGURE);
+  for (const [before, after] of [["1e-3", "0.002"], ["-0.05", "-0.04"], ["2.75", "2.76"], ["1_000", "1100"], ["1e6", "1100000"], ["0", "0.1"], ["30", "31"]]) {
+    await type(page, `let a = (${before}, 1, 1)`);
+    await page.keyboard.press("Home");
+    for (let i = 0; i < "let a = (".length + 1; i++) await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Alt+ArrowUp");
+    assert.equal(await text(page), `let a = (${after}, 1, 1)`);
+  }
 });
 
 test("texts and names of a scene are never HTML", async t => {
