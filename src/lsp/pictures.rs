@@ -146,7 +146,7 @@ fn samples(params: &Value, prepared: &mut Prepared) -> Answer {
     }
     let (scene, world) = prepared.world(1);
     let found = picture::samples(scene, world, pixel)
-        .map_err(|error| Refusal(ErrorCode::RequestFailed, error.to_string()))?;
+        .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
     let points = found.samples.iter().map(|(point, _)| point.to_array());
     let colors = found.samples.iter().map(|(_, color)| color.to_string());
     Ok(json!({

@@ -108,10 +108,9 @@ impl Pages {
         };
         let pages = Arc::clone(self);
         let follow = move || {
-            while latest.take().is_some() {
+            while let Some(content) = latest.take() {
                 let mut shared = pages.lock();
-                // What was seen may be older than what a page has saved since.
-                if shared.file.look() {
+                if shared.file.look(content) {
                     let message = shared.about_text();
                     shared.tell(&message, |_| true);
                 }

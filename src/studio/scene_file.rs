@@ -4,6 +4,7 @@ use std::{
     fs, io,
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
+    time::Instant,
 };
 
 use crate::{
@@ -24,6 +25,8 @@ pub struct SceneFile {
     path: Option<PathBuf>,
     /// What was there when it was looked at last.
     held: Held,
+    /// When a page has saved it last.
+    saved: Option<Instant>,
 }
 
 /// What there is at a path.
@@ -89,6 +92,7 @@ impl SceneFile {
             folder: PathBuf::new(),
             path: Some(path.to_owned()),
             held: Held::Text(text),
+            saved: None,
         })
     }
 
@@ -99,6 +103,7 @@ impl SceneFile {
             folder,
             path: None,
             held: Held::Text(SMALLEST.to_owned()),
+            saved: None,
         }
     }
 
@@ -124,12 +129,17 @@ impl SceneFile {
         &self.held
     }
 
-    /// Looks at what is there now. Says whether that is new.
-    pub fn look(&mut self) -> bool {
-        let held = match self.path() {
-            Some(path) => Held::new((self.read)(path)),
-            None => return false,
+    /// Takes in what is there now. Says whether that is new.
+    pub fn look(&mut self, content: Content) -> bool {
+        let Some(path) = self.path() else {
+            return false;
         };
+        // What was seen may be older than what a page has saved since.
+        let is_old = self.saved.is_some_and(|saved| content.since < saved);
+        let held = Held::new(match is_old {
+            true => (self.read)(path),
+            false => content.bytes,
+        });
         let is_new = self.held != held;
         self.held = held;
         is_new
@@ -177,6 +187,7 @@ impl SceneFile {
             }
         }
         self.held = Held::Text(text.to_owned());
+        self.saved = Some(Instant::now());
         Ok(())
     }
 }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::{
     edits::{Writer, degrees, exponent},
     fields::Subject,
-    handles::{self, Along, handles, outline_point, unit},
+    handles::{self, Along, TOLERANCE, handles, outline_point, unit},
     motions,
     projection::Projection,
 };
@@ -22,9 +22,6 @@ use crate::{
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
-
-/// So far, in pixels, something may be seen from where it should be.
-const TOLERANCE: f64 = 0.5;
 
 /// A number of an `f64` has no more digits than this.
 const DIGITS: i32 = 17;
@@ -73,10 +70,13 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         distance: distance(scene, drag),
     };
     let ideal = view.moved(&current)?;
+    let changes = changes(&current, &ideal);
+    if !(ideal.is_possible() && changes.iter().all(|(.., by)| by.is_finite())) {
+        return Err("that is too far away".to_owned());
+    }
     if !view.agree(&ideal, &ideal) {
         return Err("it would not be seen there".to_owned());
     }
-    let changes = changes(&current, &ideal)?;
     let written = |decimals| {
         let mut writer = Writer::new(analysis, decimals);
         let changed = writer.change(block, &changes);
@@ -85,14 +85,14 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let fields: Vec<(&'static str, Value)> = fields.collect();
         (writer.finish(), fields)
     };
-    // Where the change is so small that nobody sees it, it has not even one digit.
-    let first = -1 - exponent(changes.iter().map(|(.., by)| size(*by)).fold(0.0, f64::max));
-    let mut decimals = first..=first + DIGITS + 1;
+    // Where the change is so small that nobody sees it, it has no digit at all.
+    let first = -2 - exponent(changes.iter().map(|(.., by)| size(*by)).fold(0.0, f64::max));
+    let mut decimals = first..=first + DIGITS + 2;
     let good = |decimals: &i32| {
         let (_, fields) = written(*decimals);
         view.agree(&ideal, &current.with(&fields))
     };
-    let decimals = decimals.find(good).unwrap_or(first + DIGITS + 1);
+    let decimals = decimals.find(good).unwrap_or(first + DIGITS + 2);
     let (edits, fields) = written(decimals);
     let tied = || "the text ties these numbers to others, and they cannot change alone".to_owned();
     let edits = edits.ok_or_else(tied)?;
@@ -199,20 +199,10 @@ fn center(shape: &Shape, eye: DVec3) -> DVec3 {
 }
 
 /// The fields that differ: what they are, and by how much they have to change.
-fn changes(
-    current: &Subject,
-    ideal: &Subject,
-) -> Result<Vec<(&'static str, Value, Value)>, String> {
+fn changes(current: &Subject, ideal: &Subject) -> Vec<(&'static str, Value, Value)> {
     let pairs = current.fields().into_iter().zip(ideal.fields());
     let changes = pairs.map(|((name, from), (_, to))| (name, from, difference(to, from)));
-    let changes: Vec<_> = changes.filter(|(.., by)| size(*by) != 0.0).collect();
-    match changes
-        .iter()
-        .all(|(_, from, by)| sum(*from, *by).is_finite())
-    {
-        true => Ok(changes),
-        false => Err("that is too far away".to_owned()),
-    }
+    changes.filter(|(.., by)| size(*by) != 0.0).collect()
 }
 
 fn difference(to: Value, from: Value) -> Value {
@@ -285,6 +275,7 @@ impl Sight<'_> {
     /// Whether everything is seen within half a pixel of where it should be.
     fn agree(&self, ideal: &Subject, found: &Subject) -> bool {
         match (ideal, found) {
+            _ if !found.is_possible() => false,
             (Subject::Camera(ideal), Subject::Camera(found)) => self.cameras_agree(ideal, found),
             (Subject::Object { shape: ideal, .. }, Subject::Object { shape: found, .. }) => {
                 let marks = self.marks(ideal).into_iter().zip(self.marks(found));

@@ -1,6 +1,11 @@
 //! An object or the camera as values of fields, and back.
 
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
 use crate::{
+    math::compare_half_turns,
     scene::{Camera, CenteredTriangle, Cuboid, Lens, Outline, Shape, View},
     schema::Value,
 };
@@ -65,6 +70,34 @@ impl Subject {
             },
             Shape::Checkerboard(board) => vec![("y", Number(board.y))],
         }
+    }
+
+    /// Whether its numbers are those of an object or a camera, so that questions about it have answers.
+    pub fn is_possible(&self) -> bool {
+        let are_finite = self.fields().iter().all(|(_, value)| value.is_finite());
+        are_finite
+            && match self {
+                Self::Camera(camera) => {
+                    let (from, to) = camera.view.ends(camera.eye);
+                    let is_wide = match camera.lens {
+                        Lens::Distance(d) => d > 0.0,
+                        Lens::Fov(angle) | Lens::HorizontalFov(angle) => {
+                            let compared = [0.0, 1.0].map(|half| compare_half_turns(angle, half));
+                            compared == [Ordering::Greater, Ordering::Less]
+                        }
+                    };
+                    from != to && is_wide
+                }
+                Self::Object { shape, .. } => match shape {
+                    Shape::Sphere(sphere) => sphere.radius > 0.0,
+                    Shape::Box(cuboid) => cuboid.min.cmplt(cuboid.max).all(),
+                    Shape::Triangle(triangle) => match triangle.outline {
+                        Outline::Centered(triangle) => triangle.normal != DVec3::ZERO,
+                        Outline::Vertices(_) => true,
+                    },
+                    Shape::Checkerboard(_) => true,
+                },
+            }
     }
 
     /// The same with other values of these fields.

@@ -9,6 +9,9 @@ use crate::{
     tracer::vertices,
 };
 
+/// So far, in pixels, something may be seen from where it should be.
+pub const TOLERANCE: f64 = 0.5;
+
 /// A handle, and where it is in the world; nowhere if it cannot be seen from where the eye is.
 #[derive(Clone, Copy, Debug)]
 pub struct Handle {
@@ -179,30 +182,32 @@ fn moved_point(
     projection: &Projection,
 ) -> Result<DVec3, String> {
     let ray = projection.ray(to);
-    let moved = match along {
+    let (moved, goal) = match along {
         None => match projection.depth(point) {
-            depth if depth > 0.0 => projection.eye + ray * depth,
+            depth if depth > 0.0 => (projection.eye + ray * depth, to),
             _ => return Err("it is not in front of the eye".to_owned()),
         },
         Some(Along::Floor) => match (point.y - projection.eye.y) / ray.y {
-            depth if depth > 0.0 => (projection.eye + ray * depth).with_y(point.y),
+            depth if depth > 0.0 => ((projection.eye + ray * depth).with_y(point.y), to),
             _ => return Err("the plane that it moves in is not seen there".to_owned()),
         },
         Some(Along::Axis(axis)) => along_axis(point, to, DVec3::AXES[axis], projection)?,
     };
-    match moved.is_finite() && projection.point(moved).is_some() {
+    // Very far away, numbers have too few digits.
+    let seen = projection.point(moved);
+    match seen.is_some_and(|seen| seen.distance(goal) <= TOLERANCE) {
         true => Ok(moved),
         false => Err("that is too far away".to_owned()),
     }
 }
 
-/// A point moved along an axis, to where it is seen nearest to a point of the picture.
+/// A point moved along an axis, to where it is seen nearest to a point of the picture; and where that is.
 fn along_axis(
     point: DVec3,
     to: DVec2,
     axis: DVec3,
     projection: &Projection,
-) -> Result<DVec3, String> {
+) -> Result<(DVec3, DVec2), String> {
     // The plane of the eye and the axis through the point cuts the picture in a line; its normal, in the camera's axes, has that line's coefficients.
     let plane = unit((point - projection.eye).cross(axis)).0;
     let normal = DVec2::new(plane.dot(projection.right), -plane.dot(projection.top));
@@ -214,7 +219,7 @@ fn along_axis(
     let step = -(point - projection.eye).cross(ray).dot(across) / across.length_squared();
     let moved = point + axis * step;
     match moved.is_finite() {
-        true if projection.depth(moved) > 0.0 => Ok(moved),
+        true if projection.depth(moved) > 0.0 => Ok((moved, nearest)),
         true => Err("the axis does not come so far in the picture".to_owned()),
         false => Err("the axis is seen end-on".to_owned()),
     }

@@ -40,14 +40,14 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" => {
-            let back = turned(camera, projection, -ahead, DVec2::new(-by.x, by.y));
+            let back = turned(camera, projection, -ahead, by, -1.0);
             moved.eye = middle + back * distance;
             if let View::Direction(direction) = &mut moved.view {
                 *direction = -back * unit(*direction).1;
             }
         }
         "look" => {
-            let ahead = turned(camera, projection, ahead, by);
+            let ahead = turned(camera, projection, ahead, by, 1.0);
             moved.view = match camera.view {
                 View::Lookat(_) => View::Lookat(camera.eye + ahead * distance),
                 View::Direction(direction) => View::Direction(ahead * unit(direction).1),
@@ -92,9 +92,9 @@ fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// A direction along the view axis turned as the pointer has moved, in heights of the picture, each of which is half a turn: about the up vector by x, and
-/// then away from the up vector where the pointer goes up.
-fn turned(camera: &Camera, projection: &Projection, along: DVec3, by: DVec2) -> DVec3 {
+/// A direction along the view axis turned as the pointer has moved, in heights of the picture, each of which is half a turn: about the up vector, as often
+/// as `turns` says for each that it goes to the right, and away from the up vector where it goes up.
+fn turned(camera: &Camera, projection: &Projection, along: DVec3, by: DVec2, turns: f64) -> DVec3 {
     let up = unit(camera.up).0;
     // What right and up in the world are in the rolled picture.
     let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
@@ -113,7 +113,7 @@ fn turned(camera: &Camera, projection: &Projection, along: DVec3, by: DVec2) -> 
         turned if pointer.y != 0.0 => turned.clamp(polar.min(POLE), polar.max(PI - POLE)),
         _ => polar,
     };
-    let about = Angle::from_radians(pointer.x);
+    let about = Angle::from_radians(turns * pointer.x);
     let level = level * trig::cos(about) + up.cross(level) * trig::sin(about);
     let polar = Angle::from_radians(polar);
     level * trig::sin(polar) + up * trig::cos(polar)

@@ -7,7 +7,7 @@ use crate::{
     cancel,
     color::Color,
     math::SimdWidth,
-    render::{Control, RenderError, render_bytes, render_exact_bytes},
+    render::{Control, render_bytes, render_exact_bytes},
     sampling::{Points, Sampling},
     scene::{Method, Scene},
     tracer::{Hit, World, ray},
@@ -15,6 +15,9 @@ use crate::{
 
 /// No more samples of a pixel are shown.
 pub const MOST_SAMPLES: u64 = 1 << 16;
+
+/// More samples of a pixel would take too long.
+const MOST_TRACED: u64 = 1 << 20;
 
 /// What is seen at a point of the picture: where an object is hit, unless it is the background, and the colour. Nothing outside the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
@@ -42,12 +45,8 @@ pub struct PixelSamples {
 ///
 /// # Errors
 ///
-/// The pixel cannot be rendered.
-pub fn samples(
-    scene: &Scene,
-    world: &World,
-    [x, y]: [u32; 2],
-) -> Result<PixelSamples, RenderError> {
+/// Why the pixel cannot be rendered, in a sentence.
+pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSamples, String> {
     let control = Control {
         threads: None,
         progress: &|_| {},
@@ -55,11 +54,15 @@ pub fn samples(
     };
     let (picture, pixel) = (world.picture(), Area::pixel(x, y));
     let sampling = Sampling::new(&scene.sampler, picture.width, picture.height);
-    let film = match scene.sampler.method {
-        Method::Exact => render_exact_bytes(world, pixel, &control)?.film,
-        _ => render_bytes(world, &sampling, pixel, &control)?,
-    };
     let count = sampling.count(x, y);
+    if count > MOST_TRACED {
+        return Err(format!("{count} samples of a pixel would take too long"));
+    }
+    let film = match scene.sampler.method {
+        Method::Exact => render_exact_bytes(world, pixel, &control).map(|exact| exact.film),
+        _ => render_bytes(world, &sampling, pixel, &control),
+    };
+    let film = film.map_err(|error| error.to_string())?;
     let mut points = Points::default();
     let shown = 0..count.min(MOST_SAMPLES);
     sampling.place(SimdWidth::Baseline, [x, y], count, shown, &mut points);

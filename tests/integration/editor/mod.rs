@@ -3,6 +3,7 @@
 mod completion;
 mod hover;
 mod names;
+mod picture;
 mod prefixes;
 mod shape;
 mod words;

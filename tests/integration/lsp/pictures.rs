@@ -97,3 +97,209 @@ impl Talk {
         message.as_str().expect("it is refused").to_owned()
     }
 }
+
+const SCENE: &str = "\
+let ball = (0, 0, 0)
+image { width 200 height 100 }
+camera { eye (0, 1, 10) direction (0, 0, -1) d 8 near 5 far 20 }
+sampler { method regular per_pixel 4 }
+sphere Ball { center ball + (0, 1, 0)  color olive }
+box { center (2, 1, 0)  size (1, 1, 1)  color orange }
+checkerboard { colors (black, white) }
+";
+
+fn range(line: u32, start: u32, end: u32) -> Value {
+    let place = |character: u32| json!({ "line": line, "character": character });
+    json!({ "start": place(start), "end": place(end) })
+}
+
+#[test]
+fn what_is_seen_at_a_point_is_told_with_its_place_in_the_text() {
+    let mut talk = Talk::new(SCENE);
+    let ball = json!({ "index": 0, "kind": "sphere", "name": "Ball", "range": range(4, 0, 52), "selection": range(4, 7, 11) });
+    assert_eq!(
+        talk.ask("pinhole/pick", json!({ "point": [100, 50] })),
+        json!({ "object": ball, "point": [0.0, 1.0, 1.0], "distance": 9.0, "depth": 9.0, "color": "#808000" })
+    );
+    let found = talk.ask("pinhole/pick", json!({ "point": [180.0, 50.5] }));
+    assert_eq!(
+        (&found["object"]["kind"], &found["object"]["name"]),
+        (&json!("box"), &Value::Null)
+    );
+    assert_eq!(found["object"]["selection"], range(5, 0, 3));
+    let nothing = |color: Value| json!({ "object": null, "point": null, "distance": null, "depth": null, "color": color });
+    assert_eq!(
+        talk.ask("pinhole/pick", json!({ "point": [3, 1] })),
+        nothing(json!("#000000"))
+    );
+    for outside in [json!([-1, 0]), json!([201, 3]), json!([1e300, -1e300])] {
+        assert_eq!(
+            talk.ask("pinhole/pick", json!({ "point": outside })),
+            nothing(Value::Null)
+        );
+    }
+    for wrong in [
+        json!({}),
+        json!({ "point": [1] }),
+        json!({ "point": [null, 1] }),
+        json!({ "point": "1" }),
+    ] {
+        let message = talk.refused("pinhole/pick", wrong);
+        assert!(message.starts_with("`point`"), "{message}");
+    }
+    talk.change("sphere {");
+    for request in ["pick", "overlays", "drag", "samples", "frame"] {
+        assert_eq!(
+            talk.ask(&format!("pinhole/{request}"), json!({})),
+            Value::Null
+        );
+    }
+    talk.change(SCENE);
+    assert_eq!(
+        talk.refused("pinhole/paint", json!({})),
+        "`pinhole/paint` is not known here"
+    );
+}
+
+#[test]
+fn overlays_lie_where_their_things_are_seen() {
+    let mut talk = Talk::new(SCENE);
+    let found = talk.ask("pinhole/overlays", json!({}));
+    assert_eq!(
+        (&found["size"], &found["axis"]),
+        (&json!([200, 100]), &json!([100.0, 50.0]))
+    );
+    // Level, so that the horizon is the row in the middle, grown by the picture's own size.
+    assert_eq!(found["horizon"], json!([[-200.0, 50.0], [400.0, 50.0]]));
+    let vanishing = found["vanishing"].as_array().expect("a list");
+    assert_eq!(
+        vanishing[0],
+        json!({ "axis": "x", "point": null, "lines": [] })
+    );
+    assert_eq!(vanishing[2]["point"], json!([100.0, 50.0]));
+    // At depths of 9.5 and 10.5 a metre has 400/9.5 and 400/10.5 pixels.
+    let edges = vanishing[2]["lines"].as_array().expect("a list");
+    assert_eq!(edges.len(), 4);
+    assert_eq!(
+        edges[0],
+        json!([[163.16, 71.05], [157.14, 69.05], [100.0, 50.0]])
+    );
+    // The floor is a metre below the eye.
+    assert_eq!(found["near"], json!([[[-200.0, 130.0], [400.0, 130.0]]]));
+    assert_eq!(found["far"], json!([[[-200.0, 70.0], [400.0, 70.0]]]));
+
+    let objects = found["objects"].as_array().expect("a list");
+    assert_eq!(objects.len(), 3);
+    let ball = &objects[0];
+    assert_eq!(
+        ball["handles"][0],
+        json!({ "handle": "center", "at": [100.0, 50.0], "label": "center" })
+    );
+    // A ball of 1 at a distance of 10 is seen as wide as a disc of 400/√99 pixels.
+    assert_eq!(
+        ball["handles"][1],
+        json!({ "handle": "radius", "at": [140.2, 50.0], "label": "radius" })
+    );
+    let line = ball["outline"][0].as_array().expect("a line");
+    assert_eq!(line.first(), line.last());
+    for point in line {
+        let [x, y] = [0, 1].map(|axis| point[axis].as_f64().expect("a number"));
+        let radius = ((x - 100.0) * (x - 100.0) + (y - 50.0) * (y - 50.0)).sqrt();
+        assert!((radius - 400.0 / 99f64.sqrt()).abs() < 0.01, "{point}");
+    }
+    assert_eq!(objects[1]["outline"].as_array().map(Vec::len), Some(12));
+    assert_eq!(objects[1]["handles"].as_array().map(Vec::len), Some(7));
+    // The view axis is level and does not meet the floor.
+    assert_eq!(
+        objects[2]["handles"],
+        json!([{ "handle": "y", "at": null, "label": "y" }])
+    );
+    assert_eq!(objects[2]["outline"], json!([]));
+    let one = talk.ask("pinhole/overlays", json!({ "object": 1 }));
+    assert_eq!(one["objects"], json!([objects[1]]));
+
+    // Of very many objects those that one can tell apart.
+    let many: String = (0..1500)
+        .map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"))
+        .collect();
+    talk.change(&(SCENE.to_owned() + &many));
+    let found = talk.ask("pinhole/overlays", json!({}));
+    assert_eq!(found["objects"].as_array().map(Vec::len), Some(1000));
+    let one = talk.ask("pinhole/overlays", json!({ "object": 1400 }));
+    assert_eq!(one["objects"][0]["index"], 1400);
+}
+
+#[test]
+fn a_drag_is_answered_with_edits_of_the_text() {
+    let mut talk = Talk::new(SCENE);
+    let params = json!({ "object": 0, "handle": "center", "from": [100, 50], "to": [140, 50] });
+    assert_eq!(
+        talk.ask("pinhole/drag", params),
+        json!({ "edits": [{ "range": range(4, 29, 30), "newText": "1" }], "values": ["Ball.center = (1, 1, 0)"] })
+    );
+    let params =
+        json!({ "object": null, "handle": "view_distance", "from": [100, 50], "to": [100, 100] });
+    let dragged = talk.ask("pinhole/drag", params);
+    assert_eq!(dragged["values"], json!(["camera.d = 4"]));
+    for (params, message) in [
+        (
+            json!({ "object": 7, "handle": "center", "to": [1, 1] }),
+            "there is no object 7",
+        ),
+        (
+            json!({ "object": 0, "handle": "corner", "to": [1, 1] }),
+            "a sphere of this form has no handle `corner`",
+        ),
+        (
+            json!({ "object": 0, "handle": "center", "to": [1, 1], "along": "w" }),
+            "`along` is x, y, z or floor, and not `w`",
+        ),
+        (
+            json!({ "object": 0, "handle": "center", "to": null }),
+            "`to` is a point of the picture, as [x, y]",
+        ),
+        (
+            json!({ "handle": "pan", "to": [1, 1] }),
+            "`from` is a point of the picture, as [x, y]",
+        ),
+    ] {
+        assert_eq!(talk.refused("pinhole/drag", params), message);
+    }
+}
+
+#[test]
+fn the_samples_of_a_pixel_are_those_of_its_frame() {
+    let mut talk = Talk::new(SCENE);
+    let found = talk.ask("pinhole/samples", json!({ "pixel": [139, 49] }));
+    let points = json!([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]]);
+    assert_eq!(found["points"], points);
+    assert_eq!(
+        found["colors"],
+        json!(["#808000", "#808000", "#808000", "#808000"])
+    );
+    assert_eq!(found["color"], "#808000");
+    let found = talk.ask("pinhole/samples", json!({ "pixel": [141, 49] }));
+    assert_eq!(
+        found["colors"],
+        json!(["#000000", "#000000", "#000000", "#000000"])
+    );
+    talk.change(&SCENE.replace("method regular", "method exact"));
+    let found = talk.ask("pinhole/samples", json!({ "pixel": [140, 49] }));
+    assert_eq!(
+        (&found["points"], &found["colors"]),
+        (&json!([]), &json!([]))
+    );
+    let edge = found["color"].as_str().expect("a colour");
+    assert!(edge != "#000000" && edge != "#808000", "{edge}");
+    talk.change(&SCENE.replace("per_pixel 4", "per_pixel 1_000_000_000"));
+    assert_eq!(
+        talk.refused("pinhole/samples", json!({ "pixel": [1, 1] })),
+        "1000000000 samples of a pixel would take too long"
+    );
+    for pixel in [json!([200, 0]), json!([0, 100])] {
+        assert_eq!(
+            talk.refused("pinhole/samples", json!({ "pixel": pixel })),
+            "`pixel` is no pixel of the picture"
+        );
+    }
+}

@@ -272,6 +272,10 @@ fn a_conversation_begins_and_ends_as_it_should() {
     let hello = client.ask("initialize", json!({ "capabilities": {} }));
     assert_eq!(hello["serverInfo"]["name"], "pinhole");
     assert_eq!(hello["capabilities"]["positionEncoding"], "utf-16");
+    assert_eq!(
+        hello["capabilities"]["experimental"],
+        json!({ "pinhole": 1 })
+    );
     let legend = &hello["capabilities"]["semanticTokensProvider"]["legend"];
     assert_eq!(
         legend["tokenTypes"],
