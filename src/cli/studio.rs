@@ -29,7 +29,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             .map_or(String::new(), |port| format!(" at port {port}"));
         Trouble(format!("cannot serve a page{port}: {error}"))
     })?;
-    let address = host.address();
+    let (address, address_once) = (host.address(), host.address_once());
     let (sender, ended) = mpsc::channel();
     interrupt.then(move || {
         let _ = sender.send(());
@@ -37,7 +37,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     output::to_people(&format!(
         "editing {name} at this address; Ctrl-C ends it\n{address}\n"
     ));
-    if !args.no_open && !open(&address) {
+    if !args.no_open && !open(&address_once) {
         output::warning(&"no browser could be started: open the address in one");
     }
     let wait = move || {

@@ -8,7 +8,7 @@ mod answers;
 mod convert;
 mod documents;
 mod frames;
-pub mod json;
+pub mod messages;
 mod params;
 mod pictures;
 mod prepared;

@@ -14,7 +14,7 @@ use lsp_server::Message;
 use serde_json::Value;
 
 use super::{
-    json::{self, Malformed},
+    messages::{self, Malformed},
     server::Server,
 };
 
@@ -129,7 +129,7 @@ fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
         let what = format!("the input ends after {read} of {length} bytes of a message");
         return Err(Failed::ForGood(what));
     }
-    match json::read(&content) {
+    match messages::read(&content) {
         Ok(message) => Ok(Some(Ok(message))),
         Err(Malformed::Answered(response)) => Ok(Some(Err(response))),
         Err(Malformed::Unanswered(what)) => Err(Failed::Once(what)),

@@ -3,7 +3,10 @@
 //! Other pages in the same browser can send requests here, but cannot set the headers that are looked at: `Host` (a name of theirs may lead to this machine),
 //! `Origin`, and the cookie, which is sent with requests of this site alone. Other users of the machine do not know the token.
 
-use std::io;
+use std::{
+    io,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
 use super::http::{Request, Response};
 
@@ -24,71 +27,115 @@ const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
 /// What a browser has to know.
 #[derive(Debug)]
 pub struct Access {
-    token: String,
     port: u16,
+    /// In the address that is printed.
+    token: String,
+    /// In the address that a browser is started with, until it has come. Other users see command lines.
+    token_once: Mutex<Option<String>>,
+    /// In the cookie. The browser sends it to servers at other ports of this machine as well, so it must not be worth anything in an address.
+    secret: String,
 }
 
 impl Access {
-    /// Makes a token for the host at this port.
+    /// Makes the secrets of the host at this port.
     ///
     /// # Errors
     ///
     /// The system has no randomness to give.
     pub fn new(port: u16) -> io::Result<Self> {
-        let token = secret()?;
-        Ok(Self { token, port })
+        Ok(Self {
+            port,
+            token: secret()?,
+            token_once: Mutex::new(Some(secret()?)),
+            secret: secret()?,
+        })
     }
 
     /// The address that lets a browser in.
     pub fn address(&self) -> String {
-        format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
+        self.address_with(&self.token)
+    }
+
+    /// An address that lets a browser in once.
+    pub fn address_once(&self) -> String {
+        self.address_with(self.once().as_deref().unwrap_or_default())
+    }
+
+    fn address_with(&self, token: &str) -> String {
+        format!("http://127.0.0.1:{}/?token={token}", self.port)
+    }
+
+    fn once(&self) -> MutexGuard<'_, Option<String>> {
+        self.token_once
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What a request gets.
     pub fn answer(&self, request: &Request) -> Answer {
-        self.socket(request).unwrap_or_else(Answer::Response)
-    }
-
-    /// The key of a web socket; an error is any other response.
-    fn socket(&self, request: &Request) -> Result<Answer, Response> {
-        let forbidden = |what: &str| Err(Response::text("403 Forbidden", what));
-        let host = request.header("host").unwrap_or_default();
-        let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
-        if !own.iter().any(|own| own == host) {
-            return forbidden("This is not the address of this page.");
-        }
-        let origin = request.header("origin");
-        let is_own = origin == Some(&format!("http://{host}"));
-        if request.has("origin") && !is_own {
-            return forbidden("Another page asks for this.");
-        }
-        if request.method != "GET" {
-            let refused = Response::text("405 Method Not Allowed", "Use GET.");
-            return Err(refused.with("Allow", "GET"));
+        if let Some(refusal) = self.refusal(request) {
+            return Answer::Response(refusal);
         }
         if let Some(token) = request.target.strip_prefix("/?token=") {
-            return match is_equal(token, &self.token) {
-                true => Err(self.admission()),
-                false => forbidden("This address is from an earlier run, or incomplete."),
-            };
+            return Answer::Response(self.exchange(token));
         }
         if !self.has_cookie(request) {
             return forbidden("Open the address that `pinhole studio` has printed.");
         }
         match request.target.as_str() {
-            "/" => Err(index()),
-            "/studio.js" => Err(Response::new("200 OK", "text/javascript", SCRIPT.to_vec())),
-            "/studio.css" => Err(Response::new("200 OK", "text/css", STYLE.to_vec())),
-            "/socket" if !is_own => forbidden("A web socket says which page asks for it."),
-            "/socket" => key(request).map(Answer::Socket),
-            _ => Err(Response::text("404 Not Found", "There is no such page.")),
+            "/" => Answer::Response(index()),
+            "/studio.js" => file("text/javascript", SCRIPT),
+            "/studio.css" => file("text/css", STYLE),
+            "/socket" if !request.has("origin") => {
+                forbidden("A web socket says which page asks for it.")
+            }
+            "/socket" => socket(request),
+            _ => Answer::Response(Response::text("404 Not Found", "There is no such page.")),
+        }
+    }
+
+    /// Why a request is refused whoever sends it: it is not for this host, not from its page, or not for reading.
+    fn refusal(&self, request: &Request) -> Option<Response> {
+        let host = request.header("host").unwrap_or_default();
+        let is_own = ["127.0.0.1", "localhost"].iter().any(|name| {
+            // Browsers leave the usual port out.
+            host == format!("{name}:{}", self.port) || (self.port == 80 && host == *name)
+        });
+        if !is_own {
+            let what = "This is not the address of this page.";
+            return Some(Response::text("403 Forbidden", what));
+        }
+        let is_from_here = request.header("origin") == Some(&format!("http://{host}"));
+        if request.has("origin") && !is_from_here {
+            return Some(Response::text(
+                "403 Forbidden",
+                "Another page asks for this.",
+            ));
+        }
+        (request.method != "GET")
+            .then(|| Response::text("405 Method Not Allowed", "Use GET.").with("Allow", "GET"))
+    }
+
+    /// The cookie for a token.
+    fn exchange(&self, token: &str) -> Response {
+        let mut once = self.once();
+        let is_first = once.as_ref().is_some_and(|once| is_equal(token, once));
+        if is_first {
+            *once = None;
+        }
+        match is_first || is_equal(token, &self.token) {
+            true => self.admission(),
+            false => {
+                let what = "This address is from an earlier run, used already, or incomplete. Open the one that `pinhole studio` has printed.";
+                Response::text("403 Forbidden", what)
+            }
         }
     }
 
     /// The address is left for one without the token, so that it is not shown, copied or kept in the history.
     fn admission(&self) -> Response {
-        let (name, token) = (self.cookie(), &self.token);
-        let cookie = format!("{name}={token}; Path=/; HttpOnly; SameSite=Strict");
+        let (name, secret) = (self.cookie(), &self.secret);
+        let cookie = format!("{name}={secret}; Path=/; HttpOnly; SameSite=Strict");
         Response::text("303 See Other", "This way.")
             .with("Location", "/")
             .with("Set-Cookie", cookie)
@@ -103,7 +150,7 @@ impl Access {
         let name = self.cookie();
         let cookies = request.header("cookie").unwrap_or_default().split(';');
         let mut pairs = cookies.filter_map(|cookie| cookie.trim().split_once('='));
-        pairs.any(|(known, value)| known == name && is_equal(value, &self.token))
+        pairs.any(|(known, value)| known == name && is_equal(value, &self.secret))
     }
 }
 
@@ -133,24 +180,33 @@ fn index() -> Response {
         .with("Content-Security-Policy", policy)
 }
 
-fn key(request: &Request) -> Result<String, Response> {
+fn forbidden(what: &str) -> Answer {
+    Answer::Response(Response::text("403 Forbidden", what))
+}
+
+fn file(kind: &str, bytes: &[u8]) -> Answer {
+    Answer::Response(Response::new("200 OK", kind, bytes.to_vec()))
+}
+
+fn socket(request: &Request) -> Answer {
     let is = |name, wanted: &str| {
         let words = request.header(name).unwrap_or_default().split(',');
         words
             .map(str::trim)
             .any(|word| word.eq_ignore_ascii_case(wanted))
     };
-    let key = request.header("sec-websocket-key");
     let is_socket = is("upgrade", "websocket")
         && is("connection", "upgrade")
         && is("sec-websocket-version", "13");
-    match key {
-        Some(key) if is_socket => Ok(key.to_owned()),
+    match request.header("sec-websocket-key") {
+        Some(key) if is_socket => Answer::Socket(key.to_owned()),
         _ => {
             let refused = Response::text("426 Upgrade Required", "This is a web socket.");
-            Err(refused
-                .with("Upgrade", "websocket")
-                .with("Sec-WebSocket-Version", "13"))
+            Answer::Response(
+                refused
+                    .with("Upgrade", "websocket")
+                    .with("Sec-WebSocket-Version", "13"),
+            )
         }
     }
 }

@@ -6,14 +6,17 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A head has at most so many bytes, and
+/// A head has at most so many bytes: those of browsers have about one KiB, unless other programs on this machine have set many cookies. And
 const LONGEST_HEAD: usize = 16 << 10;
 
-/// so many lines,
+/// so many lines, of which browsers send some 20,
 const MOST_HEADERS: usize = 64;
 
-/// and comes within this time.
+/// and comes within this time. On one machine it comes at once; browsers also open connections that they may need later, and these shall not be kept for long.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// So long a connection is kept after the response, for the other end to take it: more than a machine needs for it.
+const FAREWELL: Duration = Duration::from_millis(200);
 
 /// What a browser asks for.
 #[derive(Debug, Default)]
@@ -138,10 +141,18 @@ impl Response {
         stream.write_all(&bytes)?;
         stream.shutdown(Shutdown::Write)?;
         // What was sent and not read would tear the connection down before the response has arrived.
-        stream.set_read_timeout(Some(Duration::from_millis(200)))?;
-        let mut rest = stream.take(1 << 16);
-        let _ = io::copy(&mut rest, &mut io::sink());
-        Ok(())
+        let end = Instant::now() + FAREWELL;
+        let mut rest = [0; 4096];
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(());
+            }
+            stream.set_read_timeout(Some(left))?;
+            if stream.read(&mut rest)? == 0 {
+                return Ok(());
+            }
+        }
     }
 }
 

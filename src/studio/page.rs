@@ -14,37 +14,28 @@ use std::{
     thread,
 };
 
-use lsp_server::{ErrorCode, Message, Notification, Request, Response};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
 use serde_json::{Value, json};
 use tungstenite::{
-    Bytes, Error, Message as Frame, Utf8Bytes, WebSocket,
+    Error, Message as Frame, Utf8Bytes, WebSocket,
     protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::CloseCode},
 };
 
-use super::{host::Pages, picture, scene_file::NotSaved};
+use super::{
+    pages::{Event, Pages},
+    picture_file,
+    scene_file::NotSaved,
+};
 use crate::lsp::{
     Server,
-    json::{self, Malformed},
+    messages::{self, Malformed},
 };
 
-/// The longest message of a page, in bytes; no text that somebody edits in a browser has as many.
+/// The longest message of a page, in bytes: far more than any text that an editor in a browser can hold, and little enough for memory.
 const LONGEST: usize = 64 << 20;
 
-/// So many messages are read before the first of them is taken in.
+/// So many messages are read before the first of them is taken in. A hand that drags sends one or two for each frame of the screen, and some 20 frames are behind at worst.
 const AHEAD: usize = 64;
-
-/// What happens to a page.
-#[derive(Debug)]
-pub enum Event {
-    /// It has sent a message.
-    Said(Utf8Bytes),
-    /// It wants to know whether somebody is there.
-    Pinged(Bytes),
-    /// There is a message for it.
-    Tell(String),
-    /// It is gone, or has sent what ends the conversation.
-    Over(CloseCode),
-}
 
 /// Holds the conversation until the page leaves. Some of it may have been read already.
 pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Result<()> {
@@ -68,11 +59,10 @@ pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Res
         pages: Arc::clone(pages),
         server: Server::new(|_| {}),
         sender: own_sender,
-        rendering: Arc::default(),
-        is_gone: Arc::default(),
+        rendering: None,
     };
     let ended = page.run(&events, &taken);
-    page.is_gone.store(true, Ordering::SeqCst);
+    page.cancel(None);
     pages.leave(number);
     // The reader ends with it.
     let _ = page.socket.get_ref().shutdown(Shutdown::Both);
@@ -130,9 +120,8 @@ struct Page {
     server: Server,
     /// For threads that work for it.
     sender: Sender<Event>,
-    /// Whether a picture's file is being made.
-    rendering: Arc<AtomicBool>,
-    is_gone: Arc<AtomicBool>,
+    /// The request for the picture's file that is being made, and what gives it up.
+    rendering: Option<(RequestId, Arc<AtomicBool>)>,
 }
 
 impl Page {
@@ -149,12 +138,16 @@ impl Page {
                 },
                 false => events.recv().ok(),
             };
-            if !matches!(event, Some(Event::Tell(_))) {
+            if !matches!(event, Some(Event::Tell(_) | Event::Rendered(_))) {
                 let _ = taken.try_recv();
             }
             match event {
                 Some(Event::Said(text)) => self.hear(&text)?,
                 Some(Event::Tell(text)) => self.send(text)?,
+                Some(Event::Rendered(text)) => {
+                    self.rendering = None;
+                    self.send(text)?;
+                }
                 Some(Event::Pinged(content)) => self.socket.send(Frame::Pong(content))?,
                 Some(Event::Over(code)) => return self.close(code),
                 None => return Ok(()),
@@ -171,7 +164,7 @@ impl Page {
     }
 
     fn say(&mut self, messages: Vec<Message>) -> Result<(), Error> {
-        let mut texts = messages.iter().map(json::written);
+        let mut texts = messages.iter().map(messages::written);
         texts.try_for_each(|text| self.send(text))
     }
 
@@ -180,11 +173,16 @@ impl Page {
     }
 
     fn hear(&mut self, text: &str) -> Result<(), Error> {
-        match json::read(text.as_bytes()) {
+        match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if request.method.starts_with("studio/") => {
                 self.answer(request)
             }
             Ok(message) => {
+                if let Message::Notification(Notification { method, params }) = &message
+                    && method == "$/cancelRequest"
+                {
+                    self.cancel(Some(params.get("id").unwrap_or(&Value::Null)));
+                }
                 let messages = self.server.handle(message);
                 self.say(messages)
             }
@@ -195,7 +193,7 @@ impl Page {
 
     /// Answers what is asked of the host.
     fn answer(&mut self, request: Request) -> Result<(), Error> {
-        if picture::is_asked_for(&request) {
+        if picture_file::is_asked_for(&request) {
             return self.render(request);
         }
         let Request { id, method, params } = request;
@@ -233,17 +231,17 @@ impl Page {
 
     /// Makes a picture's file while the conversation goes on.
     fn render(&mut self, request: Request) -> Result<(), Error> {
-        if self.rendering.swap(true, Ordering::SeqCst) {
+        if self.rendering.is_some() {
             let message = "another picture is being made".to_owned();
             let code = ErrorCode::RequestFailed as i32;
             return self.say(vec![Response::new_err(request.id, code, message).into()]);
         }
+        let cancel = Arc::new(AtomicBool::new(false));
+        self.rendering = Some((request.id.clone(), Arc::clone(&cancel)));
         let sender = self.sender.clone();
-        let (rendering, is_gone) = (Arc::clone(&self.rendering), Arc::clone(&self.is_gone));
         let work = move || {
-            let response = picture::answer(request, &is_gone);
-            rendering.store(false, Ordering::SeqCst);
-            let _ = sender.send(Event::Tell(json::written(&response.into())));
+            let response = picture_file::answer(request, &cancel);
+            let _ = sender.send(Event::Rendered(messages::written(&response.into())));
         };
         thread::Builder::new()
             .name("picture".to_owned())
@@ -251,9 +249,14 @@ impl Page {
             .map(|_| ())
             .map_err(Error::Io)
     }
-}
 
-/// A notification's text.
-pub fn notification(method: &str, params: Value) -> String {
-    json::written(&Notification::new(method.to_owned(), params).into())
+    /// Gives the picture's file up that a request asked for, or any.
+    fn cancel(&self, wanted: Option<&Value>) {
+        let wanted = wanted.map(|id| serde_json::from_value(id.clone()).ok());
+        if let Some((id, cancel)) = &self.rendering
+            && wanted.is_none_or(|wanted: Option<RequestId>| wanted.as_ref() == Some(id))
+        {
+            cancel.store(true, Ordering::SeqCst);
+        }
+    }
 }

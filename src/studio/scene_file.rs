@@ -4,6 +4,7 @@ use std::{
     fs, io,
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
+    time::Instant,
 };
 
 use crate::{
@@ -22,9 +23,51 @@ pub struct SceneFile {
     /// Where a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// What was in it when it was looked at last; none where it cannot be read as a text.
-    text: Option<String>,
+    /// What was there when it was looked at last.
+    held: Held,
+    /// When a page has saved it last.
+    saved: Option<Instant>,
 }
+
+/// What there is at a path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// A text.
+    Text(String),
+    /// No file.
+    Nothing,
+    /// Something that is not to be overwritten: why it cannot be read as a text.
+    Unreadable(String),
+}
+
+impl Held {
+    fn new(bytes: io::Result<Vec<u8>>) -> Self {
+        match bytes.map(String::from_utf8) {
+            Ok(Ok(text)) => Self::Text(text),
+            Ok(Err(_)) => Self::Unreadable(NO_TEXT.to_owned()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Self::Nothing,
+            Err(error) => Self::Unreadable(error.to_string()),
+        }
+    }
+
+    /// The text, if it is one.
+    pub fn text(&self) -> Option<&str> {
+        match self {
+            Self::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Why there is something and no text, in words.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Unreadable(reason) => Some(reason),
+            _ => None,
+        }
+    }
+}
+
+const NO_TEXT: &str = "it is not a text in UTF-8";
 
 /// Why a text was not saved.
 #[derive(Debug, PartialEq, Eq)]
@@ -43,12 +86,13 @@ impl SceneFile {
     /// It cannot be read, or holds no text.
     pub fn open(path: &Path, read: Read) -> io::Result<Self> {
         let text = String::from_utf8(read(path)?)
-            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8"))?;
+            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, NO_TEXT))?;
         Ok(Self {
             read,
             folder: PathBuf::new(),
             path: Some(path.to_owned()),
-            text: Some(text),
+            held: Held::Text(text),
+            saved: None,
         })
     }
 
@@ -58,7 +102,8 @@ impl SceneFile {
             read,
             folder,
             path: None,
-            text: Some(SMALLEST.to_owned()),
+            held: Held::Text(SMALLEST.to_owned()),
+            saved: None,
         }
     }
 
@@ -79,16 +124,24 @@ impl SceneFile {
             .into_owned()
     }
 
-    /// What was in it when it was looked at last.
-    pub fn text(&self) -> Option<&str> {
-        self.text.as_deref()
+    /// What was there when it was looked at last.
+    pub fn held(&self) -> &Held {
+        &self.held
     }
 
-    /// Looks at what is in it now. Says whether that is new.
-    pub fn look(&mut self) -> bool {
-        let text = self.path().and_then(|path| as_text((self.read)(path)));
-        let is_new = self.text != text;
-        self.text = text;
+    /// Takes in what is there now. Says whether that is new.
+    pub fn look(&mut self, content: Content) -> bool {
+        let Some(path) = self.path() else {
+            return false;
+        };
+        // What was seen may be older than what a page has saved since.
+        let is_old = self.saved.is_some_and(|saved| content.since < saved);
+        let held = Held::new(match is_old {
+            true => (self.read)(path),
+            false => content.bytes,
+        });
+        let is_new = self.held != held;
+        self.held = held;
         is_new
     }
 
@@ -110,10 +163,14 @@ impl SceneFile {
                 return Err(NotSaved::Refused(message));
             }
             Some(path) => {
-                let found = as_text((self.read)(path));
-                if found.as_deref() != Some(text) {
-                    if found.as_deref() != base {
-                        return Err(NotSaved::Changed(found));
+                let found = Held::new((self.read)(path));
+                if let Some(reason) = found.reason() {
+                    let message = format!("{} cannot be read: {reason}", self.name());
+                    return Err(NotSaved::Refused(message));
+                }
+                if found.text() != Some(text) {
+                    if found.text() != base {
+                        return Err(NotSaved::Changed(found.text().map(str::to_owned)));
                     }
                     film::write_whole(path, &AtomicBool::new(false), |file| {
                         file.write_all(text.as_bytes())
@@ -129,13 +186,10 @@ impl SceneFile {
                 self.path = Some(path);
             }
         }
-        self.text = Some(text.to_owned());
+        self.held = Held::Text(text.to_owned());
+        self.saved = Some(Instant::now());
         Ok(())
     }
-}
-
-fn as_text(bytes: io::Result<Vec<u8>>) -> Option<String> {
-    String::from_utf8(bytes.ok()?).ok()
 }
 
 /// A name for a new file in a folder, and no path that leads elsewhere, on any system.
@@ -147,8 +201,21 @@ fn check_name(name: &str) -> Result<(), &'static str> {
         Some(_) if name.contains(is_elsewhere) || name.starts_with('.') => {
             Err("the name is that of a file in the current folder, and no path")
         }
+        // Windows has devices of these names, whatever follows behind a dot.
+        Some(stem) if is_device(stem.split('.').next().unwrap_or_default()) => {
+            Err("the name is that of a device")
+        }
         Some(_) => Ok(()),
     }
+}
+
+fn is_device(name: &str) -> bool {
+    let name = name.trim_end().to_ascii_lowercase();
+    let is_port = |kind| {
+        let number = name.strip_prefix(kind).map(str::as_bytes);
+        matches!(number, Some([b'0'..=b'9']))
+    };
+    ["con", "prn", "aux", "nul"].contains(&&*name) || is_port("com") || is_port("lpt")
 }
 
 /// Makes a file, whole or not at all, where there is none.
@@ -173,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_name_leads_nowhere_else() {
-        for right in ["a.scn", "my scene.scn", "ä.b.scn"] {
+        for right in ["a.scn", "my scene.scn", "ä.b.scn", "cone.scn", "com.scn"] {
             assert_eq!(check_name(right), Ok(()), "{right}");
         }
         let wrong = [
@@ -191,6 +258,9 @@ mod tests {
             "a\n.scn",
             ".a.scn",
             "..scn",
+            "CON.scn",
+            "nul.x.scn",
+            "com1.scn",
         ];
         for wrong in wrong {
             assert!(check_name(wrong).is_err(), "{wrong:?}");

@@ -301,11 +301,21 @@ impl Sight<'_> {
             let towards = self.projection.ray(self.drag.to);
             radius.at = outline_point(sphere, self.projection.eye, towards);
         }
+        // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
+        if let (Shape::Checkerboard(board), [y]) = (shape, &mut handles[..]) {
+            y.at = self.held().map(|at| at.with_y(board.y));
+        }
         let seen = |at: Option<DVec3>| at.and_then(|at| self.projection.point(at));
         handles
             .into_iter()
             .map(|it| (it.name, seen(it.at)))
             .collect()
+    }
+
+    /// Where the first handle of the dragged object is before the drag.
+    fn held(&self) -> Option<DVec3> {
+        let object = self.scene.objects.get(self.drag.object?)?;
+        handles(&object.shape, &self.projection).first()?.at
     }
 
     /// Whether a point lies in the picture, or so near to it that it may come to be seen.

@@ -6,10 +6,10 @@ use lsp_server::{Message, Notification};
 use pinhole::{
     lsp::{
         Server,
-        json::{self, Malformed},
+        messages::{self, Malformed},
     },
     scene::SMALLEST,
-    studio::picture,
+    studio::picture_file,
 };
 use serde_json::json;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -33,14 +33,14 @@ impl Engine {
     /// What it says first: there is no file, and a new scene.
     pub fn greeting(&self) -> String {
         let params = json!({ "name": "scene.scn", "text": SMALLEST, "uri": "studio:///scene.scn", "saved": false });
-        json::written(&Notification::new("studio/file".to_owned(), params).into())
+        messages::written(&Notification::new("studio/file".to_owned(), params).into())
     }
 
     /// Takes a message in, and returns what has to be said before anything else.
     pub fn handle(&mut self, text: &str) -> Vec<String> {
-        match json::read(text.as_bytes()) {
-            Ok(Message::Request(request)) if picture::is_asked_for(&request) => texts(vec![
-                picture::answer(request, &AtomicBool::new(false)).into(),
+        match messages::read(text.as_bytes()) {
+            Ok(Message::Request(request)) if picture_file::is_asked_for(&request) => texts(vec![
+                picture_file::answer(request, &AtomicBool::new(false)).into(),
             ]),
             Ok(message) => texts(self.server.handle(message)),
             Err(Malformed::Answered(response)) => vec![response.to_string()],
@@ -67,5 +67,5 @@ impl Default for Engine {
 }
 
 fn texts(messages: Vec<Message>) -> Vec<String> {
-    messages.iter().map(json::written).collect()
+    messages.iter().map(messages::written).collect()
 }

@@ -56,17 +56,21 @@ fn the_token_is_exchanged_for_a_cookie() {
     for path in wrong {
         let response = studio.get(&path, "");
         assert_eq!(status(&response), "403", "{path}");
-        assert!(!response.contains(&studio.token));
+        assert!(!response.contains(&studio.secret));
     }
+    // What browsers send to other servers of this machine, too, opens nothing in an address.
+    assert_ne!(studio.token, studio.secret);
+    let response = studio.get(&format!("/?token={}", studio.secret), "");
+    assert_eq!(status(&response), "403");
     // Another run has another token.
     let (_folder, other) = self::studio();
-    assert_ne!(studio.token, other.token);
+    assert!(studio.token != other.token && studio.secret != other.secret);
 }
 
 #[test]
 fn nothing_is_given_out_without_the_cookie() {
     let (_folder, studio) = studio();
-    let (cookie, token) = (studio.cookie(), &studio.token);
+    let (cookie, token) = (studio.cookie(), &studio.secret);
     let (name, _) = cookie.split_once('=').unwrap();
     for path in ["/", "/studio.js", "/studio.css", "/socket", "/a.scn", "/x"] {
         for wrong in [
@@ -133,7 +137,7 @@ fn other_hosts_and_pages_are_refused() {
         for path in ["/", "/studio.js", "/socket", &format!("/?token={token}")] {
             let response = ask(path, headers);
             assert_eq!(status(&response), "403", "{path} {headers}");
-            assert!(!response.contains(token));
+            assert!(!response.contains(&studio.secret));
         }
     }
 }
@@ -207,7 +211,7 @@ fn the_page_may_use_what_is_its_own_and_nothing_else() {
     assert!(
         nonces
             .iter()
-            .all(|nonce| nonce.len() == 32 && *nonce != studio.token)
+            .all(|nonce| nonce.len() == 32 && *nonce != studio.secret)
     );
     for (path, kind) in [
         ("/", "text/html; charset=utf-8"),

@@ -25,6 +25,7 @@ pub struct Studio {
     pub child: Child,
     pub port: u16,
     pub token: String,
+    pub secret: String,
 }
 
 impl Studio {
@@ -42,11 +43,16 @@ impl Studio {
             .expect("it prints an address");
         let rest = address.strip_prefix("http://127.0.0.1:").unwrap();
         let (port, token) = rest.split_once("/?token=").unwrap();
-        Self {
+        let mut studio = Self {
             child,
             port: port.parse().unwrap(),
             token: token.to_owned(),
-        }
+            secret: String::new(),
+        };
+        let response = studio.get(&format!("/?token={token}"), "");
+        let (_, secret) = response.split_once(&format!("pinhole-{port}=")).unwrap();
+        studio.secret = secret[..32].to_owned();
+        studio
     }
 
     pub fn host(&self) -> String {
@@ -54,7 +60,7 @@ impl Studio {
     }
 
     pub fn cookie(&self) -> String {
-        format!("pinhole-{}={}", self.port, self.token)
+        format!("pinhole-{}={}", self.port, self.secret)
     }
 
     pub fn stream(&self) -> TcpStream {

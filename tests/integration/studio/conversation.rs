@@ -38,7 +38,7 @@ fn a_page_talks_to_a_language_server() {
     let (mut page, file) = studio.page();
     assert_eq!(
         file,
-        json!({ "name": "a b.scn", "text": SCENE, "uri": "studio:///a%20b.scn", "saved": true })
+        json!({ "name": "a b.scn", "text": SCENE, "reason": null, "uri": "studio:///a%20b.scn", "saved": true })
     );
     let uri = file["uri"].as_str().unwrap();
     assert_eq!(begin(&mut page, uri, SCENE), json!([]));
@@ -170,7 +170,11 @@ fn pages_know_nothing_of_each_other_and_do_not_wait_for_each_other() {
     assert_ne!(begin(&mut first, "studio:///a", &wrong), json!([]));
     assert_eq!(begin(&mut second, "studio:///a", SCENE), json!([]));
     second.ask("studio/png", json!({ "text": SCENE }));
-    assert_eq!(long, 1);
+    // Nor is a picture waited for that nobody wants any more.
+    first.tell("$/cancelRequest", json!({ "id": long + 100 }));
+    first.tell("$/cancelRequest", json!({ "id": long }));
+    assert_eq!(first.response(long)["error"]["code"], -32800);
+    first.ask("studio/png", json!({ "text": SCENE }));
 }
 
 /// What is done for a page ends with it, however it ends.

@@ -45,7 +45,10 @@ fn a_text_is_saved_and_other_pages_hear_of_it() {
     let (mut second, _) = studio.page();
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(fs::read(&path).unwrap(), "// é\r\n".as_bytes());
-    assert_eq!(second.told("studio/changed"), json!({ "text": "// é\r\n" }));
+    assert_eq!(
+        second.told("studio/changed"),
+        json!({ "text": "// é\r\n", "reason": null })
+    );
     // What is there already need not be written, whatever it was made from.
     assert_eq!(save(&mut second, "// é\r\n", Some("x"))["result"], saved());
     assert_eq!(
@@ -53,7 +56,10 @@ fn a_text_is_saved_and_other_pages_hear_of_it() {
         saved()
     );
     // The first page has heard of that alone, and not of what it has saved itself.
-    assert_eq!(first.told("studio/changed"), json!({ "text": "// 2" }));
+    assert_eq!(
+        first.told("studio/changed"),
+        json!({ "text": "// 2", "reason": null })
+    );
     assert_eq!(studio.page().1["text"], "// 2");
     assert_eq!(names(folder.path()), ["a.scn"]);
 }
@@ -71,25 +77,33 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
         (&json!(1), &json!({ "text": "// theirs" }))
     );
     assert_eq!(fs::read_to_string(&path).unwrap(), "// theirs");
-    assert_eq!(page.told("studio/changed"), json!({ "text": "// theirs" }));
+    assert_eq!(page.told("studio/changed")["text"], "// theirs");
     assert_eq!(
         save(&mut page, "// mine", Some("// theirs"))["result"],
         saved()
     );
-    // It is gone, and then no text.
-    for bytes in [None, Some(b"\xff")] {
-        match bytes {
-            None => fs::remove_file(&path).unwrap(),
-            Some(bytes) => fs::write(&path, bytes).unwrap(),
-        }
-        assert_eq!(page.told("studio/changed"), json!({ "text": null }));
-        let error = save(&mut page, "// more", Some("// mine"))["error"].clone();
-        assert_eq!(
-            (&error["code"], &error["data"]),
-            (&json!(1), &json!({ "text": null }))
-        );
-        assert_eq!(save(&mut page, "// mine", None)["result"], saved());
-        assert_eq!(fs::read_to_string(&path).unwrap(), "// mine");
+    // It is gone.
+    fs::remove_file(&path).unwrap();
+    let nothing = json!({ "text": null, "reason": null });
+    assert_eq!(page.told("studio/changed"), nothing);
+    let error = save(&mut page, "// more", Some("// mine"))["error"].clone();
+    assert_eq!(
+        (&error["code"], &error["data"]),
+        (&json!(1), &json!({ "text": null }))
+    );
+    assert_eq!(save(&mut page, "// mine", None)["result"], saved());
+    assert_eq!(fs::read_to_string(&path).unwrap(), "// mine");
+    // It is in another encoding, which would be lost.
+    fs::write(&path, b"// \xff").unwrap();
+    let reason = "it is not a text in UTF-8";
+    assert_eq!(
+        page.told("studio/changed"),
+        json!({ "text": null, "reason": reason })
+    );
+    for base in [None, Some("// mine")] {
+        let error = save(&mut page, "// more", base)["error"].clone();
+        assert_eq!(error["message"], format!("a.scn cannot be read: {reason}"));
+        assert_eq!(fs::read(&path).unwrap(), b"// \xff");
     }
 }
 
@@ -102,7 +116,7 @@ fn a_page_hears_of_what_other_editors_save() {
         let other = folder.path().join("other");
         fs::write(&other, text).unwrap();
         fs::rename(&other, folder.path().join("a.scn")).unwrap();
-        assert_eq!(page.told("studio/changed"), json!({ "text": text }));
+        assert_eq!(page.told("studio/changed")["text"], text);
     }
 }
 
@@ -142,7 +156,7 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let uri = "studio:///scene.scn";
     assert_eq!(
         file,
-        json!({ "name": "scene.scn", "text": SCENE, "uri": uri, "saved": false })
+        json!({ "name": "scene.scn", "text": SCENE, "reason": null, "uri": uri, "saved": false })
     );
     let save = |page: &mut Page, name: Value| {
         let params = json!({ "text": "// new", "base": SCENE, "name": name });
@@ -178,14 +192,14 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "// new");
     // From now on it is a file like any other.
     let uri = "studio:///new%20one.scn";
-    let file = json!({ "name": "new one.scn", "text": "// new", "uri": uri, "saved": true });
+    let file = json!({ "name": "new one.scn", "text": "// new", "reason": null, "uri": uri, "saved": true });
     for page in [&mut page, &mut other] {
         assert_eq!(page.told("studio/file"), file);
     }
     let response = save(&mut other, json!("second.scn"));
     assert_eq!(response["error"]["message"], "this scene is in new one.scn");
     fs::write(&path, "// theirs").unwrap();
-    assert_eq!(page.told("studio/changed"), json!({ "text": "// theirs" }));
+    assert_eq!(page.told("studio/changed")["text"], "// theirs");
     let params = json!({ "text": "// mine", "base": "// theirs" });
     assert_eq!(page.ask("studio/save", params), saved());
     assert_eq!(fs::read_to_string(&path).unwrap(), "// mine");
@@ -262,8 +276,15 @@ fn a_browser_is_started_unless_it_is_not_wanted_and_an_interrupt_ends_it() {
             while !opened.exists() && Instant::now() < end {
                 thread::sleep(Duration::from_millis(10));
             }
-            let address = format!("http://127.0.0.1:{}/?token={}\n", studio.port, studio.token);
-            assert_eq!(fs::read_to_string(&opened).unwrap(), address);
+            // Others can read it: it has a token of its own, which serves once.
+            let address = fs::read_to_string(&opened).unwrap();
+            let (host, token) = address.trim().split_once("/?token=").unwrap();
+            assert_eq!(host, format!("http://{}", studio.host()));
+            assert!(token != studio.token && token != studio.secret);
+            for status in ["303", "403"] {
+                let response = studio.get(&format!("/?token={token}"), "");
+                assert!(response.starts_with(&format!("HTTP/1.1 {status} ")));
+            }
         }
         let (_page, _) = studio.page();
         let id = studio.child.id().to_string();

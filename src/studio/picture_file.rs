@@ -1,6 +1,10 @@
 //! A text's picture as a file, rendered as the scene asks for.
 
-use std::{error::Error, io::Cursor, sync::atomic::AtomicBool};
+use std::{
+    error::Error,
+    io::Cursor,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use lsp_server::{ErrorCode, Request, Response};
@@ -36,7 +40,12 @@ pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
         #[cfg(feature = "studio")]
         EXR => ("exr", write_exr),
         #[cfg(not(feature = "studio"))]
-        EXR => return failed(ErrorCode::RequestFailed, "no EXR is written here".to_owned()),
+        EXR => {
+            return failed(
+                ErrorCode::RequestFailed,
+                "no EXR is written here".to_owned(),
+            );
+        }
         _ => ("png", write_png),
     };
     let sources = Sources::new(Source::from_text("scene.scn", text));
@@ -46,6 +55,9 @@ pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
     let mut file = Cursor::new(Vec::new());
     match write(&scene, text, cancel, &mut file) {
         Ok(()) => Response::new_ok(id, json!({ name: STANDARD.encode(file.into_inner()) })),
+        Err(_) if cancel.load(Ordering::SeqCst) => {
+            failed(ErrorCode::RequestCanceled, "cancelled".to_owned())
+        }
         Err(error) => failed(ErrorCode::RequestFailed, error.to_string()),
     }
 }

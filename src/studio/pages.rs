@@ -1,0 +1,168 @@
+//! The pages that are open, and the file that they share: who changes it, and who is told.
+
+use std::{
+    mem,
+    sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc::Sender},
+    thread,
+};
+
+use lsp_server::Notification;
+use serde_json::{Value, json};
+use tungstenite::{Bytes, Utf8Bytes, protocol::frame::coding::CloseCode};
+
+use super::scene_file::{NotSaved, SceneFile};
+use crate::lsp::messages;
+
+/// What happens to a page.
+#[derive(Debug)]
+pub enum Event {
+    /// It has sent a message.
+    Said(Utf8Bytes),
+    /// It wants to know whether somebody is there.
+    Pinged(Bytes),
+    /// There is a message for it.
+    Tell(String),
+    /// Its picture's file is made, or not: the answer.
+    Rendered(String),
+    /// It is gone, or has sent what ends the conversation.
+    Over(CloseCode),
+}
+
+/// The pages that are open, and the file that they share.
+#[derive(Debug)]
+pub struct Pages(Mutex<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    file: SceneFile,
+    pages: Vec<(u64, Sender<Event>)>,
+    /// How many pages there were.
+    joined: u64,
+}
+
+impl Pages {
+    /// No pages yet, and the file.
+    pub fn new(file: SceneFile) -> Arc<Self> {
+        let pages = Arc::new(Self(Mutex::new(Shared {
+            file,
+            pages: Vec::new(),
+            joined: 0,
+        })));
+        pages.watch();
+        pages
+    }
+
+    /// Waits until nothing is being saved; whoever would save something waits from now on, until the process ends.
+    pub fn stop(&self) {
+        mem::forget(self.lock());
+    }
+
+    /// Adds a page, which is told about the file. Returns its number.
+    pub fn join(&self, sender: Sender<Event>) -> u64 {
+        let mut shared = self.lock();
+        shared.joined += 1;
+        let number = shared.joined;
+        shared.pages.push((number, sender));
+        let file = shared.about_file();
+        shared.tell(&file, |page| page == number);
+        number
+    }
+
+    /// Forgets a page.
+    pub fn leave(&self, number: u64) {
+        self.lock().pages.retain(|(page, _)| *page != number);
+    }
+
+    /// Saves a page's text, as [`SceneFile::save`] does, and tells the others.
+    pub fn save(
+        self: &Arc<Self>,
+        number: u64,
+        text: &str,
+        base: Option<&str>,
+        name: Option<&str>,
+    ) -> Result<(), NotSaved> {
+        let mut shared = self.lock();
+        let was_new = shared.file.path().is_none();
+        let is_known = shared.file.held().text() == Some(text);
+        shared.file.save(text, base, name)?;
+        if was_new {
+            let message = shared.about_file();
+            shared.tell(&message, |_| true);
+        } else if !is_known {
+            let message = shared.about_text();
+            shared.tell(&message, |page| page != number);
+        }
+        drop(shared);
+        if was_new {
+            self.watch();
+        }
+        Ok(())
+    }
+
+    /// From now on the pages are told when the file changes, if there is one.
+    fn watch(self: &Arc<Self>) {
+        let watched = self.lock().file.watch();
+        // Without a watch, a file that has changed is found when it is saved.
+        let Some(latest) = watched else {
+            return;
+        };
+        let pages = Arc::clone(self);
+        let follow = move || {
+            while let Some(content) = latest.take() {
+                let mut shared = pages.lock();
+                if shared.file.look(content) {
+                    let message = shared.about_text();
+                    shared.tell(&message, |_| true);
+                }
+            }
+        };
+        let _ = thread::Builder::new().name("file".to_owned()).spawn(follow);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shared> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Shared {
+    fn about_file(&self) -> String {
+        let name = self.file.name();
+        let params = json!({
+            "name": name,
+            "text": self.file.held().text(),
+            "reason": self.file.held().reason(),
+            "uri": uri(&name),
+            "saved": self.file.path().is_some(),
+        });
+        notification("studio/file", params)
+    }
+
+    fn about_text(&self) -> String {
+        let held = self.file.held();
+        let params = json!({ "text": held.text(), "reason": held.reason() });
+        notification("studio/changed", params)
+    }
+
+    fn tell(&self, message: &str, is_meant: impl Fn(u64) -> bool) {
+        for (_, sender) in self.pages.iter().filter(|(page, _)| is_meant(*page)) {
+            // One that has gone is about to leave.
+            let _ = sender.send(Event::Tell(message.to_owned()));
+        }
+    }
+}
+
+/// What the conversation calls the text. Where its folder is does not matter to a page.
+fn uri(name: &str) -> String {
+    let escaped = name.bytes().map(|byte| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => {
+            char::from(byte).to_string()
+        }
+        _ => format!("%{byte:02X}"),
+    });
+    format!("studio:///{}", escaped.collect::<String>())
+}
+
+/// A notification's text.
+fn notification(method: &str, params: Value) -> String {
+    messages::written(&Notification::new(method.to_owned(), params).into())
+}
