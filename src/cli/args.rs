@@ -190,7 +190,8 @@ Examples:
 Each picture is compared with the scene's exact one, as diff does it, and has a line: its name, the verdict, the root mean \
 square of its differences in linear light, and the samples in a pixel that make as much noise.
 
-JSON, an object a line: what diff prints, with file in front; error instead of the rest where a picture cannot be compared.
+JSON, an object a line: what diff prints, with file in front; and rendered_by_pinhole, whether the picture carries the \
+text that Pinhole writes into its own; error instead of the rest where a picture cannot be compared.
 
 Exit status: 0 all are right, but for noise; 1 one is wrong, or the scene has errors; 2 one could not be compared, or other trouble.";
 

@@ -9,7 +9,7 @@ use std::{
 use pinhole::{
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grading::{self, Kind, ObjectVerdict, Verdict},
+    grading::{self, Jpeg, Kind, ObjectVerdict, Verdict},
     numbers::{grouped, short, significant},
     render::RenderError,
 };
@@ -40,11 +40,13 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             shown(&args.a)
         )));
     }
+    let jpeg = Jpeg::of(&a);
     let a = read(&args.a, &a)?;
     let b = input::whole(&args.b).map_err(|error| unreadable(&args.b, &error))?;
     let cancel = interrupt.watch();
     let is_strict = args.strict || args.tolerance.is_some();
-    if film::is_picture(&b) || is_named_as_picture(&args.b) {
+    // A file that is named as a picture is one, however broken.
+    if film::is_picture(&b) || judge::is_named_as_picture(&args.b) {
         if !args.overrides.sets.is_empty() {
             let message = format!(
                 "`--set` changes a scene, and {} is a picture",
@@ -81,7 +83,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let part = judge::part(&a, &scene)
         .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
     let judge = progress::watched(part.pixels(), |done| {
-        Judge::new(&scene, part, cancel, &|more| {
+        Judge::new(&scene, part, None, cancel, &|more| {
             done.fetch_add(more, Ordering::Relaxed);
         })
     });
@@ -93,7 +95,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let comparison = judge
         .compare(&a, steps)
         .map_err(|error| Trouble(error.to_string()))?;
-    let verdict = match judge.judge(&a, &comparison, cancel) {
+    let verdict = match judge.judge(&a, jpeg, &comparison, cancel) {
         Ok(verdict) => verdict,
         Err(error) => return ended(error),
     };
@@ -135,18 +137,6 @@ fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
 
 fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
-}
-
-/// Whether a file's ending is that of a picture, so that it is one, however broken.
-fn is_named_as_picture(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| {
-        [
-            "png", "exr", "ppm", "pgm", "pbm", "pam", "bmp", "tif", "tiff", "webp", "gif", "jpg",
-            "jpeg",
-        ]
-        .iter()
-        .any(|own| ending.eq_ignore_ascii_case(own))
-    })
 }
 
 fn ended(error: RenderError) -> Result<Status, Trouble> {
@@ -400,7 +390,7 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
             "limit     the scene has so much in it that not all mistakes were tried"
         )?;
     }
-    if verdict.kind == Kind::Wrong {
+    if matches!(verdict.kind, Kind::Wrong | Kind::Unknown) {
         writeln!(out)?;
         writeln!(out, "objects   {}", visible(&objects(verdict)))?;
     }

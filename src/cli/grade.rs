@@ -11,6 +11,7 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, Picture},
+    grading::Jpeg,
     render::RenderError,
     scene::Scene,
 };
@@ -89,20 +90,23 @@ fn graded(
     cancel: &AtomicBool,
 ) -> Result<Result<Vec<Graded>, RenderError>, rayon::ThreadPoolBuildError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
+    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = args.threads.map(usize::try_from);
+    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
     let judge = progress::watched(whole.pixels(), |done| {
-        Judge::new(scene, whole, cancel, &|more| {
+        let judge = Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
             done.fetch_add(more, Ordering::Relaxed);
-        })
+        })?;
+        judge.prepare(cancel)?;
+        Ok(judge)
     });
     let judge = match judge {
         Ok(judge) => judge,
         Err(error) => return Ok(Err(error)),
     };
-    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
-    let wanted = args.threads.map(usize::try_from);
-    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
-    let threads = threads.min(paths.len());
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads.min(paths.len()))
+        .build()?;
     Ok(progress::watched(paths.len() as u64, |done| {
         let grade = |path: &PathBuf| {
             let result = grade(path, scene, &judge, args, cancel)?;
@@ -122,7 +126,8 @@ fn grade(
     args: &GradeArgs,
     cancel: &AtomicBool,
 ) -> Result<Result<Judged, String>, RenderError> {
-    let (picture, part, is_ours) = match read(path, scene) {
+    let read = read(path, scene);
+    let (picture, jpeg, part, is_ours) = match read {
         Ok(read) => read,
         Err(error) => return Ok(Err(error)),
     };
@@ -130,7 +135,8 @@ fn grade(
     let judge = if part == whole.part {
         whole
     } else {
-        own = Judge::new(scene, part, cancel, &|_| {})?;
+        // Pictures are judged in parallel, each on one thread.
+        own = Judge::new(scene, part, NonZero::new(1), cancel, &|_| {})?;
         &own
     };
     let steps = picture.rounding.steps();
@@ -138,7 +144,7 @@ fn grade(
         Ok(comparison) => comparison,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let verdict = judge.judge(&picture, &comparison, cancel)?;
+    let verdict = judge.judge(&picture, jpeg, &comparison, cancel)?;
     let thumbnails = match args.output {
         Some(_) => {
             let (film, exact) = (&picture.film, &judge.exact.film);
@@ -167,12 +173,13 @@ fn grade(
     }))
 }
 
-/// A picture, the part of the scene that it shows, and whether Pinhole rendered it.
-fn read(path: &Path, scene: &Scene) -> Result<(Picture, Area, bool), String> {
+/// A picture, how it is coded if it is a JPEG, the part of the scene that it shows, and whether Pinhole rendered it.
+fn read(path: &Path, scene: &Scene) -> Result<(Picture, Option<Jpeg>, Area, bool), String> {
     let bytes = input::whole(path).map_err(|error| error.to_string())?;
     let picture = film::read_picture(&bytes).map_err(|error| error.to_string())?;
     let part = judge::part(&picture, scene).map_err(|misfit| format!("it {misfit}"))?;
-    Ok((picture, part, film::read_recipe(&bytes).is_ok()))
+    let is_ours = film::read_recipe(&bytes).is_ok();
+    Ok((picture, Jpeg::of(&bytes), part, is_ours))
 }
 
 /// The pictures, and those in folders by name.
@@ -187,10 +194,7 @@ fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
         let mut found = Vec::new();
         for entry in fs::read_dir(path).map_err(unreadable)? {
             let entry = entry.map_err(unreadable)?.path();
-            let is_picture = entry
-                .extension()
-                .is_some_and(|ending| ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own)));
-            if is_picture && entry.is_file() {
+            if judge::is_named_as_picture(&entry) && entry.is_file() {
                 found.push(entry);
             }
         }
@@ -202,9 +206,3 @@ fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
         false => Ok(pictures),
     }
 }
-
-/// What pictures in a folder end with.
-const ENDINGS: [&str; 14] = [
-    "png", "exr", "jpg", "jpeg", "ppm", "pgm", "pnm", "pam", "bmp", "tif", "tiff", "webp", "gif",
-    "pbm",
-];

@@ -1,11 +1,11 @@
 //! A scene that pictures are judged by: what `diff` and `grade` have in common.
 
-use std::sync::atomic::AtomicBool;
+use std::{num::NonZero, path::Path, sync::atomic::AtomicBool};
 
 use pinhole::{
     area::Area,
     film::{self, Comparison, Picture, SizesDiffer, Tolerance},
-    grading::{Reference, Verdict},
+    grading::{Jpeg, Reference, Verdict},
     render::{self, Control, Exact, RenderError},
     scene::Scene,
     tracer::World,
@@ -21,15 +21,16 @@ pub struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// Makes the exact picture; `progress` counts its pixels.
+    /// Makes the exact picture, on so many threads or as many as there are; `progress` counts its pixels.
     pub fn new(
         scene: &'a Scene,
         part: Area,
+        threads: Option<NonZero<usize>>,
         cancel: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Self, RenderError> {
         let control = Control {
-            threads: None,
+            threads,
             progress,
             cancel,
         };
@@ -59,15 +60,17 @@ impl<'a> Judge<'a> {
     pub fn judge(
         &self,
         picture: &Picture,
+        jpeg: Option<Jpeg>,
         comparison: &Comparison,
         cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel,
-        };
-        self.reference.judge(&picture.film, comparison, &control)
+        self.reference
+            .judge(&picture.film, jpeg, comparison, cancel)
+    }
+
+    /// Makes ready what is needed for pictures that are not equal to the exact one, for many at once.
+    pub fn prepare(&self, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.reference.prepare(cancel)
     }
 }
 
@@ -93,6 +96,16 @@ pub fn part(picture: &Picture, scene: &Scene) -> Result<Area, String> {
             whole.width, whole.height
         )),
     }
+}
+
+/// Whether a file's ending is that of a picture.
+pub fn is_named_as_picture(path: &Path) -> bool {
+    const ENDINGS: [&str; 14] = [
+        "png", "exr", "jpg", "jpeg", "ppm", "pgm", "pnm", "pam", "bmp", "tif", "tiff", "webp",
+        "gif", "pbm",
+    ];
+    path.extension()
+        .is_some_and(|ending| ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own)))
 }
 
 /// A `--set` argument as a shell takes it.

@@ -5,8 +5,8 @@ use std::io;
 use base64::{Engine, prelude::BASE64_STANDARD};
 use pinhole::film::{self, Film, Tolerance};
 
-/// The widest thumbnail, in pixels.
-const WIDEST: u32 = 320;
+/// The longer side of a thumbnail, in pixels.
+const LONGEST: u32 = 320;
 
 /// A picture and its heat map, as `data:` URIs.
 pub struct Thumbnails {
@@ -27,13 +27,14 @@ impl Thumbnails {
 
 /// A picture as a `data:` URI, of some pixels' means where it is large.
 fn data(film: &Film) -> io::Result<String> {
-    let factor = film.width().div_ceil(WIDEST);
-    let (width, height) = (film.width() / factor, (film.height() / factor).max(1));
+    let factor = film.width().max(film.height()).div_ceil(LONGEST);
+    let [width, height] = [film.width(), film.height()].map(|side| (side / factor).max(1));
     let small = Film::from_fn(width, height, |x, y| {
         let mut sum = [0.0; 3];
         let mut count = 0.0;
         for row in (y * factor..(y + 1) * factor).take_while(|row| *row < film.height()) {
-            for column in x * factor..(x + 1) * factor {
+            let columns = x * factor..((x + 1) * factor).min(film.width());
+            for column in columns {
                 let pixel = film.pixel(column, row);
                 sum = [0, 1, 2].map(|i| sum[i] + pixel[i]);
                 count += 1.0;

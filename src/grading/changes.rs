@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{
     candidate::Candidate,
     light::{Average, Curve, Look},
-    textbook::{Behind, Squares, Visible},
+    textbook::{Behind, Squares, Visible, radians},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -100,7 +100,7 @@ pub fn up(c: &mut Candidate, up: DVec3) -> Option<()> {
 
 /// A lens with an angle whose half has a tangent so many times as large.
 pub fn narrowed(angle: Angle, by: f64, lens: fn(Angle) -> Lens) -> Lens {
-    let half = (angle.degrees.to_radians() + angle.radians) / 2.0;
+    let half = radians(angle) / 2.0;
     lens(Angle::from_degrees(
         (2.0 * libm::atan(by * libm::tan(half))).to_degrees(),
     ))
@@ -113,7 +113,7 @@ pub fn scaled(c: &mut Candidate, by: f64) -> Option<()> {
         Lens::Fov(angle) => Lens::Fov(angle / by),
         Lens::HorizontalFov(angle) => Lens::HorizontalFov(angle / by),
     };
-    let is_less = |angle: Angle| angle.degrees.to_radians() + angle.radians < std::f64::consts::PI;
+    let is_less = |angle| radians(angle) < std::f64::consts::PI;
     match c.scene.camera.lens {
         Lens::Distance(_) => Some(()),
         Lens::Fov(angle) | Lens::HorizontalFov(angle) => is_less(angle).then_some(()),

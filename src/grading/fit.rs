@@ -1,4 +1,4 @@
-//! Least absolute differences: numbers for which a model comes nearest to a picture.
+//! Numbers for which a model comes nearest to a picture: by least squares, then by squares of small differences and absolute values of large ones.
 //!
 //! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
 //! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can.

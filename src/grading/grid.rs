@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::textbook::focal;
 use crate::{
     area::Area,
-    math::Angle,
     scene::{Image, Lens, Scene},
 };
 
@@ -93,16 +93,10 @@ impl Grid {
             return scene;
         }
         let (image, camera) = (&mut scene.image, &mut scene.camera);
-        let [width, height] = [image.width, image.height].map(f64::from);
-        let tangent = |angle: Angle| libm::tan((angle.degrees.to_radians() + angle.radians) / 2.0);
-        let window = match camera.lens {
-            Lens::Distance(d) => camera.view_height / d,
-            Lens::Fov(angle) => 2.0 * tangent(angle),
-            Lens::HorizontalFov(angle) => 2.0 * tangent(angle) * height / width,
-        };
+        let focal = focal(camera, image);
         [image.width, image.height] = self.size.map(|cells| cells + u32::from(more));
         camera.lens = Lens::Distance(1.0);
-        camera.view_height = window * f64::from(image.height * self.factor) / height;
+        camera.view_height = f64::from(image.height * self.factor) / focal;
         scene
     }
 

@@ -54,6 +54,12 @@ impl Curve {
 
     /// The light that was encoded, where other light is seen.
     pub fn light(self, seen: f64) -> f64 {
+        // A file of floats may have negative ones, of which there are no powers.
+        let seen = if self == Self::Right {
+            seen
+        } else {
+            seen.max(0.0)
+        };
         match self {
             Self::Right => seen,
             Self::Missing => linear_to_srgb(seen),

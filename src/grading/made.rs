@@ -169,7 +169,7 @@ impl Model {
 
 impl Candidate {
     /// The scene that a grid's cells are pixels of, without what it does not draw.
-    fn drawn(&self, grid: &Grid) -> Scene {
+    pub fn drawn(&self, grid: &Grid) -> Scene {
         let mut scene = grid.scene(&self.scene, self.layout.half_pixels != [0, 0]);
         let mut is_drawn = self.is_drawn.iter();
         scene.objects.retain(|_| is_drawn.next() == Some(&true));

@@ -12,11 +12,13 @@ mod candidate;
 mod changes;
 mod fit;
 mod grid;
+mod jpeg;
 mod layout;
 mod light;
 mod made;
 mod mistakes;
 mod numbers;
+mod objects;
 mod parameters;
 mod patch;
 mod score;
@@ -25,25 +27,28 @@ mod select;
 mod textbook;
 mod words;
 
-use std::sync::OnceLock;
+use std::sync::{OnceLock, atomic::AtomicBool};
 
 use serde_json::{Map, Value, json};
 
 use crate::{
     area::Area,
+    cancel,
+    color::linear_to_srgb,
     film::{Comparison, Film},
-    render::{Control, RenderError},
-    scene::Scene,
+    render::RenderError,
+    scene::{Scene, Shape},
 };
 
 use self::{
     candidate::Candidate,
     light::{Average, Curve},
     made::exact_moments,
-    score::{Model, Strays, score},
+    score::{Model, WRONG, score},
     search::{Found, Search},
     textbook::Moments,
 };
+pub use self::{jpeg::Jpeg, objects::ObjectVerdict};
 
 /// What a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,21 +90,6 @@ pub struct Mistake {
     pub explains: f64,
 }
 
-/// An object.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ObjectVerdict {
-    /// Its place in the file.
-    pub index: usize,
-    /// Its name.
-    pub name: Option<String>,
-    /// What it is called.
-    pub title: String,
-    /// Whether it is right.
-    pub is_right: bool,
-    /// By how many pixels it is off.
-    pub off: f64,
-}
-
 /// What is said of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
@@ -111,10 +101,12 @@ pub struct Verdict {
     pub mistakes: Vec<Mistake>,
     /// The share of the squared difference beyond noise that mistakes leave, if it is more than noise.
     pub rest: Option<f64>,
-    /// The objects, where something is known of them.
+    /// The objects.
     pub objects: Vec<ObjectVerdict>,
     /// Whether the background is right.
     pub is_background_right: bool,
+    /// Whether the picture's file is a JPEG, which changes colours.
+    pub is_coded: bool,
     /// Whether not all mistakes were tried, as the scene has too much in it.
     pub is_cut: bool,
 }
@@ -137,64 +129,106 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Judges a picture; `comparison` is that with the exact one.
+    /// Computes the exact means and variances. Several threads that ask for them at once would compute them several times.
     ///
     /// # Errors
     ///
-    /// There is no memory for another picture, or it is not wanted any more.
+    /// They are not wanted any more.
+    pub fn prepare(&self, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.moments(cancel).map(|_| ())
+    }
+
+    fn moments(&self, cancel: &AtomicBool) -> Result<&Moments, RenderError> {
+        if let Some(moments) = self.moments.get() {
+            return Ok(moments);
+        }
+        let moments = exact_moments(self.scene, Average::Light, self.part, cancel);
+        let moments = moments.ok_or(RenderError::Cancelled)?;
+        Ok(self.moments.get_or_init(|| moments))
+    }
+
+    /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is coded, if it is one.
+    ///
+    /// # Errors
+    ///
+    /// It is not wanted any more.
     pub fn judge(
         &self,
         film: &Film,
+        jpeg: Option<Jpeg>,
         comparison: &Comparison,
-        control: &Control,
+        cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
         if comparison.is_equal() {
             return Ok(Verdict::of(Kind::Right, self.scene));
         }
-        let moments = match self.moments.get() {
-            Some(moments) => moments,
-            None => {
-                let moments = exact_moments(self.scene, Average::Light, self.part, control.cancel)
-                    .ok_or(RenderError::Cancelled)?;
-                self.moments.get_or_init(|| moments)
-            }
-        };
-        judged(film, self, moments, control)
+        judged(film, jpeg, self, self.moments(cancel)?, cancel)
     }
 }
 
 fn judged(
     film: &Film,
+    jpeg: Option<Jpeg>,
     reference: &Reference,
     moments: &Moments,
-    control: &Control,
+    cancel: &AtomicBool,
 ) -> Result<Verdict, RenderError> {
     let Reference { scene, part, .. } = *reference;
-    let model = Model {
-        moments: moments.clone(),
-        doubt: Vec::new(),
-        cut: 0.0,
-        curve: Curve::Right,
-    };
-    let width = film.width() as usize;
-    let noise = score(film.pixels(), &model);
-    let search = Search::new(scene, film, part, control.cancel);
-    let strays = Strays::new(film.pixels(), &model, width);
-    let found = match strays.is_empty() {
-        // All that differs lies where colours meet. Only what shows there can be wrong.
-        true => select::with_edges(&search, Candidate::right(scene))?,
-        false => select::run(&search)?,
-    };
+    let search = Search::new(scene, film, part, jpeg, cancel);
+    let found = select::run(&search)?;
+    let right = Candidate::right(scene);
     let mut verdict = match found {
         Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
-        _ if strays.is_negligible() => Verdict {
-            samples: noise.samples,
-            ..Verdict::of(Kind::Noise, scene)
-        },
-        _ => Verdict::of(Kind::Unknown, scene),
+        _ if search.strays(&right).is_empty() && !has_other_colors(film, scene, jpeg) => {
+            let doubt = jpeg.map(|jpeg| jpeg.variances(moments, film.width() as usize, 1));
+            let model = Model {
+                moments: moments.clone(),
+                doubt: doubt.unwrap_or_default(),
+                cut: 0.0,
+                curve: Curve::Right,
+            };
+            Verdict {
+                samples: score(film.pixels(), &model).samples,
+                ..Verdict::of(Kind::Noise, scene)
+            }
+        }
+        _ => {
+            let (objects, is_background_right) = objects::judged(&search, &right);
+            Verdict {
+                objects,
+                is_background_right,
+                ..Verdict::of(Kind::Unknown, scene)
+            }
+        }
     };
+    verdict.is_coded = jpeg.is_some();
     verdict.is_cut = search.is_cut.get();
-    Ok(verdict)
+    Ok(cancel::unless_set(cancel, verdict)?)
+}
+
+/// Whether a picture has a channel that is less or more than in all colours of the scene, which no mean of them is.
+fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
+    let colors = scene.objects.iter().flat_map(|object| match object.shape {
+        Shape::Sphere(sphere) => vec![sphere.color],
+        Shape::Triangle(triangle) => vec![triangle.color],
+        Shape::Box(cuboid) => vec![cuboid.color],
+        Shape::Checkerboard(board) => board.colors.to_vec(),
+    });
+    let all = colors.chain([scene.image.background]);
+    let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for srgb in all.map(|color| color.srgb) {
+        for i in 0..3 {
+            (least[i], most[i]) = (least[i].min(srgb[i]), most[i].max(srgb[i]));
+        }
+    }
+    // JPEG has colours overshoot where they meet.
+    jpeg.is_none()
+        && film.pixels().iter().any(|pixel| {
+            (0..3).any(|i| {
+                let srgb = 255.0 * linear_to_srgb(pixel[i]);
+                srgb < least[i] - WRONG || srgb > most[i] + WRONG
+            })
+        })
 }
 
 /// The verdict on a picture with mistakes.
@@ -239,55 +273,28 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (!search.strays(&found.candidate).is_negligible()).then(|| (at_last / all).min(1.0));
-    let of = |object: usize| {
-        let (own, other) = (&scene.objects[object], &before.scene.objects[object]);
-        let off = words::off(scene, &before.scene, object);
-        ObjectVerdict {
-            is_right: own.shape == other.shape
-                && before.is_drawn[object]
-                && off < words::HALF_PIXEL,
-            off: if before.is_drawn[object] { off } else { 0.0 },
-            ..ObjectVerdict::right(scene, object)
-        }
-    };
+    let rest = (!search.strays(&found.candidate).is_empty()).then(|| (at_last / all).min(1.0));
+    let (objects, is_background_right) = objects::judged(search, &found.candidate);
     Verdict {
         samples: found.score.samples,
         rest: rest.filter(|rest| *rest > 0.0),
         mistakes,
-        objects: (0..scene.objects.len()).map(of).collect(),
-        is_background_right: scene.image.background == before.scene.image.background,
+        objects,
+        is_background_right,
         ..Verdict::of(Kind::Wrong, scene)
-    }
-}
-
-impl ObjectVerdict {
-    fn right(scene: &Scene, index: usize) -> Self {
-        Self {
-            index,
-            name: scene.objects[index].name.clone(),
-            title: parameters::Owner::Object(index).name(scene),
-            is_right: true,
-            off: 0.0,
-        }
     }
 }
 
 impl Verdict {
     fn of(kind: Kind, scene: &Scene) -> Self {
-        let is_known = matches!(kind, Kind::Right | Kind::Noise);
-        let objects = (0..scene.objects.len()).map(|object| ObjectVerdict::right(scene, object));
         Self {
             kind,
             samples: None,
             mistakes: Vec::new(),
             rest: None,
-            objects: if is_known {
-                objects.collect()
-            } else {
-                Vec::new()
-            },
-            is_background_right: is_known,
+            objects: objects::right(scene),
+            is_background_right: true,
+            is_coded: false,
             is_cut: false,
         }
     }
@@ -303,7 +310,10 @@ impl Verdict {
                     } else {
                         samples.round()
                     });
-                    format!("right but for sampling noise: about {count} samples per pixel")
+                    format!("right but for sampling noise: about {count} random samples per pixel")
+                }
+                None if self.is_coded => {
+                    "right but for sampling noise and what JPEG changes".to_owned()
                 }
                 None => "right but for sampling noise".to_owned(),
             },

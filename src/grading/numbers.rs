@@ -8,7 +8,8 @@ use super::{
     made::Made,
     parameters::{self, Owner, Parameter},
     score::Model,
-    search::{Found, Search, TINY, steps},
+    search::{Found, Search, steps},
+    select::least,
     words,
 };
 use crate::color::{Color, linear_to_srgb};
@@ -23,7 +24,7 @@ const FITTED: usize = 4;
 pub fn numbers(
     search: &Search,
     from: &Found,
-    like: &Made,
+    [tiny, like]: [&Made; 2],
     suspects: &[usize],
 ) -> Vec<(f64, Candidate)> {
     let candidate = &from.candidate;
@@ -31,11 +32,8 @@ pub fn numbers(
         Owner::Object(object) => suspects.contains(&object),
         _ => true,
     };
-    let all = parameters::all(&candidate.scene).into_iter();
+    let all = parameters::fitted(&candidate.scene).into_iter();
     let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
-    let Some(tiny) = candidate.made_to_compare(&search.tiny.grid, TINY.1, search.cancel) else {
-        return Vec::new();
-    };
     let shown = search.middle.model(&from.made);
     let is_read = |parameter: &Parameter| parameter.is_color() && candidate.looks.is_empty();
     let tried = all.map(|parameter| {
@@ -48,7 +46,7 @@ pub fn numbers(
             }
         };
         let tried = starts.into_iter().filter_map(|start| {
-            let shown = search.changed(&tiny, &parameter, &start, &search.tiny)?;
+            let shown = search.changed(tiny, &parameter, &start, &search.tiny)?;
             Some((absolute(&shown.differences()), start))
         });
         let mut tried: Vec<_> = tried.collect();
@@ -59,7 +57,7 @@ pub fn numbers(
     let on_tiny = tried.filter_map(|(parameter, tried)| {
         let rounds = if is_read(&parameter) { 0 } else { 4 };
         let fitted = tried.into_iter().filter_map(|(_, start)| {
-            search.fit_one(&tiny, &parameter, &search.tiny, start, [rounds, 0])
+            search.fit_one(tiny, &parameter, &search.tiny, start, [rounds, 0])
         });
         let best = fitted.min_by(|one, other| one.left.total_cmp(&other.left))?;
         Some((best.left, (parameter, best.numbers)))
@@ -70,7 +68,7 @@ pub fn numbers(
         .into_iter()
         .flat_map(|fitted| least(fitted.into_iter(), FITTED));
     let on_coarse = on_coarse.filter_map(|(parameter, start)| {
-        let rounds = if is_read(&parameter) { [0, 0] } else { [5, 2] };
+        let rounds = if is_read(&parameter) { [0, 0] } else { [3, 1] };
         let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
         let named = words::numbers(search.scene, &parameter, fitted.numbers);
         Some((fitted.left, candidate.with(named)?))
@@ -101,13 +99,6 @@ fn colors(search: &Search, numbers: &[f64], model: &Model) -> Vec<f64> {
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
     };
     numbers.chunks_exact(3).flat_map(color).collect()
-}
-
-/// Those of which least is left, in this order.
-fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> impl Iterator<Item = T> {
-    let mut all: Vec<(f64, T)> = all.collect();
-    all.sort_by(|one, other| one.0.total_cmp(&other.0));
-    all.into_iter().take(most).map(|(_, one)| one)
 }
 
 fn is_named(candidate: &Candidate, parameter: &Parameter) -> bool {

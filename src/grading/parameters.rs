@@ -32,8 +32,19 @@ pub struct Parameter {
     pub fields: Vec<&'static str>,
 }
 
+/// Those of a scene that can be told from a picture: up turns it as roll does, and view_height sizes it as d does, so these two are left to them. A plane that is not
+/// there may be anywhere that nothing is.
+pub fn fitted(scene: &Scene) -> Vec<Parameter> {
+    let is_told = |parameter: &Parameter| match parameter.fields[0] {
+        "up" | "view_height" => false,
+        "near" => scene.camera.near > 0.0,
+        _ => true,
+    };
+    all(scene).into_iter().filter(is_told).collect()
+}
+
 /// All of a scene.
-pub fn all(scene: &Scene) -> Vec<Parameter> {
+fn all(scene: &Scene) -> Vec<Parameter> {
     let owners = [Owner::Image, Owner::Camera].into_iter();
     let owners = owners.chain((0..scene.objects.len()).map(Owner::Object));
     let mut found: Vec<Parameter> = owners
@@ -62,6 +73,9 @@ pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     if from.objects.len() != to.objects.len() {
         return Vec::new();
     }
+    // There is no value for a plane that is not there; nothing that is farther is seen.
+    let is_unlimited = from.camera.far.is_some() && to.camera.far.is_none();
+    let far = is_unlimited.then(|| "camera.far=1e9".to_owned());
     let all = all(to)
         .into_iter()
         .filter(|parameter| parameter.fields.len() == 1);
@@ -85,6 +99,7 @@ pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
             }
             arguments
         })
+        .chain(far)
         .fold(Vec::new(), |mut all, argument| {
             if !all.contains(&argument) {
                 all.push(argument);
@@ -201,13 +216,25 @@ impl Parameter {
             },
             _ => match scene.camera.view {
                 View::Lookat(point) => axes.pixel_at(point),
-                View::Direction(direction) => direction.length() / axes.focal,
+                // That of the nearest object.
+                View::Direction(_) => {
+                    let shapes = scene.objects.iter().map(|object| &object.shape);
+                    let middles = shapes.filter_map(middle);
+                    let pixels = middles.map(|middle| axes.pixel_at(middle));
+                    let nearest = pixels.fold(f64::INFINITY, f64::min);
+                    if nearest.is_finite() {
+                        nearest
+                    } else {
+                        1.0 / axes.focal
+                    }
+                }
             },
         };
         let step = |(field, value): (&&'static str, Value)| match (*field, value) {
             (_, Value::Color(color)) => color.srgb.map(inward).to_vec(),
             (_, Value::Colors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
             ("normal", Value::Vector(normal)) => vec![0.03 * normal.length(); 3],
+            ("direction", Value::Vector(direction)) => vec![direction.length() / axes.focal; 3],
             (_, Value::Vector(_)) => vec![pixel; 3],
             ("fov" | "hfov", Value::Angle(angle)) => {
                 vec![2.0 / wide * (angle.degrees + angle.radians.to_degrees())]
@@ -252,8 +279,7 @@ pub fn middle(shape: &Shape) -> Option<DVec3> {
     }
 }
 
-/// A field's value, if the scene uses it: of alternatives the one that it is written in. up turns the picture as roll does, and view_height sizes
-/// it as d does; those two are left to them.
+/// A field's value, if the scene uses it: of alternatives the one that it is written in.
 fn value(scene: &Scene, owner: Owner, field: &str) -> Option<Value> {
     let camera = &scene.camera;
     let index = match owner {
@@ -266,12 +292,13 @@ fn value(scene: &Scene, owner: Owner, field: &str) -> Option<Value> {
                 ("lookat", View::Lookat(point), _) => Some(Value::Vector(point)),
                 ("direction", View::Direction(direction), _) => Some(Value::Vector(direction)),
                 ("roll", ..) => Some(Value::Angle(camera.roll)),
-                ("up", ..) => None,
+                ("up", ..) => Some(Value::Vector(camera.up)),
+                ("view_height", _, Lens::Distance(_)) => Some(Value::Number(camera.view_height)),
                 ("d", _, Lens::Distance(d)) => Some(Value::Number(d)),
                 ("fov", _, Lens::Fov(angle)) | ("hfov", _, Lens::HorizontalFov(angle)) => {
                     Some(Value::Angle(angle))
                 }
-                ("near", ..) if camera.near > 0.0 => Some(Value::Number(camera.near)),
+                ("near", ..) => Some(Value::Number(camera.near)),
                 ("far", ..) => camera.far.map(Value::Number),
                 _ => None,
             };
@@ -330,6 +357,8 @@ fn set(scene: &mut Scene, owner: Owner, field: &str, value: Value) -> Option<()>
                 ("d", Value::Number(d)) => camera.lens = Lens::Distance(d),
                 ("fov", Value::Angle(angle)) => camera.lens = Lens::Fov(angle),
                 ("hfov", Value::Angle(angle)) => camera.lens = Lens::HorizontalFov(angle),
+                ("up", Value::Vector(up)) => camera.up = up,
+                ("view_height", Value::Number(height)) => camera.view_height = height,
                 ("near", Value::Number(near)) => camera.near = near,
                 ("far", Value::Number(far)) => camera.far = Some(far),
                 _ => return None,

@@ -18,7 +18,7 @@ pub fn patch(search: &Search, from: &Found) -> Option<Named> {
     let (grid, seen) = (&search.fine.grid, search.fine.seen(from.candidate.curve));
     let made = search.made(&from.candidate, &search.fine, None)?;
     let model = search.fine.model(&made);
-    let strays = Strays::new(seen, &model, grid.width()).inside;
+    let strays = Strays::new(seen, &model, grid.width()).pixels;
     let pairs = seen.iter().zip(&model.moments.mean);
     let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
     let mut largest: Vec<usize> = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that of one sample within it and r² that of rounding to a step,
 //! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
-//! errors are taken to have Student's distribution with four degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
+//! errors are taken to have Student's distribution with two degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
 //! 1989). Of two
 //! models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz, Estimating the
 //! dimension of a model, 1978. It is the only rule of significance here.
@@ -16,7 +16,7 @@ use super::{
 use crate::color::{linear_to_srgb, srgb_to_linear};
 
 /// Degrees of freedom of errors.
-const FREEDOM: f64 = 4.0;
+const FREEDOM: f64 = 2.0;
 
 /// Fitting goes on for so many rounds: each leaves less than half of what is missing.
 const ROUNDS: usize = 8;
@@ -54,14 +54,14 @@ pub struct Score {
 
 impl Score {
     /// What is to be small, with so many numbers fitted to so many pixels.
-    pub fn cost(&self, fitted: usize, pixels: usize) -> f64 {
-        0.5 * fitted as f64 * libm::log(pixels as f64) - self.likelihood
+    pub fn cost(&self, fitted: usize, pixels: f64) -> f64 {
+        0.5 * fitted as f64 * libm::log(pixels) - self.likelihood
     }
 }
 
 /// The standard deviation of light that a step of the encoding of what is seen in its place rounds off.
 fn rounding(light: f64, curve: Curve) -> f64 {
-    /// Lights in steps of this are told apart: none of them has twice the rounding of the one before.
+    /// So many lights are told apart.
     const LIGHTS: usize = 4096;
     static ROUNDINGS: [OnceLock<Vec<f64>>; Curve::ALL.len()] =
         [const { OnceLock::new() }; Curve::ALL.len()];
@@ -238,80 +238,128 @@ impl Model {
     }
 }
 
-/// The greatest variance of each cell and its eight neighbours.
-pub fn around(variances: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
+/// The greatest of each cell and its eight neighbours, channel by channel.
+pub fn around(values: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
     let most = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|i| f64::max(one[i], other[i]));
-    let in_rows: Vec<_> = variances
+    let in_rows: Vec<_> = values
         .chunks_exact(width)
         .flat_map(|row| {
             (0..width).map(move |x| {
                 let near = &row[x.saturating_sub(1)..(x + 2).min(width)];
-                near.iter().copied().fold([0.0; 3], most)
+                near.iter().copied().fold([f64::NEG_INFINITY; 3], most)
             })
         })
         .collect();
-    let height = variances.len() / width;
-    (0..variances.len())
+    let height = values.len() / width;
+    (0..values.len())
         .map(|at| {
             let (x, y) = (at % width, at / width);
             let rows = y.saturating_sub(1)..(y + 2).min(height);
-            rows.map(|y| in_rows[y * width + x]).fold([0.0; 3], most)
+            rows.map(|y| in_rows[y * width + x])
+                .fold([f64::NEG_INFINITY; 3], most)
         })
         .collect()
 }
 
-/// The pixels that no sampling explains: those of one colour that show another.
+/// How much a difference may be, in standard deviations, where that is known of what is random in it: of a million normal errors one is greater.
+pub const DEVIATIONS: f64 = 5.0;
+
+/// In steps: half of one is rounding, and half of that another way to decode.
+pub const WRONG: f64 = 0.75;
+
+impl Model {
+    /// How much the light of each pixel may change if edges move by half a pixel: half of how much the pixels around it differ, or the standard deviation of a
+    /// sample in one of them, which half of each of two colours make half of their difference.
+    fn reach(&self, width: usize) -> Vec<[f64; 3]> {
+        let Moments { mean, variance } = &self.moments;
+        let negative: Vec<_> = mean.iter().map(|mean| mean.map(|light| -light)).collect();
+        let [most, least, variance] =
+            [mean, &negative, variance].map(|values| around(values, width));
+        let reach = |at: usize| {
+            [0, 1, 2].map(|i| f64::max((most[at][i] + least[at][i]) / 2.0, variance[at][i].sqrt()))
+        };
+        (0..mean.len()).map(reach).collect()
+    }
+
+    /// What a pixel may differ by for its rounding and for what is not known of it.
+    fn allowed(&self, at: usize, i: usize) -> f64 {
+        // The root of 12 standard deviations of rounding are a step.
+        let step = libm::sqrt(12.0) * rounding(self.moments.mean[at][i], self.curve);
+        let doubt = self.doubt.get(at).map_or(0.0, |doubt| doubt[i]);
+        WRONG * step + DEVIATIONS * doubt.sqrt()
+    }
+
+    /// Whether this and another model differ by something that can be seen, where a pixel shows so many samples: in a pixel by more than edges that move by half
+    /// a pixel. A few samples move them themselves: a regular grid of n by up to half of 1/√n, so that a pixel with a corner changes by up to three quarters with one.
+    pub fn is_seen_beside(&self, other: &Self, width: usize, samples: f64) -> bool {
+        let more = 1.0 + 0.5 / samples.sqrt();
+        let reaches = [self, other].map(|model| model.reach(width));
+        let shown =
+            |model: &Self, at: usize| model.moments.mean[at].map(|light| model.curve.seen(light));
+        (0..self.moments.mean.len()).any(|at| {
+            let (one, two) = (shown(self, at), shown(other, at));
+            (0..3).any(|i| {
+                let reach = f64::max(
+                    more * reaches[0][at][i] + self.allowed(at, i),
+                    more * reaches[1][at][i] + other.allowed(at, i),
+                );
+                (one[i] - two[i]).abs() > reach
+            })
+        })
+    }
+}
+
+/// What is wrong in a picture for certain, however it was sampled.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// Those with more of their colour around them. An edge that is off by less than half a pixel does not reach so far.
-    pub inside: Vec<usize>,
-    /// How many there are beside edges.
-    beside: usize,
-    /// How many pixels show several colours.
-    edges: usize,
+    /// The pixels of one colour that show another, by more than an edge brings into them that is half a pixel off.
+    pub pixels: Vec<usize>,
+    /// The pixels of several colours, their squared difference, and that which is expected of one sample in each.
+    edges: Vec<(usize, f64, f64)>,
 }
 
 impl Strays {
     /// Those of a picture.
     pub fn new(seen: &[[f64; 3]], model: &Model, width: usize) -> Self {
-        /// In steps: half of one is rounding, and half of that another way to decode.
-        const WRONG: f64 = 0.75;
-        /// In standard deviations of a model that is sampled itself.
-        const DOUBTS: f64 = 4.0;
         let variances = &model.moments.variance;
-        let around = around(variances, width);
-        let is_flat = |variance: &[f64; 3]| variance.iter().all(|one| *one < FLAT);
-        let is_off = |at: usize| {
-            let doubt = model.doubt.get(at).copied().unwrap_or_default();
-            (0..3).any(|i| {
-                let mean = model.moments.mean[at][i];
-                let off = model.difference(seen[at][i], mean, variances[at]).abs();
-                // The root of 12 standard deviations of rounding are a step.
-                let step = libm::sqrt(12.0) * rounding(mean, model.curve);
-                off > WRONG * step + DOUBTS * doubt[i].sqrt()
-            })
-        };
+        let reach = model.reach(width);
         let mut strays = Self::default();
         for at in 0..seen.len() {
-            if !is_flat(&variances[at]) {
-                strays.edges += 1;
-            } else if is_off(at) {
-                match is_flat(&around[at]) {
-                    true => strays.inside.push(at),
-                    false => strays.beside += 1,
+            let difference = [0, 1, 2]
+                .map(|i| model.difference(seen[at][i], model.moments.mean[at][i], variances[at]));
+            if variances[at].iter().all(|one| *one < FLAT) {
+                let is_off = |i: usize| difference[i].abs() > model.allowed(at, i) + reach[at][i];
+                if (0..3).any(is_off) {
+                    strays.pixels.push(at);
                 }
+            } else {
+                let square = |i: usize| {
+                    let allowed = model.allowed(at, i);
+                    (difference[i] * difference[i] - allowed * allowed).max(0.0)
+                };
+                let squares = (0..3).map(square).sum();
+                let expected = variances[at].iter().sum();
+                strays.edges.push((at, squares, expected));
             }
         }
         strays
     }
 
-    /// Whether there are none at all.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.inside.is_empty() && self.beside == 0
+        self.is_empty_among(|_| true)
     }
 
-    /// Whether there are no more than edges leave that are off by a fiftieth of a pixel.
-    pub fn is_negligible(&self) -> bool {
-        self.inside.is_empty() && self.beside * 50 <= self.edges
+    /// Whether there are none among some pixels.
+    pub fn is_empty_among(&self, is_one: impl Fn(usize) -> bool) -> bool {
+        let (mut squares, mut expected) = (0.0, 0.0);
+        for (_, square, variance) in self.edges.iter().filter(|(at, ..)| is_one(*at)) {
+            squares += square;
+            expected += variance;
+        }
+        // Light is 1 at most, so the square of a pixel's sum over three channels is expected to be no more than three times the sum, and its variance no more
+        // than that.
+        let is_noise = squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected);
+        is_noise && !self.pixels.iter().any(|at| is_one(*at))
     }
 }

@@ -10,6 +10,7 @@ use super::{
     candidate::{Candidate, Cause, Named},
     fit::{Fitted, Trial, fit},
     grid::Grid,
+    jpeg::Jpeg,
     light::Curve,
     made::Made,
     mistakes::{ROWS, Shows},
@@ -41,6 +42,8 @@ pub struct Level<'a> {
     seen: [OnceCell<Vec<[f64; 3]>>; Curve::ALL.len()],
     /// How many samples a cell has; none if it is computed exactly.
     samples: Option<usize>,
+    pub jpeg: Option<Jpeg>,
+    coded: OnceCell<Vec<[f64; 3]>>,
 }
 
 impl Level<'_> {
@@ -66,7 +69,21 @@ impl Level<'_> {
 
     /// What a candidate shows on it.
     pub fn model(&self, made: &Made) -> Model {
-        made.model(&self.grid, self.seen(made.candidate.curve))
+        let mut model = made.model(&self.grid, self.seen(made.candidate.curve));
+        if let Some(jpeg) = self.jpeg {
+            let (width, factor) = (self.grid.width(), self.grid.factor as usize);
+            let own = || jpeg.variances(&model.moments, width, factor);
+            // On cells of several pixels it is about the same for all candidates.
+            let variances = match factor {
+                1 => &own(),
+                _ => self.coded.get_or_init(own),
+            };
+            model.doubt.resize(variances.len(), [0.0; 3]);
+            for (doubt, more) in model.doubt.iter_mut().zip(variances) {
+                *doubt = [0, 1, 2].map(|i| doubt[i] + more[i]);
+            }
+        }
+        model
     }
 }
 
@@ -98,13 +115,21 @@ pub struct Found {
 
 impl<'a> Search<'a> {
     /// For a picture of a part of a scene's.
-    pub fn new(scene: &'a Scene, film: &'a Film, part: Area, cancel: &'a AtomicBool) -> Self {
+    pub fn new(
+        scene: &'a Scene,
+        film: &'a Film,
+        part: Area,
+        jpeg: Option<Jpeg>,
+        cancel: &'a AtomicBool,
+    ) -> Self {
         let level = |area: Area, longest, samples| Level {
             grid: Grid::new(&scene.image, area, longest),
             film,
             corner: [area.x - part.x, area.y - part.y],
             seen: std::array::from_fn(|_| OnceCell::new()),
             samples,
+            jpeg,
+            coded: OnceCell::new(),
         };
         Self {
             scene,
@@ -122,17 +147,17 @@ impl<'a> Search<'a> {
 
     /// What a candidate makes on a level; none if it is cancelled.
     pub fn made(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
-        candidate.made(&level.grid, level.samples, like, self.cancel)
+        let made = candidate.made(&level.grid, level.samples, like, self.cancel)?;
+        let objects = (OBJECTS + self.scene.objects.len()) as f64;
+        self.work.set(self.work.get() + made.work * objects);
+        Some(made)
     }
 
     /// What a candidate makes on a level, if there was not too much work before.
     pub fn tried(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
         let may = self.work.get() < MOST_WORK;
         self.is_cut.set(self.is_cut.get() || !may);
-        let made = may.then(|| self.made(candidate, level, like))??;
-        let objects = (OBJECTS + self.scene.objects.len()) as f64;
-        self.work.set(self.work.get() + made.work * objects);
-        Some(made)
+        may.then(|| self.made(candidate, level, like))?
     }
 
     /// By how much the picture differs from what was made.
@@ -156,7 +181,9 @@ impl<'a> Search<'a> {
     ) -> Option<Found> {
         let made = self.made(&candidate, level, like)?;
         let score = score(level.seen(candidate.curve), &level.model(&made));
-        let cost = score.cost(candidate.fitted(), level.grid.count());
+        // A part is judged as the whole is: of a few pixels anything can be fitted.
+        let [width, height] = level.grid.size().map(f64::from);
+        let cost = score.cost(candidate.fitted(), width * height);
         Some(Found {
             candidate,
             score,
@@ -170,19 +197,39 @@ impl<'a> Search<'a> {
         let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
         let mut all = std::iter::once(candidate.clone())
             .chain(rows.filter_map(|row| candidate.with(row.named())));
-        all.any(|candidate| self.strays(&candidate).is_negligible())
+        all.any(|candidate| self.strays(&candidate).is_empty())
     }
 
-    /// The pixels that show something else than a candidate for certain.
+    /// What shows something else than a candidate for certain.
     pub fn strays(&self, candidate: &Candidate) -> Strays {
-        let like = self.last.take();
-        let Some(made) = self.made(candidate, &self.fine, like.as_ref()) else {
-            return Strays::default();
-        };
+        let model = self.pixels(candidate);
         let seen = self.fine.seen(candidate.curve);
-        let strays = Strays::new(seen, &self.fine.model(&made), self.fine.grid.width());
+        model.map_or_else(Strays::default, |model| {
+            Strays::new(seen, &model, self.fine.grid.width())
+        })
+    }
+
+    /// Whether what was found beside another candidate can be seen.
+    pub fn is_seen(&self, found: &Found, beside: &Candidate) -> bool {
+        let count = f64::from(self.middle.grid.factor * self.middle.grid.factor);
+        let samples = found
+            .score
+            .samples
+            .map_or(f64::INFINITY, |samples| samples / count);
+        let models = [&found.candidate, beside].map(|candidate| self.pixels(candidate));
+        let [Some(one), Some(other)] = models else {
+            return false;
+        };
+        one.is_seen_beside(&other, self.fine.grid.width(), samples.max(1.0))
+    }
+
+    /// What a candidate shows in the pixels; none if it is cancelled.
+    fn pixels(&self, candidate: &Candidate) -> Option<Model> {
+        let like = self.last.take();
+        let made = self.made(candidate, &self.fine, like.as_ref())?;
+        let model = self.fine.model(&made);
         self.last.set(Some(made));
-        strays
+        Some(model)
     }
 
     /// What differs if a parameter has other numbers than in what was made.

@@ -13,7 +13,7 @@ use super::{
     numbers::numbers,
     parameters::Owner,
     patch::patch,
-    search::{Found, Search, joined, split},
+    search::{Found, Search, TINY, joined, split},
     textbook::Textbook,
     words,
 };
@@ -40,10 +40,11 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     let Some(mut best) = search.judged_on(&search.middle, right, None) else {
         return Ok(None);
     };
-    // A picture comes here because a pixel is wrong for certain. Few such pixels do not say that nothing more is wrong.
-    let is_doubtful = search.strays(&best.candidate).is_negligible();
+    // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
+    // alone.
+    let is_open = search.strays(&best.candidate).is_empty();
     while best.candidate.named.len() < MOST_MISTAKES
-        && (is_doubtful && best.candidate.named.is_empty() || !search.is_explained(&best.candidate))
+        && (is_open && best.candidate.named.is_empty() || !search.is_explained(&best.candidate))
     {
         let Some(next) = step(search, &best) else {
             break;
@@ -60,7 +61,7 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
         && found.candidate.named.len() == 1
     {
         let other = with_edges(search, Candidate::right(search.scene))?;
-        let other = other.filter(|other| search.strays(&other.candidate).is_negligible());
+        let other = other.filter(|other| search.strays(&other.candidate).is_empty());
         best = best
             .into_iter()
             .chain(other)
@@ -74,8 +75,10 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
     let Some(null) = search.judged_on(&search.edges, candidate, None) else {
         return Ok(None);
     };
-    // What is done to light makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
-    let may = null.candidate.looks.is_empty() && null.candidate.curve == Curve::Right;
+    // What is done to light, or to a JPEG, makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
+    let may = null.candidate.looks.is_empty()
+        && null.candidate.curve == Curve::Right
+        && search.fine.jpeg.is_none();
     let is_one = null.score.samples.is_some_and(|samples| samples < ONE);
     let shows = |row: &&Row| match row.shows {
         Shows::InAreas => false,
@@ -88,10 +91,10 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
         .filter_map(|candidate| search.judged_on(&search.edges, candidate, Some(&null.made)));
     let judged: Vec<Found> = judged.collect();
     // Where areas are not explained yet, that comes first.
-    let is_open = !search.strays(&null.candidate).is_negligible();
+    let is_open = !search.strays(&null.candidate).is_empty();
     let best = judged
         .into_iter()
-        .filter(|found| !is_open || search.strays(&found.candidate).is_negligible())
+        .filter(|found| !is_open || search.strays(&found.candidate).is_empty())
         .min_by(|one, other| one.cost.total_cmp(&other.cost));
     let is_better = |best: &Found| best.cost < null.cost;
     cancel::unless_set(search.cancel, Some(best.filter(is_better).unwrap_or(null)))
@@ -101,18 +104,22 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
 fn step(search: &Search, from: &Found) -> Option<Found> {
     let coarse = search.made(&from.candidate, &search.coarse, None)?;
     let suspects = suspects(search, from);
+    let tiny = from
+        .candidate
+        .made_to_compare(&search.tiny.grid, TINY.1, search.cancel)?;
     let mut tried = rows(search, from, &coarse, &suspects);
-    tried.extend(numbers(search, from, &coarse, &suspects));
+    tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
     let finalists = tried
         .into_iter()
         .take(FINALISTS)
         .map(|(_, candidate)| candidate);
     let judged = finalists.filter_map(|candidate| {
-        let like = search.made(&candidate, &search.middle, Some(&from.made))?;
-        let candidate = search.fitted(candidate, &search.middle, like, [3, 3])?;
         let found = search.judged_on(&search.middle, candidate, Some(&from.made))?;
-        Some(found)
+        // What is no better than nothing is not worth a fit.
+        (found.score.likelihood > from.score.likelihood).then_some(())?;
+        let candidate = search.fitted(found.candidate, &search.middle, found.made, [3, 3])?;
+        search.judged_on(&search.middle, candidate, Some(&from.made))
     });
     let judged: Vec<Found> = judged.collect();
     let least = judged
@@ -127,16 +134,15 @@ fn step(search: &Search, from: &Found) -> Option<Found> {
         )
     };
     let enough = least + AS_GOOD * (from.cost - least);
-    let best = judged.into_iter().min_by(|one, other| {
+    let mut judged = judged;
+    judged.sort_by(|one, other| {
         let rank = |found: &Found| (!(is_row(found) && found.cost <= enough), found.cost);
         let (one, other) = (rank(one), rank(other));
         one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
     });
-    let is_better = |best: &Found| {
-        best.cost < from.cost && words::is_seen(search.scene, &from.candidate, &best.candidate)
-    };
+    let is_better = |best: &Found| best.cost < from.cost && search.is_seen(best, &from.candidate);
     // Something too many would explain anything; it is thought of where nothing else explains more than before.
-    best.filter(is_better).or_else(|| {
+    judged.into_iter().find(is_better).or_else(|| {
         let patched = from.candidate.with(patch(search, from)?)?;
         let found = search.judged_on(&search.middle, patched, Some(&from.made))?;
         (found.cost < from.cost).then_some(found)
@@ -159,14 +165,20 @@ fn rows(search: &Search, from: &Found, like: &Made, suspects: &[usize]) -> Vec<(
     let candidates = named
         .into_iter()
         .filter_map(|named| from.candidate.with(named));
-    let judged = candidates.filter_map(|candidate| {
-        let made = search.tried(&candidate, &search.coarse, Some(like))?;
-        Some((
-            absolute(&search.differences(&made, &search.coarse)),
-            candidate,
-        ))
-    });
-    judged.collect()
+    candidates
+        .filter_map(|candidate| {
+            let made = search.tried(&candidate, &search.coarse, Some(like))?;
+            let left = absolute(&search.differences(&made, &search.coarse));
+            Some((left, candidate))
+        })
+        .collect()
+}
+
+/// Those of which least is left, in this order.
+pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> impl Iterator<Item = T> {
+    let mut all: Vec<(f64, T)> = all.collect();
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    all.into_iter().take(most).map(|(_, one)| one)
 }
 
 /// The objects that may be wrong, those first around which most is.
@@ -212,14 +224,30 @@ fn shortened(search: &Search, found: Found) -> Candidate {
     let Some(fitted) = fitted else {
         return found.candidate;
     };
+    let of = |named: &Named| match &named.cause {
+        Cause::Numbers(parameter, _) => parameter.steps(search.scene),
+        _ => Vec::new(),
+    };
+    let steps: Vec<f64> = named.iter().flat_map(of).collect();
+    let mut named = named.clone();
+    for one in &mut named {
+        if let Cause::Numbers(parameter, numbers) = &mut one.cause {
+            words::level(search.scene, parameter, numbers);
+        }
+    }
+    let named = &named;
+    // A number that is short was not fitted: it may cost what that costs.
+    let [width, height] = search.middle.grid.size().map(f64::from);
+    let price = 0.5 * libm::log(width * height);
     for digits in [8.0, 2.0] {
-        let rounded = joined(named).into_iter().zip(&fitted.errors);
+        // What a vector's length may be off is no matter, so that no error is more than a part of a step.
+        let rounded = joined(named).into_iter().zip(&fitted.errors).zip(&steps);
         let rounded: Vec<f64> = rounded
-            .map(|(x, error)| words::rounded(x, digits * error))
+            .map(|((x, error), step)| words::rounded(x, (digits * error).min(step.abs())))
             .collect();
         if let Some(candidate) = Candidate::of(search.scene, &split(named, &rounded))
             && let Some(judged) = search.judged_on(&search.middle, candidate, Some(&found.made))
-            && judged.cost <= found.cost + rounded.len() as f64
+            && judged.cost <= found.cost + price * rounded.len() as f64
         {
             return judged.candidate;
         }

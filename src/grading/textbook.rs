@@ -8,6 +8,7 @@ use glam::{BVec3, DVec2, DVec3};
 
 use crate::{
     area::Area,
+    math::Angle,
     scene::{Camera, Image, Lens, Outline, Scene, Shape, View, level_direction},
 };
 
@@ -136,23 +137,15 @@ impl Axes {
         }
         let u = u.normalize_or(DVec3::X);
         let v = w.cross(u);
-        let roll = camera.roll.degrees.to_radians() + camera.roll.radians;
+        let roll = radians(camera.roll);
         let (sin, cos) = (libm::sin(roll), libm::cos(roll));
         let (width, height) = (f64::from(image.width), f64::from(image.height));
-        let half = |angle: crate::math::Angle| {
-            libm::tan((angle.degrees.to_radians() + angle.radians) / 2.0)
-        };
-        let focal = match camera.lens {
-            Lens::Distance(d) => d * height / camera.view_height,
-            Lens::Fov(angle) => height / (2.0 * half(angle)),
-            Lens::HorizontalFov(angle) => width / (2.0 * half(angle)),
-        };
         Self {
             eye: camera.eye,
             u: cos * u - sin * v,
             v: sin * u + cos * v,
             w,
-            focal,
+            focal: focal(camera, image),
             middle: DVec2::new(width, height) / 2.0,
         }
     }
@@ -176,6 +169,30 @@ impl Axes {
     pub fn pixel_at(&self, point: DVec3) -> f64 {
         (point - self.eye).length().max(1e-9) / self.focal
     }
+}
+
+/// An angle in radians.
+pub fn radians(angle: Angle) -> f64 {
+    angle.degrees.to_radians() + angle.radians
+}
+
+/// How many pixels a unit of the view plane at distance 1 has.
+pub fn focal(camera: &Camera, image: &Image) -> f64 {
+    let (width, height) = (f64::from(image.width), f64::from(image.height));
+    let half = |angle| libm::tan(radians(angle) / 2.0);
+    match camera.lens {
+        Lens::Distance(d) => d * height / camera.view_height,
+        Lens::Fov(angle) => height / (2.0 * half(angle)),
+        Lens::HorizontalFov(angle) => width / (2.0 * half(angle)),
+    }
+}
+
+/// The corners of a box.
+pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
+    std::array::from_fn(|corner| {
+        let is_max = |bit: u32| corner >> bit & 1 == 1;
+        DVec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), max, min)
+    })
 }
 
 /// A shape as seen from the eye.
@@ -442,9 +459,7 @@ pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
         Shape::Checkerboard(_) => return None,
     };
     let mut bounds = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-    for corner in 0..8 {
-        let is_max = |bit: u32| corner >> bit & 1 == 1;
-        let corner = DVec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), max, min);
+    for corner in corners(min, max) {
         let place = axes.place(corner)?;
         bounds = [bounds[0].min(place), bounds[1].max(place)];
     }
@@ -464,7 +479,7 @@ pub fn vertices(outline: &Outline) -> [DVec3; 3] {
             };
             let right = right.normalize_or(DVec3::X);
             let top = n.cross(right);
-            let spin = triangle.spin.degrees.to_radians() + triangle.spin.radians;
+            let spin = radians(triangle.spin);
             let (sin, cos) = (libm::sin(spin), libm::cos(spin));
             let (right, top) = (cos * right + sin * top, cos * top - sin * right);
             let [a, b, c] = triangle.sides.to_array();

@@ -2,7 +2,7 @@
 
 use std::{fs, io::Write, path::Path, process::Stdio};
 
-use image::{DynamicImage, GenericImageView, ImageBuffer, Rgb, Rgba};
+use image::{DynamicImage, GenericImageView, ImageBuffer, Rgb, Rgba, codecs::jpeg::JpegEncoder};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -182,6 +182,71 @@ fn a_mistake_is_what_can_be_set() {
     );
     assert!(object["off"].as_f64().unwrap() > 1.0, "{found:#}");
     assert_eq!(found["objects"][2]["name"], Value::Null);
+}
+
+#[test]
+fn what_jpeg_changes_is_not_wrong() {
+    let folder = folder();
+    let path = folder.path();
+    for (arguments, expected) in [
+        (&[][..], 0),
+        (&RANDOM, 0),
+        (&["--set", "Ball.radius=1.5"], 1),
+    ] {
+        render(path, &[&["-o", "b.png"], arguments].concat());
+        let picture = open(path, "b.png").to_rgb8();
+        for quality in [90, 95, 100] {
+            let file = fs::File::create(path.join("b.jpg")).unwrap();
+            JpegEncoder::new_with_quality(file, quality)
+                .encode_image(&picture)
+                .unwrap();
+            let (status, text) = diff(path, &["b.jpg", "a.scn"]);
+            assert_eq!(status, expected, "{arguments:?} {quality}: {text}");
+        }
+    }
+}
+
+#[test]
+fn a_mistake_is_found_where_every_pixel_shows_several_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    // Behind the box there are squares of about a pixel.
+    let scene = "image { width 96 height 64 }
+camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
+sampler { method exact }
+box Crate { center (2, 0.75, -0.5) }
+checkerboard { square 0.3 }
+";
+    fs::write(path.join("a.scn"), scene).unwrap();
+    render(path, &["-o", "a.png", "--set", "Crate.size=(0.5, 2, 2)"]);
+    let (status, text) = diff(path, &["a.png", "a.scn"]);
+    assert!(
+        status == 1 && text.starts_with("wrong: the box Crate"),
+        "{text}"
+    );
+}
+
+#[test]
+fn objects_are_told_by_the_pixels() {
+    let folder = folder();
+    let path = folder.path();
+    save(path, "b.png", open(path, "a.png").fliph());
+    let found = json(path, &["b.png", "a.scn"]);
+    assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
+    for object in found["objects"].as_array().unwrap() {
+        assert_eq!(object["right"], false, "{object:#}");
+    }
+    // A blot on the sky.
+    let mut picture = open(path, "a.png").to_rgb8();
+    for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
+        picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));
+    }
+    save(path, "b.png", picture);
+    let found = json(path, &["b.png", "a.scn"]);
+    assert_ne!(found["verdict"], "noise");
+    for object in found["objects"].as_array().unwrap() {
+        assert_eq!(object["right"], true, "{object:#}");
+    }
 }
 
 #[test]

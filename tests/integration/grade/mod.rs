@@ -11,7 +11,7 @@ use image::ImageFormat;
 use pinhole::{
     area::Area,
     film::{self, Tolerance},
-    grading::{self, Reference},
+    grading::{self, Jpeg, Reference},
     render::{self, Control},
     tracer::World,
 };
@@ -74,7 +74,12 @@ fn answer(case: &Case) -> Value {
     };
     let comparison = film::compare(&picture.film, &exact.film, tolerance).unwrap();
     let verdict = Reference::new(&scene, part)
-        .judge(&picture.film, &comparison, &control)
+        .judge(
+            &picture.film,
+            Jpeg::of(file.get_ref()),
+            &comparison,
+            &cancel,
+        )
         .unwrap();
     Value::Object(grading::json(&verdict))
 }

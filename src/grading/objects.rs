@@ -1,0 +1,148 @@
+//! Which objects of a scene a picture shows as they should be.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    candidate::Candidate,
+    parameters::Owner,
+    search::Search,
+    textbook::{Axes, Behaviour, Textbook, corners, vertices},
+};
+use crate::scene::{Scene, Shape};
+
+/// A move of less than this, in pixels, is none.
+const HALF_PIXEL: f64 = 0.5;
+
+/// So far from an object that is wrong, in pixels, what else is wrong is its own.
+const BESIDE: u32 = 2;
+
+/// An object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectVerdict {
+    /// Its place in the file.
+    pub index: usize,
+    /// Its name.
+    pub name: Option<String>,
+    /// What it is called.
+    pub title: String,
+    /// Whether it is right.
+    pub is_right: bool,
+    /// By how many pixels it is off.
+    pub off: f64,
+}
+
+/// All of them, where all are right.
+pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
+    let right = |index: usize| ObjectVerdict {
+        index,
+        name: scene.objects[index].name.clone(),
+        title: Owner::Object(index).name(scene),
+        is_right: true,
+        off: 0.0,
+    };
+    (0..scene.objects.len()).map(right).collect()
+}
+
+/// All of them, and whether the background is right, in a picture with these mistakes.
+///
+/// An object is right if it has its own numbers in the candidate's scene, and if where a right program would show it in that scene the picture shows nothing else.
+pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
+    let scene = search.scene;
+    let is_drawn = &candidate.is_drawn;
+    let mut objects = right(scene);
+    for (index, one) in objects.iter_mut().enumerate() {
+        let shapes = [scene, &candidate.scene].map(|scene| &scene.objects[index].shape);
+        one.off = match is_drawn[index] {
+            true => off(scene, &candidate.scene, index),
+            false => 0.0,
+        };
+        one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
+    }
+    let plain = Candidate {
+        scene: candidate.scene.clone(),
+        is_drawn: is_drawn.clone(),
+        ..Candidate::right(scene)
+    };
+    let strays = search.strays(&plain);
+    let grid = &search.fine.grid;
+    let textbook = Textbook::new(&plain.drawn(grid), Behaviour::RIGHT, |light| light);
+    let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
+    let labels = textbook.labels(grid.cells).into_iter();
+    let labels: Vec<Option<usize>> = labels.map(|label| label.map(|at| drawn[at])).collect();
+    let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
+    let cells = grid.cells;
+    let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);
+    let is_of_another = |at: usize| {
+        let (x, y) = (at as u32 % cells.width, at as u32 / cells.width);
+        near(y, cells.height).any(|y| {
+            near(x, cells.width).any(|x| {
+                let label = labels[(y * cells.width + x) as usize];
+                label.is_some_and(|object| is_moved[object])
+            })
+        })
+    };
+    let is_right = |object: Option<usize>| {
+        strays.is_empty_among(|at| labels[at] == object && !is_of_another(at))
+    };
+    for one in &mut objects {
+        one.is_right = one.is_right && is_right(Some(one.index));
+    }
+    let backgrounds = [scene, &candidate.scene].map(|scene| scene.image.background);
+    (objects, backgrounds[0] == backgrounds[1] && is_right(None))
+}
+
+/// How far an object is moved in the picture from one scene to another, in pixels: the farthest of some points of it.
+fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
+    let axes = [from, to].map(|scene| Axes::new(&scene.camera, &scene.image));
+    let points = [from, to].map(|scene| points(&scene.objects[object].shape, &axes[0], from));
+    let [before, after] = points;
+    let moved = before.into_iter().zip(after).filter_map(|(before, after)| {
+        let (before, after) = (axes[0].place(before)?, axes[1].place(after));
+        // What is not before the eye any more is far off.
+        let size = DVec2::new(f64::from(from.image.width), f64::from(from.image.height));
+        let is_near = before.cmpge(-size).all() && before.cmple(2.0 * size).all();
+        is_near.then(|| {
+            after.map_or(size.length(), |after| {
+                before.distance(after).min(size.length())
+            })
+        })
+    });
+    moved.fold(0.0, f64::max)
+}
+
+/// Points that are fixed to a shape, those of a board in its squares.
+fn points(shape: &Shape, axes: &Axes, scene: &Scene) -> Vec<DVec3> {
+    match shape {
+        Shape::Sphere(sphere) => {
+            let ways = [DVec3::X, DVec3::Y, DVec3::Z];
+            ways.into_iter()
+                .flat_map(|way| [way, -way])
+                .map(|way| sphere.center + sphere.radius * way)
+                .collect()
+        }
+        Shape::Triangle(triangle) => vertices(&triangle.outline).to_vec(),
+        Shape::Box(cuboid) => corners(cuboid.min, cuboid.max).to_vec(),
+        Shape::Checkerboard(board) => {
+            // What the scene's own board shows in a few places of the picture, in squares.
+            let own = scene.objects.iter().find_map(|object| match object.shape {
+                Shape::Checkerboard(board) => Some(board),
+                _ => None,
+            });
+            let own = own.unwrap_or(*board);
+            let size = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height));
+            let places =
+                (0..25).map(|at| size * DVec2::new(f64::from(at % 5), f64::from(at / 5)) / 4.0);
+            let crossing = |place| {
+                let ray = axes.ray(place);
+                let t = (own.y - scene.camera.eye.y) / ray.y;
+                // Beyond some hundred squares nothing of them is seen.
+                let is_seen = t > 0.0 && t < 100.0 * own.square;
+                is_seen.then(|| (scene.camera.eye + t * ray) / own.square)
+            };
+            let squares = places.filter_map(crossing);
+            squares
+                .map(|at| DVec3::new(at.x * board.square, board.y, at.z * board.square))
+                .collect()
+        }
+    }
+}
