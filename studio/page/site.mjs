@@ -17,7 +17,7 @@ const target = path.resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
 const wasm = "wasm32-unknown-unknown";
 const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio: "inherit" });
 
-// Where size comes first, hardly anything is inlined; that much of it makes frames twice as fast, and the engine 1 % larger.
+// Where size comes first, hardly anything is inlined; that much of it makes frames about twice as fast, and the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=15"];
 run("cargo", "rustc", "--locked", "--profile", "site", "--target", wasm, "--package", "pinhole-studio-engine", "--", ...inlining);
 run("cargo", "run", "--locked", "--quiet", "--package", "pinhole-studio-bindgen", "--", path.join(target, wasm, "site/pinhole_studio_engine.wasm"), engine);
