@@ -62,7 +62,7 @@ export class Files {
   }
 
   /** The host says which file it has: at first, after the connection was lost, and when a new scene has got its name. */
-  hosted({ name, text, uri, saved }: HostedFile, linked: string | null): void {
+  hosted({ name, text, reason, uri, saved }: HostedFile, linked: string | null): void {
     this.name = name;
     this.isNew = this.isServed && !saved;
     if (!this.opened) {
@@ -74,21 +74,21 @@ export class Files {
       if (linked !== null) this.editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
       if (!this.isServed) this.untouched = this.editor.text;
-      if (text === null) this.tellGone();
+      if (text === null) this.tellGone(reason);
     } else if (this.isServed && saved) {
       this.untouched = null;
-      this.changed(text);
+      this.changed(text, reason);
     }
     this.editor.moveTo(uri);
     this.show();
   }
 
   /** The file was changed by somebody else, is gone, or is back. */
-  changed(text: string | null): void {
+  changed(text: string | null, reason?: string | null): void {
     const { seen, isGone } = this;
     this.isGone = text === null;
     if (text === null) {
-      if (!isGone) this.tellGone();
+      if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
       this.conflict.close();
@@ -103,9 +103,9 @@ export class Files {
     this.show();
   }
 
-  private tellGone(): void {
+  private tellGone(reason?: string | null): void {
     this.isGone = true;
-    this.status.say(`${this.name} cannot be read: it is gone, or no text in UTF-8.`, "warning");
+    this.status.say(reason ? `${this.name} cannot be read: ${reason}` : `${this.name} is gone; Save writes it anew.`, "warning");
   }
 
   /** Shows whether everything is saved. */

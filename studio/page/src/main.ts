@@ -116,7 +116,10 @@ connection.onNotification = async (method, params) => {
     files.hosted(params as HostedFile, text);
     if (first) changed();
   }
-  if (method === "studio/changed") files.changed((params as { text: string | null }).text);
+  if (method === "studio/changed") {
+    const { text, reason } = params as Pick<HostedFile, "text" | "reason">;
+    files.changed(text, reason);
+  }
 };
 
 addEventListener("hashchange", async () => {

@@ -81,10 +81,12 @@ export interface Samples {
   color: string;
 }
 
-/** The file that a served page edits: its text is null while it does not exist. */
+/** The file that a served page edits: its text is null while there is none. */
 export interface HostedFile {
   name: string;
   text: string | null;
+  /** Why there is no text, where something else is there. */
+  reason?: string | null;
   uri: string;
   saved: boolean;
 }

@@ -46,6 +46,19 @@ test("a file that is gone is told, and Save writes it anew", async t => {
   assert.equal(started.text(), FIGURE);
 });
 
+test("a file that is no text is told, and not overwritten", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  const latin = Buffer.from(FIGURE.replace("ball,", "b\u00e4ll,"), "latin1");
+  started.write(latin);
+  await page.waitForFunction(() => /cannot be read: .*UTF-8/.test(document.querySelector("#said").textContent));
+  await andFinished(page, () => type(page, LARGER));
+  await page.keyboard.press("Control+s");
+  await page.waitForTimeout(500);
+  assert.deepEqual(readFileSync(started.file), latin);
+  assert.equal(await text(page), LARGER);
+});
+
 test("a file with lines that end by CR LF keeps them, and is compared by its text", async t => {
   const crlf = text => text.replaceAll("\n", "\r\n");
   const started = await host(t, crlf(FIGURE));
