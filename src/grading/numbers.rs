@@ -7,9 +7,8 @@ use super::{
     fit::{Trial, absolute},
     made::Made,
     parameters::{self, Owner, Parameter},
-    score::Model,
+    score::{Model, least},
     search::{Found, Search, steps},
-    select::least,
     words,
 };
 use crate::color::{Color, linear_to_srgb};

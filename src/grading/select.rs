@@ -13,6 +13,7 @@ use super::{
     numbers::numbers,
     parameters::Owner,
     patch::patch,
+    score::least,
     search::{Found, Search, TINY, joined, split},
     textbook::Textbook,
     words,
@@ -172,13 +173,6 @@ fn rows(search: &Search, from: &Found, like: &Made, suspects: &[usize]) -> Vec<(
             Some((left, candidate))
         })
         .collect()
-}
-
-/// Those of which least is left, in this order.
-pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> impl Iterator<Item = T> {
-    let mut all: Vec<(f64, T)> = all.collect();
-    all.sort_by(|one, other| one.0.total_cmp(&other.0));
-    all.into_iter().take(most).map(|(_, one)| one)
 }
 
 /// The objects that may be wrong, those first around which most is.

@@ -5,25 +5,13 @@ import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
-import { isSuperseded, type Range, type TextEdit } from "./protocol";
-
-interface ServerDiagnostic {
-  range: Range;
-  severity?: number;
-  message: string;
-}
+import { isSuperseded, type Published, type ServerDiagnostic, type TextEdit } from "./protocol";
 
 interface CodeAction {
   title: string;
   kind: string;
   diagnostics?: ServerDiagnostic[];
   edit: { changes?: Record<string, TextEdit[]> };
-}
-
-interface Published {
-  uri: string;
-  version?: number;
-  diagnostics: ServerDiagnostic[];
 }
 
 /** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip closes when there are new diagnostics. */

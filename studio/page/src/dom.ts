@@ -28,6 +28,15 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K, attribut
   return element;
 }
 
+/** Has the browser save a file. */
+export function download(name: string, content: BlobPart, type: string): void {
+  const link = create("a");
+  link.href = URL.createObjectURL(new Blob([content], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
 /** Browsers that read base64 themselves do it many times faster. */
 const native = Uint8Array as unknown as { fromBase64?(text: string): Uint8Array<ArrayBuffer> };
 

@@ -9,10 +9,9 @@ import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { ChangeSet, Compartment, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
-import { publishDiagnostics } from "./diagnostics";
 import { gestureHistory } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
-import type { Position, Range, TextEdit } from "./protocol";
+import type { Position, Published, Range, TextEdit } from "./protocol";
 import { sanitized } from "./sanitize";
 
 class SceneFile implements WorkspaceFile {
@@ -68,6 +67,8 @@ export class SceneEditor {
   readonly client: LSPClient;
   /** The address of the scene, by which the server knows it. */
   uri = "";
+  /** What to do with the diagnostics that the server publishes. */
+  diagnosed: (published: Published) => void = () => undefined;
   private readonly plugin = new Compartment();
   private readonly history = new Compartment();
 
@@ -79,7 +80,7 @@ export class SceneEditor {
       sanitizeHTML: sanitized,
       notificationHandlers: {
         "textDocument/publishDiagnostics": (_, params) => {
-          void publishDiagnostics(this, connection, params);
+          this.diagnosed(params);
           return true;
         },
       },

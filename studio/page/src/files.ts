@@ -2,10 +2,9 @@
 
 import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
-import { byId, create, createButton } from "./dom";
+import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
 import { Refusal, type HostedFile } from "./protocol";
-import { download } from "./share";
 import type { Status } from "./status";
 
 /** What browsers that can save into files offer for it. */

@@ -3,7 +3,7 @@
 import { redo, undo } from "@codemirror/commands";
 import { keymap } from "@codemirror/view";
 import { Connection, webSocket, worker } from "./connection";
-import { changesDiagnostics, fixKey, Problems } from "./diagnostics";
+import { changesDiagnostics, fixKey, Problems, publishDiagnostics } from "./diagnostics";
 import { byId } from "./dom";
 import { SceneEditor } from "./editor";
 import { Files } from "./files";
@@ -38,6 +38,7 @@ const editor = new SceneEditor(
     if (changesDiagnostics(update)) problems.update();
   },
 );
+editor.diagnosed = published => void publishDiagnostics(editor, connection, published);
 const problems = new Problems(() => editor.view);
 const hints = new Hints(editor, connection);
 const frames = new Frames(

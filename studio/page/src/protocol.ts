@@ -102,3 +102,15 @@ export class Refusal extends Error {
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }
+
+export interface ServerDiagnostic {
+  range: Range;
+  severity?: number;
+  message: string;
+}
+
+export interface Published {
+  uri: string;
+  version?: number;
+  diagnostics: ServerDiagnostic[];
+}

@@ -1,6 +1,6 @@
 // Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent anywhere.
 
-import { byId, create, createButton, fromBase64 } from "./dom";
+import { byId, createButton, download, fromBase64 } from "./dom";
 import type { Connection } from "./connection";
 import type { SceneEditor } from "./editor";
 import type { Files } from "./files";
@@ -41,14 +41,6 @@ export async function sceneInAddress(status: Status): Promise<string | null> {
     status.say("The link is damaged: its scene cannot be read.", "warning");
     return null;
   }
-}
-
-export function download(name: string, content: BlobPart, type: string): void {
-  const link = create("a");
-  link.href = URL.createObjectURL(new Blob([content], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
 export function offerSharing(editor: SceneEditor, connection: Connection, status: Status, files: Files): void {
