@@ -13,7 +13,6 @@ use super::{
     numbers::numbers,
     parameters::Owner,
     patch::patch,
-    score::least,
     search::{Found, Search, TINY, joined, split},
     textbook::Textbook,
     words,
