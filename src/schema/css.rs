@@ -1,4 +1,4 @@
-//! The colours that CSS names (CSS Color Module Level 4, section 6.1): a table, as a library with the same one brings ten crates that have to be compiled.
+//! The colours that CSS names (CSS Color Module Level 4, section 6.1): a table, as a library with the same one brings nine crates that have to be compiled.
 
 use crate::color::Color;
 
