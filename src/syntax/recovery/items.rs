@@ -3,6 +3,7 @@
 use super::{Recovery, foreign::Place, is_name, unquoted};
 use crate::{
     diagnostic::{Edit, Fix},
+    schema,
     source::Span,
     suggest,
     syntax::{
@@ -264,15 +265,16 @@ impl<'s> Recovery<'_, 's> {
 
     /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere Ball` and then fields.
     fn unopened_block(&mut self) -> bool {
-        if !self.words.is_kind(self.word(0)) {
+        let Some(row) = schema::block(self.word(0)) else {
             return false;
-        }
+        };
         let kind = self.name();
         let is_field = |this: &mut Self| {
             let word = this.word(0);
             this.is_name(0) && this.words.takes(kind.text, word).is_some()
         };
-        let has_name = self.is_name(0) && !self.is_on_new_line(0) && !is_field(self);
+        let has_name =
+            row.is_object && self.is_name(0) && !self.is_on_new_line(0) && !is_field(self);
         let name = has_name.then(|| self.name());
         let head = kind.span.to(self.behind());
         let mut block = Block::empty(head);
@@ -421,7 +423,9 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        let fix = self.remove("remove this `}`", all);
+        // Before anything but an item it may stand for another sign.
+        let is_sure = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
+        let fix = is_sure.then(|| self.remove("remove this `}`", all));
         self.report(&say::STRAY_CLOSING, first, &["}"], fix);
     }
 }

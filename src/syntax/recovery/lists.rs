@@ -165,8 +165,10 @@ impl<'s> Recovery<'_, 's> {
                 }
             } else if self.ends_value() || self.is_next_item() {
                 let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
+                let last = list.elements.last().map(|element| &element.value);
+                let last = last.filter(|value| value.kind != ValueKind::Bad);
                 let fits = is_whole && count.contains(&list.elements.len());
-                self.unclosed(open, close, fits);
+                self.unclosed(open, close, last.filter(|_| fits).map(|last| last.span.end));
                 list.span = open.to(self.behind());
                 list.is_round = true;
                 return fits.then_some(list);
@@ -189,18 +191,21 @@ impl<'s> Recovery<'_, 's> {
         !self.within.is_block && self.is_name(0) && self.is_on_new_line(0)
     }
 
-    fn unclosed(&mut self, open: Span, close: &str, fits: bool) {
-        let (word, at) = (self.word(0), self.last_end);
+    /// A list without its end, and where that is missing if it is known.
+    fn unclosed(&mut self, open: Span, close: &str, end: Option<usize>) {
+        let word = self.word(0);
         // A field's name behind which no value stands does not end a list, nor does a sign.
         let is_end = matches!(word, "" | "}") || (self.is_name(0) && self.starts_value(1));
         let before = match word {
             "" => "at the end".to_owned(),
             word => format!("before `{}`", shorten(word)),
         };
-        let end = Edit::insert(self.id, at, ")");
-        let fix = (fits && is_end).then(|| match close {
-            ")" => Fix::new(format!("write `)` {before}"), [end]),
-            _ => Fix::new(format!("write `(…)` {before}"), [Edit::new(open, "("), end]),
+        let fix = end.filter(|_| is_end).map(|end| {
+            let end = Edit::insert(self.id, end, ")");
+            match close {
+                ")" => Fix::new(format!("write `)` {before}"), [end]),
+                _ => Fix::new(format!("write `(…)` {before}"), [Edit::new(open, "("), end]),
+            }
         });
         self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }

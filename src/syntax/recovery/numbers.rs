@@ -8,7 +8,7 @@ use crate::{
         messages as say,
         problem::{replace, shorten},
         tokens::{is_color_code, numeric_part},
-        tree::{Value, bad, number},
+        tree::{Unit, Value, ValueKind, bad, number},
     },
 };
 
@@ -89,6 +89,19 @@ impl<'s> Recovery<'_, 's> {
             _ => "the units are `deg` and `rad`",
         };
         let text = scaled(digits, factor).filter(|_| fits);
+        // What is told about an angle, or a number, that stays the same number is not told only once this is mended.
+        let meant = match (fits && factor == 1.0, right) {
+            (false, _) => ValueKind::Bad,
+            (true, "deg") => ValueKind::Angle {
+                number: digits,
+                unit: Unit::Degrees,
+            },
+            (true, "rad") => ValueKind::Angle {
+                number: digits,
+                unit: Unit::Radians,
+            },
+            (true, _) => ValueKind::Number(digits),
+        };
         let fix = text.map(|number| replace(whole, format!("{number}{right}")));
         let is_apart = behind.start > whole.start + digits.len() && unit != "°";
         if is_apart && wanted == Type::Angle {
@@ -97,7 +110,10 @@ impl<'s> Recovery<'_, 's> {
             let written = shorten(&format!("{digits}{unit}"));
             self.report(&say::BAD_NUMBER, whole, &[&written, label], fix);
         }
-        bad(whole)
+        Value {
+            kind: meant,
+            span: whole,
+        }
     }
 
     /// What starts as a number does and is none.

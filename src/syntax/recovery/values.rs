@@ -198,8 +198,10 @@ impl<'s> Recovery<'_, 's> {
         if written == "%" {
             self.unknown_operator(written, sign, None);
         } else if SUM.contains(&written) {
-            let fix = self.remove(format!("remove this `{written}`"), sign);
-            self.report(&say::MISSING_OPERAND, sign, &["after", written], Some(fix));
+            // Before another sign a value may be missing.
+            let is_sure = !matches!(self.word(0), "," | ";" | "=" | "{");
+            let fix = is_sure.then(|| self.remove(format!("remove this `{written}`"), sign));
+            self.report(&say::MISSING_OPERAND, sign, &["after", written], fix);
         } else {
             // Without a factor the value would be of another type.
             self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
@@ -353,7 +355,8 @@ impl<'s> Recovery<'_, 's> {
         let span = name.span.to(self.behind());
         if self.problems.len() == told {
             let right = format!("{}({})", name.text, self.list_of(&arguments));
-            self.missing_parentheses(span, Some(replace(span, right)));
+            let is_whole = !self.goes_on(&arguments);
+            self.missing_parentheses(span, is_whole.then(|| replace(span, right)));
         }
         bad(span)
     }
@@ -384,7 +387,8 @@ impl<'s> Recovery<'_, 's> {
         }
         let next = self.word(0);
         let is_named = self.words.is_color(next);
-        let is_apart = digits.is_empty() && !self.is_on_new_line(0);
+        let takes_color = matches!(self.within.takes, None | Some(Type::Color | Type::Colors));
+        let is_apart = takes_color && digits.is_empty() && !self.is_on_new_line(0);
         let (label, fix) = if is_apart && (is_named || is_color_code(next)) {
             span = span.to(self.bump());
             let right = if is_named {

@@ -36,14 +36,17 @@ fn fixed(sources: &Sources, fix: &Fix) -> Sources {
     Sources::new(Source::from_text("a.scn", file)).with_sets(sets)
 }
 
-/// How often each thing is said.
+/// How often each thing is said, whatever white space stands in what it quotes.
 fn counted(diagnostics: &[Diagnostic]) -> BTreeMap<(String, String), usize> {
     let mut counted = BTreeMap::new();
     for diagnostic in diagnostics {
-        let said = (diagnostic.code.clone(), diagnostic.message.clone());
-        *counted.entry(said).or_default() += 1;
+        *counted.entry(said(diagnostic)).or_default() += 1;
     }
     counted
+}
+
+fn said(diagnostic: &Diagnostic) -> (String, String) {
+    (diagnostic.code.clone(), diagnostic.message.replace(' ', ""))
 }
 
 /// Every fixture that is a text, with its name and the arguments that it gives.
@@ -76,15 +79,15 @@ fn type_in_fixes(
             fixes += 1;
             let after_sources = fixed(before_sources, fix);
             let after = diagnostics(&after_sources);
-            let said = counted(&after);
-            let this = (diagnostic.code.clone(), diagnostic.message.clone());
+            let said_after = counted(&after);
+            let this = said(diagnostic);
             let text = after_sources.file.text();
-            if said.get(&this) >= said_before.get(&this) {
+            if said_after.get(&this) >= said_before.get(&this) {
                 complaints.push(format!("{name}: {} stays: {this:?}\n{text}", fix.title));
             }
             for new in after.iter().filter(|d| d.is_error()) {
-                let new_said = (new.code.clone(), new.message.clone());
-                if said.get(&new_said) <= said_before.get(&new_said) {
+                let new_said = said(new);
+                if said_after.get(&new_said) <= said_before.get(&new_said) {
                     continue;
                 }
                 complaints.push(format!("{name}: `{}`: new {new_said:?}", fix.title));

@@ -1,7 +1,5 @@
 //! What people write, and what is made of it: each row is a text, the codes of its reports, and the text with its fixes.
 
-use std::{fs, path::Path};
-
 use pinhole::{
     diagnostic::{Diagnostic, apply},
     source::SourceId,
@@ -9,6 +7,7 @@ use pinhole::{
 };
 
 use super::{diagnostics, of_scene, sources, type_in_fixes};
+use crate::scenes::examples;
 
 /// Beside the rows stand a camera and a board. Where no text is given, nothing is offered.
 const ROWS: &[(&str, &str, &str)] = &[
@@ -289,15 +288,11 @@ fn every_fix_of_a_slip_helps() {
     let others = [
         "radius", "2", ",", "=", "(", ")", "{", "}", "let", "red", "-", "*", "deg", "#", "\"", ";",
     ];
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     // A field without a value is found when the scene is made.
     let is_of_syntax = |d: &Diagnostic| d.is_of_syntax && d.code != "pinhole::missing_value";
     let (mut fixes, mut complaints) = (0, Vec::new());
     let mut count = 0_usize;
-    for entry in fs::read_dir(folder).unwrap() {
-        let Ok(text) = fs::read_to_string(entry.unwrap().path()) else {
-            continue;
-        };
+    for text in examples() {
         if text.len() > 3000 || !diagnostics(&sources(&text, &[])).is_empty() {
             continue;
         }
