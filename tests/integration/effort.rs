@@ -29,6 +29,14 @@ impl Effort {
         };
         table.into_iter().take(count)
     }
+
+    /// How long a text is, or how often something is tried: a sample takes a 64th.
+    pub fn part_of(self, whole: usize) -> usize {
+        match self {
+            Self::Sample => whole / 64,
+            Self::Exhaustive => whole,
+        }
+    }
 }
 
 /// Makes two tests of a function that takes an [`Effort`]: `NAME::sample`, and `NAME::exhaustive`, which is ignored by default.

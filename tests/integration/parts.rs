@@ -14,7 +14,10 @@ use pinhole::{
 };
 use proptest::{prelude::*, sample::select};
 
-use crate::scenes::scenes;
+use crate::{
+    effort::{Effort, sampled_and_exhaustive},
+    scenes::scenes,
+};
 
 /// Every scene that there is beside the source.
 static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
@@ -58,10 +61,12 @@ fn every_scene() {
     assert!(in_parts >= 20, "{in_parts}");
 }
 
-#[test]
-fn every_prefix_of_a_scene_of_everything() {
+sampled_and_exhaustive!(every_prefix_of_a_scene_of_everything);
+
+fn every_prefix_of_a_scene_of_everything(effort: Effort) {
     let text = fs::read_to_string("examples/language_tour.scn").expect("the tour");
-    for (end, _) in text.char_indices() {
+    let step = if effort == Effort::Sample { 7 } else { 1 };
+    for (end, _) in text.char_indices().step_by(step) {
         check(&text[..end], 1, &[]);
     }
 }

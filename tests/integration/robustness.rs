@@ -1,6 +1,7 @@
 //! Whatever the text, reading it ends soon, says something if there is no scene, and points into the text.
 //!
-//! The times hold for a release build; a build without optimization gets more.
+//! The times hold for a release build, which tries texts of a megabyte and more; a build without optimization gets more time, and each run of
+//! the tests tries a sample, of shorter texts.
 
 use std::time::{Duration, Instant};
 
@@ -17,6 +18,7 @@ use pinhole::{
 use rand::{Rng, SeedableRng};
 
 const MEGABYTE: usize = 1 << 20;
+
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
 /// Reads and reports a text; answers whether there is a scene.
@@ -100,29 +102,28 @@ fn empty_texts() {
     assert!(!read("// nothing"));
 }
 
-#[test]
-fn garbage() {
+sampled_and_exhaustive!(garbage);
+
+fn garbage(effort: Effort) {
+    let length = effort.part_of(MEGABYTE);
     let mut garbage = Garbage::new(1);
     let bytes: Vec<u8> = (0..=255).collect();
-    assert!(!read(garbage.of(MEGABYTE, &bytes)));
+    assert!(!read(garbage.of(length, &bytes)));
     assert!(!read(
-        garbage.of(MEGABYTE, b" \n{}()+-*/,abcdef0123456789.#=\"let sphere")
+        garbage.of(length, b" \n{}()+-*/,abcdef0123456789.#=\"let sphere")
     ));
-    assert!(!read(garbage.of(MEGABYTE, b"(){}[] -,a1")));
-    assert!(!read(garbage.of(MEGABYTE, b" ")));
-    let many: String = (0..MEGABYTE / 4)
+    assert!(!read(garbage.of(length, b"(){}[] -,a1")));
+    assert!(!read(garbage.of(length, b" ")));
+    let many: String = (0..length / 4)
         .filter_map(|_| char::from_u32((garbage.next() % 0x11_0000) as u32))
         .collect();
     assert!(!read(many));
 }
 
-#[test]
-fn one_thing_a_million_times() {
-    let length = if cfg!(debug_assertions) {
-        MEGABYTE / 64
-    } else {
-        MEGABYTE
-    };
+sampled_and_exhaustive!(one_thing_a_million_times);
+
+fn one_thing_a_million_times(effort: Effort) {
+    let length = effort.part_of(MEGABYTE / 2);
     for piece in [
         "{",
         "}",
@@ -166,14 +167,11 @@ fn one_thing_a_million_times() {
     }
 }
 
+sampled_and_exhaustive!(definitions_in_the_wrong_order);
+
 /// Each of them looks at what stands around it, and all of them on one line.
-#[test]
-fn definitions_in_the_wrong_order() {
-    let count = if cfg!(debug_assertions) {
-        2_000
-    } else {
-        30_000
-    };
+fn definitions_in_the_wrong_order(effort: Effort) {
+    let count = effort.part_of(30_000);
     let uses = (0..count).map(|n| format!("let a{n} = b{n} /* {n} */ "));
     let definitions = (0..count).map(|n| format!("/* {n} */ let b{n} = {n} "));
     let text: String = uses.chain(definitions).collect();
@@ -217,9 +215,10 @@ fn deep_values() {
     );
 }
 
-#[test]
-fn ten_megabytes_in_a_line() {
-    let ten = 10 * MEGABYTE;
+sampled_and_exhaustive!(ten_megabytes_in_a_line);
+
+fn ten_megabytes_in_a_line(effort: Effort) {
+    let ten = effort.part_of(10 * MEGABYTE);
     assert!(read(format!("{CAMERA}// {}", "long ".repeat(ten / 5))));
     assert!(read(format!("{CAMERA}{}", " ".repeat(ten))));
     assert!(!read(format!("{CAMERA}{}", "x".repeat(ten))));
@@ -230,10 +229,11 @@ fn ten_megabytes_in_a_line() {
     )));
 }
 
-#[test]
-fn many_mistakes_and_many_names() {
+sampled_and_exhaustive!(many_mistakes_and_many_names);
+
+fn many_mistakes_and_many_names(effort: Effort) {
     let lines = |line: &dyn Fn(usize) -> String| {
-        let lines: String = (0..8_000).map(line).collect();
+        let lines: String = (0..effort.part_of(40_000)).map(line).collect();
         format!("{CAMERA}{lines}")
     };
     assert!(!read(lines(&|i| format!("let a{i} = b{i}\n"))));
@@ -248,10 +248,12 @@ fn many_mistakes_and_many_names() {
     ));
 }
 
-#[test]
-fn many_overrides() {
-    let lines = |line: &dyn Fn(usize) -> String| -> String { (0..4_000).map(line).collect() };
-    let sets = |set: &dyn Fn(usize) -> String| -> Vec<String> { (0..4_000).map(set).collect() };
+sampled_and_exhaustive!(many_overrides);
+
+fn many_overrides(effort: Effort) {
+    let count = effort.part_of(4_000);
+    let lines = |line: &dyn Fn(usize) -> String| -> String { (0..count).map(line).collect() };
+    let sets = |set: &dyn Fn(usize) -> String| -> Vec<String> { (0..count).map(set).collect() };
     let lets = format!("{CAMERA}{}", lines(&|i| format!("let a{i} = {i}\n")));
     assert!(read_with_sets(&*lets, &sets(&|i| format!("a{i}=2"))));
     assert!(!read_with_sets(&*lets, &sets(&|i| format!("zz{i}=2"))));
@@ -283,7 +285,7 @@ fn every_example_is_right_and_says_what_it_shows() {
 sampled_and_exhaustive!(every_prefix_of_every_example);
 
 fn every_prefix_of_every_example(effort: Effort) {
-    for example in effort.first(6, examples()) {
+    for example in effort.first(3, examples()) {
         for end in 0..example.len() {
             read(&example.as_bytes()[..end]);
         }
@@ -293,7 +295,7 @@ fn every_prefix_of_every_example(effort: Effort) {
 sampled_and_exhaustive!(every_example_without_any_one_byte);
 
 fn every_example_without_any_one_byte(effort: Effort) {
-    for example in effort.first(6, examples()) {
+    for example in effort.first(3, examples()) {
         for gone in 0..example.len() {
             let mut bytes = example.clone().into_bytes();
             bytes.remove(gone);
@@ -309,12 +311,13 @@ fn every_example_with_windows_line_ends_and_a_byte_order_mark() {
     }
 }
 
-#[test]
-fn random_changes_of_an_example() {
+sampled_and_exhaustive!(random_changes_of_an_example);
+
+fn random_changes_of_an_example(effort: Effort) {
     let example = examples().swap_remove(0);
     let mut garbage = Garbage::new(2);
     let letters = b"(){}[]-+*/,.;:=\"'#a1 \n\xff";
-    for _ in 0..2000 {
+    for _ in 0..effort.part_of(20_000) {
         let mut bytes = example.clone().into_bytes();
         for _ in 0..=garbage.next() % 3 {
             let at = (garbage.next() % bytes.len() as u64) as usize;

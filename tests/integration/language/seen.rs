@@ -115,7 +115,7 @@ impl Random {
 fn a_warning_is_never_false_and_comes_often_enough() {
     let mut random = Random::new(3);
     let (mut warned, mut black) = (0, 0);
-    for round in 0..1500 {
+    for round in 0..450 {
         let objects = match round % 5 {
             0 => format!(
                 "sphere {{ center {}  radius {}  color white }}",
@@ -162,7 +162,7 @@ fn a_warning_is_never_false_and_comes_often_enough() {
         black += u32::from(is_black);
     }
     // Bounds are larger than what they bound, and what is left of the window may be below the pixels' own.
-    assert!(black > 500 && warned * 2 > black, "{warned} of {black}");
+    assert!(black > 150 && warned * 2 > black, "{warned} of {black}");
 }
 
 #[test]
