@@ -235,16 +235,17 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
     assert!(rendered >= count / 3, "{rendered} of {count}");
 }
 
+sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
+
 /// Whatever part of the picture is asked for, a pixel's candidates are those of one grid.
-#[test]
-fn a_pixel_does_not_depend_on_the_crop() {
+fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = Control {
         threads: NonZero::new(1),
         ..Control::default()
     };
     let mut compared = 0;
-    let asked = std::env::var("PINHOLE_SCENES").ok();
-    for seed in 0..asked.map_or(600, |count| count.parse().unwrap()) {
+    let count = effort.part_of(9600) as u64;
+    for seed in 0..count {
         let mut numbers = Numbers::new(seed);
         let sources = Sources::new(Source::from_text("a.scn", numbers.scene()));
         let Some(mut scene) = scene::read(&sources).scene else {
@@ -286,7 +287,7 @@ fn a_pixel_does_not_depend_on_the_crop() {
             compared += 1;
         }
     }
-    assert!(compared > 1000, "{compared}");
+    assert!(compared > 2 * count, "{compared}");
 }
 
 /// Planes that are one in hundreds of bits but not in more; a view so wide that Z is no normal number, before a near plane; a board that an
