@@ -91,8 +91,7 @@ fn graded(
 ) -> Result<Result<Vec<Graded>, RenderError>, rayon::ThreadPoolBuildError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let processors = || thread::available_parallelism().map_or(1, NonZero::get);
-    let wanted = args.threads.map(usize::try_from);
-    let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
+    let threads = args.threads.count().map_or_else(processors, NonZero::get);
     let judge = progress::watched(whole.pixels(), |done| {
         let judge = Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
             done.fetch_add(more, Ordering::Relaxed);

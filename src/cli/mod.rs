@@ -11,6 +11,7 @@ mod fmt;
 mod grade;
 mod grade_page;
 mod graded;
+mod help;
 mod input;
 mod inspect;
 mod interrupt;

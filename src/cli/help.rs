@@ -1,0 +1,166 @@
+//! What `--help` says of each command behind its options: examples, the JSON that it prints, its exit status.
+
+pub const EXAMPLES: &str = "\
+Examples:
+  pinhole render figure.scn                      writes figure.png beside it
+  pinhole render figure.scn -o big.exr --set image.width=3840 --set image.height=2160
+  pinhole watch figure.scn                       and again whenever it is saved
+  pinhole check *.scn
+  pinhole inspect figure.scn --format json
+  pinhole probe figure.scn 640.5 360.5
+  pinhole diff mine.png figure.scn               is it the right picture, and if not, why?
+  pinhole fmt *.scn
+
+Exit status: 0 done, warnings or not; 1 the scene has errors, diff found more than its tolerance, or
+fmt --check would change something; 2 usage, a file that cannot be read or written, a picture too large for memory; 130 after Ctrl-C.";
+
+pub const RENDER_EXAMPLES: &str = "\
+Examples:
+  pinhole render figure.scn
+  pinhole render figure.scn -o half.png --set camera.roll=30deg --set Ball.center='(0, 2, 0)'
+  pinhole render figure.scn -o eyes.png --crop 600,200,80,40
+  pinhole render figure.png -o again.png         renders the scene that the picture carries
+  generate | pinhole render - -o - | view        from standard input to standard output";
+
+pub const CHECK_EXAMPLES: &str = "\
+Examples:
+  pinhole check figure.scn
+  pinhole check *.scn --format json              one line for each problem
+  pinhole check figure.scn --fix                 and correct what can be corrected
+
+--fix applies the first fix of each error that has one, again until nothing changes, says what it did, and reports what is \
+left. A file is written whole or not at all; with -, the text goes to standard output.
+
+JSON, an object a line: file, severity, code, message, help, labels [{offset, length, line, column, end_line, \
+end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
+is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
+was. A label or an edit within a --set argument has a file of its own. Of a file with more than 1000 problems the last line says how many more there are.";
+
+#[cfg(feature = "preview")]
+pub const WATCH_EXAMPLES: &str = "\
+Examples:
+  pinhole watch figure.scn                       writes figure.png at once and after every save
+  pinhole watch figure.scn --show                and draws it in the terminal
+  pinhole watch figure.scn -o draft.png --set sampler.per_pixel=4
+
+While the text has mistakes, they are reported, and the last picture stays. A picture that is not done when \
+the text changes again is given up. Ctrl-C ends it, with status 130.";
+
+pub const NEW_EXAMPLES: &str = "\
+Examples:
+  pinhole new figure.scn                         a ball on a floor; a file that is there already is left as it is
+  pinhole new figure.scn && pinhole watch figure.scn --show";
+
+pub const INSPECT_EXAMPLES: &str = "\
+Examples:
+  pinhole inspect figure.scn
+  pinhole inspect figure.scn --set camera.roll=30deg --format json";
+
+pub const PROBE_EXAMPLES: &str = "\
+Examples:
+  pinhole probe figure.scn 640 360               the middle of a picture of 1280 × 720 pixels
+  pinhole probe figure.scn -10 0.5               left of the picture";
+
+pub const DIFF_EXAMPLES: &str = "\
+Examples:
+  pinhole diff a.png b.exr                       two pictures
+  pinhole diff mine.png figure.scn               a picture with what the scene means, without noise
+  pinhole diff mine.png figure.scn -o where.png  also a heat map of the differences
+  pinhole diff mine.png figure.scn --strict --format json
+
+Where B is a scene, the verdict comes first: the picture is right, right but for sampling noise, or wrong. Mistakes that explain \
+the difference are named, with the --set arguments that make the scene give that picture; then what is right and what is not, \
+object by object. A picture that carries a crop is compared with that part of the scene.
+
+Differences are counted in steps of 8-bit sRGB: 1 is 1/255 of the way from black to white.
+
+JSON: a, b, width, height (of A), size_b, rmse (in linear light, 0 to 1), largest {error, x, y, channel, \
+a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be judged, as the exact picture's bound is too \
+large there), tolerance (in steps), equal (whether no pixel is beyond it). Of two pictures of different sizes rmse, largest, beyond and \
+undecided are null. With a scene also verdict (right, noise, wrong, or unknown: wrong, and not by a mistake known here), line (the \
+verdict in words), samples_per_pixel (independent ones that make as much noise), mistakes [{id, message, help, set, explains}] \
+(explains is the share of the squared difference beyond noise, 0 to 1), rest (the share that mistakes leave, if that is more than \
+noise), objects [{index, name, right, off}] (off in pixels), limited (whether not all mistakes were tried, as the scene has too \
+much in it).
+
+Exit status: 0 for pictures within the tolerance, and for one that is right, but for noise; 1 if not, or the scene has errors; \
+2 trouble, also where a picture has another size than the scene's.";
+
+pub const GRADE_EXAMPLES: &str = "\
+Examples:
+  pinhole grade figure.scn anna.png ben.png
+  pinhole grade figure.scn handed_in/ -o graded  also writes graded/index.html, grade.csv and grade.jsonl
+  pinhole grade figure.scn handed_in/ --format json
+
+Each picture is compared with the scene's exact one, as diff does it, and has a line: its name, the verdict, the root mean \
+square of its differences in linear light, and the samples in a pixel that make as much noise.
+
+JSON, an object a line: what diff prints, with file in front; and rendered_by_pinhole, whether the picture carries the \
+text that Pinhole writes into its own; error instead of the rest where a picture cannot be compared.
+
+Exit status: 0 all are right, but for noise; 1 one is wrong, or the scene has errors; 2 one could not be compared, or other trouble.";
+
+pub const REPORT_USAGE: &str = "\
+pinhole report [OPTIONS] <SCENE>...
+       pinhole report --numerics [--inputs <N>] [--threads <N>] [--format <FORMAT>]";
+
+pub const REPORT_EXAMPLES: &str = "\
+Renders the scenes by every method with more and more samples, several times and in mixed order, compares \
+the pictures with the exact one, and tells which method comes to an error in the least CPU time. How many samples and \
+runs there are follows from the time that --budget gives, unless --samples and --runs say it.
+
+Examples:
+  pinhole report figure.scn
+  pinhole report figure.scn -o speed             writes speed/index.html, charts, CSV and JSON
+  pinhole report figure.scn --set image.width=640 --set image.height=360 --methods sobol,halton,exact
+  pinhole report figure.scn --samples 1,2,4,8,16 --runs 5 --error 1/256 --error 0.001
+  pinhole report --numerics
+  pinhole report --numerics --inputs 1000000     the full count: half an hour of a processor
+
+In CSV and JSON, times are CPU times in seconds, unless they are called wall; errors (rmse) are in linear light.";
+
+pub const EXPLAIN_EXAMPLES: &str = "\
+Examples:
+  pinhole explain bare_angle
+  pinhole explain camera                         a block, a field, a method, a function
+  pinhole explain language                       the whole reference
+  pinhole explain                                all codes, by subject
+  pinhole explain up_parallel | less             as Markdown";
+
+pub const FMT_EXAMPLES: &str = "\
+Replaces each file by its canonical layout, whole or not at all, and does not touch it where nothing would change. \
+Tokens, comments, and blank lines between groups stay; of line ends it matters whether a block stands on one line. A \
+file with errors of syntax is left as it is.
+
+Examples:
+  pinhole fmt figure.scn
+  pinhole fmt *.scn --check                      writes nothing, prints a diff of what would change
+  pinhole fmt - < figure.scn > tidy.scn          from standard input to standard output
+
+Exit status: 0 done; 1 a file has errors of syntax, or --check would change something; 2 trouble.";
+
+#[cfg(feature = "lsp")]
+pub const LSP_HELP: &str = "\
+Editors start it themselves; grammar/editors/ has what they need for that.
+
+Exit status: 0 after shutdown and exit; 1 if the editor left without; 2 trouble.";
+
+#[cfg(feature = "studio")]
+pub const STUDIO_EXAMPLES: &str = "\
+Examples:
+  pinhole studio figure.scn                      opens a browser
+  pinhole studio                                 a new scene; Save asks for a name in the current folder
+  pinhole studio figure.scn --no-open --port 8000
+
+Serves this machine alone, and a browser that was given the printed address; no file but the scene is read or written. \
+Ctrl-C ends it, with status 130.";
+
+pub const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  pinhole completions bash > ~/.local/share/bash-completion/completions/pinhole
+  pinhole completions fish > ~/.config/fish/completions/pinhole.fish";
+
+pub const MAN_EXAMPLES: &str = "\
+Examples:
+  pinhole man > pinhole.1
+  pinhole man | man -l -";
