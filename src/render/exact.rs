@@ -60,7 +60,7 @@ pub fn render_exact_bytes(
     render_exact_as(world, part, control)
 }
 
-fn render_exact_as<P: film::Pixel>(
+pub(super) fn render_exact_as<P: film::Pixel>(
     world: &World,
     part: Area,
     control: &Control,

@@ -38,7 +38,7 @@ pub fn render_bytes(
     render_as(world, sampling, part, control)
 }
 
-fn render_as<P: film::Pixel>(
+pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,

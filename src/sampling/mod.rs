@@ -52,6 +52,7 @@ use crate::{
 /// The samples of a picture.
 #[derive(Debug)]
 pub struct Sampling {
+    method: Method,
     /// The key of seed and method; a pixel's own is a part of it.
     key: Key,
     total: u64,
@@ -114,11 +115,17 @@ impl Sampling {
             method => Share::Even(Box::new(Even::new(method, total, width, height))),
         };
         Self {
+            method: sampler.method,
             key,
             total,
             pixels,
             share,
         }
+    }
+
+    /// Whether there are no samples, as the picture is computed.
+    pub fn is_exact(&self) -> bool {
+        self.method == Method::Exact
     }
 
     /// How many samples the whole picture has.
