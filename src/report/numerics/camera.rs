@@ -3,10 +3,10 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    case::{Case, Input, axes_case, case},
+    case::{Case, Input, axes_case, case, input},
     inputs::Random,
     oracle::ALL_VIEWS,
-    scenes::{along, board, camera, cuboid, scene, sphere, triangle},
+    scenes::{along, board, camera, cuboid, sphere, triangle},
 };
 use crate::{
     math::Angle,
@@ -82,7 +82,7 @@ fn lenses(random: &mut Random) -> Input {
     if wide {
         shapes.push(cuboid(dvec3(-4.0, 0.5, 1.0), dvec3(-3.0, 4.5, 2.0)));
     }
-    Input::new(scene(camera, &shapes)).bits(ALL_VIEWS)
+    input(camera, &shapes).bits(ALL_VIEWS)
 }
 
 fn rolls(random: &mut Random) -> Camera {
@@ -112,9 +112,9 @@ fn wide(random: &mut Random) -> Input {
     }
     // The window is 2 m high and as wide as 2^20 of its 64 rows.
     camera.lens = Lens::Distance(16384.0);
-    let mut scene = scene(camera, &shapes);
-    scene.image.width = 1 << 20;
-    Input::new(scene)
+    let mut input = input(camera, &shapes);
+    input.scene.image.width = 1 << 20;
+    input
 }
 
 /// Everything is symmetric in x, so that what is seen is, too: on the axis of symmetry there are ties.
@@ -138,5 +138,5 @@ fn symmetric(random: &mut Random) -> Input {
             dvec3(2.0, 2.0, 1.5),
         ),
     ];
-    Input::new(scene(camera(eye, at), &shapes))
+    input(camera(eye, at), &shapes)
 }

@@ -3,9 +3,10 @@
 use super::{
     inputs::Random,
     oracle::USUAL_SIZES,
+    scenes::scene,
     trial::{Point, Tally, Trial, axes},
 };
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Scene, Shape};
 
 /// A row of the catalogue.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +93,7 @@ type Points = dyn Fn(&mut Random) -> Point;
 
 /// A scene and where in its picture questions are asked.
 pub(super) struct Input {
-    scene: Scene,
+    pub scene: Scene,
     /// Those that the oracle computes with.
     bits: usize,
     /// Points of the picture; anywhere if nothing is said.
@@ -101,17 +102,17 @@ pub(super) struct Input {
     halves: u64,
 }
 
-impl Input {
-    /// Points close to boundaries.
-    pub fn new(scene: Scene) -> Self {
-        Self {
-            scene,
-            bits: USUAL_SIZES,
-            points: None,
-            halves: 0,
-        }
+/// Points close to boundaries of what a camera sees of some shapes.
+pub(super) fn input(camera: Camera, shapes: &[Shape]) -> Input {
+    Input {
+        scene: scene(camera, shapes),
+        bits: USUAL_SIZES,
+        points: None,
+        halves: 0,
     }
+}
 
+impl Input {
     /// So many bits for the oracle.
     pub fn bits(self, bits: usize) -> Self {
         Self { bits, ..self }

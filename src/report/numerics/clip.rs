@@ -3,9 +3,9 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, case, input},
     inputs::Random,
-    scenes::{along, board, camera, cuboid, scene, sphere, triangle},
+    scenes::{along, board, camera, cuboid, sphere, triangle},
 };
 
 /// The cases.
@@ -38,7 +38,7 @@ fn exactly_there(random: &mut Random) -> Input {
         0 => camera.near = at,
         _ => camera.far = Some(at),
     }
-    Input::new(scene(camera, &[shape])).anywhere()
+    input(camera, &[shape]).anywhere()
 }
 
 fn cut(random: &mut Random) -> Input {
@@ -55,7 +55,7 @@ fn cut(random: &mut Random) -> Input {
         cuboid(corner, corner + DVec3::ONE),
         triangle(at + random.vector(0.5), random.unit(), dvec3(2.0, 2.0, 1.0)),
     ];
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn within(random: &mut Random) -> Input {
@@ -71,5 +71,5 @@ fn within(random: &mut Random) -> Input {
             at + other * 0.5 + DVec3::splat(0.7),
         ),
     ];
-    Input::new(scene(camera, &shapes)).mixed()
+    input(camera, &shapes).mixed()
 }

@@ -3,9 +3,9 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, case, input},
     inputs::Random,
-    scenes::{SIZE, along, camera, cuboid, scene, sphere},
+    scenes::{SIZE, along, camera, cuboid, sphere},
 };
 
 /// The cases.
@@ -27,21 +27,21 @@ fn silhouettes(random: &mut Random) -> Input {
     let eye = center + random.unit() * random.within(3.0, 8.0);
     let camera = camera(eye, center + random.vector(0.2));
     let shape = sphere(center, random.within(0.5, 2.0));
-    Input::new(scene(camera, &[shape]))
+    input(camera, &[shape])
 }
 
 /// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z): of the rays in that plane, which
 /// are those of the middle of the picture, none meets the sphere, and of those on the other side of it one next to it does.
 fn touches(random: &mut Random) -> Input {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
-    let row = random.below(u64::from(SIZE)) as u32;
+    let row = random.pixel();
     let depth = random.whole(16, 400);
     // The ray through the upper side of the row has the slope (32 − row)/64.
     let y = depth * (f64::from(SIZE) / 2.0 - f64::from(row)) / 64.0;
     let radius = random.whole(1, 80) / 8.0;
     let side = random.sign();
     let shape = sphere(dvec3(side * radius, y, -depth), radius);
-    Input::new(scene(camera, &[shape])).at(move |random| {
+    input(camera, &[shape]).at(move |random| {
         let steps = random.pick(&[0.0, 0.0, 1.0, 2.0, 64.0, 1e6]) * f64::EPSILON / 4.0;
         let (column, offset) = match random.below(2) {
             0 => (SIZE / 2, -0.5 + steps),
@@ -59,7 +59,7 @@ fn far_and_small(random: &mut Random) -> Input {
     let mut camera = camera(eye, center);
     camera.lens = crate::scene::Lens::Distance(distance);
     camera.view_height = 3.0 * radius;
-    Input::new(scene(camera, &[sphere(center, radius)]))
+    input(camera, &[sphere(center, radius)])
 }
 
 fn inside(random: &mut Random) -> Input {
@@ -72,7 +72,7 @@ fn inside(random: &mut Random) -> Input {
         sphere(wall, radius / 2.0),
         cuboid(corner, corner + DVec3::splat(radius)),
     ];
-    Input::new(scene(camera(eye, wall), &shapes))
+    input(camera(eye, wall), &shapes)
 }
 
 fn at_the_surface(random: &mut Random) -> Input {
@@ -88,7 +88,7 @@ fn at_the_surface(random: &mut Random) -> Input {
     let ahead = eye + tangent * random.within(0.5, 2.0);
     let shapes = [sphere(DVec3::ZERO, 5.0), sphere(ahead, 0.4)];
     let camera = along(eye, tangent - on * random.within(-0.05, 0.1));
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn globes(random: &mut Random) -> Input {
@@ -101,7 +101,7 @@ fn globes(random: &mut Random) -> Input {
         sphere(dvec3(0.0, -radius, 0.0), radius),
         sphere(dvec3(3.0, random.within(0.2, 0.7), -4.0), 0.8),
     ];
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn out_of_range(random: &mut Random) -> Input {
@@ -113,7 +113,7 @@ fn out_of_range(random: &mut Random) -> Input {
         sphere(center, size),
         sphere(center + random.unit() * size, size / 2.0),
     ];
-    Input::new(scene(camera(eye, center), &shapes))
+    input(camera(eye, center), &shapes)
 }
 
 fn concentric(random: &mut Random) -> Input {
@@ -126,7 +126,7 @@ fn concentric(random: &mut Random) -> Input {
     ]);
     let eye = center + random.unit() * random.within(0.0, 8.0);
     let shapes = radii.map(|radius| sphere(center, radius));
-    Input::new(scene(camera(eye, center + random.vector(0.3)), &shapes)).anywhere()
+    input(camera(eye, center + random.vector(0.3)), &shapes).anywhere()
 }
 
 fn displaced(random: &mut Random) -> Input {
@@ -134,5 +134,5 @@ fn displaced(random: &mut Random) -> Input {
     let center = random.unit() * distance;
     let radius = distance * random.power(-12.0, -2.0);
     let eye = center + random.unit() * (4.0 * radius);
-    Input::new(scene(along(eye, center - eye), &[sphere(center, radius)]))
+    input(along(eye, center - eye), &[sphere(center, radius)])
 }
