@@ -52,16 +52,17 @@ impl Picture {
     pub fn notes(&self, part: Area, output: &Output) -> String {
         match self {
             Self::Light(Rendered::Sampled(_)) | Self::Bytes(Rendered::Sampled(_)) => String::new(),
-            Self::Light(Rendered::Exact(exact)) => {
-                let Exact { film, bounds, .. } = exact;
-                match output {
-                    Output::File(_, Format::Exr) => {
-                        let certain = film::certified_floats(film, bounds);
-                        certificate(exact, part, certain, "the 32-bit rounding")
-                    }
-                    _ => certificate(exact, part, film::certified(film, bounds), BYTES),
+            Self::Light(Rendered::Exact(exact)) => match output {
+                Output::File(_, Format::Exr) => {
+                    certificate(exact, part, exact.certain, "the 32-bit rounding")
                 }
-            }
+                _ => certificate(
+                    exact,
+                    part,
+                    film::certified(&exact.film, &exact.bounds),
+                    BYTES,
+                ),
+            },
             Self::Bytes(Rendered::Exact(exact)) => certificate(exact, part, exact.certain, BYTES),
         }
     }

@@ -23,7 +23,7 @@ pub use self::{
     mean::mean,
     memory::TooLarge,
     picture::{Coding, Picture, Rounding, Unreadable},
-    pixels::{Film, Pixel, certified, certified_floats},
+    pixels::{Film, Pixel, certified},
     png::{
         NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png,
         write_png,

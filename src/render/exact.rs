@@ -26,7 +26,7 @@ pub struct Exact<P = [f64; 3]> {
     pub film: Film<P>,
     /// For each pixel, row by row, how far each channel of its mean may be from the true one.
     pub bounds: Vec<f32>,
-    /// How many pixels of the film are certain to be those of the true means: of light, those without any error.
+    /// How many pixels of the film, rounded as files hold them, are certain to be those of the true means.
     pub certain: u64,
 }
 
