@@ -24,7 +24,7 @@ use plotters::{
 use super::{
     line_style::LineStyle,
     notation::{asked_error, seconds},
-    results::{Measurement, Point, Times},
+    results::{Measurement, Point, Run},
     summary::printable,
 };
 use crate::numbers;
@@ -62,9 +62,9 @@ pub fn against_time(measured: &Measurement) -> String {
     let time = Against {
         title: "Error against CPU time",
         name: "CPU time of a render",
-        of: |point| point.times.cpu(),
+        of: |point| point.typical().cpu,
         written: |time| seconds(time, 1),
-        exact: measured.exact.as_ref().map(Times::cpu),
+        exact: measured.exact.as_ref().map(|runs| Run::typical(runs).cpu),
     };
     svg(measured, &time)
 }
@@ -84,7 +84,7 @@ pub fn against_samples(measured: &Measurement) -> String {
 /// The errors that are asked for, but for those that are far away from all that were measured.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
-    let found: Vec<_> = points.map(Point::error).collect();
+    let found: Vec<_> = points.map(|point| point.typical().error).collect();
     let is_near = |wanted: &f64| {
         let mut found = found.iter();
         found.any(|error| (error / 30.0..error * 30.0).contains(wanted))
@@ -124,7 +124,7 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {
     let exact = against.exact.filter(|x| x.is_finite() && *x > 0.0);
     let lines = measured.series.iter().map(|series| {
         let points = series.points.iter();
-        let points = points.map(|point| ((against.of)(point), point.error()));
+        let points = points.map(|point| ((against.of)(point), point.typical().error));
         let points: Vec<_> = points.filter(|&(x, y)| x > 0.0 && y > 0.0).collect();
         (series.method, points)
     });

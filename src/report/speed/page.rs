@@ -10,7 +10,7 @@ use super::{
     chart::{against_samples, against_time, shown_errors},
     notation::{error, plural, seconds},
     picture::{self, uri},
-    results::{Measurement, Shown},
+    results::{Measurement, Run, Shown},
     summary::{heading, notes, printable, table, verdicts},
 };
 use crate::film::Film;
@@ -70,7 +70,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let exact = picture::cropped(&measured.reference.film, part).map_err(io::Error::other)?;
     let time = measured.exact.as_ref();
     let time = time.map_or(String::new(), |times| {
-        format!(", {}", seconds(times.cpu(), 2))
+        format!(", {}", seconds(Run::typical(times).cpu, 2))
     });
     let mut pictures = vec![value(&exact, "exact", format!("no error{time}"))?];
     for (name, shown) in shown {
