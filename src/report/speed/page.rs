@@ -9,11 +9,14 @@ use minijinja::{AutoEscape, Environment, Value, context};
 use super::{
     chart::{against_samples, against_time, shown_errors},
     notation::{error, plural, seconds},
-    picture::{self, uri},
+    picture::cropped,
     results::{Measurement, Run, Shown},
     summary::{heading, notes, printable, table, verdicts},
 };
-use crate::film::Film;
+use crate::film::{self, Film};
+
+/// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays small.
+const WHOLE: [u32; 2] = [640, 480];
 
 /// The page, with a section for each scene.
 pub fn page(measurements: &[Measurement]) -> io::Result<String> {
@@ -67,7 +70,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let Some(&(first, &Shown { part, .. })) = shown.first() else {
         return Ok(Default::default());
     };
-    let exact = picture::cropped(&measured.reference.film, part).map_err(io::Error::other)?;
+    let exact = cropped(&measured.reference.film, part).map_err(io::Error::other)?;
     let time = measured.exact.as_ref();
     let time = time.map_or(String::new(), |times| {
         format!(", {}", seconds(Run::typical(times).cpu, 2))
@@ -90,7 +93,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
 }
 
 fn whole(measured: &Measurement) -> io::Result<Value> {
-    let film = picture::reduced(&measured.reference.film).map_err(io::Error::other)?;
+    let film = film::reduced(&measured.reference.film, WHOLE).map_err(io::Error::other)?;
     let (width, height) = (film.width(), film.height());
     let about = match width == measured.whole().width {
         true => "the whole picture".to_owned(),
@@ -100,5 +103,5 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
 }
 
 fn value(film: &Film, name: &str, about: String) -> io::Result<Value> {
-    Ok(context! { uri => uri(film)?, name, about })
+    Ok(context! { uri => film::data_uri(film)?, name, about })
 }
