@@ -51,15 +51,6 @@ pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exac
     render_exact_as(world, part, control)
 }
 
-/// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
-pub fn render_exact_bytes(
-    world: &World,
-    part: Area,
-    control: &Control,
-) -> Result<Exact<[u8; 3]>, RenderError> {
-    render_exact_as(world, part, control)
-}
-
 pub(super) fn render_exact_as<P: film::Pixel>(
     world: &World,
     part: Area,

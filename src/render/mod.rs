@@ -32,8 +32,8 @@ use crate::{
 };
 
 pub use self::{
-    exact::{Exact, render_exact, render_exact_bytes},
-    sampled::{render, render_bytes},
+    exact::{Exact, render_exact},
+    sampled::render,
 };
 
 /// How a render is watched, and by how many it is done.
@@ -102,7 +102,8 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or exactly.
+/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or exactly. The film keeps light, or the bytes of sRGB of which
+/// a PNG file is made: the same file, and less memory to touch.
 pub fn render_as_asked<P: Pixel>(
     world: &World,
     sampling: &Sampling,
