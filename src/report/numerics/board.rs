@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case, input},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
     oracle::ALL_SIZES,
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
@@ -12,15 +12,15 @@ use super::{
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("P1", "up to 1e-13 pixels below the horizon", 2.0, horizon),
-    case("P2", "rays parallel to the board, and next to it", 2.0, parallels),
-    case("P3", "planes through the eye", 2.0, edge_on),
-    case("P4", "the eye 1e-9 … 5e-324 m above the board", 2.0, low),
-    case("P5", "the eye 1e9 … 1e15 squares above it", 2.0, high),
-    case("P6a", "1e9 … 4e15 squares from the origin", 2.0, displaced),
-    case("P6b", "exact corners of squares, and next to them", 2.0, corners),
-    case("P7", "boxes and triangles on the board, from below", 2.0, from_below),
-    case("P8", "two boards or two triangles in one plane", 2.0, coincident),
+    Case { id: "P1", title: "up to 1e-13 pixels below the horizon", bound: 2.0, subject: Seen(horizon) },
+    Case { id: "P2", title: "rays parallel to the board, and next to it", bound: 2.0, subject: Seen(parallels) },
+    Case { id: "P3", title: "planes through the eye", bound: 2.0, subject: Seen(edge_on) },
+    Case { id: "P4", title: "the eye 1e-9 … 5e-324 m above the board", bound: 2.0, subject: Seen(low) },
+    Case { id: "P5", title: "the eye 1e9 … 1e15 squares above it", bound: 2.0, subject: Seen(high) },
+    Case { id: "P6a", title: "1e9 … 4e15 squares from the origin", bound: 2.0, subject: Seen(displaced) },
+    Case { id: "P6b", title: "exact corners of squares, and next to them", bound: 2.0, subject: Seen(corners) },
+    Case { id: "P7", title: "boxes and triangles on the board, from below", bound: 2.0, subject: Seen(from_below) },
+    Case { id: "P8", title: "two boards or two triangles in one plane", bound: 2.0, subject: Seen(coincident) },
 ];
 
 fn horizon(random: &mut Random) -> Input {

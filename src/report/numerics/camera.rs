@@ -3,7 +3,11 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    case::{Case, Input, axes_case, case, input},
+    case::{
+        Case, Input,
+        Subject::{Axes, Seen},
+        input,
+    },
     inputs::Random,
     oracle::ALL_VIEWS,
     scenes::{along, board, camera, cuboid, sphere, triangle},
@@ -16,13 +20,13 @@ use crate::{
 /// The cases: those of the axes, and those of what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    axes_case("C1", "up within 1e-1 … 1e-200 of the view direction", nearly_parallel),
-    axes_case("C2", "eye and lookat: subnormal, close, 1e308 apart", differences),
-    axes_case("C3a", "directions and up vectors of 1e±308", lengths),
-    axes_case("C4", "rolls of up to 1e22 degrees", rolls),
-    case("C3b", "view planes at d = 1e±9 … 1e±302", 2.0, lenses),
-    case("C5", "a picture of 2^20 columns", 2.0, wide),
-    case("C6", "symmetric scenes", 2.0, symmetric),
+    Case { id: "C1", title: "up within 1e-1 … 1e-200 of the view direction", bound: 4.0, subject: Axes(nearly_parallel) },
+    Case { id: "C2", title: "eye and lookat: subnormal, close, 1e308 apart", bound: 4.0, subject: Axes(differences) },
+    Case { id: "C3a", title: "directions and up vectors of 1e±308", bound: 4.0, subject: Axes(lengths) },
+    Case { id: "C4", title: "rolls of up to 1e22 degrees", bound: 4.0, subject: Axes(rolls) },
+    Case { id: "C3b", title: "view planes at d = 1e±9 … 1e±302", bound: 2.0, subject: Seen(lenses) },
+    Case { id: "C5", title: "a picture of 2^20 columns", bound: 2.0, subject: Seen(wide) },
+    Case { id: "C6", title: "symmetric scenes", bound: 2.0, subject: Seen(symmetric) },
 ];
 
 fn nearly_parallel(random: &mut Random) -> Camera {

@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    case::{Case, Input, case, input},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
     scenes::{along, board, camera, cuboid, sphere, triangle},
 };
@@ -11,9 +11,9 @@ use super::{
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("K2", "surfaces exactly at the near or the far plane", 2.0, exactly_there),
-    case("K3", "objects cut by both planes", 2.0, cut),
-    case("K4", "the near plane within objects", 2.0, within),
+    Case { id: "K2", title: "surfaces exactly at the near or the far plane", bound: 2.0, subject: Seen(exactly_there) },
+    Case { id: "K3", title: "objects cut by both planes", bound: 2.0, subject: Seen(cut) },
+    Case { id: "K4", title: "the near plane within objects", bound: 2.0, subject: Seen(within) },
 ];
 
 /// View directions with a length that is a whole number, so that depths can be.

@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case, input},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
     scenes::{SIZE, along, camera, cuboid, sphere},
 };
@@ -12,11 +12,11 @@ use crate::math::Angle;
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("B1", "rays in the planes of faces, and along edges", 2.0, in_planes),
-    case("B2", "the eye inside, on a face, an edge, a corner", 2.0, inside),
-    case("B3", "boxes an ulp thick", 2.0, thin),
-    case("B4", "rays that graze edges, 1 … 1e9 m away", 2.0, silhouettes),
-    case("B5", "the seam of two boxes that share a face", 2.0, neighbours),
+    Case { id: "B1", title: "rays in the planes of faces, and along edges", bound: 2.0, subject: Seen(in_planes) },
+    Case { id: "B2", title: "the eye inside, on a face, an edge, a corner", bound: 2.0, subject: Seen(inside) },
+    Case { id: "B3", title: "boxes an ulp thick", bound: 2.0, subject: Seen(thin) },
+    Case { id: "B4", title: "rays that graze edges, 1 … 1e9 m away", bound: 2.0, subject: Seen(silhouettes) },
+    Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
 /// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.

@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case, input},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
     scenes::{SIZE, along, camera, cuboid, sphere},
 };
@@ -11,15 +11,15 @@ use super::{
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("S1a", "rays that nearly touch a sphere", 1.0, silhouettes),
-    case("S1b", "rays that touch it exactly: they miss", 1.0, touches),
-    case("S2", "small and far, 1e6 … 1e15 radii away", 1.0, far_and_small),
-    case("S3", "the eye inside", 1.0, inside),
-    case("S4", "the eye on the surface, and 1e-16 … 1e-3 off", 1.0, at_the_surface),
-    case("S5", "a globe of 1e6 … 1e15 m, the eye 1 m above it", 1.0, globes),
-    case("S6", "scenes of 1e±160 … 1e±300 m", 1.0, out_of_range),
-    case("S7", "equal spheres, and radii an ulp apart", 1.0, concentric),
-    case("S8", "centre and eye 1e9 … 1e300 m from the origin", 1.0, displaced),
+    Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },
+    Case { id: "S1b", title: "rays that touch it exactly: they miss", bound: 1.0, subject: Seen(touches) },
+    Case { id: "S2", title: "small and far, 1e6 … 1e15 radii away", bound: 1.0, subject: Seen(far_and_small) },
+    Case { id: "S3", title: "the eye inside", bound: 1.0, subject: Seen(inside) },
+    Case { id: "S4", title: "the eye on the surface, and 1e-16 … 1e-3 off", bound: 1.0, subject: Seen(at_the_surface) },
+    Case { id: "S5", title: "a globe of 1e6 … 1e15 m, the eye 1 m above it", bound: 1.0, subject: Seen(globes) },
+    Case { id: "S6", title: "scenes of 1e±160 … 1e±300 m", bound: 1.0, subject: Seen(out_of_range) },
+    Case { id: "S7", title: "equal spheres, and radii an ulp apart", bound: 1.0, subject: Seen(concentric) },
+    Case { id: "S8", title: "centre and eye 1e9 … 1e300 m from the origin", bound: 1.0, subject: Seen(displaced) },
 ];
 
 fn silhouettes(random: &mut Random) -> Input {

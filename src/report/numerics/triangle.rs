@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case, input},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
     scenes::{SIZE, along, camera, spun, triangle},
 };
@@ -12,14 +12,14 @@ use crate::scene::Lens;
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("T1", "triangles of 1e-3 … 1e-9 m", 2.0, tiny),
-    case("T2", "the eye 1e-3 … 1e-15 m off the plane", 2.0, slivers),
-    case("T3a", "close to an edge that two triangles share", 2.0, shared_edges),
-    case("T3b", "exactly on such an edge", 2.0, lattice_points),
-    case("T4", "needles of 1 to 1e3 … 1e12, and flat ones", 2.0, needles),
-    case("T5", "normals of 1e±307, nearly or wholly vertical", 2.0, normals),
-    case("T6", "1e6 … 1e15 m from the origin", 2.0, displaced),
-    case("T7", "vertices behind the eye", 2.0, around),
+    Case { id: "T1", title: "triangles of 1e-3 … 1e-9 m", bound: 2.0, subject: Seen(tiny) },
+    Case { id: "T2", title: "the eye 1e-3 … 1e-15 m off the plane", bound: 2.0, subject: Seen(slivers) },
+    Case { id: "T3a", title: "close to an edge that two triangles share", bound: 2.0, subject: Seen(shared_edges) },
+    Case { id: "T3b", title: "exactly on such an edge", bound: 2.0, subject: Seen(lattice_points) },
+    Case { id: "T4", title: "needles of 1 to 1e3 … 1e12, and flat ones", bound: 2.0, subject: Seen(needles) },
+    Case { id: "T5", title: "normals of 1e±307, nearly or wholly vertical", bound: 2.0, subject: Seen(normals) },
+    Case { id: "T6", title: "1e6 … 1e15 m from the origin", bound: 2.0, subject: Seen(displaced) },
+    Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
 /// The sides of the assignment's triangle.
