@@ -6,13 +6,13 @@
 mod fix;
 #[cfg(feature = "cli")]
 mod report;
-#[cfg(feature = "cli")]
+#[cfg(any(feature = "cli", feature = "report"))]
 mod visible;
 
 pub use fix::{Edit, Fix, apply};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
-#[cfg(feature = "cli")]
+#[cfg(any(feature = "cli", feature = "report"))]
 pub use visible::visible;
 
 use serde_json::{Value, json};

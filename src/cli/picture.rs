@@ -8,11 +8,11 @@ use std::{
 
 use pinhole::{
     area::Area,
-    film::{self, Film, Recipe},
+    film::{self, Recipe},
     numbers,
-    render::{self, Control, Exact, RenderError},
+    render::{self, Control, Exact, RenderError, Rendered},
     sampling::Sampling,
-    scene::{Method, Scene},
+    scene::Scene,
     tracer::World,
 };
 
@@ -22,54 +22,48 @@ use super::{
     output, progress,
 };
 
-/// A picture, and what is known of it.
+/// A picture, as what is kept of it.
 pub enum Picture {
-    /// With samples.
-    Sampled(Film),
-    /// The same, as bytes.
-    Bytes(Film<[u8; 3]>),
-    /// Computed.
-    Exact(Exact),
-    /// The same, as bytes.
-    ExactBytes(Exact<[u8; 3]>),
+    /// Its means.
+    Light(Rendered),
+    /// The bytes of these.
+    Bytes(Rendered<[u8; 3]>),
 }
 
 impl Picture {
     /// How many columns and rows it has.
     pub fn size(&self) -> (u32, u32) {
         match self {
-            Self::Sampled(film) => (film.width(), film.height()),
-            Self::Bytes(bytes) => (bytes.width(), bytes.height()),
-            Self::Exact(exact) => (exact.film.width(), exact.film.height()),
-            Self::ExactBytes(exact) => (exact.film.width(), exact.film.height()),
+            Self::Light(light) => (light.film().width(), light.film().height()),
+            Self::Bytes(bytes) => (bytes.film().width(), bytes.film().height()),
         }
     }
 
     /// Its means alone, if they were kept.
     #[cfg(feature = "preview")]
-    pub fn into_film(self) -> Option<Film> {
+    pub fn into_film(self) -> Option<film::Film> {
         match self {
-            Self::Sampled(film) => Some(film),
-            Self::Bytes(_) | Self::ExactBytes(_) => None,
-            Self::Exact(exact) => Some(exact.film),
+            Self::Light(light) => Some(light.into_film()),
+            Self::Bytes(_) => None,
         }
     }
 
     /// What is to be said of it, which is a part of the whole picture: how exact a computed one is.
     pub fn notes(&self, part: Area, output: &Output) -> String {
         match self {
-            Self::Sampled(_) | Self::Bytes(_) => String::new(),
-            Self::Exact(exact) => {
-                let Exact { film, bounds, .. } = exact;
-                match output {
-                    Output::File(_, Format::Exr) => {
-                        let certain = film::certified_floats(film, bounds);
-                        certificate(exact, part, certain, "the 32-bit rounding")
-                    }
-                    _ => certificate(exact, part, film::certified(film, bounds), BYTES),
+            Self::Light(Rendered::Sampled(_)) | Self::Bytes(Rendered::Sampled(_)) => String::new(),
+            Self::Light(Rendered::Exact(exact)) => match output {
+                Output::File(_, Format::Exr) => {
+                    certificate(exact, part, exact.certain, "the 32-bit rounding")
                 }
-            }
-            Self::ExactBytes(exact) => certificate(exact, part, exact.certain, BYTES),
+                _ => certificate(
+                    exact,
+                    part,
+                    film::certified(&exact.film, &exact.bounds),
+                    BYTES,
+                ),
+            },
+            Self::Bytes(Rendered::Exact(exact)) => certificate(exact, part, exact.certain, BYTES),
         }
     }
 }
@@ -93,8 +87,7 @@ pub fn picture(
 ) -> Result<Picture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
-    let is_exact = scene.sampler.method == Method::Exact;
-    let expected = match is_exact {
+    let expected = match sampling.is_exact() {
         true => part.pixels(),
         // The samples of the part, but for how the extra ones of a total fall: near enough for a bar.
         false => {
@@ -110,18 +103,14 @@ pub fn picture(
             },
             cancel,
         };
-        match keep {
-            Keep::Light if is_exact => {
-                render::render_exact(world, part, &control).map(Picture::Exact)
+        Ok(match keep {
+            Keep::Light => {
+                Picture::Light(render::render_as_asked(world, &sampling, part, &control)?)
             }
-            Keep::Bytes if is_exact => {
-                render::render_exact_bytes(world, part, &control).map(Picture::ExactBytes)
-            }
-            Keep::Light => render::render(world, &sampling, part, &control).map(Picture::Sampled),
             Keep::Bytes => {
-                render::render_bytes(world, &sampling, part, &control).map(Picture::Bytes)
+                Picture::Bytes(render::render_as_asked(world, &sampling, part, &control)?)
             }
-        }
+        })
     })
 }
 
@@ -250,13 +239,11 @@ impl Output {
             Self::File(path, format) => {
                 film::write_whole(path, cancel, |out| match (format, picture) {
                     (Format::Png, _) => write_png(picture, recipe, out),
-                    (Format::Exr, Picture::Sampled(film) | Picture::Exact(Exact { film, .. })) => {
-                        film::write_exr(film, recipe.crop.unwrap_or(whole), whole, out)
+                    (Format::Exr, Picture::Light(light)) => {
+                        film::write_exr(light.film(), recipe.crop.unwrap_or(whole), whole, out)
                     }
                     // `keep` asks for light where it goes into an EXR.
-                    (Format::Exr, Picture::Bytes(_) | Picture::ExactBytes(_)) => {
-                        Err(io::ErrorKind::InvalidInput.into())
-                    }
+                    (Format::Exr, Picture::Bytes(_)) => Err(io::ErrorKind::InvalidInput.into()),
                 })
             }
         }
@@ -276,10 +263,8 @@ impl Output {
 
 fn write_png(picture: &Picture, recipe: &Recipe, out: &mut dyn io::Write) -> io::Result<()> {
     match picture {
-        Picture::Sampled(film) => film::write_png(film, recipe, out),
-        Picture::Bytes(bytes) => film::write_png(bytes, recipe, out),
-        Picture::Exact(exact) => film::write_png(&exact.film, recipe, out),
-        Picture::ExactBytes(exact) => film::write_png(&exact.film, recipe, out),
+        Picture::Light(light) => film::write_png(light.film(), recipe, out),
+        Picture::Bytes(bytes) => film::write_png(bytes.film(), recipe, out),
     }
 }
 

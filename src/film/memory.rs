@@ -21,18 +21,17 @@ pub struct TooLarge {
 /// Refuses a picture for which there is not so much memory, and says how many pixels it has.
 pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<usize, TooLarge> {
     let count = u64::from(width) * u64::from(height);
-    let needed = count.saturating_mul(bytes_per_pixel);
-    let available = available();
     let refused = TooLarge {
         width,
         height,
-        needed,
-        available,
+        needed: count.saturating_mul(bytes_per_pixel),
+        available: available(),
     };
-    match usize::try_from(count) {
-        Ok(count) if available.is_none_or(|available| needed <= available) => Ok(count),
-        _ => Err(refused),
-    }
+    let fits = |available| refused.needed <= available;
+    let count = usize::try_from(count).ok();
+    count
+        .filter(|_| refused.available.is_none_or(fits))
+        .ok_or(refused)
 }
 
 /// Room for the pixels of a picture, unless there is none.

@@ -2,9 +2,12 @@
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in memory, and a picture file: `png` with the
 //! scene that made it, or `exr`. `write` sees to it that a file is written whole or not at all. `read` makes a `picture` of a file, also of
-//! another program's, and `compare` says how far two films are apart.
+//! another program's, and `compare` says how far two films are apart, and `embed` puts one
+//! into a page.
 
 mod compare;
+#[cfg(any(feature = "cli", feature = "report"))]
+mod embed;
 mod exr;
 mod mean;
 mod memory;
@@ -15,6 +18,8 @@ mod read;
 mod srgb;
 mod write;
 
+#[cfg(any(feature = "cli", feature = "report"))]
+pub use self::embed::{data_uri, reduced};
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
@@ -23,7 +28,7 @@ pub use self::{
     mean::mean,
     memory::TooLarge,
     picture::{Coding, Picture, Rounding, Unreadable},
-    pixels::{Film, Pixel, certified, certified_floats},
+    pixels::{Film, Pixel, certified},
     png::{
         NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png,
         write_png,

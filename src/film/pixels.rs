@@ -23,8 +23,11 @@ impl Pixel for [f64; 3] {
         light
     }
 
-    fn is_certain(_: [f64; 3], bound: f64, _: &Encoder) -> bool {
-        bound == 0.0
+    fn is_certain(light: [f64; 3], bound: f64, _: &Encoder) -> bool {
+        // As the floats of 32 bits in an EXR file.
+        let ends =
+            [-bound, bound].map(|off| light.map(|light| (light + off).clamp(0.0, 1.0) as f32));
+        bound == 0.0 || ends[0] == ends[1]
     }
 
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
@@ -139,19 +142,8 @@ impl<P: Pixel> Film<P> {
 /// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::new();
-    count_certain(film, bounds, |light| encoder.encode(light))
-}
-
-/// The same of the 32-bit floats of an EXR file.
-pub fn certified_floats(film: &Film, bounds: &[f32]) -> u64 {
-    count_certain(film, bounds, |light| light.clamp(0.0, 1.0) as f32)
-}
-
-fn count_certain<T: PartialEq>(film: &Film, bounds: &[f32], round: impl Fn(f64) -> T) -> u64 {
-    let is_certain = |&(light, &bound): &(&[f64; 3], &f32)| {
-        let bound = f64::from(bound);
-        let same = |light: &f64| round(light - bound) == round(light + bound);
-        light.iter().all(same)
+    let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {
+        <[u8; 3]>::is_certain(light, bound.into(), &encoder)
     };
     film.pixels.iter().zip(bounds).filter(is_certain).count() as u64
 }

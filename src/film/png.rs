@@ -88,32 +88,20 @@ impl Recipe {
 pub fn write_png<P: Pixel>(film: &Film<P>, recipe: &Recipe, out: &mut dyn Write) -> io::Result<()> {
     let recipe = recipe.fits().then_some(recipe);
     let chunks = recipe.into_iter().flat_map(Recipe::chunks).collect();
-    write([film.width(), film.height()], film, chunks, out)
+    write(film, chunks, out)
 }
 
 /// Writes a picture that no scene makes.
 pub fn write_plain_png<P: Pixel>(film: &Film<P>, out: &mut dyn Write) -> io::Result<()> {
-    write([film.width(), film.height()], film, Vec::new(), out)
+    write(film, Vec::new(), out)
 }
 
-/// Rows of bytes, whatever a film keeps of a pixel, so that writing is compiled once.
-trait Rows {
-    fn bytes<'a>(&'a self, y: u32, encoder: &srgb::Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
-}
-
-impl<P: Pixel> Rows for Film<P> {
-    fn bytes<'a>(&'a self, y: u32, encoder: &srgb::Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
-        P::bytes(self.row(y), encoder, room)
-    }
-}
-
-fn write(
-    [width, height]: [u32; 2],
-    film: &dyn Rows,
+fn write<P: Pixel>(
+    film: &Film<P>,
     chunks: Vec<(&'static str, String)>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut encoder = Encoder::new(out, width, height);
+    let mut encoder = Encoder::new(out, film.width(), film.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
@@ -134,8 +122,8 @@ fn write(
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
     let encoder = srgb::Encoder::new();
     let mut room = Vec::new();
-    for y in 0..height {
-        rows.write_all(film.bytes(y, &encoder, &mut room))?;
+    for y in 0..film.height() {
+        rows.write_all(P::bytes(film.row(y), &encoder, &mut room))?;
     }
     rows.finish()?;
     writer.finish()?;
@@ -150,7 +138,7 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     loop {
         let (kind, content);
         (kind, content, rest) = chunk(rest).ok_or(NotOurs::Damaged)?;
-        let (keyword, text) = match kind {
+        let (keyword, is_packed, text) = match kind {
             b"IDAT" => break,
             b"iTXt" => international_text(content).ok_or(NotOurs::Damaged)?,
             _ => continue,
@@ -159,7 +147,11 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
             .into_iter()
             .find(|ours| ours.as_bytes() == keyword);
         let Some(keyword) = keyword else { continue };
-        let text = unpacked(text, left)?;
+        let text = match is_packed {
+            true => fdeflate::decompress_to_vec_bounded(text, left).map_err(not_unpacked)?,
+            false if text.len() > left => return Err(NotOurs::TooMuchText),
+            false => text.to_owned(),
+        };
         left -= text.len();
         let text = String::from_utf8(text).map_err(|_| NotOurs::NotUtf8)?;
         match keyword {
@@ -190,23 +182,13 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     (crc32fast::hash(checked) == u32::from_be_bytes(*checksum)).then_some((kind, content, rest))
 }
 
-/// A text's bytes.
-enum Text<'a> {
-    Plain(&'a [u8]),
-    Packed(&'a [u8]),
-}
-
-/// The keyword and the text of an iTXt chunk.
-fn international_text(content: &[u8]) -> Option<(&[u8], Text<'_>)> {
+/// The keyword of an iTXt chunk, whether its text is packed, and that.
+fn international_text(content: &[u8]) -> Option<(&[u8], bool, &[u8])> {
     let (keyword, rest) = before_zero(content)?;
     let (&[is_packed, _method], rest) = rest.split_first_chunk()?;
     let (_language, rest) = before_zero(rest)?;
     let (_translated, text) = before_zero(rest)?;
-    let text = match is_packed {
-        0 => Text::Plain(text),
-        _ => Text::Packed(text),
-    };
-    Some((keyword, text))
+    Some((keyword, is_packed != 0, text))
 }
 
 fn before_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
@@ -214,15 +196,9 @@ fn before_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((&bytes[..end], &bytes[end + 1..]))
 }
 
-fn unpacked(text: Text, limit: usize) -> Result<Vec<u8>, NotOurs> {
-    match text {
-        Text::Plain(text) if text.len() > limit => Err(NotOurs::TooMuchText),
-        Text::Plain(text) => Ok(text.to_owned()),
-        Text::Packed(text) => {
-            fdeflate::decompress_to_vec_bounded(text, limit).map_err(|error| match error {
-                BoundedDecompressionError::OutputTooLarge { .. } => NotOurs::TooMuchText,
-                BoundedDecompressionError::DecompressionError { .. } => NotOurs::Damaged,
-            })
-        }
+fn not_unpacked(error: BoundedDecompressionError) -> NotOurs {
+    match error {
+        BoundedDecompressionError::OutputTooLarge { .. } => NotOurs::TooMuchText,
+        BoundedDecompressionError::DecompressionError { .. } => NotOurs::Damaged,
     }
 }

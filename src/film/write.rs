@@ -26,14 +26,6 @@ pub fn write_whole(
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
-    write_boxed(path, cancel, Box::new(write))
-}
-
-/// What writes a content.
-type Writer<'a> = Box<dyn FnOnce(&mut dyn Sink) -> io::Result<()> + 'a>;
-
-/// Apart from what is generic, so that it is compiled once.
-fn write_boxed(path: &Path, cancel: &AtomicBool, write: Writer) -> io::Result<()> {
     match place(path)? {
         Place::File(path, found) => {
             let temporary = temporary(&path, found.as_ref())?;

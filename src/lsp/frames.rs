@@ -18,7 +18,7 @@ use crate::{
     area::Area,
     cancel,
     film::{self, Film},
-    render::{Control, RenderError, render_bytes, render_exact_bytes},
+    render::{Control, RenderError, render_as_asked},
     sampling::Sampling,
     scene::{Count, Method, Sampler, Scene},
     tracer::{GRID, World},
@@ -57,7 +57,7 @@ pub struct Wanted {
 #[derive(Debug)]
 struct Begun {
     film: Film<[u8; 3]>,
-    sampling: Option<Sampling>,
+    sampling: Sampling,
     slices: VecDeque<Area>,
 }
 
@@ -184,11 +184,10 @@ impl Begun {
             return Err(failed(message));
         }
         let sampler = wanted.sampler(&prepared.scene);
-        let sampling =
-            (sampler.method != Method::Exact).then(|| Sampling::new(&sampler, width, height));
-        let work = match &sampling {
-            Some(sampling) => sampling.samples_per_pixel().max(1),
-            None => EXACT,
+        let sampling = Sampling::new(&sampler, width, height);
+        let work = match sampling.is_exact() {
+            true => EXACT,
+            false => sampling.samples_per_pixel().max(1),
         };
         if work > SLICE {
             let message = format!(
@@ -213,11 +212,8 @@ impl Begun {
         let Some(part) = self.slices.pop_front() else {
             return Ok(());
         };
-        let made = match &self.sampling {
-            Some(sampling) => render_bytes(world, sampling, part, &control)?,
-            None => render_exact_bytes(world, part, &control)?.film,
-        };
-        self.film.put(part, made.pixels());
+        let made = render_as_asked(world, &self.sampling, part, &control)?;
+        self.film.put(part, made.film().pixels());
         Ok(())
     }
 }

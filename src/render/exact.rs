@@ -26,7 +26,7 @@ pub struct Exact<P = [f64; 3]> {
     pub film: Film<P>,
     /// For each pixel, row by row, how far each channel of its mean may be from the true one.
     pub bounds: Vec<f32>,
-    /// How many pixels of the film are certain to be those of the true means: of light, those without any error.
+    /// How many pixels of the film, rounded as files hold them, are certain to be those of the true means.
     pub certain: u64,
 }
 
@@ -51,16 +51,7 @@ pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exac
     render_exact_as(world, part, control)
 }
 
-/// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
-pub fn render_exact_bytes(
-    world: &World,
-    part: Area,
-    control: &Control,
-) -> Result<Exact<[u8; 3]>, RenderError> {
-    render_exact_as(world, part, control)
-}
-
-fn render_exact_as<P: film::Pixel>(
+pub(super) fn render_exact_as<P: film::Pixel>(
     world: &World,
     part: Area,
     control: &Control,

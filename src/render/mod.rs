@@ -4,7 +4,8 @@
 //! cut into tiles, which the threads take as they come; neither the number of threads nor the tiles nor the part asked for can change a bit
 //! of a pixel.
 //!
-//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without. What both have in common is here.
+//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without. Which of them a scene asks for is decided here, and what both
+//! have in common is here.
 
 mod exact;
 mod renderer;
@@ -22,11 +23,17 @@ use std::{
 
 use thiserror::Error;
 
-use crate::{area::Area, cancel::Cancelled, film::TooLarge};
+use crate::{
+    area::Area,
+    cancel::Cancelled,
+    film::{Film, Pixel, TooLarge},
+    sampling::Sampling,
+    tracer::World,
+};
 
 pub use self::{
-    exact::{Exact, render_exact, render_exact_bytes},
-    sampled::{render, render_bytes},
+    exact::{Exact, render_exact},
+    sampled::render,
 };
 
 /// How a render is watched, and by how many it is done.
@@ -68,6 +75,44 @@ pub enum RenderError {
 impl From<Cancelled> for RenderError {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
+    }
+}
+
+/// A rendered part of the picture.
+pub enum Rendered<P = [f64; 3]> {
+    /// With samples.
+    Sampled(Film<P>),
+    /// Without.
+    Exact(Exact<P>),
+}
+
+impl<P> Rendered<P> {
+    /// Its pixels.
+    pub fn film(&self) -> &Film<P> {
+        match self {
+            Self::Sampled(film) | Self::Exact(Exact { film, .. }) => film,
+        }
+    }
+
+    /// Its pixels alone.
+    pub fn into_film(self) -> Film<P> {
+        match self {
+            Self::Sampled(film) | Self::Exact(Exact { film, .. }) => film,
+        }
+    }
+}
+
+/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or exactly. The film keeps light, or the bytes of sRGB of which
+/// a PNG file is made: the same file, and less memory to touch.
+pub fn render_as_asked<P: Pixel>(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+) -> Result<Rendered<P>, RenderError> {
+    match sampling.is_exact() {
+        true => exact::render_exact_as(world, part, control).map(Rendered::Exact),
+        false => sampled::render_as(world, sampling, part, control).map(Rendered::Sampled),
     }
 }
 

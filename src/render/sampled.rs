@@ -28,17 +28,7 @@ pub fn render(
     render_as(world, sampling, part, control)
 }
 
-/// The same as bytes of sRGB, of which a PNG file is made: the same file, and less memory to touch.
-pub fn render_bytes(
-    world: &World,
-    sampling: &Sampling,
-    part: Area,
-    control: &Control,
-) -> Result<Film<[u8; 3]>, RenderError> {
-    render_as(world, sampling, part, control)
-}
-
-fn render_as<P: film::Pixel>(
+pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,

@@ -52,6 +52,7 @@ use crate::{
 /// The samples of a picture.
 #[derive(Debug)]
 pub struct Sampling {
+    method: Method,
     /// The key of seed and method; a pixel's own is a part of it.
     key: Key,
     total: u64,
@@ -99,7 +100,8 @@ enum Pattern {
 impl Sampling {
     /// The samples of a picture of this size; each side is at least 1 and at most 2^20. The exact method has none.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        let key = Key::new(sampler.seed, number(sampler.method));
+        // A method's place in the language's table, which must not change: pictures depend on it.
+        let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
             _ if sampler.method == Method::Exact => 0,
@@ -114,11 +116,17 @@ impl Sampling {
             method => Share::Even(Box::new(Even::new(method, total, width, height))),
         };
         Self {
+            method: sampler.method,
             key,
             total,
             pixels,
             share,
         }
+    }
+
+    /// Whether there are no samples, as the picture is computed.
+    pub fn is_exact(&self) -> bool {
+        self.method == Method::Exact
     }
 
     /// How many samples the whole picture has.
@@ -248,21 +256,5 @@ impl Pattern {
             Self::Halton(halton) => halton.place(key, range, out),
             Self::Sobol(sobol) => sobol.place(key, range, out),
         }
-    }
-}
-
-/// A method's own number, which must not change: pictures depend on it.
-fn number(method: Method) -> u64 {
-    match method {
-        Method::Regular => 0,
-        Method::Random => 1,
-        Method::Jittered => 2,
-        Method::NRooks => 3,
-        Method::MultiJittered => 4,
-        Method::Hammersley => 5,
-        Method::Halton => 6,
-        Method::Sobol => 7,
-        Method::Scatter => 8,
-        Method::Exact => 9,
     }
 }

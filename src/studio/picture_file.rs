@@ -12,10 +12,10 @@ use serde_json::{Value, json};
 
 use crate::{
     area::Area,
-    film::{self, Recipe},
-    render::{self, Control},
+    film::{self, Film, Recipe},
+    render::{self, Control, RenderError},
     sampling::Sampling,
-    scene::{self, Method, Scene},
+    scene::{self, Scene},
     source::{Source, Sources},
     tracer::World,
 };
@@ -70,11 +70,7 @@ fn write_png(
     cancel: &AtomicBool,
     out: &mut Cursor<Vec<u8>>,
 ) -> Result<(), Box<dyn Error>> {
-    let (world, whole) = (World::new_unless(scene, cancel)?, whole(scene));
-    let film = match scene.sampler.method {
-        Method::Exact => render::render_exact_bytes(&world, whole, &control(cancel))?.film,
-        _ => render::render_bytes(&world, &sampling(scene), whole, &control(cancel))?,
-    };
+    let film: Film<[u8; 3]> = rendered(scene, cancel)?;
     let recipe = Recipe {
         scene: text.to_owned(),
         overrides: Vec::new(),
@@ -91,26 +87,21 @@ fn write_exr(
     cancel: &AtomicBool,
     out: &mut Cursor<Vec<u8>>,
 ) -> Result<(), Box<dyn Error>> {
-    let (world, whole) = (World::new_unless(scene, cancel)?, whole(scene));
-    let film = match scene.sampler.method {
-        Method::Exact => render::render_exact(&world, whole, &control(cancel))?.film,
-        _ => render::render(&world, &sampling(scene), whole, &control(cancel))?,
-    };
+    let film = rendered(scene, cancel)?;
+    let whole = Area::whole(film.width(), film.height());
     Ok(film::write_exr(&film, whole, whole, out)?)
 }
 
-fn whole(scene: &Scene) -> Area {
-    Area::whole(scene.image.width, scene.image.height)
-}
-
-fn sampling(scene: &Scene) -> Sampling {
-    Sampling::new(&scene.sampler, scene.image.width, scene.image.height)
-}
-
-fn control(cancel: &AtomicBool) -> Control<'_> {
-    Control {
+fn rendered<P: film::Pixel>(scene: &Scene, cancel: &AtomicBool) -> Result<Film<P>, RenderError> {
+    let world = World::new_unless(scene, cancel)?;
+    let (width, height) = (scene.image.width, scene.image.height);
+    let sampling = Sampling::new(&scene.sampler, width, height);
+    let control = Control {
         threads: None,
         progress: &|_| {},
         cancel,
-    }
+    };
+    let rendered =
+        render::render_as_asked(&world, &sampling, Area::whole(width, height), &control)?;
+    Ok(rendered.into_film())
 }

@@ -10,7 +10,7 @@ use glam::{DVec3, dvec3};
 use pinhole::{
     area::Area,
     film::{Encoder, Film},
-    render::{Control, render, render_bytes},
+    render::{Control, render, render_as_asked},
     sampling::Sampling,
     scene::{Count, Lens, Method, Outline, Sampler, Scene, Shape, View},
     tracer::{Part, Quartering, Scratch, World},
@@ -159,7 +159,8 @@ fn bytes_are_those_of_the_light() {
         let sampling = Sampling::new(&scene.sampler, 90, 70);
         let control = Control::default();
         let crop: Area = "7,9,80,50".parse().unwrap();
-        let bytes = render_bytes(&World::new(&scene), &sampling, crop, &control).unwrap();
+        let bytes = render_as_asked(&World::new(&scene), &sampling, crop, &control).unwrap();
+        let bytes: Film<[u8; 3]> = bytes.into_film();
         let light = plain(&scene, crop);
         assert_eq!((bytes.width(), bytes.height()), (80, 50));
         for (bytes, &light) in bytes.pixels().iter().zip(light.pixels()) {

@@ -7,9 +7,9 @@ use crate::{
     cancel,
     color::Color,
     math::SimdWidth,
-    render::{Control, render_bytes, render_exact_bytes},
+    render::{Control, render_as_asked},
     sampling::{Points, Sampling},
-    scene::{Method, Scene},
+    scene::Scene,
     tracer::{Hit, World, ray},
 };
 
@@ -58,11 +58,8 @@ pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSa
     if count > MOST_TRACED {
         return Err(format!("{count} samples of a pixel would take too long"));
     }
-    let film = match scene.sampler.method {
-        Method::Exact => render_exact_bytes(world, pixel, &control).map(|exact| exact.film),
-        _ => render_bytes(world, &sampling, pixel, &control),
-    };
-    let film = film.map_err(|error| error.to_string())?;
+    let rendered = render_as_asked(world, &sampling, pixel, &control);
+    let rendered = rendered.map_err(|error| error.to_string())?;
     let mut points = Points::default();
     let shown = 0..count.min(MOST_SAMPLES);
     sampling.place(SimdWidth::Baseline, [x, y], count, shown, &mut points);
@@ -72,6 +69,6 @@ pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSa
     };
     Ok(PixelSamples {
         samples: points.iter().map(sample).collect(),
-        color: Color::from_bytes(film.pixel(0, 0)),
+        color: Color::from_bytes(rendered.film().pixel(0, 0)),
     })
 }

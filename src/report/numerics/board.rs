@@ -3,24 +3,24 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
     oracle::ALL_SIZES,
-    scenes::{SIZE, along, board, camera, cuboid, scene, sphere, spun, triangle},
+    scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
 
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("P1", "up to 1e-13 pixels below the horizon", 2.0, horizon),
-    case("P2", "rays parallel to the board, and next to it", 2.0, parallels),
-    case("P3", "planes through the eye", 2.0, edge_on),
-    case("P4", "the eye 1e-9 … 5e-324 m above the board", 2.0, low),
-    case("P5", "the eye 1e9 … 1e15 squares above it", 2.0, high),
-    case("P6a", "1e9 … 4e15 squares from the origin", 2.0, displaced),
-    case("P6b", "exact corners of squares, and next to them", 2.0, corners),
-    case("P7", "boxes and triangles on the board, from below", 2.0, from_below),
-    case("P8", "two boards or two triangles in one plane", 2.0, coincident),
+    Case { id: "P1", title: "up to 1e-13 pixels below the horizon", bound: 2.0, subject: Seen(horizon) },
+    Case { id: "P2", title: "rays parallel to the board, and next to it", bound: 2.0, subject: Seen(parallels) },
+    Case { id: "P3", title: "planes through the eye", bound: 2.0, subject: Seen(edge_on) },
+    Case { id: "P4", title: "the eye 1e-9 … 5e-324 m above the board", bound: 2.0, subject: Seen(low) },
+    Case { id: "P5", title: "the eye 1e9 … 1e15 squares above it", bound: 2.0, subject: Seen(high) },
+    Case { id: "P6a", title: "1e9 … 4e15 squares from the origin", bound: 2.0, subject: Seen(displaced) },
+    Case { id: "P6b", title: "exact corners of squares, and next to them", bound: 2.0, subject: Seen(corners) },
+    Case { id: "P7", title: "boxes and triangles on the board, from below", bound: 2.0, subject: Seen(from_below) },
+    Case { id: "P8", title: "two boards or two triangles in one plane", bound: 2.0, subject: Seen(coincident) },
 ];
 
 fn horizon(random: &mut Random) -> Input {
@@ -30,8 +30,8 @@ fn horizon(random: &mut Random) -> Input {
         random.within(-9.0, 9.0),
     );
     let level = dvec3(random.within(-1.0, 1.0), 0.0, -1.0);
-    Input::new(scene(along(eye, level), &[board(0.0, 1.0)])).at(move |random| {
-        let column = random.below(u64::from(SIZE)) as u32;
+    input(along(eye, level), &[board(0.0, 1.0)]).at(move |random| {
+        let column = random.pixel();
         let below = random.power(-13.0, -0.01);
         let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
         (column, SIZE / 2, offset)
@@ -48,8 +48,8 @@ fn parallels(random: &mut Random) -> Input {
     );
     let mut camera = along(eye, level);
     camera.up = random.pick(&[DVec3::Y, DVec3::NEG_Y]);
-    Input::new(scene(camera, &[board(0.0, 1.0)])).at(move |random| {
-        let column = random.below(u64::from(SIZE)) as u32;
+    input(camera, &[board(0.0, 1.0)]).at(move |random| {
+        let column = random.pixel();
         let x = random.within(-0.5, 0.5);
         let (row, y) = random.pick(&[
             (SIZE / 2, -0.5),
@@ -72,7 +72,7 @@ fn edge_on(random: &mut Random) -> Input {
         cuboid(low, dvec3(high.x, eye.y, high.z)),
         sphere(at, 0.5),
     ];
-    Input::new(scene(along(eye, ahead), &shapes))
+    input(along(eye, ahead), &shapes)
 }
 
 fn low(random: &mut Random) -> Input {
@@ -86,7 +86,7 @@ fn low(random: &mut Random) -> Input {
         eye,
         dvec3(random.within(-1.0, 1.0), random.within(-0.5, 0.0), -1.0),
     );
-    Input::new(scene(camera, &shapes)).bits(ALL_SIZES)
+    input(camera, &shapes).bits(ALL_SIZES)
 }
 
 fn high(random: &mut Random) -> Input {
@@ -97,7 +97,7 @@ fn high(random: &mut Random) -> Input {
         dvec3(random.within(-1.0, 1.0), random.within(-1.0, -0.2), -1.0),
     );
     let shapes = [board(0.0, random.power(0.0, 3.0))];
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn displaced(random: &mut Random) -> Input {
@@ -107,7 +107,7 @@ fn displaced(random: &mut Random) -> Input {
         eye,
         dvec3(random.within(-1.0, 1.0), random.within(-1.0, -0.2), -1.0),
     );
-    Input::new(scene(camera, &[board(0.0, 1.0)]))
+    input(camera, &[board(0.0, 1.0)])
 }
 
 /// From a height of 64 squares, with the slope of a 64th from pixel to pixel, a pixel's upper left corner shows that of a square.
@@ -120,9 +120,9 @@ fn corners(random: &mut Random) -> Input {
     ) * size;
     let mut camera = along(eye, DVec3::NEG_Y);
     camera.up = random.pick(&[DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z]);
-    Input::new(scene(camera, &[board(0.0, size)])).at(move |random| {
+    input(camera, &[board(0.0, size)]).at(move |random| {
         let [x, y] = [0, 0].map(|_: u32| {
-            let pixel = random.below(u64::from(SIZE)) as u32;
+            let pixel = random.pixel();
             let beside = random.pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 1e5]) * f64::EPSILON / 4.0;
             match random.below(2) {
                 0 => (pixel, -0.5 + beside),
@@ -149,7 +149,7 @@ fn from_below(random: &mut Random) -> Input {
         cuboid(other - dvec3(0.5, 0.2, 0.5), other + dvec3(0.5, 0.0, 0.5)),
     ];
     shapes.rotate_left(random.below(4) as usize);
-    Input::new(scene(camera(eye, at(random)), &shapes)).mixed()
+    input(camera(eye, at(random)), &shapes).mixed()
 }
 
 fn coincident(random: &mut Random) -> Input {
@@ -172,5 +172,5 @@ fn coincident(random: &mut Random) -> Input {
             ),
         ],
     };
-    Input::new(scene(camera(eye, at), &shapes)).mixed()
+    input(camera(eye, at), &shapes).mixed()
 }

@@ -3,10 +3,14 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    case::{Case, Input, axes_case, case},
+    case::{
+        Case, Input,
+        Subject::{Axes, Seen},
+        input,
+    },
     inputs::Random,
     oracle::ALL_VIEWS,
-    scenes::{along, board, camera, cuboid, scene, sphere, triangle},
+    scenes::{along, board, camera, cuboid, sphere, triangle},
 };
 use crate::{
     math::Angle,
@@ -16,13 +20,13 @@ use crate::{
 /// The cases: those of the axes, and those of what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    axes_case("C1", "up within 1e-1 … 1e-200 of the view direction", nearly_parallel),
-    axes_case("C2", "eye and lookat: subnormal, close, 1e308 apart", differences),
-    axes_case("C3a", "directions and up vectors of 1e±308", lengths),
-    axes_case("C4", "rolls of up to 1e22 degrees", rolls),
-    case("C3b", "view planes at d = 1e±9 … 1e±302", 2.0, lenses),
-    case("C5", "a picture of 2^20 columns", 2.0, wide),
-    case("C6", "symmetric scenes", 2.0, symmetric),
+    Case { id: "C1", title: "up within 1e-1 … 1e-200 of the view direction", bound: 4.0, subject: Axes(nearly_parallel) },
+    Case { id: "C2", title: "eye and lookat: subnormal, close, 1e308 apart", bound: 4.0, subject: Axes(differences) },
+    Case { id: "C3a", title: "directions and up vectors of 1e±308", bound: 4.0, subject: Axes(lengths) },
+    Case { id: "C4", title: "rolls of up to 1e22 degrees", bound: 4.0, subject: Axes(rolls) },
+    Case { id: "C3b", title: "view planes at d = 1e±9 … 1e±302", bound: 2.0, subject: Seen(lenses) },
+    Case { id: "C5", title: "a picture of 2^20 columns", bound: 2.0, subject: Seen(wide) },
+    Case { id: "C6", title: "symmetric scenes", bound: 2.0, subject: Seen(symmetric) },
 ];
 
 fn nearly_parallel(random: &mut Random) -> Camera {
@@ -82,7 +86,7 @@ fn lenses(random: &mut Random) -> Input {
     if wide {
         shapes.push(cuboid(dvec3(-4.0, 0.5, 1.0), dvec3(-3.0, 4.5, 2.0)));
     }
-    Input::new(scene(camera, &shapes)).bits(ALL_VIEWS)
+    input(camera, &shapes).bits(ALL_VIEWS)
 }
 
 fn rolls(random: &mut Random) -> Camera {
@@ -112,9 +116,9 @@ fn wide(random: &mut Random) -> Input {
     }
     // The window is 2 m high and as wide as 2^20 of its 64 rows.
     camera.lens = Lens::Distance(16384.0);
-    let mut scene = scene(camera, &shapes);
-    scene.image.width = 1 << 20;
-    Input::new(scene)
+    let mut input = input(camera, &shapes);
+    input.scene.image.width = 1 << 20;
+    input
 }
 
 /// Everything is symmetric in x, so that what is seen is, too: on the axis of symmetry there are ties.
@@ -138,5 +142,5 @@ fn symmetric(random: &mut Random) -> Input {
             dvec3(2.0, 2.0, 1.5),
         ),
     ];
-    Input::new(scene(camera(eye, at), &shapes))
+    input(camera(eye, at), &shapes)
 }

@@ -3,9 +3,10 @@
 use super::{
     inputs::Random,
     oracle::USUAL_SIZES,
+    scenes::scene,
     trial::{Point, Tally, Trial, axes},
 };
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Scene, Shape};
 
 /// A row of the catalogue.
 #[derive(Clone, Copy, Debug)]
@@ -16,45 +17,16 @@ pub struct Case {
     pub title: &'static str,
     /// The greatest error that is claimed; no decision is wrong.
     pub bound: f64,
-    subject: Subject,
+    pub(super) subject: Subject,
 }
 
 /// What questions are asked of.
 #[derive(Clone, Copy, Debug)]
-enum Subject {
-    /// What is seen in a scene, of which many questions are asked.
+pub(super) enum Subject {
+    /// What is seen in a scene, of which many questions are asked: errors of distances and points are counted in units in the last place.
     Seen(fn(&mut Random) -> Input),
-    /// The axes of a camera.
+    /// The axes of a camera: errors of the components of unit vectors are counted in units of 2^−53.
     Axes(fn(&mut Random) -> Camera),
-}
-
-/// A row that asks what is seen: distances and points are right up to so many units in the last place.
-pub(super) const fn case(
-    id: &'static str,
-    title: &'static str,
-    bound: f64,
-    input: fn(&mut Random) -> Input,
-) -> Case {
-    Case {
-        id,
-        title,
-        bound,
-        subject: Subject::Seen(input),
-    }
-}
-
-/// A row that asks for a camera's axes: components of unit vectors are right up to four times 2^−53.
-pub(super) const fn axes_case(
-    id: &'static str,
-    title: &'static str,
-    camera: fn(&mut Random) -> Camera,
-) -> Case {
-    Case {
-        id,
-        title,
-        bound: 4.0,
-        subject: Subject::Axes(camera),
-    }
 }
 
 impl Case {
@@ -92,7 +64,7 @@ type Points = dyn Fn(&mut Random) -> Point;
 
 /// A scene and where in its picture questions are asked.
 pub(super) struct Input {
-    scene: Scene,
+    pub scene: Scene,
     /// Those that the oracle computes with.
     bits: usize,
     /// Points of the picture; anywhere if nothing is said.
@@ -101,17 +73,17 @@ pub(super) struct Input {
     halves: u64,
 }
 
-impl Input {
-    /// Points close to boundaries.
-    pub fn new(scene: Scene) -> Self {
-        Self {
-            scene,
-            bits: USUAL_SIZES,
-            points: None,
-            halves: 0,
-        }
+/// Points close to boundaries of what a camera sees of some shapes.
+pub(super) fn input(camera: Camera, shapes: &[Shape]) -> Input {
+    Input {
+        scene: scene(camera, shapes),
+        bits: USUAL_SIZES,
+        points: None,
+        halves: 0,
     }
+}
 
+impl Input {
     /// So many bits for the oracle.
     pub fn bits(self, bits: usize) -> Self {
         Self { bits, ..self }

@@ -3,17 +3,17 @@
 use glam::{DVec3, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
-    scenes::{along, board, camera, cuboid, scene, sphere, triangle},
+    scenes::{along, board, camera, cuboid, sphere, triangle},
 };
 
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("K2", "surfaces exactly at the near or the far plane", 2.0, exactly_there),
-    case("K3", "objects cut by both planes", 2.0, cut),
-    case("K4", "the near plane within objects", 2.0, within),
+    Case { id: "K2", title: "surfaces exactly at the near or the far plane", bound: 2.0, subject: Seen(exactly_there) },
+    Case { id: "K3", title: "objects cut by both planes", bound: 2.0, subject: Seen(cut) },
+    Case { id: "K4", title: "the near plane within objects", bound: 2.0, subject: Seen(within) },
 ];
 
 /// View directions with a length that is a whole number, so that depths can be.
@@ -38,7 +38,7 @@ fn exactly_there(random: &mut Random) -> Input {
         0 => camera.near = at,
         _ => camera.far = Some(at),
     }
-    Input::new(scene(camera, &[shape])).anywhere()
+    input(camera, &[shape]).anywhere()
 }
 
 fn cut(random: &mut Random) -> Input {
@@ -55,7 +55,7 @@ fn cut(random: &mut Random) -> Input {
         cuboid(corner, corner + DVec3::ONE),
         triangle(at + random.vector(0.5), random.unit(), dvec3(2.0, 2.0, 1.0)),
     ];
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn within(random: &mut Random) -> Input {
@@ -71,5 +71,5 @@ fn within(random: &mut Random) -> Input {
             at + other * 0.5 + DVec3::splat(0.7),
         ),
     ];
-    Input::new(scene(camera, &shapes)).mixed()
+    input(camera, &shapes).mixed()
 }

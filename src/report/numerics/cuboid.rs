@@ -3,20 +3,20 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
-    scenes::{SIZE, along, camera, cuboid, scene, sphere},
+    scenes::{SIZE, along, camera, cuboid, sphere},
 };
 use crate::math::Angle;
 
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("B1", "rays in the planes of faces, and along edges", 2.0, in_planes),
-    case("B2", "the eye inside, on a face, an edge, a corner", 2.0, inside),
-    case("B3", "boxes an ulp thick", 2.0, thin),
-    case("B4", "rays that graze edges, 1 … 1e9 m away", 2.0, silhouettes),
-    case("B5", "the seam of two boxes that share a face", 2.0, neighbours),
+    Case { id: "B1", title: "rays in the planes of faces, and along edges", bound: 2.0, subject: Seen(in_planes) },
+    Case { id: "B2", title: "the eye inside, on a face, an edge, a corner", bound: 2.0, subject: Seen(inside) },
+    Case { id: "B3", title: "boxes an ulp thick", bound: 2.0, subject: Seen(thin) },
+    Case { id: "B4", title: "rays that graze edges, 1 … 1e9 m away", bound: 2.0, subject: Seen(silhouettes) },
+    Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
 /// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.
@@ -36,7 +36,7 @@ fn in_planes(random: &mut Random) -> Input {
     );
     let mut camera = along(eye, DVec3::NEG_Z);
     camera.roll = Angle::from_degrees(90.0 * random.whole(-3, 3));
-    Input::new(scene(camera, &[cuboid(min, max)])).at(move |random| {
+    input(camera, &[cuboid(min, max)]).at(move |random| {
         let middle = [
             (SIZE / 2, -0.5),
             (SIZE / 2, -0.5),
@@ -45,10 +45,7 @@ fn in_planes(random: &mut Random) -> Input {
         let in_plane = random.pick(&middle);
         let other = match random.below(3) {
             0 => random.pick(&middle),
-            _ => (
-                random.below(u64::from(SIZE)) as u32,
-                random.within(-0.5, 0.5),
-            ),
+            _ => (random.pixel(), random.within(-0.5, 0.5)),
         };
         let (x, y) = random.pick(&[(in_plane, other), (other, in_plane)]);
         (x.0, y.0, dvec2(x.1, y.1))
@@ -71,7 +68,7 @@ fn inside(random: &mut Random) -> Input {
         cuboid(wall - DVec3::splat(0.4), wall),
     ];
     shapes.rotate_left(random.below(3) as usize);
-    Input::new(scene(camera(eye, wall), &shapes))
+    input(camera(eye, wall), &shapes)
 }
 
 fn thin(random: &mut Random) -> Input {
@@ -83,7 +80,7 @@ fn thin(random: &mut Random) -> Input {
     // Steep or nearly along the plane.
     eye[axis] = min[axis] + random.sign() * random.power(-15.0, 0.5);
     let shapes = [cuboid(min, max), sphere((min + max) / 2.0, 0.3)];
-    Input::new(scene(camera(eye, (min + max) / 2.0), &shapes))
+    input(camera(eye, (min + max) / 2.0), &shapes)
 }
 
 fn silhouettes(random: &mut Random) -> Input {
@@ -92,7 +89,7 @@ fn silhouettes(random: &mut Random) -> Input {
     let max = min + random.withins(0.5, 2.0);
     let eye = place + random.unit() * random.within(4.0, 8.0);
     let shapes = [cuboid(min, max)];
-    Input::new(scene(camera(eye, (min + max) / 2.0), &shapes))
+    input(camera(eye, (min + max) / 2.0), &shapes)
 }
 
 /// The eye is beside the shared face's plane or in it.
@@ -109,12 +106,12 @@ fn neighbours(random: &mut Random) -> Input {
         random.within(-0.5, 1.5),
         random.within(1.0, 3.0),
     );
-    let input = Input::new(scene(along(eye, DVec3::NEG_Z), &shapes));
+    let input = input(along(eye, DVec3::NEG_Z), &shapes);
     if beside != 0.0 {
         return input;
     }
     let in_plane = |random: &mut Random| {
-        let row = random.below(u64::from(SIZE)) as u32;
+        let row = random.pixel();
         let middle = [(SIZE / 2, -0.5), (SIZE / 2 - 1, 0.5_f64.next_down())];
         let (column, x) = random.pick(&middle);
         (column, row, dvec2(x, random.within(-0.5, 0.5)))

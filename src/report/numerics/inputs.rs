@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use rand::{Rng, RngExt};
 
+use super::scenes::SIZE;
 use crate::sampling::{
     CounterRng,
     rng::{Key, scale},
@@ -28,6 +29,11 @@ impl Random {
     /// A whole number from `low` to `high`.
     pub fn whole(&mut self, low: i64, high: i64) -> f64 {
         (low + self.below((high - low + 1) as u64) as i64) as f64
+    }
+
+    /// A column or row of a picture of the usual size.
+    pub fn pixel(&mut self) -> u32 {
+        self.below(SIZE.into()) as u32
     }
 
     /// One of some things.

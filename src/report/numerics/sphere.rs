@@ -3,23 +3,23 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
-    scenes::{SIZE, along, camera, cuboid, scene, sphere},
+    scenes::{SIZE, along, camera, cuboid, sphere},
 };
 
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("S1a", "rays that nearly touch a sphere", 1.0, silhouettes),
-    case("S1b", "rays that touch it exactly: they miss", 1.0, touches),
-    case("S2", "small and far, 1e6 … 1e15 radii away", 1.0, far_and_small),
-    case("S3", "the eye inside", 1.0, inside),
-    case("S4", "the eye on the surface, and 1e-16 … 1e-3 off", 1.0, at_the_surface),
-    case("S5", "a globe of 1e6 … 1e15 m, the eye 1 m above it", 1.0, globes),
-    case("S6", "scenes of 1e±160 … 1e±300 m", 1.0, out_of_range),
-    case("S7", "equal spheres, and radii an ulp apart", 1.0, concentric),
-    case("S8", "centre and eye 1e9 … 1e300 m from the origin", 1.0, displaced),
+    Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },
+    Case { id: "S1b", title: "rays that touch it exactly: they miss", bound: 1.0, subject: Seen(touches) },
+    Case { id: "S2", title: "small and far, 1e6 … 1e15 radii away", bound: 1.0, subject: Seen(far_and_small) },
+    Case { id: "S3", title: "the eye inside", bound: 1.0, subject: Seen(inside) },
+    Case { id: "S4", title: "the eye on the surface, and 1e-16 … 1e-3 off", bound: 1.0, subject: Seen(at_the_surface) },
+    Case { id: "S5", title: "a globe of 1e6 … 1e15 m, the eye 1 m above it", bound: 1.0, subject: Seen(globes) },
+    Case { id: "S6", title: "scenes of 1e±160 … 1e±300 m", bound: 1.0, subject: Seen(out_of_range) },
+    Case { id: "S7", title: "equal spheres, and radii an ulp apart", bound: 1.0, subject: Seen(concentric) },
+    Case { id: "S8", title: "centre and eye 1e9 … 1e300 m from the origin", bound: 1.0, subject: Seen(displaced) },
 ];
 
 fn silhouettes(random: &mut Random) -> Input {
@@ -27,21 +27,21 @@ fn silhouettes(random: &mut Random) -> Input {
     let eye = center + random.unit() * random.within(3.0, 8.0);
     let camera = camera(eye, center + random.vector(0.2));
     let shape = sphere(center, random.within(0.5, 2.0));
-    Input::new(scene(camera, &[shape]))
+    input(camera, &[shape])
 }
 
 /// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z): of the rays in that plane, which
 /// are those of the middle of the picture, none meets the sphere, and of those on the other side of it one next to it does.
 fn touches(random: &mut Random) -> Input {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
-    let row = random.below(u64::from(SIZE)) as u32;
+    let row = random.pixel();
     let depth = random.whole(16, 400);
     // The ray through the upper side of the row has the slope (32 − row)/64.
     let y = depth * (f64::from(SIZE) / 2.0 - f64::from(row)) / 64.0;
     let radius = random.whole(1, 80) / 8.0;
     let side = random.sign();
     let shape = sphere(dvec3(side * radius, y, -depth), radius);
-    Input::new(scene(camera, &[shape])).at(move |random| {
+    input(camera, &[shape]).at(move |random| {
         let steps = random.pick(&[0.0, 0.0, 1.0, 2.0, 64.0, 1e6]) * f64::EPSILON / 4.0;
         let (column, offset) = match random.below(2) {
             0 => (SIZE / 2, -0.5 + steps),
@@ -59,7 +59,7 @@ fn far_and_small(random: &mut Random) -> Input {
     let mut camera = camera(eye, center);
     camera.lens = crate::scene::Lens::Distance(distance);
     camera.view_height = 3.0 * radius;
-    Input::new(scene(camera, &[sphere(center, radius)]))
+    input(camera, &[sphere(center, radius)])
 }
 
 fn inside(random: &mut Random) -> Input {
@@ -72,7 +72,7 @@ fn inside(random: &mut Random) -> Input {
         sphere(wall, radius / 2.0),
         cuboid(corner, corner + DVec3::splat(radius)),
     ];
-    Input::new(scene(camera(eye, wall), &shapes))
+    input(camera(eye, wall), &shapes)
 }
 
 fn at_the_surface(random: &mut Random) -> Input {
@@ -88,7 +88,7 @@ fn at_the_surface(random: &mut Random) -> Input {
     let ahead = eye + tangent * random.within(0.5, 2.0);
     let shapes = [sphere(DVec3::ZERO, 5.0), sphere(ahead, 0.4)];
     let camera = along(eye, tangent - on * random.within(-0.05, 0.1));
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn globes(random: &mut Random) -> Input {
@@ -101,7 +101,7 @@ fn globes(random: &mut Random) -> Input {
         sphere(dvec3(0.0, -radius, 0.0), radius),
         sphere(dvec3(3.0, random.within(0.2, 0.7), -4.0), 0.8),
     ];
-    Input::new(scene(camera, &shapes))
+    input(camera, &shapes)
 }
 
 fn out_of_range(random: &mut Random) -> Input {
@@ -113,7 +113,7 @@ fn out_of_range(random: &mut Random) -> Input {
         sphere(center, size),
         sphere(center + random.unit() * size, size / 2.0),
     ];
-    Input::new(scene(camera(eye, center), &shapes))
+    input(camera(eye, center), &shapes)
 }
 
 fn concentric(random: &mut Random) -> Input {
@@ -126,7 +126,7 @@ fn concentric(random: &mut Random) -> Input {
     ]);
     let eye = center + random.unit() * random.within(0.0, 8.0);
     let shapes = radii.map(|radius| sphere(center, radius));
-    Input::new(scene(camera(eye, center + random.vector(0.3)), &shapes)).anywhere()
+    input(camera(eye, center + random.vector(0.3)), &shapes).anywhere()
 }
 
 fn displaced(random: &mut Random) -> Input {
@@ -134,5 +134,5 @@ fn displaced(random: &mut Random) -> Input {
     let center = random.unit() * distance;
     let radius = distance * random.power(-12.0, -2.0);
     let eye = center + random.unit() * (4.0 * radius);
-    Input::new(scene(along(eye, center - eye), &[sphere(center, radius)]))
+    input(along(eye, center - eye), &[sphere(center, radius)])
 }

@@ -3,23 +3,23 @@
 use glam::{DVec3, dvec2, dvec3};
 
 use super::{
-    case::{Case, Input, case},
+    case::{Case, Input, Subject::Seen, input},
     inputs::Random,
-    scenes::{SIZE, along, camera, scene, spun, triangle},
+    scenes::{SIZE, along, camera, spun, triangle},
 };
 use crate::scene::Lens;
 
 /// The cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    case("T1", "triangles of 1e-3 … 1e-9 m", 2.0, tiny),
-    case("T2", "the eye 1e-3 … 1e-15 m off the plane", 2.0, slivers),
-    case("T3a", "close to an edge that two triangles share", 2.0, shared_edges),
-    case("T3b", "exactly on such an edge", 2.0, lattice_points),
-    case("T4", "needles of 1 to 1e3 … 1e12, and flat ones", 2.0, needles),
-    case("T5", "normals of 1e±307, nearly or wholly vertical", 2.0, normals),
-    case("T6", "1e6 … 1e15 m from the origin", 2.0, displaced),
-    case("T7", "vertices behind the eye", 2.0, around),
+    Case { id: "T1", title: "triangles of 1e-3 … 1e-9 m", bound: 2.0, subject: Seen(tiny) },
+    Case { id: "T2", title: "the eye 1e-3 … 1e-15 m off the plane", bound: 2.0, subject: Seen(slivers) },
+    Case { id: "T3a", title: "close to an edge that two triangles share", bound: 2.0, subject: Seen(shared_edges) },
+    Case { id: "T3b", title: "exactly on such an edge", bound: 2.0, subject: Seen(lattice_points) },
+    Case { id: "T4", title: "needles of 1 to 1e3 … 1e12, and flat ones", bound: 2.0, subject: Seen(needles) },
+    Case { id: "T5", title: "normals of 1e±307, nearly or wholly vertical", bound: 2.0, subject: Seen(normals) },
+    Case { id: "T6", title: "1e6 … 1e15 m from the origin", bound: 2.0, subject: Seen(displaced) },
+    Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
 /// The sides of the assignment's triangle.
@@ -32,7 +32,7 @@ fn tiny(random: &mut Random) -> Input {
     let mut camera = camera(eye, DVec3::ZERO);
     camera.lens = Lens::Distance(5.0 / size);
     let shape = spun(DVec3::ZERO, normal, SIDES * size, random.within(0.0, 360.0));
-    Input::new(scene(camera, &[shape])).mixed()
+    input(camera, &[shape]).mixed()
 }
 
 fn slivers(random: &mut Random) -> Input {
@@ -44,7 +44,7 @@ fn slivers(random: &mut Random) -> Input {
     camera.up = normal;
     camera.lens = Lens::Distance(3.0 / height);
     let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
-    Input::new(scene(camera, &[shape]))
+    input(camera, &[shape])
 }
 
 /// Two triangles, the second one the first turned by 180° about the middle of one of its edges. With these sides the vertices
@@ -90,7 +90,7 @@ fn shared_edges(random: &mut Random) -> Input {
     shapes.rotate_left(random.below(2) as usize);
     let middle = (centroid + other) / 2.0;
     let eye = middle + (normal * random.sign() + random.unit() * 0.7) * (30.0 * size);
-    Input::new(scene(camera(eye, middle), &shapes))
+    input(camera(eye, middle), &shapes)
 }
 
 /// Seen from a distance of 64 the corners of pixels are the points of the lattice.
@@ -111,7 +111,7 @@ fn lattice_points(random: &mut Random) -> Input {
     ];
     shapes.rotate_left(random.below(2) as usize);
     let half = f64::from(SIZE) / 2.0;
-    Input::new(scene(along(DVec3::ZERO, DVec3::NEG_Z), &shapes)).at(move |random| {
+    input(along(DVec3::ZERO, DVec3::NEG_Z), &shapes).at(move |random| {
         let [x, y] = random.pick(points);
         let (column, row) = (half + place[0] + x, half - place[1] - y);
         let beside = |random: &mut Random| match random.below(3) {
@@ -134,7 +134,7 @@ fn needles(random: &mut Random) -> Input {
     };
     camera.lens = Lens::Distance(3.0 / height);
     let shape = spun(DVec3::ZERO, normal, sides, random.within(0.0, 360.0));
-    Input::new(scene(camera, &[shape]))
+    input(camera, &[shape])
 }
 
 fn normals(random: &mut Random) -> Input {
@@ -148,7 +148,7 @@ fn normals(random: &mut Random) -> Input {
     let centroid = random.vector(2.0);
     let eye = centroid + dvec3(random.within(-2.0, 2.0), 3.0, random.within(-2.0, 2.0));
     let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
-    Input::new(scene(camera(eye, centroid), &[shape]))
+    input(camera(eye, centroid), &[shape])
 }
 
 fn displaced(random: &mut Random) -> Input {
@@ -158,7 +158,7 @@ fn displaced(random: &mut Random) -> Input {
     let normal = random.unit();
     let eye = centroid + (normal + random.unit() * 0.4) * (4.0 * size);
     let shape = triangle(centroid, normal, SIDES * size);
-    Input::new(scene(camera(eye, centroid), &[shape]))
+    input(camera(eye, centroid), &[shape])
 }
 
 fn around(random: &mut Random) -> Input {
@@ -172,5 +172,5 @@ fn around(random: &mut Random) -> Input {
     camera.up = normal;
     let sides = dvec3(70.0, 60.0, random.within(15.0, 90.0));
     let shape = spun(centroid, normal, sides, random.within(0.0, 360.0));
-    Input::new(scene(camera, &[shape]))
+    input(camera, &[shape])
 }

@@ -3,14 +3,17 @@
 //! Both axes are logarithmic. A line is labelled at its end, so that nobody has to look up a legend, and its marker and dash say in
 //! black and white what its colour says otherwise. Black is written as the current colour, so that a page may be dark.
 
-use std::ops::Range;
+use std::{io, ops::Range};
 
 use plotters::{
-    coord::Shift,
+    coord::{
+        Shift,
+        combinators::{LogCoord, WithKeyPoints},
+    },
     element::DashedPathElement,
     prelude::{
-        BLACK, BindKeyPoints, ChartBuilder, Color, DrawingArea, DrawingBackend, IntoDrawingArea,
-        IntoFont, IntoLogRange, PathElement, SVGBackend, Text,
+        BLACK, BindKeyPoints, ChartBuilder, Color, DrawingArea, DrawingAreaErrorKind,
+        IntoDrawingArea, IntoFont, IntoLogRange, PathElement, SVGBackend, Text,
     },
     style::{
         TextStyle,
@@ -19,12 +22,21 @@ use plotters::{
 };
 
 use super::{
-    line_style::{Drawn, LineStyle, Place},
-    notation::asked_error,
-    results::{Measurement, Point, Times},
+    line_style::LineStyle,
+    notation::{asked_error, seconds},
+    results::{Measurement, Point, Run},
     summary::printable,
 };
 use crate::numbers;
+
+/// What is drawn on.
+pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// What drawing yields.
+pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
+
+/// A place in pixels.
+pub type Place = (i32, i32);
 
 /// The size in pixels: small, so that the letters are still legible on a telephone, whose screen is 400 of its pixels wide.
 const SIZE: (u32, u32) = (560, 440);
@@ -35,47 +47,44 @@ const LABELS: i32 = 162;
 /// Labels are at least so far apart.
 const LABEL_HEIGHT: i32 = 21;
 
-/// The size of letters.
-const LETTERS: f64 = 18.0;
-
-/// What a chart shows.
-struct Chart {
+/// What a chart shows errors against.
+struct Against {
     title: &'static str,
-    x_name: &'static str,
-    write_x: fn(f64) -> String,
-    lines: Vec<Line>,
-    /// Errors that are asked for.
-    wanted: Vec<f64>,
-    /// The exact method's time: its error is off the scale.
+    name: &'static str,
+    of: fn(&Point) -> f64,
+    written: fn(f64) -> String,
+    /// Where the exact method is, whose error is off the scale.
     exact: Option<f64>,
 }
 
-struct Line {
-    style: LineStyle,
-    label: &'static str,
-    points: Vec<(f64, f64)>,
+/// The chart of error against CPU time. The exact method is a vertical line.
+pub fn against_time(measured: &Measurement) -> String {
+    let time = Against {
+        title: "Error against CPU time",
+        name: "CPU time of a render",
+        of: |point| point.typical().cpu,
+        written: |time| seconds(time, 1),
+        exact: measured.exact.as_ref().map(|runs| Run::typical(runs).cpu),
+    };
+    svg(measured, &time)
 }
 
-/// The chart of error against CPU time. The exact method, whose error is off the scale, is a vertical line.
-pub fn against_time(measured: &Measurement) -> String {
-    let chart = Chart {
-        title: "Error against CPU time",
-        x_name: "CPU time of a render",
-        write_x: |time| match time < 0.9995 {
-            true => format!("{} ms", numbers::short(time * 1e3)),
-            false => format!("{} s", numbers::short(time)),
-        },
-        lines: lines(measured, |point| point.times.cpu()),
-        wanted: shown_errors(measured),
-        exact: measured.exact.as_ref().map(Times::cpu),
+/// The chart of error against samples per pixel.
+pub fn against_samples(measured: &Measurement) -> String {
+    let samples = Against {
+        title: "Error against samples",
+        name: "samples per pixel",
+        of: |point| point.per_pixel as f64,
+        written: numbers::short,
+        exact: None,
     };
-    draw(&chart, &measured.subject.name)
+    svg(measured, &samples)
 }
 
 /// The errors that are asked for, but for those that are far away from all that were measured.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
-    let found: Vec<_> = points.map(Point::error).collect();
+    let found: Vec<_> = points.map(|point| point.typical().error).collect();
     let is_near = |wanted: &f64| {
         let mut found = found.iter();
         found.any(|error| (error / 30.0..error * 30.0).contains(wanted))
@@ -83,39 +92,14 @@ pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     measured.errors.iter().copied().filter(is_near).collect()
 }
 
-/// The chart of error against samples per pixel.
-pub fn against_samples(measured: &Measurement) -> String {
-    let chart = Chart {
-        title: "Error against samples",
-        x_name: "samples per pixel",
-        write_x: numbers::short,
-        lines: lines(measured, |point| point.per_pixel as f64),
-        wanted: shown_errors(measured),
-        exact: None,
-    };
-    draw(&chart, &measured.subject.name)
-}
-
-fn lines(measured: &Measurement, x: fn(&Point) -> f64) -> Vec<Line> {
-    let line = measured.series.iter().map(|series| {
-        let points = series.points.iter().map(|point| (x(point), point.error()));
-        Line {
-            style: LineStyle::of(series.method),
-            label: series.method.name(),
-            // What has no logarithm has no place.
-            points: points.filter(|&(x, y)| x > 0.0 && y > 0.0).collect(),
-        }
-    });
-    line.filter(|line| !line.points.is_empty()).collect()
-}
-
-fn draw(chart: &Chart, name: &str) -> String {
+fn svg(measured: &Measurement, against: &Against) -> String {
     let mut svg = String::new();
     // Into a string: nothing can go wrong but the layout of text, and no text is laid out.
-    let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-    let done = draw_on(area, chart);
+    let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+    let done = draw(canvas, measured, against);
     debug_assert!(done.is_ok(), "{done:?}");
-    let title = format!("{}: {}", chart.title, escaped(&printable(name)));
+    let name = escaped(&printable(&measured.subject.name));
+    let title = format!("{}: {name}", against.title);
     let opening = format!("<svg class=\"chart\" role=\"img\" aria-label=\"{title}\" ");
     let style = "<style>.chart{color:#111;background:#fff;font-variant-numeric:tabular-nums}\
                  @media(prefers-color-scheme:dark){.chart{color:#ddd;background:#181818}}\
@@ -134,143 +118,129 @@ fn escaped(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-fn draw_on<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, chart: &Chart) -> Drawn<DB> {
-    let points = || chart.lines.iter().flat_map(|line| &line.points);
-    let x_axis = Axis::around(
-        points()
-            .map(|point| point.0)
-            .chain(chart.exact.filter(|&x| x > 0.0)),
-    );
-    let errors = points().map(|point| point.1);
-    let y_axis = Axis::around(errors.chain(chart.wanted.iter().copied()));
-    let mut plot = ChartBuilder::on(&area)
+fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {
+    let wanted = shown_errors(measured);
+    // What has no logarithm has no place.
+    let exact = against.exact.filter(|x| x.is_finite() && *x > 0.0);
+    let lines = measured.series.iter().map(|series| {
+        let points = series.points.iter();
+        let points = points.map(|point| ((against.of)(point), point.typical().error));
+        let points: Vec<_> = points.filter(|&(x, y)| x > 0.0 && y > 0.0).collect();
+        (series.method, points)
+    });
+    let lines: Vec<_> = lines.filter(|(_, points)| !points.is_empty()).collect();
+    let points = || lines.iter().flat_map(|(_, points)| points);
+    let x_range = around(points().map(|point| point.0).chain(exact));
+    let y_range = around(points().map(|point| point.1).chain(wanted.iter().copied()));
+    let mut plot = ChartBuilder::on(&canvas)
         .margin_top(36)
         .margin_right(LABELS)
         .margin_left(10)
         .margin_bottom(2)
         .x_label_area_size(52)
         .y_label_area_size(76)
-        .build_cartesian_2d(x_axis.scale(), y_axis.scale())?;
+        .build_cartesian_2d(axis(&x_range), axis(&y_range))?;
     plot.configure_mesh()
-        .x_label_formatter(&|x| (chart.write_x)(*x))
+        .x_label_formatter(&|x| (against.written)(*x))
         .y_label_formatter(&|y| numbers::short(*y))
-        .label_style(letters())
-        .axis_desc_style(letters())
-        .x_desc(chart.x_name)
+        .label_style(letters(18.0))
+        .axis_desc_style(letters(18.0))
+        .x_desc(against.name)
         .y_desc("error (RMSE)")
         .axis_style(BLACK.mix(0.6))
         .bold_line_style(BLACK.mix(0.2))
         .light_line_style(BLACK.mix(0.07))
         .draw()?;
     let (columns, rows) = plot.plotting_area().get_pixel_range();
-    let title = TextStyle::from(("sans-serif", 20.0).into_font());
-    area.draw(&Text::new(chart.title, (columns.start, 10), title))?;
+    let title = Text::new(against.title, (columns.start, 10), letters(20.0));
+    canvas.draw(&title)?;
     let place = |x: f64, y: f64| plot.backend_coord(&(x, y));
-    for &wanted in &chart.wanted {
-        let (_, y) = place(x_axis.ends.start, wanted);
+    for wanted in wanted {
+        let (_, y) = place(x_range.start, wanted);
         let ends = [(columns.start, y), (columns.end, y)];
-        area.draw(&DashedPathElement::new(ends, 4, 4, BLACK.mix(0.6)))?;
-        write(&area, asked_error(wanted), (columns.start + 5, y - 10))?;
+        canvas.draw(&DashedPathElement::new(ends, 4, 4, BLACK.mix(0.6)))?;
+        write(&canvas, &asked_error(wanted), (columns.start + 5, y - 10))?;
     }
-    if let Some(time) = chart.exact.filter(|time| time.is_finite() && *time > 0.0) {
-        let (x, _) = place(time, y_axis.ends.start);
-        exact(&area, x, &columns, &rows)?;
+    if let Some(exact) = exact {
+        let (x, _) = place(exact, y_range.start);
+        draw_exact(&canvas, x, &columns, &rows)?;
     }
-    let places = |line: &Line| line.points.iter().map(|&(x, y)| place(x, y)).collect();
-    let lines: Vec<Vec<Place>> = chart.lines.iter().map(places).collect();
-    let ends = lines.iter().filter_map(|places| places.last());
-    let ends: Vec<Place> = ends.copied().collect();
-    let heights = spread_out(&ends, &rows);
-    let labels = ends.iter().zip(heights);
-    for ((line, places), (end, height)) in chart.lines.iter().zip(&lines).zip(labels) {
-        line.style.line(&area, places)?;
+    let places = lines.iter().map(|(_, points)| {
+        let places = points.iter().map(|&(x, y)| place(x, y));
+        places.collect::<Vec<_>>()
+    });
+    let places: Vec<_> = places.collect();
+    let ends: Vec<_> = places
+        .iter()
+        .filter_map(|line| line.last().copied())
+        .collect();
+    let labels = ends.iter().zip(spread_out(&ends, &rows));
+    for (((method, _), places), (end, height)) in lines.iter().zip(&places).zip(labels) {
+        let style = LineStyle::of(*method);
+        style.line(&canvas, places)?;
         let marker = (columns.end + 20, height);
         for &place in places.iter().chain([&marker]) {
-            line.style.marker(&area, place)?;
+            style.marker(&canvas, place)?;
         }
         let start = (end.0 + 7, end.1);
         let leader = vec![start, (columns.end + 5, height), (marker.0 - 8, height)];
-        area.draw(&PathElement::new(leader, line.style.color.mix(0.45)))?;
-        write(&area, line.label.to_owned(), (marker.0 + 10, height))?;
+        canvas.draw(&PathElement::new(leader, style.color.mix(0.45)))?;
+        write(&canvas, method.name(), (marker.0 + 10, height))?;
     }
-    area.present()
+    canvas.present()
 }
 
 /// The vertical line of the exact method, with an arrow to where its error lies; its name stands where the lines of the others are not, which
 /// come from the top left and go to the bottom right.
-fn exact<DB: DrawingBackend>(
-    area: &DrawingArea<DB, Shift>,
-    x: i32,
-    columns: &Range<i32>,
-    rows: &Range<i32>,
-) -> Drawn<DB> {
+fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
-    let style = BLACK.stroke_width(2);
-    let head = vec![(x - 6, end - 10), (x, end), (x + 6, end - 10)];
-    area.draw(&PathElement::new(vec![(x, rows.start), (x, end)], style))?;
-    area.draw(&PathElement::new(head, style))?;
+    let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
+    for line in [&[(x, rows.start), (x, end)][..], &head] {
+        canvas.draw(&PathElement::new(line, BLACK.stroke_width(2)))?;
+    }
     let place = match x < (columns.start + columns.end) / 2 {
         true => (x + 9, rows.end - 14),
         false => (x - 54, rows.start + 12),
     };
-    write(area, "exact".to_owned(), place)
+    write(canvas, "exact", place)
 }
 
-fn write<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, text: String, at: Place) -> Drawn<DB> {
-    let style = letters().pos(Pos::new(HPos::Left, VPos::Center));
-    area.draw(&Text::new(text, at, style))
+fn write(canvas: &Canvas, text: &str, at: Place) -> Drawn {
+    let style = letters(18.0).pos(Pos::new(HPos::Left, VPos::Center));
+    canvas.draw(&Text::new(text, at, style))
 }
 
-fn letters() -> TextStyle<'static> {
-    TextStyle::from(("sans-serif", LETTERS).into_font())
+fn letters(size: f64) -> TextStyle<'static> {
+    TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// A logarithmic axis.
-struct Axis {
-    ends: Range<f64>,
-    /// Where numbers stand.
-    major: Vec<f64>,
-    /// Where lines are drawn besides.
-    minor: Vec<f64>,
-}
-
-impl Axis {
-    /// An axis for these values, with numbers at 1, 2 and 5 times powers of ten, or at the powers alone where those would be many.
-    fn around(values: impl Iterator<Item = f64>) -> Self {
-        let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
-        let (low, high) = values.fold((f64::INFINITY, 0.0), wider);
+/// The ends of an axis that holds these values, with some room.
+fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
+    let (low, high) = values.fold((f64::INFINITY, 0.0), wider);
+    match low <= high {
+        true => low / 1.5..high * 1.5,
         // Nothing to show: any axis will do.
-        let (low, high) = if low <= high { (low, high) } else { (0.1, 1.0) };
-        let ends = low / 1.5..high * 1.5;
-        let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end).ceil() as i32;
-        let within = |steps: &[f64]| -> Vec<f64> {
-            let power = |power: i32| libm::exp10(f64::from(power));
-            let ticks = powers.clone().map(power);
-            let ticks = ticks.flat_map(|power| steps.iter().map(move |step| step * power));
-            ticks.filter(|tick| ends.contains(tick)).collect()
-        };
-        let many = within(&[1.0, 2.0, 5.0]);
-        Self {
-            major: match many.len() > 5 {
-                true => within(&[1.0]),
-                false => many,
-            },
-            minor: within(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]),
-            ends,
-        }
+        false => 0.1..1.0,
     }
+}
 
-    fn scale(
-        &self,
-    ) -> impl plotters::coord::ranged1d::Ranged<
-        ValueType = f64,
-        FormatOption = plotters::coord::ranged1d::DefaultFormatting,
-    > + use<> {
-        let scale = self.ends.clone().log_scale();
-        scale
-            .with_key_points(self.major.clone())
-            .with_light_points(self.minor.clone())
-    }
+/// A logarithmic axis with numbers at 1, 2 and 5 times powers of ten, or at the powers alone where those would be many, and lines at all digits.
+fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
+    let marks = |digits: &[i32]| -> Vec<f64> {
+        let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;
+        let marks = powers.flat_map(|power| {
+            let power = libm::exp10(f64::from(power));
+            digits.iter().map(move |&digit| f64::from(digit) * power)
+        });
+        marks.filter(|mark| ends.contains(mark)).collect()
+    };
+    let many = marks(&[1, 2, 5]);
+    let numbers = if many.len() > 5 { marks(&[1]) } else { many };
+    let scale = ends.clone().log_scale();
+    scale
+        .with_key_points(numbers)
+        .with_light_points(marks(&[1, 2, 3, 4, 5, 6, 7, 8, 9]))
 }
 
 /// Heights for labels near the ends of their lines, in the order of the ends, none upon another.

@@ -1,7 +1,7 @@
 //! What an error takes of each method, and which methods take the least time.
 
 use super::{
-    results::{Measurement, Series},
+    results::{Measurement, Point, Run, Series},
     statistics::PowerLaw,
 };
 use crate::scene::Method;
@@ -45,12 +45,13 @@ impl Measurement {
 
     /// The same of the exact method, if that was measured.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
-        let exact = self.exact.as_ref().filter(|_| self.tells(error))?;
+        let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
+        let Run { cpu, wall, .. } = Run::typical(runs);
         Some(Estimate {
             per_pixel: None,
-            cpu: exact.cpu(),
-            cpu_runs: range(exact.cpu(), exact.cpu.iter().copied()),
-            wall: exact.wall(),
+            cpu,
+            cpu_runs: range(cpu, runs.iter().map(|run| run.cpu)),
+            wall,
             is_extrapolated: false,
         })
     }
@@ -83,79 +84,63 @@ impl Measurement {
 }
 
 /// A number of samples per pixel and what it came to, in one run or in all.
-struct Step {
-    per_pixel: f64,
-    error: f64,
-    cpu: f64,
-    wall: f64,
-}
+type Step = (f64, Run);
 
 impl Series {
     /// Errors are taken to fall as a power of the samples: between two numbers of samples that were measured by the line in logarithms through both,
     /// beyond the last with the slope of the line through the last three, as with few samples errors may fall at another rate: `scatter` leaves pixels
     /// empty then. Times are taken to grow evenly with the samples. Where the least number is enough, it is that.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
-        let steps = self.points.iter().map(|point| Step {
-            per_pixel: point.per_pixel as f64,
-            error: point.error(),
-            cpu: point.times.cpu(),
-            wall: point.times.wall(),
-        });
-        let estimate = self.estimate_by(&steps.collect::<Vec<_>>(), error)?;
-        let runs = self.points.iter().map(|point| point.rmse.len()).min()?;
-        let run = |run: usize| {
-            let steps = self.points.iter().map(|point| Step {
-                per_pixel: point.per_pixel as f64,
-                error: point.rmse[run],
-                cpu: point.times.cpu[run],
-                wall: point.times.wall[run],
-            });
+        let estimate = |run: &dyn Fn(&Point) -> Run| {
+            let steps = self.points.iter();
+            let steps = steps.map(|point| (point.per_pixel as f64, run(point)));
             self.estimate_by(&steps.collect::<Vec<_>>(), error)
         };
-        let times = (0..runs).filter_map(|index| Some(run(index)?.cpu));
+        let of_all = estimate(&Point::typical)?;
+        let runs = self.points.iter().map(|point| point.runs.len()).min()?;
+        let of_each = (0..runs).filter_map(|run| estimate(&|point| point.runs[run]));
         Some(Estimate {
-            cpu_runs: range(estimate.cpu, times),
-            ..estimate
+            cpu_runs: range(of_all.cpu, of_each.map(|it| it.cpu)),
+            ..of_all
         })
     }
 
     fn estimate_by(&self, steps: &[Step], error: f64) -> Option<Estimate> {
-        let (first, last) = (steps.first()?, steps.last()?);
+        let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
         // From here on no error that was measured is greater.
-        let enough = steps.iter().rposition(|step| step.error > error);
+        let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
             // Fewer may be enough, too, but nobody has tried.
-            Some(_) if enough == 0 => first.per_pixel,
+            Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
                 let many = &steps[steps.len().saturating_sub(3)..];
-                let logs = many.iter().map(|step| (step.per_pixel, step.error));
-                let slope = PowerLaw::fit(&logs.collect::<Vec<_>>())?.slope;
-                let more = libm::pow(error / last.error, 1.0 / slope);
-                (slope < 0.0).then(|| (last.per_pixel * more).ceil())?
+                let errors = many.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
+                let slope = PowerLaw::fit(&errors.collect::<Vec<_>>())?.slope;
+                let more = libm::pow(error / last_run.error, 1.0 / slope);
+                (slope < 0.0).then(|| (last * more).ceil())?
             }
         };
         per_pixel.is_finite().then(|| Estimate {
             per_pixel: Some(per_pixel),
-            cpu: time_at(steps, per_pixel, |step| step.cpu),
+            cpu: time_at(steps, per_pixel, |run| run.cpu),
             cpu_runs: [f64::NAN; 2],
-            wall: time_at(steps, per_pixel, |step| step.wall),
+            wall: time_at(steps, per_pixel, |run| run.wall),
             is_extrapolated: enough == steps.len(),
         })
     }
 
     /// The samples that an error takes between that of a few, which is greater, and that of many, which is not.
-    fn between(&self, few: &Step, many: &Step, error: f64) -> f64 {
-        let share = match many.error == 0.0 {
+    fn between(&self, (few, of_few): &Step, (many, of_many): &Step, error: f64) -> f64 {
+        let share = match of_many.error == 0.0 {
             // Without any error, these are enough for whatever is asked for.
             true => 1.0,
-            false => libm::log(few.error / error) / libm::log(few.error / many.error),
+            false => libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error),
         };
-        let ratio = many.per_pixel / few.per_pixel;
-        let per_pixel = (few.per_pixel * libm::pow(ratio, share)).ceil();
+        let per_pixel = (few * libm::pow(many / few, share)).ceil();
         match self.method {
-            Method::MultiJittered => oblong(per_pixel).min(many.per_pixel),
+            Method::MultiJittered => oblong(per_pixel).min(*many),
             _ => per_pixel,
         }
     }
@@ -175,17 +160,18 @@ fn oblong(per_pixel: f64) -> f64 {
 }
 
 /// The time that so many samples take, no fewer than the first step's: by the line between the steps on either side, or between the first and the last.
-fn time_at(steps: &[Step], per_pixel: f64, time: fn(&Step) -> f64) -> f64 {
-    let [first, .., last] = steps else {
-        return steps.first().map_or(f64::NAN, time);
+fn time_at(steps: &[Step], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
+    let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
+    let times: Vec<_> = times.collect();
+    let [first, .., last] = times.as_slice() else {
+        return times.first().map_or(f64::NAN, |first| first.1);
     };
-    let around = |pair: &&[Step]| (pair[0].per_pixel..=pair[1].per_pixel).contains(&per_pixel);
-    let slope = |a: &Step, b: &Step| (time(b) - time(a)) / (b.per_pixel - a.per_pixel);
-    let along = |a: &Step, slope: f64| time(a) + slope * (per_pixel - a.per_pixel);
-    match steps.windows(2).find(around) {
-        Some(pair) => along(&pair[0], slope(&pair[0], &pair[1])),
+    let around = |pair: &&[(f64, f64)]| (pair[0].0..=pair[1].0).contains(&per_pixel);
+    let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+    match times.windows(2).find(around) {
+        Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
         // More samples take no less time.
-        None => along(last, slope(first, last).max(0.0)),
+        _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }
 

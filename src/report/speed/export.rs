@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::{
     estimate::Estimate,
-    results::{Measurement, Series, Times},
+    results::{Measurement, Run, Series},
     summary::verdicts,
 };
 
@@ -34,10 +34,10 @@ pub fn to_csv(measured: &Measurement) -> io::Result<String> {
         for point in &series.points {
             writer.serialize(Row {
                 per_pixel: Some(point.per_pixel),
-                rmse: Some(point.error()),
+                rmse: Some(point.typical().error),
                 slope: fit.map(|fit| fit.slope),
                 slope_error: fit.and_then(|fit| fit.slope_error),
-                ..row(series.method.name(), &point.times)
+                ..row(series.method.name(), &point.runs)
             })?;
         }
     }
@@ -51,27 +51,37 @@ pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     String::from_utf8(bytes).map_err(io::Error::other)
 }
 
-fn row(method: &'static str, times: &Times) -> Row {
+fn row(method: &'static str, runs: &[Run]) -> Row {
+    let Run { cpu, wall, .. } = Run::typical(runs);
     Row {
         method,
-        runs: times.wall.len(),
-        time: times.cpu(),
-        wall: times.wall(),
+        runs: runs.len(),
+        time: cpu,
+        wall,
         ..Row::default()
     }
+}
+
+/// What runs took and came to, together and each.
+fn of_runs(runs: &[Run]) -> Value {
+    let each = |number: fn(&Run) -> f64| runs.iter().map(number).collect::<Vec<_>>();
+    let Run { cpu, wall, error } = Run::typical(runs);
+    json!({
+        "time": cpu,
+        "wall": wall,
+        "rmse": error,
+        "runs": {"time": each(|run| run.cpu), "wall": each(|run| run.wall), "rmse": each(|run| run.error)},
+    })
 }
 
 /// All that was measured. A number that is not finite is null.
 pub fn to_json(measured: &Measurement) -> Value {
     let whole = measured.whole();
     let (machine, reference) = (&measured.machine, &measured.reference);
-    let exact = measured.exact.as_ref().map(|exact| {
-        json!({
-            "time": exact.cpu(),
-            "wall": exact.wall(),
-            "bound": reference.bound(),
-            "runs": {"time": exact.cpu, "wall": exact.wall},
-        })
+    let exact = measured.exact.as_ref().map(|runs| {
+        let mut exact = of_runs(runs);
+        exact["bound"] = reference.bound().into();
+        exact
     });
     let methods = measured.series.iter();
     json!({
@@ -112,13 +122,9 @@ fn of_series(measured: &Measurement, series: &Series) -> Value {
         })
     });
     let points = series.points.iter().map(|point| {
-        json!({
-            "per_pixel": point.per_pixel,
-            "time": point.times.cpu(),
-            "wall": point.times.wall(),
-            "rmse": point.error(),
-            "runs": {"time": point.times.cpu, "wall": point.times.wall, "rmse": point.rmse},
-        })
+        let mut found = of_runs(&point.runs);
+        found["per_pixel"] = point.per_pixel.into();
+        found
     });
     json!({
         "method": series.method.name(),

@@ -24,7 +24,7 @@ pub use self::{
     export::{to_csv, to_json},
     machine::Machine,
     page::page,
-    results::{Measurement, Point, Request, Series, Shown, Subject, Times},
+    results::{Measurement, Point, Request, Run, Series, Shown, Subject},
     session::measure,
     summary::verdict,
     text::text,

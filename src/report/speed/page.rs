@@ -4,48 +4,19 @@
 
 use std::io;
 
-use minijinja::{AutoEscape, Environment, context};
-use serde::Serialize;
+use minijinja::{AutoEscape, Environment, Value, context};
 
 use super::{
     chart::{against_samples, against_time, shown_errors},
     notation::{error, plural, seconds},
-    picture::{self, uri},
-    results::{Measurement, Shown},
+    picture::cropped,
+    results::{Measurement, Run, Shown},
     summary::{heading, notes, printable, table, verdicts},
 };
+use crate::film::{self, Film};
 
-/// What the template fills in for a scene.
-#[derive(Serialize)]
-struct Section {
-    name: String,
-    heading: String,
-    overrides: Vec<String>,
-    verdicts: Vec<String>,
-    /// SVG, not to be escaped; none without a sampled method.
-    charts: Vec<String>,
-    /// Whether the charts show errors that are asked for.
-    has_dashed_lines: bool,
-    /// Whether exact is among the methods.
-    has_exact: bool,
-    has_slopes: bool,
-    has_slope_errors: bool,
-    heads: Vec<String>,
-    rows: Vec<Vec<String>>,
-    notes: Vec<String>,
-    /// Which part of the picture is shown of every method.
-    part: String,
-    /// The exact one first; none without another.
-    pictures: Vec<Picture>,
-    whole: Picture,
-}
-
-#[derive(Serialize)]
-struct Picture {
-    uri: String,
-    name: &'static str,
-    about: String,
-}
+/// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays small.
+const WHOLE: [u32; 2] = [640, 480];
 
 /// The page, with a section for each scene.
 pub fn page(measurements: &[Measurement]) -> io::Result<String> {
@@ -62,82 +33,75 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
     page.map_err(io::Error::other)
 }
 
-fn section(measured: &Measurement) -> io::Result<Section> {
+/// What the template fills in for a scene.
+fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.recipe.overrides.iter();
     let fits = || measured.series.iter().filter_map(|series| series.fit());
+    let charts = match measured.series.is_empty() {
+        true => Vec::new(),
+        false => vec![against_time(measured), against_samples(measured)],
+    };
     let (part, pictures) = pictures(measured)?;
-    Ok(Section {
-        name: printable(&measured.subject.name),
-        heading: heading(measured),
-        overrides: overrides.map(|set| printable(set)).collect(),
-        verdicts: verdicts(measured),
-        charts: match measured.series.is_empty() {
-            true => Vec::new(),
-            false => vec![against_time(measured), against_samples(measured)],
-        },
-        has_dashed_lines: !shown_errors(measured).is_empty(),
-        has_exact: measured.exact.is_some(),
-        has_slopes: fits().next().is_some(),
-        has_slope_errors: fits().any(|fit| fit.slope_error.is_some()),
-        heads: summary.heads,
-        rows: summary.rows,
-        notes: notes(measured),
+    Ok(context! {
+        name => printable(&measured.subject.name),
+        heading => heading(measured),
+        overrides => overrides.map(|set| printable(set)).collect::<Vec<_>>(),
+        verdicts => verdicts(measured),
+        charts,
+        has_dashed_lines => !shown_errors(measured).is_empty(),
+        has_exact => measured.exact.is_some(),
+        has_slopes => fits().next().is_some(),
+        has_slope_errors => fits().any(|fit| fit.slope_error.is_some()),
+        heads => summary.heads,
+        rows => summary.rows,
+        notes => notes(measured),
         part,
         pictures,
-        whole: whole(measured)?,
+        whole => whole(measured)?,
     })
 }
 
-/// A part of the picture in words, and as the exact method and the others make it; nothing without the others.
-fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Picture>)> {
+/// Which part of the picture is shown of every method, and that part as the exact method and the others make it; nothing without the others.
+fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let shown = measured.series.iter();
-    let shown = shown.filter_map(|series| Some((series.method, series.picture.as_ref()?)));
+    let shown = shown.filter_map(|series| Some((series.method.name(), series.picture.as_ref()?)));
     let shown: Vec<_> = shown.collect();
     let Some(&(first, &Shown { part, .. })) = shown.first() else {
         return Ok(Default::default());
     };
-    let exact = picture::cropped(&measured.reference.film, part).map_err(io::Error::other)?;
-    let mut pictures = vec![Picture {
-        uri: uri(&exact)?,
-        name: "exact",
-        about: match &measured.exact {
-            Some(times) => format!("no error, {}", seconds(times.cpu(), 2)),
-            None => "no error".to_owned(),
-        },
-    }];
-    for (method, shown) in shown {
-        pictures.push(Picture {
-            uri: uri(&shown.film)?,
-            name: method.name(),
-            about: format!(
-                "error {}, {}, {} per pixel",
-                error(shown.rmse),
-                seconds(shown.cpu, 2),
-                plural(shown.per_pixel as usize, "sample")
-            ),
-        });
+    let exact = cropped(&measured.reference.film, part).map_err(io::Error::other)?;
+    let time = measured.exact.as_ref();
+    let time = time.map_or(String::new(), |times| {
+        format!(", {}", seconds(Run::typical(times).cpu, 2))
+    });
+    let mut pictures = vec![value(&exact, "exact", format!("no error{time}"))?];
+    for (name, shown) in shown {
+        let about = format!(
+            "error {}, {}, {} per pixel",
+            error(shown.rmse),
+            seconds(shown.cpu, 2),
+            plural(shown.per_pixel as usize, "sample")
+        );
+        pictures.push(value(&shown.film, name, about)?);
     }
     let part = format!(
-        "{} × {} pixels, {} from the left and {} from the top, where {} errs most",
-        part.width,
-        part.height,
-        part.x,
-        part.y,
-        first.name()
+        "{} × {} pixels, {} from the left and {} from the top, where {first} errs most",
+        part.width, part.height, part.x, part.y
     );
     Ok((part, pictures))
 }
 
-fn whole(measured: &Measurement) -> io::Result<Picture> {
-    let film = picture::reduced(&measured.reference.film).map_err(io::Error::other)?;
+fn whole(measured: &Measurement) -> io::Result<Value> {
+    let film = film::reduced(&measured.reference.film, WHOLE).map_err(io::Error::other)?;
     let (width, height) = (film.width(), film.height());
-    Ok(Picture {
-        uri: uri(&film)?,
-        name: "the exact picture as a whole",
-        about: match width == measured.whole().width {
-            true => "the whole picture".to_owned(),
-            false => format!("the whole picture, reduced to {width} × {height} pixels"),
-        },
-    })
+    let about = match width == measured.whole().width {
+        true => "the whole picture".to_owned(),
+        false => format!("the whole picture, reduced to {width} × {height} pixels"),
+    };
+    value(&film, "the exact picture as a whole", about)
+}
+
+fn value(film: &Film, name: &str, about: String) -> io::Result<Value> {
+    Ok(context! { uri => film::data_uri(film)?, name, about })
 }

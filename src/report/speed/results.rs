@@ -54,8 +54,8 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture.
     pub reference: Exact,
-    /// The times of the exact method, if that was measured.
-    pub exact: Option<Times>,
+    /// The renders by the exact method, if that was measured.
+    pub exact: Option<Vec<Run>>,
     /// The sampled methods that were measured, in the order of the language's table.
     pub series: Vec<Series>,
     /// Whether the user ended it.
@@ -78,19 +78,19 @@ pub struct Series {
 pub struct Point {
     /// Samples per pixel, of `scatter` on average.
     pub per_pixel: u64,
-    /// How long it took.
-    pub times: Times,
-    /// The error of each run: the root of the mean squared difference to the exact picture, in linear light.
-    pub rmse: Vec<f64>,
+    /// Its renders.
+    pub runs: Vec<Run>,
 }
 
-/// Seconds, run by run.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Times {
-    /// CPU time of the whole process, all threads together. NaN where the system does not tell.
-    pub cpu: Vec<f64>,
-    /// From the beginning to the end by the clock.
-    pub wall: Vec<f64>,
+/// A render that was timed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Run {
+    /// CPU time of the whole process in seconds, all threads together. NaN where the system does not tell.
+    pub cpu: f64,
+    /// From the beginning to the end by the clock, in seconds.
+    pub wall: f64,
+    /// The root of the mean squared difference to the exact picture, in linear light. NaN of the exact method, whose error has a bound instead.
+    pub error: f64,
 }
 
 /// A picture to look at.
@@ -108,28 +108,22 @@ pub struct Shown {
     pub film: Film,
 }
 
-impl Times {
-    /// Adds the CPU and the wall time of a run.
-    pub fn push(&mut self, [cpu, wall]: [f64; 2]) {
-        self.cpu.push(cpu);
-        self.wall.push(wall);
-    }
-
-    /// The median CPU time.
-    pub fn cpu(&self) -> f64 {
-        median(&self.cpu)
-    }
-
-    /// The median wall time.
-    pub fn wall(&self) -> f64 {
-        median(&self.wall)
+impl Run {
+    /// Some renders as one: with the median times, and the error of all together, the root of the mean of their squares.
+    pub fn typical(runs: &[Self]) -> Self {
+        let all = |pick: fn(&Self) -> f64| runs.iter().map(pick).collect::<Vec<_>>();
+        Self {
+            cpu: median(&all(|run| run.cpu)),
+            wall: median(&all(|run| run.wall)),
+            error: root_mean_square(&all(|run| run.error)),
+        }
     }
 }
 
 impl Point {
-    /// The error of all runs together: the root of the mean of their squares.
-    pub fn error(&self) -> f64 {
-        root_mean_square(&self.rmse)
+    /// Its renders as one.
+    pub fn typical(&self) -> Run {
+        Run::typical(&self.runs)
     }
 }
 
@@ -138,7 +132,7 @@ impl Series {
     pub fn fit(&self) -> Option<PowerLaw> {
         let points = self.points.iter();
         let points: Vec<_> = points
-            .map(|point| (point.per_pixel as f64, point.error()))
+            .map(|point| (point.per_pixel as f64, point.typical().error))
             .collect();
         PowerLaw::fit(&points)
     }
@@ -146,13 +140,13 @@ impl Series {
     /// So many samples per pixel take about this CPU time, between the numbers of samples that were measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
-        let slower = |pair: &&[Point]| pair[1].times.cpu() > cpu;
+        let slower = |pair: &&[Point]| pair[1].typical().cpu > cpu;
         let Some([a, b]) = self.points.windows(2).find(slower) else {
             return Some(last.per_pixel);
         };
-        let share = (cpu - a.times.cpu()) / (b.times.cpu() - a.times.cpu());
-        let more = share * (b.per_pixel - a.per_pixel) as f64;
-        Some((a.per_pixel as f64 + more).max(first.per_pixel as f64) as u64)
+        let [less, more] = [a, b].map(|point| point.typical().cpu);
+        let added = (cpu - less) / (more - less) * (b.per_pixel - a.per_pixel) as f64;
+        Some((a.per_pixel as f64 + added).max(first.per_pixel as f64) as u64)
     }
 }
 
@@ -165,8 +159,8 @@ impl Measurement {
     /// How many runs were begun.
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
-        let most = sampled.map(|point| point.rmse.len()).max();
-        let exact = self.exact.as_ref().map(|exact| exact.wall.len());
+        let most = sampled.map(|point| point.runs.len()).max();
+        let exact = self.exact.as_ref().map(Vec::len);
         most.max(exact).unwrap_or(0)
     }
 }

@@ -14,7 +14,7 @@ use rand::seq::SliceRandom;
 use super::{
     machine::Machine,
     picture,
-    results::{Measurement, Point, Request, Series, Shown, Subject, Times},
+    results::{Measurement, Point, Request, Run, Series, Shown, Subject},
 };
 use crate::{
     area::Area,
@@ -68,7 +68,7 @@ pub fn measure(
         seed: scene.sampler.seed,
         rungs: Vec::new(),
         errors: request.errors.clone(),
-        exact: (request.methods.contains(&Method::Exact)).then(Times::default),
+        exact: (request.methods.contains(&Method::Exact)).then(Vec::new),
         series: series.collect(),
         reference,
         interrupted: false,
@@ -88,7 +88,7 @@ pub fn measure(
     }
     let mut measured = session.measured;
     measured.series.retain(|series| !series.points.is_empty());
-    measured.exact = measured.exact.filter(|exact| !exact.wall.is_empty());
+    measured.exact = measured.exact.filter(|runs| !runs.is_empty());
     Ok(measured)
 }
 
@@ -104,33 +104,26 @@ struct Session<'a> {
     measured: Measurement,
 }
 
-/// What a round renders.
-#[derive(Clone, Copy)]
-enum Task {
-    Exact,
-    /// The place of the series, and that of the point in it.
-    Sampled(usize, usize),
-}
+/// What a round renders: the place of a series and that of a point in it, or the exact picture if there is none.
+type Task = Option<(usize, usize)>;
 
 impl Session<'_> {
     fn run(&mut self) -> Result<(), RenderError> {
         self.first_round()?;
         let first = self.started.elapsed();
-        let mut tasks = vec![Task::Exact];
-        for series in 0..self.measured.series.len() {
-            tasks.extend((0..self.measured.rungs.len()).map(|point| Task::Sampled(series, point)));
-        }
+        let series = 0..self.measured.series.len();
+        let points = 0..self.measured.rungs.len();
+        let sampled = series.flat_map(|series| points.clone().map(move |point| (series, point)));
+        let mut tasks: Vec<Task> = [None].into_iter().chain(sampled.map(Some)).collect();
         for round in 1..self.request.runs.unwrap_or(RUNS.1) {
-            if self.request.runs.is_none() && !self.has_time_for(first) {
+            let has_time = self.started.elapsed() + first <= self.request.budget;
+            if self.request.runs.is_none() && !has_time {
                 break;
             }
             // An order that depends on the number of the round alone.
             tasks.shuffle(&mut Key::new(round, 0).rng());
             for &task in &tasks {
-                match task {
-                    Task::Exact => self.exact()?,
-                    Task::Sampled(series, point) => self.sampled(series, point, round)?,
-                }
+                self.render(task, round)?;
             }
         }
         self.pictures()
@@ -138,7 +131,7 @@ impl Session<'_> {
 
     /// Every method with the samples that are asked for, or with ever more while there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
-        self.exact()?;
+        self.render(None, 0)?;
         if self.measured.series.is_empty() {
             return Ok(());
         }
@@ -152,7 +145,7 @@ impl Session<'_> {
             let started = Instant::now();
             self.measured.rungs.push(per_pixel);
             for series in 0..self.measured.series.len() {
-                self.sampled(series, point, 0)?;
+                self.render(Some((series, point)), 0)?;
             }
             let last = started.elapsed();
             // A time is the sum of one that does not depend on the samples, and one that is four times as long for four times as many.
@@ -168,44 +161,35 @@ impl Session<'_> {
     /// Whether four times as many samples are to be taken, if that takes so long.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
-        let is_far = |series: &Series| series.points.last().is_some_and(|it| it.error() > least);
+        let errors = self.measured.series.iter();
+        let mut errors = errors.filter_map(|series| Some(series.points.last()?.typical().error));
         let round = (self.started.elapsed() + next).as_secs_f64();
         let all = round * self.request.runs.unwrap_or(RUNS.0) as f64;
         let has_time = all <= self.request.budget.as_secs_f64();
-        self.measured.rungs.len() < RUNGS.0 || (has_time && self.measured.series.iter().any(is_far))
+        self.measured.rungs.len() < RUNGS.0 || (has_time && errors.any(|error| error > least))
     }
 
-    fn has_time_for(&self, round: Duration) -> bool {
-        self.started.elapsed() + round <= self.request.budget
-    }
-
-    fn exact(&mut self) -> Result<(), RenderError> {
-        if let Some(times) = &mut self.measured.exact {
-            let (_, time) = timed(|| exact(self.scene, self.control))?;
-            times.push(time);
-            self.tell();
-        }
-        Ok(())
-    }
-
-    fn sampled(&mut self, series: usize, point: usize, round: u64) -> Result<(), RenderError> {
+    fn render(&mut self, task: Task, round: u64) -> Result<(), RenderError> {
         let measured = &mut self.measured;
-        let per_pixel = measured.rungs[point];
-        // Each run has a seed of its own, as has each number of samples in it: neither are the runs alike, nor do the points of a line err together.
-        let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
-        let series = &mut measured.series[series];
-        let samples = [per_pixel, seed];
-        let (film, time) = timed(|| sampled(self.scene, series.method, samples, self.control))?;
-        if series.points.len() == point {
-            series.points.push(Point {
-                per_pixel,
-                times: Times::default(),
-                rmse: Vec::new(),
-            });
+        if let Some((series, point)) = task {
+            let per_pixel = measured.rungs[point];
+            // Each run has a seed of its own, as has each number of samples in it: neither are the runs alike, nor do the points of a line err together.
+            let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
+            let series = &mut measured.series[series];
+            let samples = [per_pixel, seed];
+            let (film, run) = timed(|| sampled(self.scene, series.method, samples, self.control))?;
+            if series.points.len() == point {
+                let runs = Vec::new();
+                series.points.push(Point { per_pixel, runs });
+            }
+            let error = film::rmse(&film, &measured.reference.film);
+            series.points[point].runs.push(Run { error, ..run });
+        } else if let Some(runs) = &mut measured.exact {
+            let (_, run) = timed(|| exact(self.scene, self.control))?;
+            runs.push(run);
+        } else {
+            return Ok(());
         }
-        let point = &mut series.points[point];
-        point.times.push(time);
-        point.rmse.push(film::rmse(&film, &measured.reference.film));
         self.tell();
         Ok(())
     }
@@ -220,7 +204,10 @@ impl Session<'_> {
         else {
             return Ok(());
         };
-        let times = measured.series.iter().map(|it| it.points[rung].times.cpu());
+        let times = measured
+            .series
+            .iter()
+            .map(|it| it.points[rung].typical().cpu);
         let cpu = times.fold(0.0, f64::max);
         let mut part = None;
         for series in &mut measured.series {
@@ -228,8 +215,7 @@ impl Session<'_> {
                 continue;
             };
             let samples = [per_pixel, measured.seed];
-            let (film, [cpu, _]) =
-                timed(|| sampled(self.scene, series.method, samples, self.control))?;
+            let (film, run) = timed(|| sampled(self.scene, series.method, samples, self.control))?;
             let reference = &measured.reference.film;
             let here = match part {
                 Some(part) => part,
@@ -238,7 +224,7 @@ impl Session<'_> {
             part = Some(here);
             series.picture = Some(Shown {
                 per_pixel,
-                cpu,
+                cpu: run.cpu,
                 rmse: film::rmse(&film, reference),
                 part: here,
                 film: picture::cropped(&film, here)?,
@@ -253,7 +239,7 @@ impl Session<'_> {
         let share = match self.request.runs {
             Some(runs) if !self.samples.is_empty() => {
                 let points = measured.series.iter().flat_map(|series| &series.points);
-                let done = points.map(|it| it.per_pixel as f64 * it.rmse.len() as f64);
+                let done = points.map(|it| it.per_pixel as f64 * it.runs.len() as f64);
                 let asked = self.samples.iter().map(|&rung| rung as f64);
                 let all = asked.sum::<f64>() * (runs * measured.series.len() as u64) as f64;
                 done.sum::<f64>() / all
@@ -291,11 +277,16 @@ fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Does work, and tells its CPU and wall time in seconds. Nothing else runs in the process meanwhile, but for a progress bar.
-fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, [f64; 2]), RenderError> {
+/// Does work, and tells its times, and no error. Nothing else runs in the process meanwhile, but for a progress bar.
+fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;
     let wall = wall.elapsed().as_secs_f64();
     let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
-    Ok((done, [cpu.map_or(f64::NAN, |cpu| cpu.as_secs_f64()), wall]))
+    let run = Run {
+        cpu: cpu.map_or(f64::NAN, |cpu| cpu.as_secs_f64()),
+        wall,
+        error: f64::NAN,
+    };
+    Ok((done, run))
 }

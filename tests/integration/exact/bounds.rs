@@ -97,7 +97,16 @@ fn bytes_are_those_of_the_means() {
         let scene = example(&name, 70, 52);
         let area: Area = "3,1,66,50".parse().unwrap();
         let control = Control::default();
-        let bytes = render_exact_bytes(&World::new(&scene), area, &control).unwrap();
+        let sampler = Sampler {
+            method: Method::Exact,
+            ..scene.sampler
+        };
+        let sampling = Sampling::new(&sampler, 70, 52);
+        let bytes: Rendered<[u8; 3]> =
+            render_as_asked(&World::new(&scene), &sampling, area, &control).unwrap();
+        let Rendered::Exact(bytes) = bytes else {
+            panic!("{name}: not exact")
+        };
         let means = part(&scene, area);
         assert_eq!(bytes.bounds, means.bounds, "{name}");
         let certain = film::certified(&means.film, &means.bounds);

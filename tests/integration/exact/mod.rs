@@ -15,7 +15,7 @@ use pinhole::{
     area::Area,
     color::Color,
     film,
-    render::{Control, Exact, render, render_exact, render_exact_bytes},
+    render::{Control, Exact, Rendered, render, render_as_asked, render_exact},
     sampling::Sampling,
     scene::{self, Count, Lens, Method, Sampler, Scene, Shape, View},
     source::{Source, Sources},

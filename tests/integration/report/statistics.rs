@@ -7,7 +7,7 @@ use pinhole::{
     film::Recipe,
     render::{Control, render_exact},
     report::speed::{
-        Estimate, Machine, Measurement, Point, Request, Series, Subject, Times, measure,
+        Estimate, Machine, Measurement, Point, Request, Run, Series, Subject, measure,
         statistics::{PowerLaw, median, root_mean_square},
         verdict,
     },
@@ -55,13 +55,13 @@ fn the_slopes_standard_error_is_that_of_the_textbook() {
 
 /// Numbers of samples with their seconds and errors, in one run.
 fn series(points: &[(u64, f64, f64)]) -> Series {
-    let point = |&(per_pixel, seconds, error): &(u64, f64, f64)| Point {
+    let point = |&(per_pixel, cpu, error): &(u64, f64, f64)| Point {
         per_pixel,
-        times: Times {
-            cpu: vec![seconds],
-            wall: vec![seconds / 2.0],
-        },
-        rmse: vec![error],
+        runs: vec![Run {
+            cpu,
+            wall: cpu / 2.0,
+            error,
+        }],
     };
     Series {
         method: Method::Random,
@@ -233,20 +233,21 @@ fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement 
         threads: NonZero::new(1),
         ..Control::default()
     };
-    let times = |runs: &[f64], share: f64| {
-        let cpu: Vec<_> = runs.iter().map(|time| time * share).collect();
-        Times {
-            wall: cpu.clone(),
+    let timed = |times: &[f64], share: f64, error: f64| -> Vec<_> {
+        let times = times.iter().map(|time| time * share);
+        let run = |cpu| Run {
             cpu,
-        }
+            wall: cpu,
+            error,
+        };
+        times.map(run).collect()
     };
-    let series = methods.iter().map(|&(method, runs)| Series {
+    let series = methods.iter().map(|&(method, times)| Series {
         method,
         points: [(4, 0.25, 0.2), (16, 1.0, 0.1)]
             .map(|(per_pixel, share, error)| Point {
                 per_pixel,
-                times: times(runs, share),
-                rmse: vec![error; runs.len()],
+                runs: timed(times, share, error),
             })
             .into(),
         picture: None,
@@ -259,7 +260,7 @@ fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement 
         rungs: vec![4, 16],
         errors: Vec::new(),
         reference: render_exact(&world, Area::whole(48, 32), &control).unwrap(),
-        exact: exact.map(|runs| times(runs, 1.0)),
+        exact: exact.map(|times| timed(times, 1.0, f64::NAN)),
         series: series.collect(),
         interrupted: false,
     }

@@ -1,0 +1,35 @@
+//! Pictures within a page of HTML.
+
+use std::io;
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+
+use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_plain_png};
+use crate::area::Area;
+
+/// A picture of no more than so many columns and rows: squares of as many pixels as it takes are averaged, in linear light.
+pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge> {
+    let whole = Area::whole(film.width(), film.height());
+    let side = (whole.width.div_ceil(columns)).max(whole.height.div_ceil(rows));
+    let size = [whole.width, whole.height].map(|pixels| pixels.div_ceil(side));
+    Film::from_fn(size[0], size[1], |x, y| {
+        let square = Area {
+            x: x * side,
+            y: y * side,
+            width: side,
+            height: side,
+        };
+        let pixels = square.common(whole).iter();
+        mean(pixels.map(|(x, y)| (1, film.pixel(x, y))))
+    })
+}
+
+/// A picture as a PNG in a `data:` URI.
+pub fn data_uri(film: &Film) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    write_plain_png(film, &mut bytes)?;
+    Ok(format!(
+        "data:image/png;base64,{}",
+        BASE64_STANDARD.encode(bytes)
+    ))
+}
