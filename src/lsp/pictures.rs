@@ -15,7 +15,7 @@ use super::{
 use crate::{
     editor::{
         Analysis,
-        picture::{self, Along, Drag},
+        viewport::{self, Along, Drag},
     },
     source::Span,
 };
@@ -46,7 +46,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
 fn pick(params: &Value, page: Page<'_>, prepared: &mut Prepared) -> Answer {
     let at = point(params, "point")?;
     let (scene, world) = prepared.world(1);
-    let seen = picture::pick(scene, world, at);
+    let seen = viewport::pick(scene, world, at);
     let (hit, color) = seen.unzip();
     let hit = hit.flatten();
     Ok(json!({
@@ -73,7 +73,7 @@ fn object(index: usize, page: Page<'_>, prepared: &Prepared) -> Value {
 
 fn overlays(params: &Value, page: Page<'_>, prepared: &Prepared) -> Answer {
     let only: Option<usize> = optional(params, "object")?;
-    let overlays = picture::overlays(&prepared.scene, only);
+    let overlays = viewport::overlays(&prepared.scene, only);
     let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
     let vanishing = vanishing.map(|(axis, vanishing)| {
         let lines = vanishing.lines.iter().map(|line| written_line(line));
@@ -131,7 +131,7 @@ fn drag(params: &Value, page: Page<'_>, analysis: &Analysis<'_>, prepared: &Prep
         to,
         along,
     };
-    let dragged = picture::drag(analysis, &prepared.scene, &drag)
+    let dragged = viewport::drag(analysis, &prepared.scene, &drag)
         .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
     let edits: Vec<_> = page.text_edits(dragged.edits).collect();
     Ok(json!({ "edits": edits, "values": dragged.values }))
@@ -145,7 +145,7 @@ fn samples(params: &Value, prepared: &mut Prepared) -> Answer {
         return Err(Refusal(ErrorCode::InvalidParams, message));
     }
     let (scene, world) = prepared.world(1);
-    let found = picture::samples(scene, world, pixel)
+    let found = viewport::samples(scene, world, pixel)
         .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
     let points = found.samples.iter().map(|(point, _)| point.to_array());
     let colors = found.samples.iter().map(|(_, color)| color.to_string());

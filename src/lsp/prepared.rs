@@ -5,7 +5,7 @@
 use std::collections::VecDeque;
 
 use crate::{
-    editor::{Analysis, picture::selections},
+    editor::{Analysis, viewport::selections},
     scene::Scene,
     source::Span,
     tracer::World,

@@ -3,73 +3,60 @@
 //! A literal is replaced, number by number, so that one that does not change stays as it is written. Where a name stands, the literal of its `let` changes;
 //! to an expression an offset is added, or changed where the expression ends in one. A field that is not there is added to its block.
 
-use glam::DVec3;
-
+use super::fields::{Change, degrees, difference, exponent};
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
-    math::Angle,
     schema::Value,
     source::{SourceId, Span},
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// Writes numbers to so many decimals; those of angles in degrees, and radians to two more.
-pub struct Writer<'a, 's> {
+/// The edits that change fields of a block, in order, with numbers written to so many decimals: those of angles in degrees, and radians to two more.
+/// None if two of them want different things of one number.
+pub fn edits<'s>(
+    analysis: &Analysis<'s>,
+    block: &Block<'s>,
+    changes: &[Change],
+    decimals: i32,
+) -> Option<Vec<Edit>> {
+    let mut writer = Writer {
+        analysis,
+        decimals,
+        edits: Vec::new(),
+    };
+    let mut added = Vec::new();
+    for &Change { name, from, by } in changes {
+        match block.fields.iter().find(|field| field.name.text == name) {
+            Some(field) => writer.value(&field.value, by),
+            None => added.push(format!("{name} {}", writer.sum(from, by))),
+        }
+    }
+    let mut edits = writer.edits;
+    if !added.is_empty() {
+        edits.extend(Edit::add_fields(
+            block.span,
+            analysis.model.sources(),
+            &added,
+        ));
+    }
+    edits.sort_by_key(|edit| edit.span);
+    edits.dedup();
+    let apart = |pair: &[Edit]| pair[0].span.end <= pair[1].span.start;
+    let same = |pair: &[Edit]| pair[0].span == pair[1].span;
+    let is_right = edits.windows(2).all(|pair| apart(pair) && !same(pair));
+    is_right.then_some(edits)
+}
+
+struct Writer<'a, 's> {
     analysis: &'a Analysis<'s>,
     decimals: i32,
     edits: Vec<Edit>,
 }
 
-impl<'a, 's> Writer<'a, 's> {
-    pub fn new(analysis: &'a Analysis<'s>, decimals: i32) -> Self {
-        Self {
-            analysis,
-            decimals,
-            edits: Vec::new(),
-        }
-    }
-
-    /// The edits in order. None if two of them want different things of one number.
-    pub fn finish(self) -> Option<Vec<Edit>> {
-        let mut edits = self.edits;
-        edits.sort_by_key(|edit| edit.span);
-        edits.dedup();
-        let apart = |pair: &[Edit]| pair[0].span.end <= pair[1].span.start;
-        let same = |pair: &[Edit]| pair[0].span == pair[1].span;
-        let is_right = edits.windows(2).all(|pair| apart(pair) && !same(pair));
-        is_right.then_some(edits)
-    }
-
-    /// Changes fields of a block by amounts, rounded; a field that is left out has the value that is given with it. Says by how much each has changed.
-    pub fn change(
-        &mut self,
-        block: &Block<'s>,
-        changes: &[(&'static str, Value, Value)],
-    ) -> Vec<Value> {
-        let mut added = Vec::new();
-        let mut changed = Vec::new();
-        for &(name, from, by) in changes {
-            let given = block.fields.iter().find(|field| field.name.text == name);
-            changed.push(match given {
-                Some(field) => self.value(&field.value, by),
-                None => {
-                    let (text, by) = self.spelled(from, by);
-                    added.push(format!("{name} {text}"));
-                    by
-                }
-            });
-        }
-        if !added.is_empty() {
-            let sources = self.analysis.model.sources();
-            let edit = Edit::add_fields(block.span, sources, &added);
-            self.edits.extend(edit);
-        }
-        changed
-    }
-
-    /// Changes a value by an amount. Says by how much it has changed.
-    fn value(&mut self, tree: &tree::Value<'s>, by: Value) -> Value {
+impl<'s> Writer<'_, 's> {
+    /// Changes a value by an amount.
+    fn value(&mut self, tree: &tree::Value<'s>, by: Value) {
         let model = &self.analysis.model;
         match (&tree.kind, by) {
             (ValueKind::Parentheses(inner), _) => self.value(inner, by),
@@ -78,23 +65,18 @@ impl<'a, 's> Writer<'a, 's> {
                 None => self.offset(tree.span, by),
             },
             (ValueKind::Tuple(elements), Value::Vector(by)) if elements.len() == 3 => {
-                let mut changed = DVec3::ZERO;
                 for (axis, element) in elements.iter().enumerate() {
-                    if by[axis] != 0.0
-                        && let Value::Number(by) =
-                            self.value(&element.value, Value::Number(by[axis]))
-                    {
-                        changed[axis] = by;
+                    if by[axis] != 0.0 {
+                        self.value(&element.value, Value::Number(by[axis]));
                     }
                 }
-                Value::Vector(changed)
             }
             (_, Value::Number(_) | Value::Angle(_)) if is_number(tree) => {
-                self.literal(tree, tree.span, by)
+                self.literal(tree, tree.span, by);
             }
             (ValueKind::Chain { rest, .. }, _) => match rest.last() {
                 Some(step) if !step.operator.is_of_product() && is_literal(&step.operand) => {
-                    self.last(step, by)
+                    self.last(step, by);
                 }
                 _ => self.offset(tree.span, by),
             },
@@ -103,26 +85,18 @@ impl<'a, 's> Writer<'a, 's> {
     }
 
     /// Changes the literal that a sum ends in.
-    fn last(&mut self, step: &Step<'s>, by: Value) -> Value {
+    fn last(&mut self, step: &Step<'s>, by: Value) {
         match (step.operator, by) {
             (Operator::Subtract, Value::Vector(by)) => {
-                match self.value(&step.operand, Value::Vector(-by)) {
-                    Value::Vector(by) => Value::Vector(-by),
-                    by => by,
-                }
+                self.value(&step.operand, Value::Vector(-by));
             }
-            (Operator::Subtract, _) => {
-                self.literal(&step.operand, step.sign.to(step.operand.span), by)
-            }
-            _ if is_number(&step.operand) => {
-                self.literal(&step.operand, step.sign.to(step.operand.span), by)
-            }
-            _ => self.value(&step.operand, by),
+            (_, Value::Vector(_)) => self.value(&step.operand, by),
+            _ => self.literal(&step.operand, step.sign.to(step.operand.span), by),
         }
     }
 
     /// Changes a number or an angle; the place may begin with the operator before it, of a sum.
-    fn literal(&mut self, tree: &tree::Value<'s>, place: Span, by: Value) -> Value {
+    fn literal(&mut self, tree: &tree::Value<'s>, place: Span, by: Value) {
         let written = self.analysis.slice(place);
         let operator = match place == tree.span {
             true => None,
@@ -136,70 +110,46 @@ impl<'a, 's> Writer<'a, 's> {
         let value = self.analysis.model.value(tree, None);
         let old = sign * value.map_or(0.0, |value| amount(value, unit));
         let new = self.rounded(old, old + amount(by, unit), unit);
-        if new != old {
-            let text = match operator {
-                None => spelled(new, unit),
-                Some(_) if (new < 0.0) == (sign < 0.0) => {
-                    self.edits
-                        .push(Edit::new(tree.span, spelled(new.abs(), unit)));
-                    return value_of(new - old, unit);
-                }
-                Some(_) => format!(
-                    "{} {}",
-                    if new < 0.0 { '-' } else { '+' },
-                    spelled(new.abs(), unit)
-                ),
-            };
-            self.edits.push(Edit::new(place, text));
+        if new == old {
+            return;
         }
-        value_of(new - old, unit)
+        let digits = spelled(new.abs(), unit);
+        self.edits.push(match operator {
+            None => Edit::new(place, spelled(new, unit)),
+            Some(_) if (new < 0.0) == (sign < 0.0) => Edit::new(tree.span, digits),
+            Some(_) if new < 0.0 => Edit::new(place, format!("- {digits}")),
+            Some(_) => Edit::new(place, format!("+ {digits}")),
+        });
     }
 
     /// Adds an offset behind an expression.
-    fn offset(&mut self, behind: Span, by: Value) -> Value {
-        let (text, by) = match by {
-            Value::Vector(_) => {
-                let (text, by) = self.spelled(Value::Vector(DVec3::ZERO), by);
-                (format!(" + {text}"), by)
-            }
-            _ => {
-                let unit = matches!(by, Value::Angle(_)).then_some(Unit::Degrees);
-                let new = self.rounded(0.0, amount(by, unit), unit);
-                let sign = if new < 0.0 { '-' } else { '+' };
-                (
-                    format!(" {sign} {}", spelled(new.abs(), unit)),
-                    value_of(new, unit),
-                )
-            }
-        };
-        let is_any = match by {
-            Value::Vector(by) => by != DVec3::ZERO,
-            by => amount(by, Some(Unit::Degrees)) != 0.0,
-        };
-        if is_any {
-            self.edits
-                .push(Edit::insert(SourceId::File, behind.end, text));
+    fn offset(&mut self, behind: Span, by: Value) {
+        let zero = difference(by, by);
+        let text = self.sum(zero, by);
+        if text == self.sum(zero, zero) {
+            return;
         }
-        by
+        let text = match text.strip_prefix('-') {
+            Some(digits) => format!(" - {digits}"),
+            None => format!(" + {text}"),
+        };
+        self.edits
+            .push(Edit::insert(SourceId::File, behind.end, text));
     }
 
-    /// A value that has changed by an amount as it is written, and by how much it has changed then.
-    fn spelled(&self, from: Value, by: Value) -> (String, Value) {
+    /// A value that has changed by an amount, as it is written.
+    fn sum(&self, from: Value, by: Value) -> String {
         match (from, by) {
             (Value::Vector(from), Value::Vector(by)) => {
-                let new =
-                    [0, 1, 2].map(|axis| self.rounded(from[axis], from[axis] + by[axis], None));
-                let [x, y, z] = new.map(|new| spelled(new, None));
-                (
-                    format!("({x}, {y}, {z})"),
-                    Value::Vector(DVec3::from(new) - from),
-                )
+                let [x, y, z] = [0, 1, 2].map(|axis| {
+                    spelled(self.rounded(from[axis], from[axis] + by[axis], None), None)
+                });
+                format!("({x}, {y}, {z})")
             }
             _ => {
                 let unit = matches!(from, Value::Angle(_)).then_some(Unit::Degrees);
                 let old = amount(from, unit);
-                let new = self.rounded(old, old + amount(by, unit), unit);
-                (spelled(new, unit), value_of(new - old, unit))
+                spelled(self.rounded(old, old + amount(by, unit), unit), unit)
             }
         }
     }
@@ -252,18 +202,6 @@ fn amount(value: Value, unit: Option<Unit>) -> f64 {
     }
 }
 
-fn value_of(amount: f64, unit: Option<Unit>) -> Value {
-    match unit {
-        None => Value::Number(amount),
-        Some(unit) => Value::Angle(unit.of(amount)),
-    }
-}
-
-/// An angle in degrees.
-pub fn degrees(angle: Angle) -> f64 {
-    angle.degrees + angle.radians.to_degrees()
-}
-
 /// A number with all its digits.
 fn spelled(number: f64, unit: Option<Unit>) -> String {
     let number = number + 0.0;
@@ -295,15 +233,6 @@ fn round(x: f64, decimals: i32) -> f64 {
         _ => return x,
     };
     text.parse().unwrap_or(x)
-}
-
-/// The exponent of ten of a number's first digit.
-pub fn exponent(x: f64) -> i32 {
-    let text = format!("{x:e}");
-    let exponent = text.split_once('e').map(|(_, exponent)| exponent);
-    exponent
-        .and_then(|exponent| exponent.parse().ok())
-        .unwrap_or(0)
 }
 
 #[cfg(test)]
