@@ -1,17 +1,18 @@
 //! The conversation with one page, over a web socket.
 //!
-//! A thread of its own does nothing but read, as in [`crate::lsp::stdio`]: what a page asks supersedes what it asked before, so all that has come is taken in before the
-//! next slice of work. It passes on what it reads together with what other threads have for the page, and this thread alone writes.
+//! What a page asks supersedes what it asked before, so all that has come is taken in before the next slice of work. While there is no work, the socket is waited
+//! for, and what other threads have for the page a little later.
 
 use std::{
-    io::{self, Read, Write},
-    net::{Shutdown, TcpStream},
+    io,
+    net::TcpStream,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
-        mpsc::{self, Receiver, Sender, SyncSender, TryRecvError},
+        mpsc::{self, Receiver, Sender},
     },
     thread,
+    time::Duration,
 };
 
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
@@ -34,8 +35,8 @@ use crate::lsp::{
 /// The longest message of a page, in bytes: far more than any text that an editor in a browser can hold, and little enough for memory.
 const LONGEST: usize = 64 << 20;
 
-/// So many messages are read before the first of them is taken in. A hand that drags sends one or two for each frame of the screen, and some 20 frames are behind at worst.
-const AHEAD: usize = 64;
+/// How long the socket is waited for before one looks at what other threads have for the page: less than anybody notices.
+const WAIT: Duration = Duration::from_millis(50);
 
 /// Holds the conversation until the page leaves. Some of it may have been read already.
 pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Result<()> {
@@ -43,118 +44,82 @@ pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Res
         .read_buffer_size(1 << 14)
         .max_message_size(Some(LONGEST))
         .max_frame_size(Some(LONGEST));
-    stream.set_read_timeout(None)?;
-    let half = ReadHalf(stream.try_clone()?);
-    let reader = WebSocket::from_partially_read(half, rest, Role::Server, Some(config));
+    stream.set_read_timeout(Some(WAIT))?;
     let (sender, events) = mpsc::channel();
-    let (ahead, taken) = mpsc::sync_channel(AHEAD);
-    let own_sender = sender.clone();
-    thread::Builder::new()
-        .name("page".to_owned())
-        .spawn(move || read(reader, &sender, &ahead))?;
-    let number = pages.join(own_sender.clone());
-    let mut page = Page {
+    let number = pages.join(sender.clone());
+    let mut conversation = Conversation {
         number,
-        socket: WebSocket::from_raw_socket(stream, Role::Server, Some(config)),
+        socket: WebSocket::from_partially_read(stream, rest, Role::Server, Some(config)),
         pages: Arc::clone(pages),
         server: Server::new(|_| {}),
-        sender: own_sender,
+        sender,
+        events,
         rendering: None,
     };
-    let ended = page.run(&events, &taken);
-    page.cancel(None);
+    let ended = conversation.run();
+    conversation.cancel(None);
     pages.leave(number);
-    // The reader ends with it.
-    let _ = page.socket.get_ref().shutdown(Shutdown::Both);
     ended.map_err(|error| match error {
         Error::Io(error) => error,
         other => io::Error::other(other.to_string()),
     })
 }
 
-/// Reads until there is nothing more to read.
-fn read(mut socket: WebSocket<ReadHalf>, sender: &Sender<Event>, ahead: &SyncSender<()>) {
-    loop {
-        let event = match socket.read() {
-            Ok(Frame::Text(text)) => Event::Said(text),
-            Ok(Frame::Ping(content)) => Event::Pinged(content),
-            Ok(Frame::Binary(_)) => Event::Over(CloseCode::Unsupported),
-            Ok(Frame::Close(_)) => Event::Over(CloseCode::Normal),
-            Ok(Frame::Pong(_) | Frame::Frame(_)) => continue,
-            Err(Error::Capacity(_)) => Event::Over(CloseCode::Size),
-            Err(Error::Utf8(_)) => Event::Over(CloseCode::Invalid),
-            Err(_) => Event::Over(CloseCode::Protocol),
-        };
-        let is_last = matches!(event, Event::Over(_));
-        // Where nobody takes them any more, this ends as well.
-        if ahead.send(()).is_err() || sender.send(event).is_err() || is_last {
-            return;
-        }
-    }
-}
-
-/// A connection that is read from. What a web socket would write of itself is for the other thread.
-#[derive(Debug)]
-struct ReadHalf(TcpStream);
-
-impl Read for ReadHalf {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        self.0.read(bytes)
-    }
-}
-
-impl Write for ReadHalf {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-struct Page {
+struct Conversation {
     number: u64,
     socket: WebSocket<TcpStream>,
     pages: Arc<Pages>,
     server: Server,
     /// For threads that work for it.
     sender: Sender<Event>,
+    events: Receiver<Event>,
     /// The request for the picture's file that is being made, and what gives it up.
     rendering: Option<(RequestId, Arc<AtomicBool>)>,
 }
 
-impl Page {
-    fn run(&mut self, events: &Receiver<Event>, taken: &Receiver<()>) -> Result<(), Error> {
-        loop {
-            let event = match self.server.is_busy() {
-                true => match events.try_recv() {
-                    Err(TryRecvError::Empty) => {
-                        let messages = self.server.advance();
-                        self.say(messages)?;
-                        continue;
-                    }
-                    event => event.ok(),
-                },
-                false => events.recv().ok(),
-            };
-            if !matches!(event, Some(Event::Tell(_) | Event::Rendered(_))) {
-                let _ = taken.try_recv();
-            }
-            match event {
-                Some(Event::Said(text)) => self.hear(&text)?,
-                Some(Event::Tell(text)) => self.send(text)?,
-                Some(Event::Rendered(text)) => {
+impl Conversation {
+    fn run(&mut self) -> Result<(), Error> {
+        while self.server.ended().is_none() {
+            while let Ok(event) = self.events.try_recv() {
+                let (Event::Tell(text) | Event::Rendered(text)) = &event;
+                self.send(text.clone())?;
+                if let Event::Rendered(_) = event {
                     self.rendering = None;
-                    self.send(text)?;
                 }
-                Some(Event::Pinged(content)) => self.socket.send(Frame::Pong(content))?,
-                Some(Event::Over(code)) => return self.close(code),
-                None => return Ok(()),
             }
-            if self.server.ended().is_some() {
-                return self.close(CloseCode::Normal);
+            match self.read() {
+                Ok(Some(Frame::Text(text))) => self.hear(&text)?,
+                Ok(Some(Frame::Binary(_))) => return self.close(CloseCode::Unsupported),
+                Ok(Some(Frame::Close(_))) => break,
+                // The socket answers pings by itself.
+                Ok(Some(Frame::Ping(_) | Frame::Pong(_) | Frame::Frame(_))) => {}
+                Ok(None) => {
+                    let messages = self.server.advance();
+                    self.say(messages)?;
+                }
+                Err(Error::Capacity(_)) => return self.close(CloseCode::Size),
+                Err(Error::Utf8(_)) => return self.close(CloseCode::Invalid),
+                Err(_) => return self.close(CloseCode::Protocol),
             }
+        }
+        self.close(CloseCode::Normal)
+    }
+
+    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for.
+    fn read(&mut self) -> Result<Option<Frame>, Error> {
+        self.socket
+            .get_ref()
+            .set_nonblocking(self.server.is_busy())?;
+        let read = self.socket.read();
+        self.socket.get_ref().set_nonblocking(false)?;
+        match read {
+            Err(Error::Io(error)) => match error.kind() {
+                io::ErrorKind::WouldBlock
+                | io::ErrorKind::TimedOut
+                | io::ErrorKind::Interrupted => Ok(None),
+                _ => Err(Error::Io(error)),
+            },
+            read => read.map(Some),
         }
     }
 

@@ -8,24 +8,17 @@ use std::{
 
 use lsp_server::Notification;
 use serde_json::{Value, json};
-use tungstenite::{Bytes, Utf8Bytes, protocol::frame::coding::CloseCode};
 
 use super::scene_file::{NotSaved, SceneFile};
 use crate::lsp::messages;
 
-/// What happens to a page.
+/// What other threads have for a page.
 #[derive(Debug)]
 pub enum Event {
-    /// It has sent a message.
-    Said(Utf8Bytes),
-    /// It wants to know whether somebody is there.
-    Pinged(Bytes),
     /// There is a message for it.
     Tell(String),
     /// Its picture's file is made, or not: the answer.
     Rendered(String),
-    /// It is gone, or has sent what ends the conversation.
-    Over(CloseCode),
 }
 
 /// The pages that are open, and the file that they share.

@@ -9,17 +9,10 @@ use std::{
 
 use serde_json::{Value, json};
 
-use super::client::{Page, Studio};
+use super::client::{Page, Studio, studio};
 use crate::program::command;
 
 const SCENE: &str = pinhole::scene::SMALLEST;
-
-fn studio() -> (tempfile::TempDir, Studio) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
-    let studio = Studio::start(folder.path(), &["a.scn"]);
-    (folder, studio)
-}
 
 fn save(page: &mut Page, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
@@ -122,10 +115,8 @@ fn a_page_hears_of_what_other_editors_save() {
 
 #[test]
 fn a_save_that_fails_changes_nothing() {
-    let folder = tempfile::tempdir().unwrap();
+    let (folder, studio) = studio();
     let path = folder.path().join("a.scn");
-    fs::write(&path, SCENE).unwrap();
-    let studio = Studio::start(folder.path(), &["a.scn"]);
     let (mut page, _) = studio.page();
     // No name but its own.
     let elsewhere = json!({ "text": "x", "base": SCENE, "name": "b.scn" });
