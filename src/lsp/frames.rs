@@ -21,7 +21,7 @@ use crate::{
     render::{Control, RenderError, render_bytes, render_exact_bytes},
     sampling::Sampling,
     scene::{Count, Method, Sampler, Scene},
-    tracer::{GRID, World},
+    tracer::World,
 };
 
 /// The samples of a slice: some 10 ms of two processors for a few objects. No pixel may have more, since a pixel is not divided.
@@ -199,7 +199,8 @@ impl Begun {
         Ok(Self {
             film: Film::new(width, height).map_err(|error| failed(error.to_string()))?,
             sampling,
-            slices: slices(whole, SLICE / work).collect(),
+            // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
+            slices: whole.tiles(1 << ((SLICE / work).ilog2() / 2)).collect(),
         })
     }
 
@@ -220,32 +221,6 @@ impl Begun {
         self.film.put(part, made.pixels());
         Ok(())
     }
-}
-
-/// Rectangles of about so many pixels, at least one: bands of the tracer's grid where these fit, or parts of them.
-fn slices(whole: Area, pixels: u64) -> impl Iterator<Item = Area> {
-    let grid = u64::from(GRID);
-    let rows = pixels / u64::from(whole.width);
-    let (width, height) = if rows >= grid {
-        (u64::from(whole.width), rows - rows % grid)
-    } else {
-        let side = grid.min(1 << (pixels.ilog2() / 2));
-        (pixels / side, side)
-    };
-    // No side of a picture is longer than 2^20.
-    let [width, height] = [width, height].map(|side| side.min(1 << 20) as u32);
-    let starts = |length: u32, side: u32| (0..length).step_by(side as usize);
-    starts(whole.height, height).flat_map(move |y| {
-        starts(whole.width, width).map(move |x| {
-            Area {
-                x,
-                y,
-                width,
-                height,
-            }
-            .common(whole)
-        })
-    })
 }
 
 fn failed(message: String) -> Refusal {
