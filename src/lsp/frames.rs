@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::{
     params::{Refusal, optional},
-    prepared::Prepared,
+    scene_version::SceneVersion,
 };
 use crate::{
     area::Area,
@@ -137,34 +137,34 @@ impl Frames {
     /// Makes a slice of the oldest one. Returns its answer once it is done.
     pub fn advance(
         &mut self,
-        prepared: &mut HashMap<lsp::Uri, Option<Prepared>>,
+        scenes: &mut HashMap<lsp::Uri, Option<SceneVersion>>,
     ) -> Result<Option<Value>, Refusal> {
         let Some(frame) = self.0.front_mut() else {
             return Ok(None);
         };
-        match prepared.get_mut(&frame.uri) {
-            Some(Some(prepared)) => frame.advance(prepared),
+        match scenes.get_mut(&frame.uri) {
+            Some(Some(version)) => frame.advance(version),
             _ => Ok(Some(Value::Null)),
         }
     }
 }
 
 impl Frame {
-    fn advance(&mut self, prepared: &mut Prepared) -> Result<Option<Value>, Refusal> {
+    fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
         let begun = match &mut self.begun {
             Some(begun) => begun,
-            none => none.insert(Begun::new(self.wanted, prepared)?),
+            none => none.insert(Begun::new(self.wanted, version)?),
         };
-        let (_, world) = prepared.world(self.wanted.scale);
+        let (_, world) = version.world(self.wanted.scale);
         begun.advance(world).map_err(refused)?;
         if !begun.slices.is_empty() {
             return Ok(None);
         }
         let mut png = Vec::new();
         film::write_plain_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
-        let image = &prepared.scene.image;
+        let image = &version.scene.image;
         Ok(Some(json!({
-            "version": prepared.version,
+            "version": version.number,
             "width": begun.film.width(),
             "height": begun.film.height(),
             "size": [image.width, image.height],
@@ -174,8 +174,8 @@ impl Frame {
 }
 
 impl Begun {
-    fn new(wanted: Wanted, prepared: &Prepared) -> Result<Self, Refusal> {
-        let (width, height) = prepared.size(wanted.scale);
+    fn new(wanted: Wanted, version: &SceneVersion) -> Result<Self, Refusal> {
+        let (width, height) = version.size(wanted.scale);
         let whole = Area::whole(width, height);
         if whole.pixels() > MOST_PIXELS {
             let message = format!(
@@ -183,7 +183,7 @@ impl Begun {
             );
             return Err(failed(message));
         }
-        let sampler = wanted.sampler(&prepared.scene);
+        let sampler = wanted.sampler(&version.scene);
         let sampling =
             (sampler.method != Method::Exact).then(|| Sampling::new(&sampler, width, height));
         let work = match &sampling {

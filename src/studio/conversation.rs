@@ -23,8 +23,8 @@ use tungstenite::{
 };
 
 use super::{
+    download,
     pages::{Event, Pages},
-    picture_file,
     scene_file::NotSaved,
 };
 use crate::lsp::{
@@ -158,7 +158,7 @@ impl Conversation {
 
     /// Answers what is asked of the host.
     fn answer(&mut self, request: Request) -> Result<(), Error> {
-        if picture_file::is_asked_for(&request) {
+        if download::is_asked_for(&request) {
             return self.render(request);
         }
         let Request { id, method, params } = request;
@@ -205,7 +205,7 @@ impl Conversation {
         self.rendering = Some((request.id.clone(), Arc::clone(&cancel)));
         let sender = self.sender.clone();
         let work = move || {
-            let response = picture_file::answer(request, &cancel);
+            let response = download::answer(request, &cancel);
             let _ = sender.send(Event::Rendered(messages::written(&response.into())));
         };
         thread::Builder::new()

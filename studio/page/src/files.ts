@@ -60,8 +60,8 @@ export class Files {
     return this.seen?.includes("\r\n") ? text.replaceAll("\n", "\r\n") : text;
   }
 
-  /** The host says which file it has: at first, after the connection was lost, and when a new scene has got its name. */
-  hosted({ name, text, reason, uri, saved }: HostedFile, linked: string | null): void {
+  /** The host says what file it has: at first, after the connection was lost, when a new scene has got its name, and when the file has changed. */
+  hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
     this.name = name;
     this.isNew = this.isServed && !saved;
     if (!this.opened) {
@@ -78,12 +78,12 @@ export class Files {
       this.untouched = null;
       this.changed(text, reason);
     }
-    this.editor.moveTo(uri);
+    this.editor.start();
     this.show();
   }
 
   /** The file was changed by somebody else, is gone, or is back. */
-  changed(text: string | null, reason?: string | null): void {
+  private changed(text: string | null, reason?: string | null): void {
     const { seen, isGone } = this;
     this.isGone = text === null;
     if (text === null) {

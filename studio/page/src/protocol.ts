@@ -87,7 +87,6 @@ export interface HostedFile {
   text: string | null;
   /** Why there is no text, where something else is there. */
   reason?: string | null;
-  uri: string;
   saved: boolean;
 }
 
