@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera, edits,
-    fields::{Movable, changes, exponent},
+    fields::{Movable, changes},
     handles::{self, Along, TOLERANCE, handles, outline_point},
     projection::Projection,
 };
@@ -86,7 +86,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         }
     };
     let greatest = changes.iter().map(|change| change.size());
-    let first = -1 - exponent(greatest.fold(0.0, f64::max));
+    let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
     // Where all digits are not enough, fewer are not either.
     let with_all = written(first + DIGITS + 1)?;
     let fewest = (first..=first + DIGITS).find_map(|decimals| written(decimals).ok());

@@ -3,7 +3,7 @@
 //! A literal is replaced, number by number, so that one that does not change stays as it is written. Where a name stands, the literal of its `let` changes;
 //! to an expression an offset is added, or changed where the expression ends in one. A field that is not there is added to its block.
 
-use super::fields::{Change, degrees, difference, exponent};
+use super::fields::{Change, degrees, difference};
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
@@ -214,23 +214,13 @@ fn spelled(number: f64, unit: Option<Unit>) -> String {
 
 /// A number rounded to so many decimals, which may be fewer than none.
 fn round(x: f64, decimals: i32) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return x;
-    }
-    let digits = decimals + exponent(x) + 1;
-    let text = match digits {
-        ..0 => return 0.0,
-        // The unit of the last decimal, or nothing.
-        0 => {
-            let unit: f64 = format!("1e{}", -decimals).parse().unwrap_or(0.0);
-            return if x.abs() < unit / 2.0 {
-                0.0
-            } else {
-                unit.copysign(x)
-            };
+    let text = match usize::try_from(decimals) {
+        Ok(decimals) => format!("{x:.decimals$}"),
+        Err(_) => {
+            let power = decimals.unsigned_abs();
+            let unit: f64 = format!("1e{power}").parse().unwrap_or(f64::INFINITY);
+            format!("{}e{power}", (x / unit).round())
         }
-        1..18 => format!("{x:.*e}", digits as usize - 1),
-        _ => return x,
     };
     text.parse().unwrap_or(x)
 }

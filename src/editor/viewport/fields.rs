@@ -138,12 +138,3 @@ impl Change {
 pub fn degrees(angle: Angle) -> f64 {
     angle.degrees + angle.radians.to_degrees()
 }
-
-/// The exponent of ten of a number's first digit.
-pub fn exponent(x: f64) -> i32 {
-    let text = format!("{x:e}");
-    let exponent = text.split_once('e').map(|(_, exponent)| exponent);
-    exponent
-        .and_then(|exponent| exponent.parse().ok())
-        .unwrap_or(0)
-}

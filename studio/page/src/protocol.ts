@@ -18,8 +18,8 @@ export interface TextEdit {
 /** A point of the picture, in pixels of the scene, from the top left corner. */
 export type Point = readonly [number, number];
 
-/** A line through points; one that cannot be seen is null. */
-export type Polyline = readonly (Point | null)[];
+/** A line through points. */
+export type Polyline = readonly Point[];
 
 export interface Frame {
   version: number;
