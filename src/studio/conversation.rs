@@ -15,7 +15,7 @@ use std::{
     time::Duration,
 };
 
-use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use lsp_server::{ErrorCode, Message, Notification, Request, Response};
 use serde_json::{Value, json};
 use tungstenite::{
     Error, Message as Frame, Utf8Bytes, WebSocket,
@@ -73,8 +73,8 @@ struct Conversation {
     /// For threads that work for it.
     sender: Sender<Event>,
     events: Receiver<Event>,
-    /// The request for the picture's file that is being made, and what gives it up.
-    rendering: Option<(RequestId, Arc<AtomicBool>)>,
+    /// The number of the request for the picture's file that is being made, and what gives it up.
+    rendering: Option<(Value, Arc<AtomicBool>)>,
 }
 
 impl Conversation {
@@ -146,7 +146,7 @@ impl Conversation {
                 if let Message::Notification(Notification { method, params }) = &message
                     && method == "$/cancelRequest"
                 {
-                    self.cancel(Some(params.get("id").unwrap_or(&Value::Null)));
+                    self.cancel(Some(&params["id"]));
                 }
                 let messages = self.server.handle(message);
                 self.say(messages)
@@ -167,20 +167,13 @@ impl Conversation {
             |code: ErrorCode, message: String| Response::new_err(id.clone(), code as i32, message);
         let response = match (method.as_str(), field("text")) {
             ("studio/save", Some(text)) => {
-                let saved = self
-                    .pages
-                    .save(self.number, text, field("base"), field("name"));
-                match saved {
+                let (base, name) = (field("base"), field("name"));
+                match self.pages.save(self.number, text, base, name) {
                     Ok(()) => Response::new_ok(id, json!({ "ok": true })),
-                    Err(NotSaved::Refused(message)) => failed(ErrorCode::RequestFailed, message),
                     Err(NotSaved::Changed(found)) => {
-                        let message = "the file has changed".to_owned();
-                        let mut response = Response::new_err(id, 1, message);
-                        if let Err(error) = &mut response.response_result {
-                            error.data = Some(json!({ "text": found }));
-                        }
-                        response
+                        Response::new_ok(id, json!({ "ok": false, "text": found }))
                     }
+                    Err(NotSaved::Refused(message)) => failed(ErrorCode::RequestFailed, message),
                 }
             }
             ("studio/save", None) => {
@@ -202,7 +195,7 @@ impl Conversation {
             return self.say(vec![Response::new_err(request.id, code, message).into()]);
         }
         let cancel = Arc::new(AtomicBool::new(false));
-        self.rendering = Some((request.id.clone(), Arc::clone(&cancel)));
+        self.rendering = Some((json!(request.id), Arc::clone(&cancel)));
         let sender = self.sender.clone();
         let work = move || {
             let response = download::answer(request, &cancel);
@@ -217,9 +210,8 @@ impl Conversation {
 
     /// Gives the picture's file up that a request asked for, or any.
     fn cancel(&self, wanted: Option<&Value>) {
-        let wanted = wanted.map(|id| serde_json::from_value(id.clone()).ok());
         if let Some((id, cancel)) = &self.rendering
-            && wanted.is_none_or(|wanted: Option<RequestId>| wanted.as_ref() == Some(id))
+            && wanted.is_none_or(|wanted| wanted == id)
         {
             cancel.store(true, Ordering::SeqCst);
         }

@@ -4,7 +4,7 @@ import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
-import { Refusal, type HostedFile } from "./protocol";
+import type { HostedFile, Saved } from "./protocol";
 import type { Status } from "./status";
 
 /** What browsers that can save into files offer for it. */
@@ -130,16 +130,13 @@ export class Files {
     const text = this.textToSave;
     const name = this.isNew ? await this.askName() : this.name;
     if (name === null) return;
-    try {
-      await this.connection.request("studio/save", { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) });
+    const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
+    const answer = await this.connection.request<Saved>("studio/save", about);
+    if (answer.ok) {
       this.saved(name, text);
       this.isNew = false;
-    } catch (error) {
-      if (!(error instanceof Refusal) || error.code !== 1) throw error;
-      const { text: held } = error.data as { text: string | null };
-      if (held === null) this.changed(null);
-      else this.ask(held);
-    }
+    } else if (answer.text === null) this.changed(null);
+    else this.ask(answer.text);
   }
 
   private saved(name: string, text: string): void {

@@ -90,9 +90,12 @@ export interface HostedFile {
   saved: boolean;
 }
 
+/** Whether the file was saved; if not, what is in it now. */
+export type Saved = { ok: true } | { ok: false; text: string | null };
+
 /** An error that the server answered with. */
 export class Refusal extends Error {
-  constructor(readonly code: number, message: string, readonly data: unknown) {
+  constructor(readonly code: number, message: string) {
     super(message);
   }
 }

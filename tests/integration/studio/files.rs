@@ -67,11 +67,8 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
     let (mut page, _) = studio.page();
     fs::write(&path, "// theirs").unwrap();
     // Whether the page has been told or not.
-    let error = save(&mut page, "// mine", Some(SCENE))["error"].clone();
-    assert_eq!(
-        (&error["code"], &error["data"]),
-        (&json!(1), &json!({ "text": "// theirs" }))
-    );
+    let theirs = json!({ "ok": false, "text": "// theirs" });
+    assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(fs::read_to_string(&path).unwrap(), "// theirs");
     assert_eq!(page.told("studio/file")["text"], "// theirs");
     assert_eq!(
@@ -82,11 +79,8 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
     fs::remove_file(&path).unwrap();
     let nothing = json!({ "text": null, "reason": null });
     assert_eq!(told(&mut page), nothing);
-    let error = save(&mut page, "// more", Some("// mine"))["error"].clone();
-    assert_eq!(
-        (&error["code"], &error["data"]),
-        (&json!(1), &json!({ "text": null }))
-    );
+    let gone = json!({ "ok": false, "text": null });
+    assert_eq!(save(&mut page, "// more", Some("// mine"))["result"], gone);
     assert_eq!(save(&mut page, "// mine", None)["result"], saved());
     assert_eq!(fs::read_to_string(&path).unwrap(), "// mine");
     // It is in another encoding, which would be lost.
