@@ -14,11 +14,11 @@ mod folding;
 mod hints;
 mod hover;
 mod names;
-pub mod picture;
 mod semantic;
 mod signature;
 mod symbols;
 mod tokens;
+pub mod viewport;
 
 pub use actions::{fix_all, fixes, formatting};
 pub use analysis::Analysis;

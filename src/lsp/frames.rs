@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::{
     params::{Refusal, optional},
-    prepared::Prepared,
+    scene_version::SceneVersion,
 };
 use crate::{
     area::Area,
@@ -21,7 +21,7 @@ use crate::{
     render::{Control, RenderError, render_as_asked},
     sampling::Sampling,
     scene::{Count, Method, Sampler, Scene},
-    tracer::{GRID, World},
+    tracer::World,
 };
 
 /// The samples of a slice: some 10 ms of two processors for a few objects. No pixel may have more, since a pixel is not divided.
@@ -137,34 +137,34 @@ impl Frames {
     /// Makes a slice of the oldest one. Returns its answer once it is done.
     pub fn advance(
         &mut self,
-        prepared: &mut HashMap<lsp::Uri, Option<Prepared>>,
+        scenes: &mut HashMap<lsp::Uri, Option<SceneVersion>>,
     ) -> Result<Option<Value>, Refusal> {
         let Some(frame) = self.0.front_mut() else {
             return Ok(None);
         };
-        match prepared.get_mut(&frame.uri) {
-            Some(Some(prepared)) => frame.advance(prepared),
+        match scenes.get_mut(&frame.uri) {
+            Some(Some(version)) => frame.advance(version),
             _ => Ok(Some(Value::Null)),
         }
     }
 }
 
 impl Frame {
-    fn advance(&mut self, prepared: &mut Prepared) -> Result<Option<Value>, Refusal> {
+    fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
         let begun = match &mut self.begun {
             Some(begun) => begun,
-            none => none.insert(Begun::new(self.wanted, prepared)?),
+            none => none.insert(Begun::new(self.wanted, version)?),
         };
-        let (_, world) = prepared.world(self.wanted.scale);
+        let (_, world) = version.world(self.wanted.scale);
         begun.advance(world).map_err(refused)?;
         if !begun.slices.is_empty() {
             return Ok(None);
         }
         let mut png = Vec::new();
         film::write_plain_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
-        let image = &prepared.scene.image;
+        let image = &version.scene.image;
         Ok(Some(json!({
-            "version": prepared.version,
+            "version": version.number,
             "width": begun.film.width(),
             "height": begun.film.height(),
             "size": [image.width, image.height],
@@ -174,8 +174,8 @@ impl Frame {
 }
 
 impl Begun {
-    fn new(wanted: Wanted, prepared: &Prepared) -> Result<Self, Refusal> {
-        let (width, height) = prepared.size(wanted.scale);
+    fn new(wanted: Wanted, version: &SceneVersion) -> Result<Self, Refusal> {
+        let (width, height) = version.size(wanted.scale);
         let whole = Area::whole(width, height);
         if whole.pixels() > MOST_PIXELS {
             let message = format!(
@@ -183,7 +183,7 @@ impl Begun {
             );
             return Err(failed(message));
         }
-        let sampler = wanted.sampler(&prepared.scene);
+        let sampler = wanted.sampler(&version.scene);
         let sampling = Sampling::new(&sampler, width, height);
         let work = match sampling.is_exact() {
             true => EXACT,
@@ -198,7 +198,8 @@ impl Begun {
         Ok(Self {
             film: Film::new(width, height).map_err(|error| failed(error.to_string()))?,
             sampling,
-            slices: slices(whole, SLICE / work).collect(),
+            // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
+            slices: whole.tiles(1 << ((SLICE / work).ilog2() / 2)).collect(),
         })
     }
 
@@ -216,32 +217,6 @@ impl Begun {
         self.film.put(part, made.film().pixels());
         Ok(())
     }
-}
-
-/// Rectangles of about so many pixels, at least one: bands of the tracer's grid where these fit, or parts of them.
-fn slices(whole: Area, pixels: u64) -> impl Iterator<Item = Area> {
-    let grid = u64::from(GRID);
-    let rows = pixels / u64::from(whole.width);
-    let (width, height) = if rows >= grid {
-        (u64::from(whole.width), rows - rows % grid)
-    } else {
-        let side = grid.min(1 << (pixels.ilog2() / 2));
-        (pixels / side, side)
-    };
-    // No side of a picture is longer than 2^20.
-    let [width, height] = [width, height].map(|side| side.min(1 << 20) as u32);
-    let starts = |length: u32, side: u32| (0..length).step_by(side as usize);
-    starts(whole.height, height).flat_map(move |y| {
-        starts(whole.width, width).map(move |x| {
-            Area {
-                x,
-                y,
-                width,
-                height,
-            }
-            .common(whole)
-        })
-    })
 }
 
 fn failed(message: String) -> Refusal {

@@ -16,13 +16,13 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response}
 use serde_json::{Value, json};
 
 use super::{
-    answers::{answer, diagnostics, not_open},
-    convert::{self, Client, Page},
+    convert::{self, Client, Converter},
     documents::Document,
     frames::{Frames, Wanted},
     params::{Refusal, parsed, written},
-    pictures,
-    prepared::Prepared,
+    picture_requests,
+    scene_version::SceneVersion,
+    text_requests::{answer, diagnostics, not_open},
 };
 use crate::editor::Analysis;
 
@@ -49,7 +49,7 @@ pub struct Server {
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
     /// What the pictures of documents are made from, where one was asked for; none where a text has errors.
-    prepared: HashMap<lsp::Uri, Option<Prepared>>,
+    scenes: HashMap<lsp::Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
@@ -62,7 +62,7 @@ impl Server {
             documents: HashMap::new(),
             waiting: VecDeque::new(),
             changed: BTreeSet::new(),
-            prepared: HashMap::new(),
+            scenes: HashMap::new(),
             frames: Frames::default(),
             log,
         }
@@ -130,33 +130,33 @@ impl Server {
         let Phase::Talking(client) = &self.phase else {
             return Vec::new();
         };
-        let page = wanted.and_then(|uri| {
-            Some(Page {
+        let converter = wanted.and_then(|uri| {
+            Some(Converter {
                 client,
                 uri,
                 document: self.documents.get(uri)?,
             })
         });
-        let analysis =
-            page.map(|page| LazyCell::new(move || Analysis::new(&page.document.sources)));
+        let analysis = converter
+            .map(|converter| LazyCell::new(move || Analysis::new(&converter.document.sources)));
         let analysis = analysis.as_ref();
         let mut said = Vec::new();
         for request in asked {
             let id = request.id.clone();
-            let Some(about) = request.method.strip_prefix(pictures::NAMESPACE) else {
-                let known = page.zip(analysis.map(|analysis| &**analysis));
+            let Some(about) = request.method.strip_prefix(picture_requests::NAMESPACE) else {
+                let known = converter.zip(analysis.map(|analysis| &**analysis));
                 said.push(response(id, unharmed(|| answer(request, known))));
                 continue;
             };
-            let Some((page, analysis)) = page.zip(analysis) else {
+            let Some((converter, analysis)) = converter.zip(analysis) else {
                 said.push(response(id, Err(not_open())));
                 continue;
             };
-            let (uri, version) = (page.uri.clone(), page.document.version);
-            let prepared = self.prepared.entry(uri.clone());
-            let prepared = prepared.or_insert_with(|| Prepared::new(analysis, version));
+            let (uri, number) = (converter.uri.clone(), converter.document.version);
+            let version = self.scenes.entry(uri.clone());
+            let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
             let params = &request.params;
-            match (prepared, about) {
+            match (version, about) {
                 (Some(_), "frame") => match Wanted::new(params) {
                     Ok(wanted) => {
                         let superseded = self.frames.push(id, uri, wanted);
@@ -164,8 +164,9 @@ impl Server {
                     }
                     Err(refusal) => said.push(response(id, Err(refusal))),
                 },
-                (prepared, _) => {
-                    let answer = || pictures::answer(about, params, page, analysis, prepared);
+                (version, _) => {
+                    let answer =
+                        || picture_requests::answer(about, params, converter, analysis, version);
                     said.push(response(id, unharmed(answer)));
                 }
             }
@@ -173,9 +174,9 @@ impl Server {
         if is_changed {
             let mut params = json!({ "uri": wanted, "diagnostics": [] });
             // Nothing is wrong with a text that was closed.
-            if let Some((page, analysis)) = page.zip(analysis) {
-                params["version"] = page.document.version.into();
-                params["diagnostics"] = json!(diagnostics(page, analysis));
+            if let Some((converter, analysis)) = converter.zip(analysis) {
+                params["version"] = converter.document.version.into();
+                params["diagnostics"] = json!(diagnostics(converter, analysis));
             }
             said.push(published(params));
         }
@@ -185,15 +186,15 @@ impl Server {
     /// Makes a slice of a frame. Says the frame if it is done.
     fn advance_frame(&mut self) -> Option<Message> {
         let id = self.frames.oldest()?;
-        let (frames, prepared) = (&mut self.frames, &mut self.prepared);
-        let answer = unharmed(|| frames.advance(prepared)).transpose()?;
+        let (frames, scenes) = (&mut self.frames, &mut self.scenes);
+        let answer = unharmed(|| frames.advance(scenes)).transpose()?;
         self.frames.cancel(&id);
         Some(response(id, answer))
     }
 
-    /// Forgets what was prepared for a text that has changed. Answers those who wait for a frame of it.
+    /// Forgets the scene of a text that has changed. Answers those who wait for a frame of it.
     fn forget(&mut self, uri: &lsp::Uri) -> Vec<Message> {
-        self.prepared.remove(uri);
+        self.scenes.remove(uri);
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
             let message = "the text has changed".to_owned();

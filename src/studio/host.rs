@@ -10,8 +10,8 @@ use std::{
 
 use super::{
     access::{Access, Answer},
+    conversation::converse,
     http::{self, Request, Response},
-    page::converse,
     pages::Pages,
     scene_file::SceneFile,
 };

@@ -37,18 +37,9 @@ impl Request {
         let mut head = Vec::new();
         let mut piece = [0; 4096];
         loop {
-            let left = end.saturating_duration_since(Instant::now());
-            // A timeout of zero would be none.
-            if left.is_zero() {
-                return None;
-            }
-            stream.set_read_timeout(Some(left)).ok()?;
-            match stream.read(&mut piece) {
-                Ok(0) => return None,
-                Ok(length) => head.extend_from_slice(&piece[..length]),
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                Err(_) => return None,
-            }
+            let read = read_before(stream, &mut piece, end);
+            let length = read.ok().filter(|length| *length > 0)?;
+            head.extend_from_slice(&piece[..length]);
             if head.len() > LONGEST_HEAD {
                 return None;
             }
@@ -143,17 +134,20 @@ impl Response {
         // What was sent and not read would tear the connection down before the response has arrived.
         let end = Instant::now() + FAREWELL;
         let mut rest = [0; 4096];
-        loop {
-            let left = end.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return Ok(());
-            }
-            stream.set_read_timeout(Some(left))?;
-            if stream.read(&mut rest)? == 0 {
-                return Ok(());
-            }
-        }
+        while read_before(&mut stream, &mut rest, end)? > 0 {}
+        Ok(())
     }
+}
+
+/// Reads what comes before a certain time; nothing behind the end.
+fn read_before(stream: &mut TcpStream, bytes: &mut [u8], end: Instant) -> io::Result<usize> {
+    let left = end.saturating_duration_since(Instant::now());
+    // A timeout of zero would be none.
+    if left.is_zero() {
+        return Err(io::ErrorKind::TimedOut.into());
+    }
+    stream.set_read_timeout(Some(left))?;
+    stream.read(bytes)
 }
 
 /// Accepts to go on as a web socket, as RFC 6455 wants it.

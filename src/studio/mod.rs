@@ -1,21 +1,21 @@
 //! Studio: a scene as a page, its text on the left and its picture on the right.
 //!
 //! The page and the engine hold the conversation that `docs/protocol.md` describes: messages of the language server ([`crate::lsp::Server`]), one JSON text
-//! each, and a few of the host's own, about the scene's file and whole pictures ([`picture_file`]). There are two hosts. One is here: `host` serves the page on this machine alone and
-//! carries the conversation over a web socket; `http` reads what a browser asks, `access` says what it may have, `page` is one page's conversation, `pages` all of them and the file that they share, `scene_file` the
+//! each, and a few of the host's own, about the scene's file and whole pictures ([`download`]). There are two hosts. One is here: `host` serves the page on this machine alone and
+//! carries the conversation over a web socket; `http` reads what a browser asks, `access` says what it may have, `conversation` talks to one page, `pages` all of them and the file that they share, `scene_file` the
 //! only file that is read or written. The other one is the crate `studio/engine`, which runs in the browser itself.
 
 #[cfg(feature = "studio")]
 mod access;
 #[cfg(feature = "studio")]
+mod conversation;
+pub mod download;
+#[cfg(feature = "studio")]
 mod host;
 #[cfg(feature = "studio")]
 mod http;
 #[cfg(feature = "studio")]
-mod page;
-#[cfg(feature = "studio")]
 mod pages;
-pub mod picture_file;
 #[cfg(feature = "studio")]
 mod scene_file;
 

@@ -7,25 +7,18 @@ use std::{
 };
 
 use lsp_server::Notification;
-use serde_json::{Value, json};
-use tungstenite::{Bytes, Utf8Bytes, protocol::frame::coding::CloseCode};
+use serde_json::json;
 
 use super::scene_file::{NotSaved, SceneFile};
 use crate::lsp::messages;
 
-/// What happens to a page.
+/// What other threads have for a page.
 #[derive(Debug)]
 pub enum Event {
-    /// It has sent a message.
-    Said(Utf8Bytes),
-    /// It wants to know whether somebody is there.
-    Pinged(Bytes),
     /// There is a message for it.
     Tell(String),
     /// Its picture's file is made, or not: the answer.
     Rendered(String),
-    /// It is gone, or has sent what ends the conversation.
-    Over(CloseCode),
 }
 
 /// The pages that are open, and the file that they share.
@@ -63,8 +56,7 @@ impl Pages {
         shared.joined += 1;
         let number = shared.joined;
         shared.pages.push((number, sender));
-        let file = shared.about_file();
-        shared.tell(&file, |page| page == number);
+        shared.tell(|page| page == number);
         number
     }
 
@@ -85,12 +77,8 @@ impl Pages {
         let was_new = shared.file.path().is_none();
         let is_known = shared.file.held().text() == Some(text);
         shared.file.save(text, base, name)?;
-        if was_new {
-            let message = shared.about_file();
-            shared.tell(&message, |_| true);
-        } else if !is_known {
-            let message = shared.about_text();
-            shared.tell(&message, |page| page != number);
+        if was_new || !is_known {
+            shared.tell(|page| was_new || page != number);
         }
         drop(shared);
         if was_new {
@@ -111,8 +99,7 @@ impl Pages {
             while let Some(content) = latest.take() {
                 let mut shared = pages.lock();
                 if shared.file.look(content) {
-                    let message = shared.about_text();
-                    shared.tell(&message, |_| true);
+                    shared.tell(|_| true);
                 }
             }
         };
@@ -126,43 +113,21 @@ impl Pages {
 
 impl Shared {
     fn about_file(&self) -> String {
-        let name = self.file.name();
         let params = json!({
-            "name": name,
+            "name": self.file.name(),
             "text": self.file.held().text(),
             "reason": self.file.held().reason(),
-            "uri": uri(&name),
             "saved": self.file.path().is_some(),
         });
-        notification("studio/file", params)
+        messages::written(&Notification::new("studio/file".to_owned(), params).into())
     }
 
-    fn about_text(&self) -> String {
-        let held = self.file.held();
-        let params = json!({ "text": held.text(), "reason": held.reason() });
-        notification("studio/changed", params)
-    }
-
-    fn tell(&self, message: &str, is_meant: impl Fn(u64) -> bool) {
+    /// Tells pages about the file as it is now.
+    fn tell(&self, is_meant: impl Fn(u64) -> bool) {
+        let message = self.about_file();
         for (_, sender) in self.pages.iter().filter(|(page, _)| is_meant(*page)) {
             // One that has gone is about to leave.
-            let _ = sender.send(Event::Tell(message.to_owned()));
+            let _ = sender.send(Event::Tell(message.clone()));
         }
     }
-}
-
-/// What the conversation calls the text. Where its folder is does not matter to a page.
-fn uri(name: &str) -> String {
-    let escaped = name.bytes().map(|byte| match byte {
-        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => {
-            char::from(byte).to_string()
-        }
-        _ => format!("%{byte:02X}"),
-    });
-    format!("studio:///{}", escaped.collect::<String>())
-}
-
-/// A notification's text.
-fn notification(method: &str, params: Value) -> String {
-    messages::written(&Notification::new(method.to_owned(), params).into())
 }

@@ -42,6 +42,8 @@ if (host === "static") {
   page = page
     .replace('<meta name="pinhole-host" content="served">', `<meta http-equiv="Content-Security-Policy" content="${policy}">\n    <meta name="pinhole-host" content="static">`)
     .replace('    <meta name="pinhole-nonce" content="__NONCE__">\n', "")
+    // A link to a site leads everybody to it.
+    .replace('<p id="share-local">', '<p id="share-local" hidden>')
     // The engine in the browser writes no EXR.
     .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>');
 }

@@ -2,10 +2,10 @@
 
 use gen_lsp_types as lsp;
 
-use super::page::{Page, markup};
+use super::converter::{Converter, markup};
 use crate::editor::{Completion, CompletionKind, Piece};
 
-impl Page<'_> {
+impl Converter<'_> {
     pub fn completion(&self, index: usize, completion: Completion) -> lsp::CompletionItem {
         let (kind, documentation) = match completion.kind {
             CompletionKind::Keyword => (lsp::CompletionItemKind::Keyword, None),

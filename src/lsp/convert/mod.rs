@@ -2,8 +2,8 @@
 
 mod client;
 mod completion;
-mod page;
+mod converter;
 mod tokens;
 
 pub use client::{Client, capabilities};
-pub use page::{Page, changes, color};
+pub use converter::{Converter, changes, color};

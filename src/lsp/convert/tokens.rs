@@ -2,10 +2,10 @@
 
 use gen_lsp_types as lsp;
 
-use super::page::{Page, count};
+use super::converter::{Converter, count};
 use crate::editor::{SemanticKind, SemanticToken};
 
-impl Page<'_> {
+impl Converter<'_> {
     /// Each token relative to the one before it; comments of several lines in pieces, a line each.
     pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> lsp::SemanticTokens {
         let mut data = Vec::with_capacity(tokens.len());

@@ -9,7 +9,7 @@ use pinhole::{
         messages::{self, Malformed},
     },
     scene::SMALLEST,
-    studio::picture_file,
+    studio::download,
 };
 use serde_json::json;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -32,15 +32,15 @@ impl Engine {
 
     /// What it says first: there is no file, and a new scene.
     pub fn greeting(&self) -> String {
-        let params = json!({ "name": "scene.scn", "text": SMALLEST, "uri": "studio:///scene.scn", "saved": false });
+        let params = json!({ "name": "scene.scn", "text": SMALLEST, "saved": false });
         messages::written(&Notification::new("studio/file".to_owned(), params).into())
     }
 
     /// Takes a message in, and returns what has to be said before anything else.
     pub fn handle(&mut self, text: &str) -> Vec<String> {
         match messages::read(text.as_bytes()) {
-            Ok(Message::Request(request)) if picture_file::is_asked_for(&request) => texts(vec![
-                picture_file::answer(request, &AtomicBool::new(false)).into(),
+            Ok(Message::Request(request)) if download::is_asked_for(&request) => texts(vec![
+                download::answer(request, &AtomicBool::new(false)).into(),
             ]),
             Ok(message) => texts(self.server.handle(message)),
             Err(Malformed::Answered(response)) => vec![response.to_string()],

@@ -84,7 +84,7 @@ export class Connection implements Transport {
     if (waiting !== undefined) {
       this.waiting.delete(message.id);
       const { error } = message;
-      if (error) waiting.reject(new Refusal(error.code, error.message, error.data));
+      if (error) waiting.reject(new Refusal(error.code, error.message));
       else waiting.resolve(message.result);
       return;
     }

@@ -6,7 +6,7 @@ import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, Compartment, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
+import { ChangeSet, Compartment, StateEffect, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
 import { gestureHistory } from "./gesture";
@@ -65,11 +65,10 @@ export function withLf(text: string): string {
 export class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
-  /** The address of the scene, by which the server knows it. */
+  /** The address by which the server knows the scene; empty until it has been told. */
   uri = "";
   /** What to do with the diagnostics that the server publishes. */
   diagnosed: (published: Published) => void = () => undefined;
-  private readonly plugin = new Compartment();
   private readonly history = new Compartment();
 
   constructor(parent: HTMLElement, private readonly connection: Connection, nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
@@ -119,7 +118,6 @@ export class SceneEditor {
           ...historyKeymap,
           ...defaultKeymap,
         ]),
-        this.plugin.of([]),
         EditorView.updateListener.of(it => {
           if (it.docChanged) this.sync();
           update(it);
@@ -145,12 +143,11 @@ export class SceneEditor {
     this.view.dispatch({ effects: this.history.reconfigure(gestureHistory()) });
   }
 
-  /** Tells the server the address of the text, or another one. */
-  moveTo(uri: string): void {
-    if (uri === this.uri) return;
-    this.view.dispatch({ effects: this.plugin.reconfigure([]) });
-    this.uri = uri;
-    this.view.dispatch({ effects: this.plugin.reconfigure(this.client.plugin(uri, "pinhole")) });
+  /** Tells the server about the text, unless it was told already. */
+  start(): void {
+    if (this.uri !== "") return;
+    this.uri = "studio:///scene.scn";
+    this.view.dispatch({ effects: StateEffect.appendConfig.of(this.client.plugin(this.uri, "pinhole")) });
   }
 
   /** Puts another text in place, changing no more than differs, so that the cursor stays where it is. */

@@ -4,7 +4,7 @@ import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
-import { Refusal, type HostedFile } from "./protocol";
+import type { HostedFile, Saved } from "./protocol";
 import type { Status } from "./status";
 
 /** What browsers that can save into files offer for it. */
@@ -60,8 +60,8 @@ export class Files {
     return this.seen?.includes("\r\n") ? text.replaceAll("\n", "\r\n") : text;
   }
 
-  /** The host says which file it has: at first, after the connection was lost, and when a new scene has got its name. */
-  hosted({ name, text, reason, uri, saved }: HostedFile, linked: string | null): void {
+  /** The host says what file it has: at first, after the connection was lost, when a new scene has got its name, and when the file has changed. */
+  hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
     this.name = name;
     this.isNew = this.isServed && !saved;
     if (!this.opened) {
@@ -78,12 +78,12 @@ export class Files {
       this.untouched = null;
       this.changed(text, reason);
     }
-    this.editor.moveTo(uri);
+    this.editor.start();
     this.show();
   }
 
   /** The file was changed by somebody else, is gone, or is back. */
-  changed(text: string | null, reason?: string | null): void {
+  private changed(text: string | null, reason?: string | null): void {
     const { seen, isGone } = this;
     this.isGone = text === null;
     if (text === null) {
@@ -130,16 +130,13 @@ export class Files {
     const text = this.textToSave;
     const name = this.isNew ? await this.askName() : this.name;
     if (name === null) return;
-    try {
-      await this.connection.request("studio/save", { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) });
+    const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
+    const answer = await this.connection.request<Saved>("studio/save", about);
+    if (answer.ok) {
       this.saved(name, text);
       this.isNew = false;
-    } catch (error) {
-      if (!(error instanceof Refusal) || error.code !== 1) throw error;
-      const { text: held } = error.data as { text: string | null };
-      if (held === null) this.changed(null);
-      else this.ask(held);
-    }
+    } else if (answer.text === null) this.changed(null);
+    else this.ask(answer.text);
   }
 
   private saved(name: string, text: string): void {

@@ -5,18 +5,30 @@ import { tags } from "@lezer/highlight";
 
 export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
 
-const KINDS = new Set(["image", "camera", "sampler", "sphere", "triangle", "box", "checkerboard"]);
-const FIELDS = new Set(
-  ("width height background eye lookat direction up roll d view_height fov hfov near far method per_pixel total seed center radius color " +
-    "centroid normal sides spin v0 v1 v2 size min max y square colors").split(" "),
+const words = (...lists: string[]) => new Set(lists.join(" ").split(" "));
+
+// The words of the language; a test of Pinhole compares them with its own.
+const KINDS = words("image camera sampler sphere triangle box checkerboard");
+const FIELDS = words(
+  "width height background",
+  "eye lookat direction up roll d view_height fov hfov near far",
+  "method per_pixel total seed",
+  "center radius color centroid normal sides spin v0 v1 v2 size min max y square colors",
 );
-const FUNCTIONS = new Set("sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb".split(" "));
+const FUNCTIONS = words("sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb");
+/** Fields that take whole numbers. */
+const WHOLE_FIELDS = words("width height per_pixel total seed");
 
 interface State {
   comment: boolean;
   block: boolean;
   parentheses: number;
   defines: boolean;
+}
+
+/** Whether the word that a text ends in is a field that takes whole numbers. */
+export function endsInWholeField(text: string): boolean {
+  return WHOLE_FIELDS.has(/\w+(?=\s+$)/.exec(text)?.[0] ?? "");
 }
 
 const number = new RegExp(`^${NUMBER.source}`);

@@ -111,16 +111,11 @@ connection.onState = state => {
 
 const linked = sceneInAddress(status);
 connection.onNotification = async (method, params) => {
-  if (method === "studio/file") {
-    const text = await linked;
-    const first = editor.uri === "";
-    files.hosted(params as HostedFile, text);
-    if (first) changed();
-  }
-  if (method === "studio/changed") {
-    const { text, reason } = params as Pick<HostedFile, "text" | "reason">;
-    files.changed(text, reason);
-  }
+  if (method !== "studio/file") return;
+  const text = await linked;
+  const first = editor.uri === "";
+  files.hosted(params as HostedFile, text);
+  if (first) changed();
 };
 
 addEventListener("hashchange", async () => {

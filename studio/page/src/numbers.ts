@@ -5,7 +5,7 @@ import { StateEffect, StateField, type EditorState, type Extension } from "@code
 import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type ViewUpdate } from "@codemirror/view";
 import { create, createButton } from "./dom";
 import { Gesture } from "./gesture";
-import { NUMBER } from "./language";
+import { endsInWholeField, NUMBER } from "./language";
 
 /** A number literal, with the sign that belongs to it. */
 interface Literal {
@@ -18,8 +18,6 @@ interface Literal {
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
 
-/** Fields that take whole numbers. */
-const WHOLE = /\b(?:width|height|per_pixel|total|seed)\s+$/;
 /** A minus sign that belongs to the number: nothing stands before it that it could subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
@@ -32,7 +30,7 @@ function literalAt(state: EditorState, at: number): Literal | null {
   const before = state.sliceDoc(line.from, node.from);
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
-  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value, step: stepOf(value, written, WHOLE.test(before)) };
+  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value, step: stepOf(value, written, endsInWholeField(before)) };
 }
 
 /** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero ends; and no coarser than how it is written. */

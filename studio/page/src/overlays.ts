@@ -21,10 +21,6 @@ export type Layer = keyof typeof LAYERS;
 /** From this zoom on a grid of pixels can be seen. */
 const GRID_ZOOM = 6;
 
-/** Lines are cut off so many picture sizes outside of it: what draws them counts in single precision, in which a tenth of a pixel is kept up to 2^20 pixels, and a
- *  picture is shown with up to 8192 in a row. */
-const REACH = 2 ** 20 / 8192;
-
 export class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */
   data: Overlays | null = null;
@@ -72,7 +68,7 @@ export class OverlayLayer {
     const group = createSvg("g", { transform: picture.matrix });
     svg.append(group);
     const path = (name: string, lines: readonly Polyline[]) => {
-      const d = lines.map(line => pathOf(line, picture.size)).join("");
+      const d = lines.map(line => `M${line.join("L")}`).join("");
       if (d === "") return;
       // A dark line under a light one is seen on every ground.
       group.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }));
@@ -127,33 +123,4 @@ function grid(picture: Picture): Polyline[] {
   for (let x = x0; x <= x1; x++) lines.push([[x, y0], [x, y1]]);
   for (let y = y0; y <= y1; y++) lines.push([[x0, y], [x1, y]]);
   return lines;
-}
-
-/** The path of a line for SVG, with a gap where a point cannot be seen. */
-function pathOf(line: Polyline, [width, height]: [number, number]): string {
-  let path = "";
-  for (let i = 1; i < line.length; i++) {
-    const [from, to] = [line[i - 1], line[i]];
-    if (from == null || to == null) continue;
-    const cut = clip(from, to, [-REACH * width, -REACH * height], [(REACH + 1) * width, (REACH + 1) * height]);
-    if (cut === null) continue;
-    const [[x0, y0], [x1, y1]] = cut;
-    path += `M${x0} ${y0}L${x1} ${y1}`;
-  }
-  return path;
-}
-
-/** The part of a segment in a rectangle (Liang and Barsky's algorithm). */
-function clip(from: Point, to: Point, least: Point, most: Point): [Point, Point] | null {
-  let [t0, t1] = [0, 1];
-  const at = (t: number): Point => [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])];
-  for (const axis of [0, 1] as const) {
-    const d = to[axis] - from[axis];
-    for (const [p, q] of [[-d, from[axis] - least[axis]], [d, most[axis] - from[axis]]] as const) {
-      if (p === 0 && q < 0) return null;
-      if (p < 0) t0 = Math.max(t0, q / p);
-      if (p > 0) t1 = Math.min(t1, q / p);
-    }
-  }
-  return t0 > t1 ? null : [at(t0), at(t1)];
 }

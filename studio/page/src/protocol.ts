@@ -18,8 +18,8 @@ export interface TextEdit {
 /** A point of the picture, in pixels of the scene, from the top left corner. */
 export type Point = readonly [number, number];
 
-/** A line through points; one that cannot be seen is null. */
-export type Polyline = readonly (Point | null)[];
+/** A line through points. */
+export type Polyline = readonly Point[];
 
 export interface Frame {
   version: number;
@@ -87,13 +87,15 @@ export interface HostedFile {
   text: string | null;
   /** Why there is no text, where something else is there. */
   reason?: string | null;
-  uri: string;
   saved: boolean;
 }
 
+/** Whether the file was saved; if not, what is in it now. */
+export type Saved = { ok: true } | { ok: false; text: string | null };
+
 /** An error that the server answered with. */
 export class Refusal extends Error {
-  constructor(readonly code: number, message: string, readonly data: unknown) {
+  constructor(readonly code: number, message: string) {
     super(message);
   }
 }

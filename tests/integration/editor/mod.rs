@@ -3,9 +3,9 @@
 mod completion;
 mod hover;
 mod names;
-mod picture;
 mod prefixes;
 mod shape;
+mod viewport;
 mod words;
 
 use pinhole::{

@@ -3,7 +3,7 @@
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
 
-use super::pictures::{Talk, URI};
+use super::picture_requests::{Talk, URI};
 use crate::program::command;
 
 const SCENE: &str = "\

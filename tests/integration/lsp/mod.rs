@@ -3,5 +3,5 @@
 mod client;
 mod frames;
 mod neovim;
-mod pictures;
+mod picture_requests;
 mod session;

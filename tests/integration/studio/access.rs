@@ -1,22 +1,12 @@
 //! Who is let in, and to what.
 
 use std::{
-    fs,
     io::{Read, Write},
     net::TcpStream,
     time::{Duration, Instant},
 };
 
-use super::client::{PATIENCE, Studio};
-
-const SCENE: &str = pinhole::scene::SMALLEST;
-
-fn studio() -> (tempfile::TempDir, Studio) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
-    let studio = Studio::start(folder.path(), &["a.scn"]);
-    (folder, studio)
-}
+use super::client::{PATIENCE, studio};
 
 fn status(response: &str) -> &str {
     let line = response.strip_prefix("HTTP/1.1 ").unwrap_or_default();
@@ -63,7 +53,7 @@ fn the_token_is_exchanged_for_a_cookie() {
     let response = studio.get(&format!("/?token={}", studio.secret), "");
     assert_eq!(status(&response), "403");
     // Another run has another token.
-    let (_folder, other) = self::studio();
+    let (_folder, other) = super::client::studio();
     assert!(studio.token != other.token && studio.secret != other.secret);
 }
 

@@ -1,6 +1,7 @@
 //! The program, and a plain client that says what a browser would say.
 
 use std::{
+    fs,
     io::{BufRead, BufReader, Read, Write},
     net::TcpStream,
     path::Path,
@@ -8,7 +9,9 @@ use std::{
     time::Duration,
 };
 
+use pinhole::scene::SMALLEST;
 use serde_json::{Value, json};
+use tempfile::TempDir;
 use tungstenite::{
     Message, WebSocket,
     client::client,
@@ -19,6 +22,19 @@ use crate::program::command;
 
 /// The longest that anything may take.
 pub const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The program, which serves the smallest scene as `a.scn`, in a folder of its own.
+pub fn studio() -> (TempDir, Studio) {
+    serve("a.scn", SMALLEST)
+}
+
+/// The program, which serves a file of this name with this text, in a folder of its own.
+pub fn serve(name: &str, text: &str) -> (TempDir, Studio) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(name), text).unwrap();
+    let studio = Studio::start(folder.path(), &[name]);
+    (folder, studio)
+}
 
 /// The program while it serves.
 pub struct Studio {

@@ -6,7 +6,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 use tungstenite::{Error, Message, protocol::frame::coding::CloseCode};
 
-use super::client::{Page, Studio};
+use super::client::{Page, serve, studio};
 use crate::{interrupt::long_pixel, program::command};
 
 const SCENE: &str = "\
@@ -15,13 +15,6 @@ camera { eye (0, 2, 5)  lookat (0, 1, 0) }
 sphere Ball { center (0, 1, 0)   radius 1 }
 checkerboard {}
 ";
-
-fn studio() -> (tempfile::TempDir, Studio) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a b.scn"), SCENE).unwrap();
-    let studio = Studio::start(folder.path(), &["a b.scn"]);
-    (folder, studio)
-}
 
 /// Opens the text; what is wrong with it.
 fn begin(page: &mut Page, uri: &str, text: &str) -> Value {
@@ -34,13 +27,13 @@ fn begin(page: &mut Page, uri: &str, text: &str) -> Value {
 
 #[test]
 fn a_page_talks_to_a_language_server() {
-    let (_folder, studio) = studio();
+    let (_folder, studio) = serve("a b.scn", SCENE);
     let (mut page, file) = studio.page();
     assert_eq!(
         file,
-        json!({ "name": "a b.scn", "text": SCENE, "reason": null, "uri": "studio:///a%20b.scn", "saved": true })
+        json!({ "name": "a b.scn", "text": SCENE, "reason": null, "saved": true })
     );
-    let uri = file["uri"].as_str().unwrap();
+    let uri = "studio:///scene.scn";
     assert_eq!(begin(&mut page, uri, SCENE), json!([]));
     let options = json!({ "tabSize": 2, "insertSpaces": true });
     let about = json!({ "textDocument": { "uri": uri }, "options": options });
@@ -206,9 +199,9 @@ fn a_page_that_is_gone_leaves_no_work() {
     begin(&mut page, "studio:///a", SCENE);
     page.request("studio/png", json!({ "text": long_pixel() }));
     wait("picture", true);
-    wait("page", true);
+    wait("connection", true);
     drop(page);
-    for name in ["picture", "page", "connection"] {
+    for name in ["picture", "connection"] {
         wait(name, false);
     }
     studio.page();

@@ -9,20 +9,19 @@ use std::{
 
 use serde_json::{Value, json};
 
-use super::client::{Page, Studio};
+use super::client::{Page, Studio, studio};
 use crate::program::command;
 
 const SCENE: &str = pinhole::scene::SMALLEST;
 
-fn studio() -> (tempfile::TempDir, Studio) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
-    let studio = Studio::start(folder.path(), &["a.scn"]);
-    (folder, studio)
-}
-
 fn save(page: &mut Page, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
+}
+
+/// What the page is told to be in the file.
+fn told(page: &mut Page) -> Value {
+    let file = page.told("studio/file");
+    json!({ "text": file["text"], "reason": file["reason"] })
 }
 
 fn saved() -> Value {
@@ -46,7 +45,7 @@ fn a_text_is_saved_and_other_pages_hear_of_it() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(fs::read(&path).unwrap(), "// é\r\n".as_bytes());
     assert_eq!(
-        second.told("studio/changed"),
+        told(&mut second),
         json!({ "text": "// é\r\n", "reason": null })
     );
     // What is there already need not be written, whatever it was made from.
@@ -56,10 +55,7 @@ fn a_text_is_saved_and_other_pages_hear_of_it() {
         saved()
     );
     // The first page has heard of that alone, and not of what it has saved itself.
-    assert_eq!(
-        first.told("studio/changed"),
-        json!({ "text": "// 2", "reason": null })
-    );
+    assert_eq!(told(&mut first), json!({ "text": "// 2", "reason": null }));
     assert_eq!(studio.page().1["text"], "// 2");
     assert_eq!(names(folder.path()), ["a.scn"]);
 }
@@ -71,13 +67,10 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
     let (mut page, _) = studio.page();
     fs::write(&path, "// theirs").unwrap();
     // Whether the page has been told or not.
-    let error = save(&mut page, "// mine", Some(SCENE))["error"].clone();
-    assert_eq!(
-        (&error["code"], &error["data"]),
-        (&json!(1), &json!({ "text": "// theirs" }))
-    );
+    let theirs = json!({ "ok": false, "text": "// theirs" });
+    assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(fs::read_to_string(&path).unwrap(), "// theirs");
-    assert_eq!(page.told("studio/changed")["text"], "// theirs");
+    assert_eq!(page.told("studio/file")["text"], "// theirs");
     assert_eq!(
         save(&mut page, "// mine", Some("// theirs"))["result"],
         saved()
@@ -85,21 +78,15 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
     // It is gone.
     fs::remove_file(&path).unwrap();
     let nothing = json!({ "text": null, "reason": null });
-    assert_eq!(page.told("studio/changed"), nothing);
-    let error = save(&mut page, "// more", Some("// mine"))["error"].clone();
-    assert_eq!(
-        (&error["code"], &error["data"]),
-        (&json!(1), &json!({ "text": null }))
-    );
+    assert_eq!(told(&mut page), nothing);
+    let gone = json!({ "ok": false, "text": null });
+    assert_eq!(save(&mut page, "// more", Some("// mine"))["result"], gone);
     assert_eq!(save(&mut page, "// mine", None)["result"], saved());
     assert_eq!(fs::read_to_string(&path).unwrap(), "// mine");
     // It is in another encoding, which would be lost.
     fs::write(&path, b"// \xff").unwrap();
     let reason = "it is not a text in UTF-8";
-    assert_eq!(
-        page.told("studio/changed"),
-        json!({ "text": null, "reason": reason })
-    );
+    assert_eq!(told(&mut page), json!({ "text": null, "reason": reason }));
     for base in [None, Some("// mine")] {
         let error = save(&mut page, "// more", base)["error"].clone();
         assert_eq!(error["message"], format!("a.scn cannot be read: {reason}"));
@@ -116,16 +103,14 @@ fn a_page_hears_of_what_other_editors_save() {
         let other = folder.path().join("other");
         fs::write(&other, text).unwrap();
         fs::rename(&other, folder.path().join("a.scn")).unwrap();
-        assert_eq!(page.told("studio/changed")["text"], text);
+        assert_eq!(page.told("studio/file")["text"], text);
     }
 }
 
 #[test]
 fn a_save_that_fails_changes_nothing() {
-    let folder = tempfile::tempdir().unwrap();
+    let (folder, studio) = studio();
     let path = folder.path().join("a.scn");
-    fs::write(&path, SCENE).unwrap();
-    let studio = Studio::start(folder.path(), &["a.scn"]);
     let (mut page, _) = studio.page();
     // No name but its own.
     let elsewhere = json!({ "text": "x", "base": SCENE, "name": "b.scn" });
@@ -153,10 +138,9 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let studio = Studio::start(&inner, &[]);
     let (mut page, file) = studio.page();
     let (mut other, _) = studio.page();
-    let uri = "studio:///scene.scn";
     assert_eq!(
         file,
-        json!({ "name": "scene.scn", "text": SCENE, "reason": null, "uri": uri, "saved": false })
+        json!({ "name": "scene.scn", "text": SCENE, "reason": null, "saved": false })
     );
     let save = |page: &mut Page, name: Value| {
         let params = json!({ "text": "// new", "base": SCENE, "name": name });
@@ -191,15 +175,14 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let path = inner.join("new one.scn");
     assert_eq!(fs::read_to_string(&path).unwrap(), "// new");
     // From now on it is a file like any other.
-    let uri = "studio:///new%20one.scn";
-    let file = json!({ "name": "new one.scn", "text": "// new", "reason": null, "uri": uri, "saved": true });
+    let file = json!({ "name": "new one.scn", "text": "// new", "reason": null, "saved": true });
     for page in [&mut page, &mut other] {
         assert_eq!(page.told("studio/file"), file);
     }
     let response = save(&mut other, json!("second.scn"));
     assert_eq!(response["error"]["message"], "this scene is in new one.scn");
     fs::write(&path, "// theirs").unwrap();
-    assert_eq!(page.told("studio/changed")["text"], "// theirs");
+    assert_eq!(page.told("studio/file")["text"], "// theirs");
     let params = json!({ "text": "// mine", "base": "// theirs" });
     assert_eq!(page.ask("studio/save", params), saved());
     assert_eq!(fs::read_to_string(&path).unwrap(), "// mine");

@@ -4,3 +4,4 @@ mod access;
 mod client;
 mod conversation;
 mod files;
+mod highlighting;

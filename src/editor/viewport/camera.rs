@@ -5,12 +5,13 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::{
-    handles::{unit, within_half_turn},
+    handles::{handles, unit, within_half_turn},
     projection::Projection,
 };
 use crate::{
     math::{Angle, trig},
-    scene::{Camera, Lens, View},
+    probe::probe,
+    scene::{Camera, Lens, Scene, View},
 };
 
 /// So near, in radians, the view direction may come to the up vector: one degree.
@@ -18,6 +19,26 @@ const POLE: f64 = PI / 180.0;
 
 /// What the camera's distance, or its view distance, is multiplied by over the height of the picture.
 const ZOOM: f64 = 4.0;
+
+/// How far away that is which the camera is moved about: `lookat`, or else what is seen in the middle of the picture, or the nearest object.
+pub fn distance(scene: &Scene) -> f64 {
+    let camera = &scene.camera;
+    let from_eye = |point: DVec3| unit(point - camera.eye).1;
+    if let View::Lookat(point) = camera.view {
+        return from_eye(point);
+    }
+    let projection = Projection::new(camera, &scene.image);
+    let seen = probe(scene, projection.size / 2.0).hits.into_iter();
+    let seen = seen.map(|(hit, ..)| hit).find(|hit| hit.visible);
+    let nearest = || {
+        let objects = scene.objects.iter();
+        // The first handle of an object is its middle.
+        let middles = objects.filter_map(|object| handles(&object.shape, &projection).first()?.at);
+        let distances = middles.map(from_eye).filter(|distance| *distance > 0.0);
+        distances.reduce(f64::min)
+    };
+    seen.map(|hit| hit.t).or_else(nearest).unwrap_or(1.0)
+}
 
 /// A camera after the pointer has moved from one point of the picture to another; `distance` is how far away that is which it is moved about.
 pub fn moved(

@@ -18,7 +18,7 @@ use crate::{
 
 /// A document with its address, for the client that has it open.
 #[derive(Clone, Copy)]
-pub struct Page<'d> {
+pub struct Converter<'d> {
     /// Who has it open.
     pub client: &'d Client,
     /// Its address.
@@ -31,7 +31,7 @@ pub(super) fn count(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
-impl Page<'_> {
+impl Converter<'_> {
     /// The offset of a position.
     pub fn offset(&self, position: lsp::Position) -> usize {
         self.document.offset(place(position))

@@ -5,7 +5,7 @@
 use std::collections::VecDeque;
 
 use crate::{
-    editor::{Analysis, picture::selections},
+    editor::{Analysis, viewport::selections},
     scene::Scene,
     source::Span,
     tracer::World,
@@ -16,9 +16,9 @@ const WORLDS: usize = 4;
 
 /// A version of a text that has a picture.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct SceneVersion {
     /// Which version it is, as the client counts.
-    pub version: i32,
+    pub number: i32,
     /// What it means.
     pub scene: Scene,
     /// For each object the name or the keyword that stands for it.
@@ -26,12 +26,12 @@ pub struct Prepared {
     worlds: VecDeque<(u32, World)>,
 }
 
-impl Prepared {
+impl SceneVersion {
     /// None where the text has errors.
-    pub fn new(analysis: &Analysis<'_>, version: i32) -> Option<Self> {
+    pub fn new(analysis: &Analysis<'_>, number: i32) -> Option<Self> {
         let scene = analysis.scene()?;
         Some(Self {
-            version,
+            number,
             selections: selections(analysis, &scene),
             scene,
             worlds: VecDeque::new(),

@@ -1,4 +1,4 @@
-//! A text's picture as a file, rendered as the scene asks for.
+//! The downloads of a page: a text's picture as a file, rendered as the scene asks for.
 
 use std::{
     error::Error,

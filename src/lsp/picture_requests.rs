@@ -7,15 +7,15 @@ use lsp_server::ErrorCode;
 use serde_json::{Value, json};
 
 use super::{
-    answers::unknown,
-    convert::Page,
+    convert::Converter,
     params::{Answer, Refusal, optional, parsed},
-    prepared::Prepared,
+    scene_version::SceneVersion,
+    text_requests::unknown,
 };
 use crate::{
     editor::{
         Analysis,
-        picture::{self, Along, Drag},
+        viewport::{self, Along, Drag},
     },
     source::Span,
 };
@@ -27,30 +27,30 @@ pub const NAMESPACE: &str = "pinhole/";
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
-    page: Page<'_>,
+    converter: Converter<'_>,
     analysis: &LazyCell<Analysis<'s>, F>,
-    prepared: &mut Option<Prepared>,
+    version: &mut Option<SceneVersion>,
 ) -> Answer {
-    let Some(prepared) = prepared else {
+    let Some(version) = version else {
         return Ok(Value::Null);
     };
     match about {
-        "pick" => pick(params, page, prepared),
-        "overlays" => overlays(params, page, prepared),
-        "drag" => drag(params, page, analysis, prepared),
-        "samples" => samples(params, prepared),
+        "pick" => pick(params, converter, version),
+        "overlays" => overlays(params, converter, version),
+        "drag" => drag(params, converter, analysis, version),
+        "samples" => samples(params, version),
         _ => Err(unknown(&format!("{NAMESPACE}{about}"))),
     }
 }
 
-fn pick(params: &Value, page: Page<'_>, prepared: &mut Prepared) -> Answer {
+fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let at = point(params, "point")?;
-    let (scene, world) = prepared.world(1);
-    let seen = picture::pick(scene, world, at);
+    let (scene, world) = version.world(1);
+    let seen = viewport::pick(scene, world, at);
     let (hit, color) = seen.unzip();
     let hit = hit.flatten();
     Ok(json!({
-        "object": hit.map(|hit| object(hit.object, page, prepared)),
+        "object": hit.map(|hit| object(hit.object, converter, version)),
         "point": hit.map(|hit| hit.point.to_array()),
         "distance": hit.map(|hit| hit.t),
         "depth": hit.map(|hit| hit.depth),
@@ -59,21 +59,21 @@ fn pick(params: &Value, page: Page<'_>, prepared: &mut Prepared) -> Answer {
 }
 
 /// An object of the scene, and where it stands in the text.
-fn object(index: usize, page: Page<'_>, prepared: &Prepared) -> Value {
-    let object = &prepared.scene.objects[index];
-    let range = |span: Span| json!(page.range(span));
+fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Value {
+    let object = &version.scene.objects[index];
+    let range = |span: Span| json!(converter.range(span));
     json!({
         "index": index,
         "kind": object.shape.kind(),
         "name": object.name,
         "range": range(object.span),
-        "selection": range(prepared.selections[index]),
+        "selection": range(version.selections[index]),
     })
 }
 
-fn overlays(params: &Value, page: Page<'_>, prepared: &Prepared) -> Answer {
+fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let only: Option<usize> = optional(params, "object")?;
-    let overlays = picture::overlays(&prepared.scene, only);
+    let overlays = viewport::overlays(&version.scene, only);
     let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
     let vanishing = vanishing.map(|(axis, vanishing)| {
         let lines = vanishing.lines.iter().map(|line| written_line(line));
@@ -81,7 +81,7 @@ fn overlays(params: &Value, page: Page<'_>, prepared: &Prepared) -> Answer {
         json!({ "axis": axis, "point": vanishing.point.map(written_point), "lines": lines })
     });
     let objects = overlays.objects.iter().map(|outline| {
-        let mut object = object(outline.object, page, prepared);
+        let mut object = object(outline.object, converter, version);
         let lines = outline.lines.iter().map(|line| written_line(line));
         object["outline"] = lines.collect();
         let handles = outline.handles.iter().map(|(name, at)| {
@@ -104,7 +104,12 @@ fn overlays(params: &Value, page: Page<'_>, prepared: &Prepared) -> Answer {
     }))
 }
 
-fn drag(params: &Value, page: Page<'_>, analysis: &Analysis<'_>, prepared: &Prepared) -> Answer {
+fn drag(
+    params: &Value,
+    converter: Converter<'_>,
+    analysis: &Analysis<'_>,
+    version: &SceneVersion,
+) -> Answer {
     let object: Option<usize> = optional(params, "object")?;
     let handle: String = parsed(params.get("handle").cloned().unwrap_or_default())?;
     let along: Option<String> = optional(params, "along")?;
@@ -131,21 +136,21 @@ fn drag(params: &Value, page: Page<'_>, analysis: &Analysis<'_>, prepared: &Prep
         to,
         along,
     };
-    let dragged = picture::drag(analysis, &prepared.scene, &drag)
+    let dragged = viewport::drag(analysis, &version.scene, &drag)
         .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
-    let edits: Vec<_> = page.text_edits(dragged.edits).collect();
+    let edits: Vec<_> = converter.text_edits(dragged.edits).collect();
     Ok(json!({ "edits": edits, "values": dragged.values }))
 }
 
-fn samples(params: &Value, prepared: &mut Prepared) -> Answer {
+fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
     let pixel: [u32; 2] = parsed(params.get("pixel").cloned().unwrap_or_default())?;
-    let image = prepared.scene.image;
+    let image = version.scene.image;
     if pixel[0] >= image.width || pixel[1] >= image.height {
         let message = "`pixel` is no pixel of the picture".to_owned();
         return Err(Refusal(ErrorCode::InvalidParams, message));
     }
-    let (scene, world) = prepared.world(1);
-    let found = picture::samples(scene, world, pixel)
+    let (scene, world) = version.world(1);
+    let found = viewport::samples(scene, world, pixel)
         .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
     let points = found.samples.iter().map(|(point, _)| point.to_array());
     let colors = found.samples.iter().map(|(_, color)| color.to_string());

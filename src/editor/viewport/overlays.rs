@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     handles::{Handle, handles, outline_point},
-    projection::Projection,
+    projection::{Line, Projection},
 };
 use crate::{
     inspect,
@@ -18,9 +18,6 @@ pub const MOST_OBJECTS: usize = 1000;
 
 /// A sphere's outline has so many sides.
 const SIDES: u32 = 64;
-
-/// A line through some points of the picture.
-pub type Line = Vec<DVec2>;
 
 /// What can be drawn over a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +78,7 @@ pub fn overlays(scene: &Scene, only: Option<usize>) -> Overlays {
             lines: point.map_or_else(Vec::new, |point| {
                 let edges = boxes.iter().flat_map(|cuboid| edges_along(cuboid, axis));
                 edges
-                    .filter_map(|edge| leading(&projection, edge, point))
+                    .flat_map(|edge| leading(&projection, edge, point))
                     .collect()
             }),
         }
@@ -134,14 +131,15 @@ fn size(image: &Image) -> [u32; 2] {
 }
 
 /// An edge of a box, which goes on to where the lines along it meet.
-fn leading(projection: &Projection, [a, b]: [DVec3; 2], point: DVec2) -> Option<Line> {
+fn leading(projection: &Projection, [a, b]: [DVec3; 2], point: DVec2) -> Vec<Line> {
     let edge = match projection.depth(a) < projection.depth(b) {
         true => [a, b],
         false => [b, a],
     };
-    let mut line = projection.line(&edge).pop()?;
-    line.push(point);
-    Some(line)
+    match projection.line(&edge)[..] {
+        [ref line] => projection.joined([[line[0], line[1]], [line[1], point]]),
+        _ => Vec::new(),
+    }
 }
 
 /// The four edges of a box along an axis.

@@ -1,24 +1,20 @@
 //! A handle is moved: what has to change in the text.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are written with one decimal after another, until everything is seen
-//! within half a pixel of where it would be. What comes of that is read as a scene before it is proposed, since the text may tie numbers together.
+//! The object or the camera is moved first, in real numbers. Then the fields that differ are written with one decimal after another, and what comes of that is
+//! read as a scene, until everything is seen within half a pixel of where it would be: so the text may tie numbers together as it likes.
 
 use glam::{DVec2, DVec3};
 
 use super::{
-    edits::{Writer, degrees, exponent},
-    fields::Subject,
-    handles::{self, Along, TOLERANCE, handles, outline_point, unit},
-    motions,
+    camera, edits,
+    fields::{Movable, changes},
+    handles::{self, Along, TOLERANCE, handles, outline_point},
     projection::Projection,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
-    math::Angle,
-    probe::probe,
-    scene::{self, Camera, Scene, Shape, View},
-    schema::Value,
+    scene::{self, Camera, Scene, Shape},
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
@@ -41,8 +37,8 @@ pub struct Drag<'a> {
     pub along: Option<Along>,
 }
 
-/// What has to change in the text, and what becomes of the fields that do.
-#[derive(Clone, Debug, PartialEq)]
+/// What has to change in the text, and what becomes of the fields that do; nothing at all where nobody would see it.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dragged {
     /// The changes.
     pub edits: Vec<Edit>,
@@ -59,53 +55,46 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
-    let projection = Projection::new(&scene.camera, &scene.image);
     let (block, name) = block(analysis, scene, drag)?;
     let by_corners = block.fields.iter().any(|field| field.name.text == "min");
-    let current = subject(scene, drag, by_corners)?;
-    let view = Sight {
+    let current = movable(scene, drag, by_corners)?;
+    let view = Viewpoint {
         scene,
-        projection,
+        projection: Projection::new(&scene.camera, &scene.image),
         drag,
-        distance: distance(scene, drag),
+        // An object moves without it.
+        distance: drag.object.map_or_else(|| camera::distance(scene), |_| 1.0),
     };
     let ideal = view.moved(&current)?;
-    let changes = changes(&current, &ideal);
-    if !(ideal.is_possible() && changes.iter().all(|(.., by)| by.is_finite())) {
+    if !ideal.is_possible() {
         return Err("that is too far away".to_owned());
     }
     if !view.agree(&ideal, &ideal) {
         return Err("it would not be seen there".to_owned());
     }
-    let written = |decimals| {
-        let mut writer = Writer::new(analysis, decimals);
-        let changed = writer.change(block, &changes);
-        let fields = changes.iter().zip(changed);
-        let fields = fields.map(|(&(name, from, _), by)| (name, sum(from, by)));
-        let fields: Vec<(&'static str, Value)> = fields.collect();
-        (writer.finish(), fields)
-    };
-    // Where the change is so small that nobody sees it, it has no digit at all.
-    let first = -2 - exponent(changes.iter().map(|(.., by)| size(*by)).fold(0.0, f64::max));
-    let mut decimals = first..=first + DIGITS + 2;
-    let good = |decimals: &i32| {
-        let (_, fields) = written(*decimals);
-        view.agree(&ideal, &current.with(&fields))
-    };
-    let decimals = decimals.find(good).unwrap_or(first + DIGITS + 2);
-    let (edits, fields) = written(decimals);
-    let tied = || "the text ties these numbers to others, and they cannot change alone".to_owned();
-    let edits = edits.ok_or_else(tied)?;
-    let found = subject(&read(analysis, &edits)?, drag, by_corners)?;
-    if !view.agree(&ideal, &found) {
-        return Err(match view.agree(&ideal, &current.with(&fields)) {
-            true => tied(),
-            false => "numbers have too few digits to show it there".to_owned(),
-        });
+    if view.agree(&ideal, &current) {
+        return Ok(Dragged::default());
     }
-    let before = current.fields();
-    let fields = fields.into_iter().filter(|field| !before.contains(field));
-    let values = fields.map(|(field, value)| format!("{name}.{field} = {value}"));
+    let changes = changes(&current, &ideal);
+    let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
+    let written = |decimals| {
+        let edits = edits::edits(analysis, block, &changes, decimals).ok_or_else(tied)?;
+        let found = movable(&read(analysis, &edits)?, drag, by_corners)?;
+        match view.agree(&ideal, &found) {
+            true => Ok((edits, found)),
+            false => Err(tied()),
+        }
+    };
+    let greatest = changes.iter().map(|change| change.size());
+    let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
+    // Where all digits are not enough, fewer are not either.
+    let with_all = written(first + DIGITS + 1)?;
+    let fewest = (first..=first + DIGITS).find_map(|decimals| written(decimals).ok());
+    let (edits, found) = fewest.unwrap_or(with_all);
+    let fields = current.fields().into_iter().zip(found.fields());
+    let values = fields
+        .filter(|(before, after)| before != after)
+        .map(|(_, (field, value))| format!("{name}.{field} = {value}"));
     Ok(Dragged {
         values: values.collect(),
         edits,
@@ -136,14 +125,14 @@ fn block<'a, 's>(
     Ok((block, name))
 }
 
-fn subject(scene: &Scene, drag: &Drag<'_>, by_corners: bool) -> Result<Subject, String> {
+fn movable(scene: &Scene, drag: &Drag<'_>, by_corners: bool) -> Result<Movable, String> {
     let Some(index) = drag.object else {
-        return Ok(Subject::Camera(scene.camera));
+        return Ok(Movable::Camera(scene.camera));
     };
     let object = scene.objects.get(index);
     let object = object.ok_or_else(|| format!("there is no object {index}"))?;
     let shape = object.shape;
-    Ok(Subject::Object { shape, by_corners })
+    Ok(Movable::Object { shape, by_corners })
 }
 
 /// The scene that a text means after some edits.
@@ -163,94 +152,18 @@ fn read(analysis: &Analysis<'_>, edits: &[Edit]) -> Result<Scene, String> {
     })
 }
 
-/// How far away that is which the camera is moved about: `lookat`, or else what is seen in the middle of the picture, or the nearest object.
-fn distance(scene: &Scene, drag: &Drag<'_>) -> f64 {
-    let eye = scene.camera.eye;
-    match (scene.camera.view, drag.object) {
-        (View::Lookat(point), _) => unit(point - eye).1,
-        (View::Direction(_), None) => {
-            let (width, height) = (scene.image.width, scene.image.height);
-            let middle = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
-            let seen = probe(scene, middle).hits.into_iter();
-            let seen = seen.map(|(hit, ..)| hit).find(|hit| hit.visible);
-            let nearest = || {
-                let distances = scene
-                    .objects
-                    .iter()
-                    .map(|object| unit(center(&object.shape, eye) - eye).1);
-                distances
-                    .filter(|distance| *distance > 0.0)
-                    .reduce(f64::min)
-            };
-            seen.map(|hit| hit.t).or_else(nearest).unwrap_or(1.0)
-        }
-        // An object moves without it.
-        (View::Direction(_), Some(_)) => 1.0,
-    }
-}
-
-fn center(shape: &Shape, eye: DVec3) -> DVec3 {
-    match shape {
-        Shape::Sphere(sphere) => sphere.center,
-        Shape::Triangle(triangle) => triangle.outline.centroid(),
-        Shape::Box(cuboid) => cuboid.min.midpoint(cuboid.max),
-        Shape::Checkerboard(board) => eye.with_y(board.y),
-    }
-}
-
-/// The fields that differ: what they are, and by how much they have to change.
-fn changes(current: &Subject, ideal: &Subject) -> Vec<(&'static str, Value, Value)> {
-    let pairs = current.fields().into_iter().zip(ideal.fields());
-    let changes = pairs.map(|((name, from), (_, to))| (name, from, difference(to, from)));
-    changes.filter(|(.., by)| size(*by) != 0.0).collect()
-}
-
-fn difference(to: Value, from: Value) -> Value {
-    match (to, from) {
-        (Value::Number(to), Value::Number(from)) => Value::Number(to - from),
-        (Value::Vector(to), Value::Vector(from)) => Value::Vector(to - from),
-        (Value::Angle(to), Value::Angle(from)) => {
-            Value::Angle(Angle::from_degrees(degrees(to) - degrees(from)))
-        }
-        (to, _) => to,
-    }
-}
-
-fn sum(from: Value, by: Value) -> Value {
-    match (from, by) {
-        (Value::Number(from), Value::Number(by)) => Value::Number(from + by),
-        (Value::Vector(from), Value::Vector(by)) => Value::Vector(from + by),
-        (Value::Angle(from), Value::Angle(by)) => Value::Angle(from + by),
-        (from, _) => from,
-    }
-}
-
-/// The greatest number in a value; of an angle, in degrees.
-fn size(value: Value) -> f64 {
-    match value {
-        Value::Number(number) => number.abs(),
-        // A part that is not a number makes the whole not one.
-        Value::Vector(v) => v
-            .to_array()
-            .into_iter()
-            .map(f64::abs)
-            .fold(0.0, |a, b| if a > b { a } else { b }),
-        Value::Angle(angle) => degrees(angle).abs(),
-        _ => 0.0,
-    }
-}
-
-/// How a drag is seen.
-struct Sight<'a> {
+/// From where a drag is seen.
+struct Viewpoint<'a> {
     scene: &'a Scene,
     projection: Projection,
     drag: &'a Drag<'a>,
+    /// How far away that is which the camera is moved about.
     distance: f64,
 }
 
-impl Sight<'_> {
+impl Viewpoint<'_> {
     /// The object or the camera as it is moved, in real numbers.
-    fn moved(&self, current: &Subject) -> Result<Subject, String> {
+    fn moved(&self, current: &Movable) -> Result<Movable, String> {
         let Drag {
             handle,
             from,
@@ -260,12 +173,12 @@ impl Sight<'_> {
         } = *self.drag;
         let projection = &self.projection;
         Ok(match current {
-            Subject::Camera(camera) => {
+            Movable::Camera(camera) => {
                 let points = [from, to];
-                let moved = motions::moved(camera, projection, handle, points, self.distance)?;
-                Subject::Camera(moved)
+                let moved = camera::moved(camera, projection, handle, points, self.distance)?;
+                Movable::Camera(moved)
             }
-            Subject::Object { shape, by_corners } => Subject::Object {
+            Movable::Object { shape, by_corners } => Movable::Object {
                 shape: handles::moved(shape, handle, to, along, projection)?,
                 by_corners: *by_corners,
             },
@@ -273,11 +186,10 @@ impl Sight<'_> {
     }
 
     /// Whether everything is seen within half a pixel of where it should be.
-    fn agree(&self, ideal: &Subject, found: &Subject) -> bool {
+    fn agree(&self, ideal: &Movable, found: &Movable) -> bool {
         match (ideal, found) {
-            _ if !found.is_possible() => false,
-            (Subject::Camera(ideal), Subject::Camera(found)) => self.cameras_agree(ideal, found),
-            (Subject::Object { shape: ideal, .. }, Subject::Object { shape: found, .. }) => {
+            (Movable::Camera(ideal), Movable::Camera(found)) => self.cameras_agree(ideal, found),
+            (Movable::Object { shape: ideal, .. }, Movable::Object { shape: found, .. }) => {
                 let marks = self.marks(ideal).into_iter().zip(self.marks(found));
                 marks.into_iter().all(|((name, ideal), (_, found))| {
                     let is_seen = |at: &DVec2| self.is_near(*at) || name == self.drag.handle;

@@ -1,0 +1,234 @@
+//! Random drags: what is dragged is seen where it was dragged to, and no text is broken.
+
+use glam::{DVec2, DVec3, dvec2};
+use pinhole::{
+    editor::viewport::{Drag, overlays},
+    inspect::{CameraFacts, inspect},
+    probe::probe,
+    scene::{self, CenteredTriangle, Outline, Scene, Shape, View},
+};
+use proptest::prelude::*;
+
+use super::{along, dragged, near, scene_of, seen};
+use crate::editor::sources;
+
+/// A scene with one object in front of the camera, and a second one that may be anywhere.
+fn any_scene() -> impl Strategy<Value = String> {
+    let number = || -4.0..4.0;
+    let vector = move || {
+        (number(), number(), number()).prop_map(|(x, y, z)| format!("({x:.2}, {y:.2}, {z:.3})"))
+    };
+    let size =
+        || (0.1..3.0, 0.1..3.0, 0.1..3.0).prop_map(|(x, y, z)| format!("({x:.2}, {y:.1}, {z:.3})"));
+    let sphere = (vector(), 0.1..3.0)
+        .prop_map(|(center, radius)| format!("sphere {{ center {center} radius {radius:.2} }}"));
+    let block = (vector(), size())
+        .prop_map(|(center, size)| format!("box {{ center {center} size {size} }}"));
+    let corners = (vector(), size())
+        .prop_map(|(min, size)| format!("let min = {min} box {{ min min max min + {size} }}"));
+    let triangle = (vector(), vector(), -200.0..200.0).prop_map(|(centroid, normal, spin)| {
+        format!("triangle {{ centroid {centroid} normal {normal} + (0, 0, 9) sides (2, 2, 1.5) spin {spin:.1}deg }}")
+    });
+    let vertices = (vector(), vector(), vector())
+        .prop_map(|(a, b, c)| format!("triangle {{ v0 {a} v1 {b} v2 {c} }}"));
+    let board = number().prop_map(|y| format!("checkerboard {{ y {y:.2} }}"));
+    let object = prop_oneof![sphere, block, corners, triangle, vertices, board];
+    let view = prop_oneof![
+        vector().prop_map(|point| format!("lookat {point}")),
+        vector().prop_map(|along| format!("direction {along} + (0, 0, -9)")),
+    ];
+    let lens = prop_oneof![Just(""), Just("d 5"), Just("fov 60deg"), Just("hfov 1rad")];
+    let size = prop_oneof![
+        Just((160, 90)),
+        Just((30, 40)),
+        Just((1, 1)),
+        Just((1 << 20, 3))
+    ];
+    (object, vector(), view, lens, -200.0..200.0, size).prop_map(|(object, eye, view, lens, roll, (width, height))| {
+        format!("{object} image {{ width {width} height {height} }} camera {{ eye {eye} + (0, 0, 9) {view} {lens} roll {roll:.0}deg }}")
+    })
+}
+
+/// A point in the picture or near to it, or a foolish one, in parts of the picture.
+fn any_point() -> impl Strategy<Value = (f64, f64)> {
+    let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
+    (part(), part())
+}
+
+fn point_of(scene: &Scene, (x, y): (f64, f64)) -> DVec2 {
+    dvec2(
+        x * f64::from(scene.image.width),
+        y * f64::from(scene.image.height),
+    )
+}
+
+/// The handles of the first object.
+fn handles(scene: &Scene) -> Vec<&'static str> {
+    let objects = overlays(scene, Some(0)).objects;
+    objects[0].handles.iter().map(|(name, _)| *name).collect()
+}
+
+fn camera_of(scene: &Scene) -> CameraFacts {
+    inspect(scene, &sources("").file).camera
+}
+
+/// Where a handle of the first object is in the world, but for those that depend on the picture; of a board as high as it is where another board, `held`, is
+/// met by the view axis.
+fn place(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
+    match scene.objects[0].shape {
+        Shape::Sphere(sphere) => sphere.center,
+        Shape::Box(cuboid) => {
+            let mut at = cuboid.min.midpoint(cuboid.max);
+            if let Some((side, axis)) = handle.split_once('_') {
+                let axis = ["x", "y", "z"]
+                    .iter()
+                    .position(|it| *it == axis)
+                    .expect("an axis");
+                at[axis] = if side == "min" {
+                    cuboid.min
+                } else {
+                    cuboid.max
+                }[axis];
+            }
+            at
+        }
+        Shape::Triangle(triangle) => match (triangle.outline, handle) {
+            (Outline::Vertices([at, ..]), "v0")
+            | (Outline::Vertices([_, at, _]), "v1")
+            | (Outline::Vertices([.., at]), "v2") => at,
+            (outline, _) => outline.centroid(),
+        },
+        Shape::Checkerboard(board) => {
+            let Shape::Checkerboard(before) = held.objects[0].shape else {
+                unreachable!("a drag makes nothing else of a board");
+            };
+            let CameraFacts { eye, w, .. } = camera_of(held);
+            (eye + w * ((before.y - eye.y) / w.y)).with_y(board.y)
+        }
+    }
+}
+
+/// The direction in the picture in which a point is seen to move that moves along an axis; of length 1.
+fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
+    let camera = camera_of(scene);
+    let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
+    let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
+    // The derivative of (x/z, y/z), times z².
+    (by.truncate() * at.z - at.truncate() * by.z).normalize()
+}
+
+/// The axis along which a handle moves; none if it moves in a plane, or in its own way.
+fn axis_of(handle: &str, word: &str) -> Option<usize> {
+    let axis = match handle {
+        "y" => "y",
+        "radius" | "normal" | "spin" => "",
+        _ => handle.split_once('_').map_or(word, |(_, axis)| axis),
+    };
+    ["x", "y", "z"].iter().position(|it| *it == axis)
+}
+
+/// The tip of a triangle's normal is seen at a point, or it is the nearest to the ray there.
+fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
+    let camera = camera_of(scene);
+    let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
+    let across = (to - dvec2(width, height) / 2.0) * (camera.view_height / (height * camera.d));
+    let ray = camera.u * across.x - camera.v * across.y - camera.w;
+    // The point may be so far away that a square would be too large for a number.
+    let ray = (ray / ray.abs().max_element()).normalize();
+    let center = triangle.centroid - camera.eye;
+    let foot = ray * center.dot(ray) - center;
+    let goal = match foot.length() < triangle.sides.z {
+        true => to,
+        false => seen(
+            scene,
+            triangle.centroid + foot.normalize() * triangle.sides.z,
+        ),
+    };
+    let tip = triangle.centroid + triangle.normal.normalize() * triangle.sides.z;
+    seen(scene, tip).distance(goal) <= 0.5 + 1e-6
+}
+
+/// The apex is seen in the direction of a point, from the centroid; or the two are too near to each other to tell.
+fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
+    let middle = seen(scene, triangle.centroid);
+    let shown = overlays(scene, Some(0));
+    let (_, apex) = shown.objects[0].handles[2];
+    let (wanted, found) = (to - middle, apex.expect("it is seen") - middle);
+    let across = wanted.perp_dot(found) / wanted.length();
+    wanted.length() < 1.0
+        || found.length() < 1.0
+        || (across.abs() <= 0.5 + 1e-6 && wanted.dot(found) > 0.0)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    /// What is dragged is seen where it was dragged to, or there is a reason.
+    #[test]
+    fn a_handle_is_seen_where_it_was_dragged_to(
+        text in any_scene(), to in any_point(), which in 0..7usize, word in prop_oneof![Just(""), Just("x"), Just("y"), Just("z"), Just("floor")],
+    ) {
+        let reading = scene::read(&sources(&text));
+        let Some(before) = reading.scene else { return Ok(()) };
+        let to = point_of(&before, to);
+        let handles = handles(&before);
+        let handle = handles[which % handles.len()];
+        let moved = Drag { object: Some(0), handle, from: to, to, along: along(word) };
+        let Ok((changed, _)) = dragged(&text, moved) else { return Ok(()) };
+        let mut after = scene_of(&changed);
+        prop_assert_eq!(after.objects.len(), before.objects.len());
+        // The camera may be tied to what was moved.
+        after.camera = before.camera;
+        let place = place(&after, handle, &before);
+        let found = seen(&after, place);
+        let message = format!("{changed}\n{handle} {word} {to}: {found}");
+        match (handle, after.objects[0].shape) {
+            ("radius", _) => {
+                // Half a pixel inwards the sphere is hit, and half a pixel outwards it is not.
+                let inwards = (found - to).normalize_or_zero() * 0.75;
+                let hits = |at: DVec2| probe(&after, at).hits.iter().any(|(hit, ..)| hit.object == 0);
+                let is_near = to.abs().max_element() < 1e4 && before.image.width > 100 && before.image.width < 1000;
+                prop_assert!(!is_near || hits(to + inwards) || found.distance(to) < 1.0, "{}", message);
+                prop_assert!(!is_near || !hits(to - inwards), "{}", message);
+            }
+            ("normal" | "spin", Shape::Triangle(triangle)) => {
+                let Outline::Centered(triangle) = triangle.outline else { unreachable!("it has a normal") };
+                let is_right = match handle {
+                    "normal" => normal_points_to(&after, &triangle, to),
+                    _ => apex_lies_towards(&after, &triangle, to),
+                };
+                prop_assert!(is_right, "{}", message);
+            }
+            _ => match axis_of(handle, word) {
+                None => near(found, to, &message),
+                // As near as it can come: what is left lies across the line that it moves in.
+                Some(axis) => {
+                    let left = (to - found).dot(direction_seen(&after, place, axis));
+                    prop_assert!(left.abs() <= 0.5 + 1e-6, "{}: {} left", message, left);
+                }
+            },
+        }
+    }
+
+    /// What the pointer does to the camera never breaks a text.
+    #[test]
+    fn a_camera_is_moved_or_there_is_a_reason(
+        text in any_scene(), from in any_point(), to in any_point(),
+        handle in prop_oneof![Just("orbit"), Just("pan"), Just("dolly"), Just("roll"), Just("look"), Just("view_distance")],
+    ) {
+        let reading = scene::read(&sources(&text));
+        let Some(before) = reading.scene else { return Ok(()) };
+        let [from, to] = [from, to].map(|point| point_of(&before, point));
+        let moved = Drag { object: None, handle, from, to, along: None };
+        let Ok((changed, _)) = dragged(&text, moved) else { return Ok(()) };
+        let after = scene_of(&changed);
+        prop_assert_eq!(&after.objects, &before.objects);
+        prop_assert_eq!(after.image, before.image);
+        if let (View::Lookat(point), "orbit") = (before.camera.view, handle)
+            && before.image.width > 1
+        {
+            let [a, b] = [&before, &after].map(|scene| scene.camera.eye.distance(point));
+            prop_assert!((a - b).abs() < 0.1 * a, "{}", changed);
+        }
+    }
+}

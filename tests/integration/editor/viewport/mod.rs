@@ -1,0 +1,83 @@
+//! The picture's answers to one who writes a scene: handles that are moved, and what becomes of the text.
+
+mod any_drag;
+mod drags;
+
+use glam::{DVec2, DVec3, dvec2};
+use pinhole::{
+    diagnostic::{Fix, apply},
+    editor::{
+        Analysis,
+        viewport::{Along, Drag, drag},
+    },
+    inspect::inspect,
+    scene::{self, Scene},
+    source::SourceId,
+};
+
+use super::sources;
+
+/// A text after a handle was moved, and what is said of it; or why it cannot be.
+fn dragged(text: &str, moved: Drag<'_>) -> Result<(String, String), String> {
+    let sources = sources(text);
+    let analysis = Analysis::new(&sources);
+    let scene = analysis
+        .scene()
+        .unwrap_or_else(|| panic!("no scene: {text}"));
+    let dragged = drag(&analysis, &scene, &moved)?;
+    let fix = Fix::new("", dragged.edits);
+    let text = apply(&fix, SourceId::File, text);
+    Ok((text, dragged.values.join("; ")))
+}
+
+fn scene_of(text: &str) -> Scene {
+    let reading = scene::read(&sources(text));
+    let scene = reading.scene;
+    scene.unwrap_or_else(|| panic!("{text}: {:?}", reading.diagnostics))
+}
+
+fn along(word: &str) -> Option<Along> {
+    match word {
+        "x" => Some(Along::Axis(0)),
+        "y" => Some(Along::Axis(1)),
+        "z" => Some(Along::Axis(2)),
+        "floor" => Some(Along::Floor),
+        _ => None,
+    }
+}
+
+fn object<'a>(handle: &'a str, to: [f64; 2], word: &str) -> Drag<'a> {
+    Drag {
+        object: Some(0),
+        handle,
+        from: DVec2::from(to),
+        to: DVec2::from(to),
+        along: along(word),
+    }
+}
+
+fn camera(handle: &str, from: [f64; 2], to: [f64; 2]) -> Drag<'_> {
+    Drag {
+        object: None,
+        handle,
+        from: DVec2::from(from),
+        to: DVec2::from(to),
+        along: None,
+    }
+}
+
+/// Where a point is seen, by the numbers of `pinhole inspect`.
+fn seen(scene: &Scene, point: DVec3) -> DVec2 {
+    let camera = inspect(scene, &sources("").file).camera;
+    let from_eye = point - camera.eye;
+    let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
+    let scale = camera.d * height / camera.view_height / -from_eye.dot(camera.w);
+    dvec2(
+        width / 2.0 + from_eye.dot(camera.u) * scale,
+        height / 2.0 - from_eye.dot(camera.v) * scale,
+    )
+}
+
+fn near(a: DVec2, b: DVec2, text: &str) {
+    assert!(a.distance(b) <= 0.5 + 1e-6, "{a} is not near {b}\n{text}");
+}

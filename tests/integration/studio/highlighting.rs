@@ -1,0 +1,34 @@
+//! The words that the page colours while one types are those of the language.
+
+use std::{collections::BTreeSet, fs, path::Path};
+
+use pinhole::schema::{BLOCKS, Condition, FUNCTIONS};
+
+/// The words in quotation marks that a constant of a file of the page is made of.
+fn words(file: &str, constant: &str) -> BTreeSet<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studio/page/src");
+    let text = fs::read_to_string(path.join(file)).unwrap();
+    let (_, value) = text.split_once(&format!("const {constant} = ")).unwrap();
+    let (value, _) = value.split_once(";\n").unwrap();
+    let quoted = value.split('"').skip(1).step_by(2);
+    let words = quoted.flat_map(str::split_whitespace);
+    words.map(str::to_owned).collect()
+}
+
+fn set<'a>(words: impl Iterator<Item = &'a str>) -> BTreeSet<String> {
+    words.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_page_knows_the_words_of_the_language() {
+    let file = "language.ts";
+    let fields = || BLOCKS.iter().flat_map(|block| block.fields);
+    assert_eq!(words(file, "KINDS"), set(BLOCKS.iter().map(|it| it.name)));
+    assert_eq!(words(file, "FIELDS"), set(fields().map(|it| it.name)));
+    assert_eq!(
+        words(file, "FUNCTIONS"),
+        set(FUNCTIONS.iter().map(|it| it.name))
+    );
+    let whole = fields().filter(|field| field.must.contains(&Condition::Whole));
+    assert_eq!(words(file, "WHOLE_FIELDS"), set(whole.map(|it| it.name)));
+}
