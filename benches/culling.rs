@@ -5,6 +5,7 @@ mod one_by_one;
 
 use std::{env, fs, hint::black_box, num::NonZero, sync::atomic::AtomicBool};
 
+use glam::DVec2;
 use pinhole::{
     area::Area,
     math::SimdWidth,
@@ -239,7 +240,8 @@ fn textbook(scene: &Scene) -> impl Fn() {
             let count = sampling.count(x, y);
             sampling.place(SimdWidth::Widest, [x, y], count, 0..count, &mut points);
             for offset in points.iter() {
-                if let Some(hit) = textbook.seen(x, y, offset) {
+                let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                if let Some(hit) = textbook.seen(middle + offset) {
                     seen[2 * hit.object + usize::from(hit.odd)] += 1;
                 }
             }

@@ -25,9 +25,8 @@ impl Pixel for [f64; 3] {
 
     fn is_certain(light: [f64; 3], bound: f64, _: &Encoder) -> bool {
         // As the floats of 32 bits in an EXR file.
-        let ends =
-            [-bound, bound].map(|off| light.map(|light| (light + off).clamp(0.0, 1.0) as f32));
-        bound == 0.0 || ends[0] == ends[1]
+        let float = |off: f64| light.map(|light| (light + off).clamp(0.0, 1.0) as f32);
+        bound == 0.0 || float(-bound) == float(bound)
     }
 
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {

@@ -73,14 +73,8 @@ impl Textbook {
         }
     }
 
-    /// What is seen at an offset from the centre of the pixel in column `x` and row `y`.
-    pub fn seen(&self, x: u32, y: u32, offset: DVec2) -> Option<Seen> {
-        let center = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        self.seen_through(center + offset)
-    }
-
     /// What is seen at a point so many pixels from the picture's top left corner.
-    pub fn seen_through(&self, pixels: DVec2) -> Option<Seen> {
+    pub fn seen(&self, pixels: DVec2) -> Option<Seen> {
         let [u, v, w] = self.axes;
         let x = self.pixel * (pixels.x - self.size.x / 2.0);
         let y = self.pixel * (self.size.y / 2.0 - pixels.y);

@@ -116,7 +116,8 @@ impl Trial {
     /// Asks all three what is seen at a sample point.
     pub fn decide(&self, (x, y, offset): Point, tally: &mut Tally) {
         let truth = self.truth(x, y, offset);
-        let textbook = self.textbook.seen(x, y, offset);
+        let pixels = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) + offset;
+        let textbook = self.textbook.seen(pixels);
         let textbook = textbook.map(|seen| (seen.object, seen.odd));
         let ours = self.ours(x, y, offset);
         tally.inputs += 1;
@@ -124,7 +125,7 @@ impl Trial {
             *wrong += u64::from(answer != truth);
         }
         if tally.inputs.is_multiple_of(MEASURED) {
-            self.measure(x, y, offset, tally);
+            self.measure(pixels, tally);
         }
     }
 
@@ -137,17 +138,16 @@ impl Trial {
         self.answers[self.world.slot_at(x, y, offset)]
     }
 
-    /// Measures the distance and the point that are seen near a sample point, in units of the last place: of the distance,
+    /// Measures the distance and the point that are seen through a point of the picture, in units of the last place: of the distance,
     /// and of the greatest coordinate.
-    fn measure(&self, x: u32, y: u32, offset: DVec2, tally: &mut Tally) {
-        let pixels = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) + offset;
+    fn measure(&self, pixels: DVec2, tally: &mut Tally) {
         let r = self.oracle.direction_through(pixels);
         let Some(seen) = self.oracle.seen(&r) else {
             return;
         };
         let t = &seen.t * length(&r);
         let point = self.oracle.point(&seen.t, &r);
-        if let Some(theirs) = self.textbook.seen_through(pixels)
+        if let Some(theirs) = self.textbook.seen(pixels)
             && theirs.object == seen.object
         {
             let error = self.distance(theirs.t, theirs.point, &t, &point);
