@@ -72,8 +72,8 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
 }
 
 fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
-    let only: Option<usize> = optional(params, "object")?;
-    let overlays = viewport::overlays(&version.scene, only);
+    let further: Option<usize> = optional(params, "object")?;
+    let overlays = viewport::overlays(&version.scene, further);
     let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
     let vanishing = vanishing.map(|(axis, vanishing)| {
         let lines = vanishing.lines.iter().map(|line| written_line(line));

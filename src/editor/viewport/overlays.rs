@@ -9,11 +9,11 @@ use super::{
 use crate::{
     inspect,
     math::{Angle, trig},
-    scene::{Checkerboard, Cuboid, Image, Scene, Shape, Sphere},
+    scene::{Checkerboard, Cuboid, Object, Scene, Shape, Sphere},
     tracer::vertices,
 };
 
-/// So many objects have outlines, unless one is asked for: nobody can tell more apart.
+/// So many objects have outlines: nobody can tell more apart.
 pub const MOST_OBJECTS: usize = 1000;
 
 /// A sphere's outline has so many sides.
@@ -34,7 +34,7 @@ pub struct Overlays {
     pub near: Vec<[DVec2; 2]>,
     /// Where the far plane cuts the checkerboards.
     pub far: Vec<[DVec2; 2]>,
-    /// Of each object, or of one.
+    /// Of each object that is shown.
     pub objects: Vec<Outline>,
 }
 
@@ -58,76 +58,52 @@ pub struct Outline {
     pub handles: Vec<(&'static str, Option<DVec2>)>,
 }
 
-/// What can be drawn over the picture of a scene, with the outlines of its first [`MOST_OBJECTS`] objects or of one.
-pub fn overlays(scene: &Scene, only: Option<usize>) -> Overlays {
+/// What can be drawn over the picture of a scene, with the first [`MOST_OBJECTS`] objects and one that may come behind them.
+pub fn overlays(scene: &Scene, further: Option<usize>) -> Overlays {
     let Scene { image, camera, .. } = scene;
     let projection = Projection::new(camera, image);
-    let objects = scene.objects.iter().enumerate().take(MOST_OBJECTS);
-    let boxes = objects
-        .clone()
-        .filter_map(|(_, object)| match &object.shape {
-            Shape::Box(cuboid) => Some(cuboid),
-            _ => None,
-        });
-    let boxes: Vec<&Cuboid> = boxes.collect();
+    let objects = || scene.objects.iter().enumerate();
+    let is_shown = |index: usize| index < MOST_OBJECTS || Some(index) == further;
+    let shown = || objects().filter(|(index, _)| is_shown(*index));
     let (_, points) = inspect::inspect_camera(camera, image);
     let vanishing = [0, 1, 2].map(|axis| {
         let point = points[axis].map(DVec2::from);
+        let leading = |point| {
+            let edges = shown().flat_map(move |(_, object)| edges_along(&object.shape, axis));
+            edges.flat_map(move |edge| leading(&projection, edge, point))
+        };
         Vanishing {
             point,
-            lines: point.map_or_else(Vec::new, |point| {
-                let edges = boxes.iter().flat_map(|cuboid| edges_along(cuboid, axis));
-                edges
-                    .flat_map(|edge| leading(&projection, edge, point))
-                    .collect()
-            }),
+            lines: point.into_iter().flat_map(leading).collect(),
         }
     });
     let cut = |depth: f64| {
-        let boards = scene
-            .objects
-            .iter()
-            .filter_map(|object| match object.shape {
-                Shape::Checkerboard(Checkerboard { y, .. }) => Some(y),
-                _ => None,
-            });
+        let boards = objects().filter_map(|(_, object)| match object.shape {
+            Shape::Checkerboard(Checkerboard { y, .. }) => Some(y),
+            _ => None,
+        });
         // A depth of 0, or none at all, cuts nothing that is seen.
         let lines = boards.filter_map(|y| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()
     };
-    let outline = |(index, object): (usize, &crate::scene::Object)| {
+    let outline = |(index, object): (usize, &Object)| {
         let seen = |handle: Handle| (handle.name, handle.at.and_then(|at| projection.point(at)));
+        let handles = handles(&object.shape, &projection).into_iter();
         Outline {
             object: index,
             lines: outline(&projection, &object.shape),
-            handles: handles(&object.shape, &projection)
-                .into_iter()
-                .map(seen)
-                .collect(),
+            handles: handles.map(seen).collect(),
         }
     };
     Overlays {
-        size: size(image),
+        size: [image.width, image.height],
         axis: projection.size / 2.0,
         horizon: projection.level(0.0),
         vanishing,
         near: cut(camera.near),
         far: camera.far.map_or_else(Vec::new, cut),
-        objects: match only {
-            None => objects.map(outline).collect(),
-            Some(only) => {
-                let object = scene.objects.get(only);
-                object
-                    .map(|object| outline((only, object)))
-                    .into_iter()
-                    .collect()
-            }
-        },
+        objects: shown().map(outline).collect(),
     }
-}
-
-fn size(image: &Image) -> [u32; 2] {
-    [image.width, image.height]
 }
 
 /// An edge of a box, which goes on to where the lines along it meet.
@@ -142,22 +118,22 @@ fn leading(projection: &Projection, [a, b]: [DVec3; 2], point: DVec2) -> Vec<Lin
     }
 }
 
-/// The four edges of a box along an axis.
-fn edges_along(cuboid: &Cuboid, axis: usize) -> impl Iterator<Item = [DVec3; 2]> {
-    let Cuboid { min, max, .. } = *cuboid;
+/// The four edges along an axis, of a box.
+fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
+    let Shape::Box(Cuboid { min, max, .. }) = *shape else {
+        return Vec::new();
+    };
     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
-    [(0, 0), (0, 1), (1, 1), (1, 0)]
-        .into_iter()
-        .map(move |(j, k)| {
-            let corner = |i: usize| {
-                let mut corner = DVec3::ZERO;
-                for (axis, which) in [(axis, i), (second, j), (third, k)] {
-                    corner[axis] = [min, max][which][axis];
-                }
-                corner
-            };
-            [corner(0), corner(1)]
+    let edges = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(j, k)| {
+        [0, 1].map(|i| {
+            let mut corner = DVec3::ZERO;
+            for (axis, which) in [(axis, i), (second, j), (third, k)] {
+                corner[axis] = [min, max][which][axis];
+            }
+            corner
         })
+    });
+    edges.into()
 }
 
 fn outline(projection: &Projection, shape: &Shape) -> Vec<Line> {
@@ -170,8 +146,8 @@ fn outline(projection: &Projection, shape: &Shape) -> Vec<Line> {
             let [a, b, c] = vertices(triangle);
             projection.line(&[a, b, c, a])
         }
-        Shape::Box(cuboid) => {
-            let edges = (0..3).flat_map(|axis| edges_along(cuboid, axis));
+        Shape::Box(_) => {
+            let edges = (0..3).flat_map(|axis| edges_along(shape, axis));
             edges.flat_map(|edge| projection.line(&edge)).collect()
         }
         Shape::Checkerboard(board) => square(projection, board),

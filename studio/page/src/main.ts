@@ -68,12 +68,8 @@ async function refreshOverlays(): Promise<void> {
   while (outdated && connection.state === "open") {
     outdated = false;
     try {
-      const answer = await connection.request<Overlays | null>("pinhole/overlays", editor.about({}));
+      const answer = await connection.request<Overlays | null>("pinhole/overlays", editor.about({ object: hands.beyond }));
       if (answer === null) continue;
-      if (hands.beyond !== null) {
-        const one = await connection.request<Overlays | null>("pinhole/overlays", editor.about({ object: hands.beyond }));
-        answer.objects.push(...(one?.objects ?? []));
-      }
       overlays.data = answer;
       frames.resized(answer.size);
       hands.refresh();

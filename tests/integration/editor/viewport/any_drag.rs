@@ -64,7 +64,7 @@ fn point_of(scene: &Scene, (x, y): (f64, f64)) -> DVec2 {
 
 /// The handles of the first object.
 fn handles(scene: &Scene) -> Vec<&'static str> {
-    let objects = overlays(scene, Some(0)).objects;
+    let objects = overlays(scene, None).objects;
     objects[0].handles.iter().map(|(name, _)| *name).collect()
 }
 
@@ -151,7 +151,7 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
 /// The apex is seen in the direction of a point, from the centroid; or the two are too near to each other to tell.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = seen(scene, triangle.centroid);
-    let shown = overlays(scene, Some(0));
+    let shown = overlays(scene, None);
     let (_, apex) = shown.objects[0].handles[2];
     let (wanted, found) = (to - middle, apex.expect("it is seen") - middle);
     let across = wanted.perp_dot(found) / wanted.length();
