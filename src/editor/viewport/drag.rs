@@ -19,6 +19,9 @@ use crate::{
     syntax::tree::Block,
 };
 
+/// So many numbers of digits are tried before all are written: the text is read for each.
+const FEW: i32 = 6;
+
 /// A number of an `f64` has no more digits than this.
 const DIGITS: i32 = 17;
 
@@ -87,10 +90,9 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     };
     let greatest = changes.iter().map(|change| change.size());
     let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
-    // Where all digits are not enough, fewer are not either.
-    let with_all = written(first + DIGITS + 1)?;
-    let fewest = (first..=first + DIGITS).find_map(|decimals| written(decimals).ok());
-    let (edits, found) = fewest.unwrap_or(with_all);
+    let (edits, found) = (first..first + FEW)
+        .find_map(|decimals| written(decimals).ok())
+        .map_or_else(|| written(first + DIGITS), Ok)?;
     let fields = current.fields().into_iter().zip(found.fields());
     let values = fields
         .filter(|(before, after)| before != after)
