@@ -94,11 +94,9 @@ fn graded(
     let wanted = args.threads.map(usize::try_from);
     let threads = wanted.map_or_else(processors, |wanted| wanted.unwrap_or(usize::MAX));
     let judge = progress::watched(whole.pixels(), |done| {
-        let judge = Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
+        Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
             done.fetch_add(more, Ordering::Relaxed);
-        })?;
-        judge.prepare(cancel)?;
-        Ok(judge)
+        })
     });
     let judge = match judge {
         Ok(judge) => judge,

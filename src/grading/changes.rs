@@ -94,7 +94,8 @@ pub fn roll(c: &mut Candidate, roll: Angle) -> Option<()> {
 /// Another vector is up.
 pub fn up(c: &mut Candidate, up: DVec3) -> Option<()> {
     (c.scene.camera.up != up).then_some(())?;
-    c.scene.camera.up = up;
+    // Without −0.
+    c.scene.camera.up = up + DVec3::ZERO;
     Some(())
 }
 
