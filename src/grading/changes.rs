@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::{
+    axes::radians,
     candidate::Candidate,
     light::{Average, Curve, Look},
-    textbook::{Behind, Squares, Visible, radians},
+    textbook::{Behind, Squares, Visible},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},

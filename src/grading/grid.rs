@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::textbook::focal;
+use super::axes::focal;
 use crate::{
     area::Area,
     scene::{Image, Lens, Scene},

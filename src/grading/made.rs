@@ -5,12 +5,13 @@ use std::sync::{Arc, atomic::AtomicBool};
 use glam::DVec2;
 
 use super::{
+    axes::Axes,
     candidate::Candidate,
     grid::Grid,
     layout::Layout,
     light::{Average, Look, STEP, is_near},
     score::Model,
-    textbook::{Axes, Behaviour, Behind, Moments, Textbook, bounds},
+    textbook::{Behaviour, Behind, Moments, Textbook, bounds},
 };
 use crate::{
     area::Area,

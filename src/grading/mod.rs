@@ -5,9 +5,11 @@
 //!
 //! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
 //! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
-//! where it behaves as no scene can say; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search` holds
-//! the picture, `select` chooses mistakes, a `patch` being the last of them, and `words` says them.
+//! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
+//! holds the picture, but for its `empty` pixels; `select` chooses mistakes, a `patch` being the last of them, and `words` says them. What is the same for all
+//! pictures of a class is `shared`.
 
+mod axes;
 mod candidate;
 mod changes;
 mod empty;
