@@ -93,11 +93,9 @@ fn graded(
     let processors = || thread::available_parallelism().map_or(1, NonZero::get);
     let threads = args.threads.count().map_or_else(processors, NonZero::get);
     let judge = progress::watched(whole.pixels(), |done| {
-        let judge = Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
+        Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
             done.fetch_add(more, Ordering::Relaxed);
-        })?;
-        judge.prepare(cancel)?;
-        Ok(judge)
+        })
     });
     let judge = match judge {
         Ok(judge) => judge,

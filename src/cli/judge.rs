@@ -67,11 +67,6 @@ impl<'a> Judge<'a> {
         self.reference
             .judge(&picture.film, jpeg, comparison, cancel)
     }
-
-    /// Makes ready what is needed for pictures that are not equal to the exact one, for many at once.
-    pub fn prepare(&self, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.reference.prepare(cancel)
-    }
 }
 
 /// The part of a scene that a picture shows: the crop that it carries, or all of it.

@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::{
+    axes::radians,
     candidate::Candidate,
     light::{Average, Curve, Look},
-    textbook::{Behind, Squares, Visible, radians},
+    textbook::{Behind, Squares, Visible},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -94,7 +95,8 @@ pub fn roll(c: &mut Candidate, roll: Angle) -> Option<()> {
 /// Another vector is up.
 pub fn up(c: &mut Candidate, up: DVec3) -> Option<()> {
     (c.scene.camera.up != up).then_some(())?;
-    c.scene.camera.up = up;
+    // Without −0.
+    c.scene.camera.up = up + DVec3::ZERO;
     Some(())
 }
 

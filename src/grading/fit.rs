@@ -22,17 +22,6 @@ pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// What is to be small: the sum of squares of what is below a bend, and of absolute differences beyond it (Huber, Robust estimation of a location
-/// parameter, 1964).
-fn loss(differences: &[f64], bend: f64) -> f64 {
-    differences.iter().map(|d| weight(*d, bend) * d * d).sum()
-}
-
-/// The weight of a square.
-fn weight(difference: f64, bend: f64) -> f64 {
-    (bend / difference.abs()).min(1.0)
-}
-
 /// What a model makes of numbers.
 pub trait Trial {
     /// Its differences from a picture.
@@ -40,6 +29,26 @@ pub trait Trial {
 
     /// The standard deviations that are to be expected of them.
     fn deviations(&self) -> Vec<f64>;
+}
+
+/// What is to be small: the sum of squares of differences in units, and of absolute values of what is beyond a bend (Huber, Robust estimation of a location
+/// parameter, 1964).
+struct Loss {
+    units: Vec<f64>,
+    bend: f64,
+}
+
+impl Loss {
+    fn of(&self, differences: &[f64]) -> f64 {
+        let weights = self.weights(differences).zip(differences);
+        weights.map(|(weight, d)| weight * d * d).sum()
+    }
+
+    /// The weights of the squares.
+    fn weights(&self, differences: &[f64]) -> impl Iterator<Item = f64> {
+        let all = differences.iter().zip(&self.units);
+        all.map(|(d, unit)| (self.bend * unit / d.abs()).min(1.0) / (unit * unit))
+    }
 }
 
 /// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives none for numbers that cannot be.
@@ -52,105 +61,100 @@ pub fn fit<T: Trial>(
     rounds: [usize; 2],
     trial: &dyn Fn(&[f64]) -> Option<T>,
 ) -> Option<Fitted> {
-    let even = vec![1.0; trial(&start)?.differences().len()];
-    let mut best = round(start, steps, rounds[0], f64::INFINITY, &even, trial)?;
-    if rounds[1] > 0 {
-        let deviations = trial(&best.0)?.deviations();
-        best = round(best.0, steps, rounds[1], 1.0, &deviations, trial)?;
+    let count = start.len();
+    let mut numbers = start;
+    let mut shown = trial(&numbers)?;
+    let mut now = shown.differences();
+    let mut normal = vec![vec![0.0; count]; count];
+    let mut slopes: Vec<Vec<f64>> = Vec::new();
+    let mut moves_since = 0;
+    for (is_robust, rounds) in [false, true].into_iter().zip(rounds) {
+        let loss = match is_robust && rounds > 0 {
+            true => Loss {
+                units: shown.deviations(),
+                bend: 1.0,
+            },
+            false => Loss {
+                units: vec![1.0; now.len()],
+                bend: f64::INFINITY,
+            },
+        };
+        let mut left = loss.of(&now);
+        let mut damping = 1e-3;
+        for _ in 0..rounds {
+            // Slopes serve for two moves: to find them takes most of the time.
+            if moves_since == 2 {
+                slopes.clear();
+            }
+            if slopes.is_empty() {
+                moves_since = 0;
+            }
+            for i in slopes.len()..count {
+                let varied = |by: f64| {
+                    let mut other = numbers.clone();
+                    other[i] += by;
+                    Some((by, trial(&other)?.differences()))
+                };
+                let (by, other) = varied(steps[i]).or_else(|| varied(-steps[i]))?;
+                // In units of the step, so that all numbers are alike.
+                let sign = steps[i] / by;
+                let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
+                slopes.push(slope.collect::<Vec<_>>());
+            }
+            let weights: Vec<f64> = loss.weights(&now).collect();
+            let product = |a: &[f64], b: &[f64]| -> f64 {
+                let terms = a.iter().zip(b).zip(&weights);
+                terms.map(|((a, b), weight)| a * b * weight).sum()
+            };
+            for i in 0..count {
+                for j in 0..=i {
+                    normal[i][j] = product(&slopes[i], &slopes[j]);
+                    normal[j][i] = normal[i][j];
+                }
+            }
+            let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
+            let mut is_moving = false;
+            for _ in 0..4 {
+                let mut damped = normal.clone();
+                for (i, row) in damped.iter_mut().enumerate() {
+                    row[i] += damping * row[i] + 1e-12;
+                }
+                let Some(moves) = solve(damped, gradient.clone()) else {
+                    break;
+                };
+                let moved = numbers.iter().zip(steps).zip(&moves);
+                let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
+                if let Some(other) = trial(&moved) {
+                    let differences = other.differences();
+                    let less = loss.of(&differences);
+                    if less < left {
+                        (left, now, shown, numbers) = (less, differences, other, moved);
+                        damping *= 0.1;
+                        moves_since += 1;
+                        is_moving = moves.iter().any(|by| by.abs() > CLOSE);
+                        break;
+                    }
+                }
+                damping *= 10.0;
+            }
+            if !is_moving {
+                break;
+            }
+        }
     }
-    let (numbers, normal) = best;
-    let left = absolute(&trial(&numbers)?.differences());
-    let errors = (0..numbers.len())
+    let errors = (0..count)
         .map(|i| {
-            let mut unit = vec![0.0; numbers.len()];
+            let mut unit = vec![0.0; count];
             unit[i] = 1.0;
             let inverse = solve(normal.clone(), unit).map_or(0.0, |column| column[i].max(0.0));
             steps[i].abs() * inverse.sqrt()
         })
         .collect();
     Some(Fitted {
+        left: absolute(&now),
         numbers,
-        left,
         errors,
     })
-}
-
-/// Rounds of Levenberg and Marquardt's method from a start: the numbers, and the normal matrix there.
-fn round<T: Trial>(
-    mut numbers: Vec<f64>,
-    steps: &[f64],
-    rounds: usize,
-    bend: f64,
-    deviations: &[f64],
-    trial: &dyn Fn(&[f64]) -> Option<T>,
-) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-    let count = numbers.len();
-    let differences = |numbers: &[f64]| {
-        let differences = trial(numbers)?.differences().into_iter();
-        let scaled = differences
-            .zip(deviations)
-            .map(|(difference, deviation)| difference / deviation);
-        Some(scaled.collect::<Vec<f64>>())
-    };
-    let mut now = differences(&numbers)?;
-    let mut left = loss(&now, bend);
-    let mut normal = vec![vec![0.0; count]; count];
-    let mut damping = 1e-3;
-    let mut slopes: Vec<Vec<f64>> = Vec::new();
-    for at in 0..rounds {
-        // Slopes serve for two rounds: to find them takes most of the time.
-        if at % 2 == 0 {
-            slopes.clear();
-        }
-        for i in slopes.len()..count {
-            let varied = |by: f64| {
-                let mut other = numbers.clone();
-                other[i] += by;
-                Some((by, differences(&other)?))
-            };
-            let (by, other) = varied(steps[i]).or_else(|| varied(-steps[i]))?;
-            // In units of the step, so that all numbers are alike.
-            let sign = steps[i] / by;
-            let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
-            slopes.push(slope.collect::<Vec<_>>());
-        }
-        let weights: Vec<f64> = now.iter().map(|d| weight(*d, bend)).collect();
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            let terms = a.iter().zip(b).zip(&weights);
-            terms.map(|((a, b), weight)| a * b * weight).sum()
-        };
-        for i in 0..count {
-            for j in 0..count {
-                normal[i][j] = product(&slopes[i], &slopes[j]);
-            }
-        }
-        let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
-        let mut is_moving = false;
-        for _ in 0..4 {
-            let mut damped = normal.clone();
-            for (i, row) in damped.iter_mut().enumerate() {
-                row[i] += damping * row[i] + 1e-12;
-            }
-            let Some(moves) = solve(damped, gradient.clone()) else {
-                break;
-            };
-            let moved = numbers.iter().zip(steps).zip(&moves);
-            let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
-            if let Some(other) = differences(&moved)
-                && loss(&other, bend) < left
-            {
-                (left, now, numbers) = (loss(&other, bend), other, moved);
-                damping *= 0.1;
-                is_moving = moves.iter().any(|by| by.abs() > CLOSE);
-                break;
-            }
-            damping *= 10.0;
-        }
-        if !is_moving {
-            break;
-        }
-    }
-    Some((numbers, normal))
 }
 
 /// Solves a small system of linear equations by elimination with the largest pivot.

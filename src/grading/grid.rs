@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::textbook::focal;
+use super::axes::focal;
 use crate::{
     area::Area,
     scene::{Image, Lens, Scene},
@@ -100,7 +100,7 @@ impl Grid {
         scene
     }
 
-    /// The means of the part's pixels, told by column and row in it.
+    /// The means of the part's pixels, told by column and row in it, but for those without a number.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> [f64; 3]) -> Vec<[f64; 3]> {
         let factor = f64::from(self.factor);
         // From where to where a cell reaches, and the pixels that it has a share of.
@@ -115,15 +115,18 @@ impl Grid {
         let cell = |(x, y): (u32, u32)| {
             let columns = reach(x, self.margin.x, self.corner.x);
             let rows = reach(y, self.margin.y, self.corner.y);
-            let mut sum = [0.0; 3];
+            let (mut sum, mut total) = ([0.0; 3], 0.0);
             for row in rows.2.clone() {
                 for column in columns.2.clone() {
-                    let weight = share(row, &rows) * share(column, &columns) / (factor * factor);
+                    let weight = share(row, &rows) * share(column, &columns);
                     let pixel = pixel(column, row);
-                    sum = [0, 1, 2].map(|i| sum[i] + weight * pixel[i]);
+                    if !pixel[0].is_nan() {
+                        sum = [0, 1, 2].map(|i| sum[i] + weight * pixel[i]);
+                        total += weight;
+                    }
                 }
             }
-            sum
+            sum.map(|sum| sum / total)
         };
         self.cells.iter().map(cell).collect()
     }

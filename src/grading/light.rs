@@ -55,10 +55,10 @@ impl Curve {
     /// The light that was encoded, where other light is seen.
     pub fn light(self, seen: f64) -> f64 {
         // A file of floats may have negative ones, of which there are no powers.
-        let seen = if self == Self::Right {
-            seen
+        let seen = if self != Self::Right && seen < 0.0 {
+            0.0
         } else {
-            seen.max(0.0)
+            seen
         };
         match self {
             Self::Right => seen,

@@ -1,16 +1,17 @@
 //! What a candidate shows on a grid: exactly, but for behaviour that no scene can say, which the textbook's tracer samples.
 
-use std::{rc::Rc, sync::atomic::AtomicBool};
+use std::sync::{Arc, atomic::AtomicBool};
 
 use glam::DVec2;
 
 use super::{
+    axes::Axes,
     candidate::Candidate,
     grid::Grid,
     layout::Layout,
     light::{Average, Look, STEP, is_near},
     score::Model,
-    textbook::{Axes, Behaviour, Behind, Moments, Textbook, bounds},
+    textbook::{Behaviour, Behind, Moments, Textbook, bounds},
 };
 use crate::{
     area::Area,
@@ -35,12 +36,17 @@ pub struct Made {
     /// What it would make if it behaved as a right program.
     right: Moments,
     /// How far the means are off of what is told from it by samples, where it was made for that.
-    error: Option<Rc<[[f64; 3]]>>,
+    error: Option<Arc<[[f64; 3]]>>,
     /// What it makes, and the variance of these means.
     behaved: Option<(Moments, Vec<[f64; 3]>)>,
 }
 
 impl Made {
+    /// What it would make if it behaved as a right program.
+    pub fn moments(&self) -> &Moments {
+        &self.right
+    }
+
     /// As it is shown in the cells of a grid, of which a picture shows something.
     pub fn model(&self, grid: &Grid, seen: &[[f64; 3]]) -> Model {
         let layout = self.candidate.layout;
@@ -176,13 +182,13 @@ impl Candidate {
         scene
     }
 
-    /// What it shows in the cells of a grid: exactly, or by so many samples in a cell where these are given. What it shows as another does is taken from
-    /// that. None if it is cancelled.
+    /// What it shows in the cells of a grid: exactly, or by so many samples in a cell where these are given. What it shows as one of others does is taken from
+    /// that which shows most of it. None if it is cancelled.
     pub fn made(
         &self,
         grid: &Grid,
         samples: Option<usize>,
-        like: Option<&Made>,
+        likes: &[&Made],
         cancel: &AtomicBool,
     ) -> Option<Made> {
         let part = self.layout.sources(grid.cells, grid.size());
@@ -201,8 +207,14 @@ impl Candidate {
             let is_in_place = other.layout.half_pixels == self.layout.half_pixels;
             like.part == part && is_in_place && behaves
         };
-        let like = like.filter(is_alike);
-        let changed = like.and_then(|like| self.changed(&like.candidate, grid, part));
+        let likes = likes.iter().copied().filter(is_alike);
+        let likes =
+            likes.filter_map(|like| Some((like, self.changed(&like.candidate, grid, part)?)));
+        let nearest = likes.min_by_key(|(like, changed)| {
+            let behaves = like.candidate.behaviour == self.behaviour;
+            (!behaves, changed.pixels())
+        });
+        let (like, changed) = nearest.unzip();
         // A sample takes less time than a cell.
         let cost = if samples.is_none() { 1.0 } else { 0.1 };
         let mut work = cost * changed.unwrap_or(part).pixels() as f64;
@@ -283,11 +295,11 @@ impl Candidate {
         samples: usize,
         cancel: &AtomicBool,
     ) -> Option<Made> {
-        let sampled = self.made(grid, Some(samples), None, cancel)?;
+        let sampled = self.made(grid, Some(samples), &[], cancel)?;
         if self.behaviour != Behaviour::RIGHT {
             return Some(sampled);
         }
-        let exact = self.made(grid, None, None, cancel)?;
+        let exact = self.made(grid, None, &[], cancel)?;
         let pairs = sampled.right.mean.iter().zip(&exact.right.mean);
         let error = pairs.map(|(sampled, exact)| [0, 1, 2].map(|i| sampled[i] - exact[i]));
         Some(Made {

@@ -5,11 +5,14 @@
 //!
 //! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
 //! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
-//! where it behaves as no scene can say; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search` holds
-//! the picture, `select` chooses mistakes, a `patch` being the last of them, and `words` says them.
+//! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
+//! holds the picture, but for its `empty` pixels; `select` chooses mistakes, a `patch` being the last of them, and `words` says them. What is the same for all
+//! pictures of a class is `shared`.
 
+mod axes;
 mod candidate;
 mod changes;
+mod empty;
 mod fit;
 mod grid;
 mod jpeg;
@@ -24,10 +27,11 @@ mod patch;
 mod score;
 mod search;
 mod select;
+mod shared;
 mod textbook;
 mod words;
 
-use std::sync::{OnceLock, atomic::AtomicBool};
+use std::{borrow::Cow, sync::atomic::AtomicBool};
 
 use serde_json::{Map, Value, json};
 
@@ -42,11 +46,10 @@ use crate::{
 
 use self::{
     candidate::Candidate,
-    light::{Average, Curve},
-    made::exact_moments,
-    score::{Model, WRONG, score},
+    empty::without_empty,
+    score::WRONG,
     search::{Found, Search},
-    textbook::Moments,
+    shared::Shared,
 };
 pub use self::{jpeg::Jpeg, objects::ObjectVerdict};
 
@@ -111,12 +114,11 @@ pub struct Verdict {
     pub is_cut: bool,
 }
 
-/// What pictures of a part of a scene's are judged by: made once, for a whole class.
+/// What pictures of a part of a scene's are judged by: made once for a whole class, when it is asked for.
 pub struct Reference<'a> {
     scene: &'a Scene,
     part: Area,
-    /// The exact means and variances, made when they are asked for.
-    moments: OnceLock<Moments>,
+    shared: Shared,
 }
 
 impl<'a> Reference<'a> {
@@ -125,26 +127,8 @@ impl<'a> Reference<'a> {
         Self {
             scene,
             part,
-            moments: OnceLock::new(),
+            shared: Shared::default(),
         }
-    }
-
-    /// Computes the exact means and variances. Several threads that ask for them at once would compute them several times.
-    ///
-    /// # Errors
-    ///
-    /// They are not wanted any more.
-    pub fn prepare(&self, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.moments(cancel).map(|_| ())
-    }
-
-    fn moments(&self, cancel: &AtomicBool) -> Result<&Moments, RenderError> {
-        if let Some(moments) = self.moments.get() {
-            return Ok(moments);
-        }
-        let moments = exact_moments(self.scene, Average::Light, self.part, cancel);
-        let moments = moments.ok_or(RenderError::Cancelled)?;
-        Ok(self.moments.get_or_init(|| moments))
     }
 
     /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is coded, if it is one.
@@ -162,38 +146,37 @@ impl<'a> Reference<'a> {
         if comparison.is_equal() {
             return Ok(Verdict::of(Kind::Right, self.scene));
         }
-        judged(film, jpeg, self, self.moments(cancel)?, cancel)
+        let scene = self.scene;
+        let right = Candidate::right(scene);
+        let search = Search::new(self, film, jpeg, cancel);
+        let shown = search.made(&right, &search.fine, None);
+        let shown = shown.ok_or(RenderError::Cancelled)?;
+        let empties = [scene.image.background.to_linear(), [0.0; 3]];
+        let mut without = empties
+            .iter()
+            .filter_map(|empty| without_empty(film, shown.moments(), *empty));
+        let without = jpeg.is_none().then(|| without.next()).flatten();
+        let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
+        let search = Search::new(self, &film, jpeg, cancel);
+        judged(&search, &film, cancel)
     }
 }
 
-fn judged(
-    film: &Film,
-    jpeg: Option<Jpeg>,
-    reference: &Reference,
-    moments: &Moments,
-    cancel: &AtomicBool,
-) -> Result<Verdict, RenderError> {
-    let Reference { scene, part, .. } = *reference;
-    let search = Search::new(scene, film, part, jpeg, cancel);
-    let found = select::run(&search)?;
+fn judged(search: &Search, film: &Film, cancel: &AtomicBool) -> Result<Verdict, RenderError> {
+    let (scene, jpeg) = (search.scene, search.fine.jpeg);
+    let found = select::run(search)?;
     let right = Candidate::right(scene);
     let mut verdict = match found {
-        Some(found) if !found.candidate.named.is_empty() => wrong(&search, &found),
+        Some(found) if !found.candidate.named.is_empty() => wrong(search, &found),
         _ if search.strays(&right).is_empty() && !has_other_colors(film, scene, jpeg) => {
-            let doubt = jpeg.map(|jpeg| jpeg.variances(moments, film.width() as usize, 1));
-            let model = Model {
-                moments: moments.clone(),
-                doubt: doubt.unwrap_or_default(),
-                cut: 0.0,
-                curve: Curve::Right,
-            };
+            let judged = search.judged_on(&search.fine, right, None);
             Verdict {
-                samples: score(film.pixels(), &model).samples,
+                samples: judged.and_then(|judged| judged.score.samples),
                 ..Verdict::of(Kind::Noise, scene)
             }
         }
         _ => {
-            let (objects, is_background_right) = objects::judged(&search, &right);
+            let (objects, is_background_right) = objects::judged(search, &right);
             Verdict {
                 objects,
                 is_background_right,
@@ -262,7 +245,13 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
                 .and_then(|set| set.split_once('='))
             && should.0 == target
         {
-            message = format!("{message}: {value} instead of {}", should.1);
+            let written = |value: &str| {
+                value
+                    .parse()
+                    .map_or(value.to_owned(), crate::numbers::short)
+            };
+            let [is, should] = [value, should.1].map(written);
+            message = format!("{message}: {is} instead of {should}");
         }
         mistakes.push(Mistake {
             id: one.id,

@@ -16,8 +16,8 @@ use crate::color::{Color, linear_to_srgb};
 /// From so many starts numbers are fitted on the tiny grid.
 const STARTS: usize = 3;
 
-/// Of so many parameters of objects, and of so many others, numbers are fitted on the coarse grid.
-const FITTED: usize = 4;
+/// So many parameters of objects, so many others, and so many rows are tried on the coarse grid.
+pub const FITTED: usize = 4;
 
 /// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
 pub fn numbers(
@@ -88,7 +88,8 @@ fn colors(search: &Search, numbers: &[f64], model: &Model) -> Vec<f64> {
             .zip(&model.moments.mean)
             .zip(&model.moments.variance);
         let alone = cells.filter(|((_, mean), variance)| **mean == light && **variance == [0.0; 3]);
-        let mut seen: Vec<[f64; 3]> = alone.map(|((seen, _), _)| *seen).collect();
+        let alone = alone.map(|((seen, _), _)| *seen);
+        let mut seen: Vec<[f64; 3]> = alone.filter(|seen| !seen[0].is_nan()).collect();
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;

@@ -3,10 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::{
+    axes::Axes,
     candidate::Candidate,
     parameters::Owner,
     search::Search,
-    textbook::{Axes, Behaviour, Textbook, corners, vertices},
+    textbook::{Behaviour, Textbook, corners, vertices},
 };
 use crate::scene::{Scene, Shape};
 

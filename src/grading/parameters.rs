@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::textbook::Axes;
+use super::axes::Axes;
 use crate::{
     color::Color,
     math::Angle,

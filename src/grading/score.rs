@@ -7,7 +7,7 @@
 //! models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz, Estimating the
 //! dimension of a model, 1978. It is the only rule of significance here.
 
-use std::sync::OnceLock;
+use std::{collections::HashMap, sync::OnceLock};
 
 use super::{
     light::{Curve, STEP},
@@ -23,6 +23,9 @@ const ROUNDS: usize = 8;
 
 /// The variance below which a pixel shows one colour: a part of 1e-9 of it may be another.
 pub const FLAT: f64 = 1e-9;
+
+/// Means are the same that differ by less, which is what rounding leaves of them.
+const SAME: f64 = 1e-9;
 
 /// What a picture should show, if something is right.
 #[derive(Clone, Debug)]
@@ -50,6 +53,8 @@ pub struct Score {
     pub squares: f64,
     /// The part of it that noise of so many samples makes.
     pub noise: f64,
+    /// The share of a sample's variance that a pixel's error has: 1/n.
+    share: f64,
 }
 
 impl Score {
@@ -87,7 +92,9 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
     let mut last = ([f64::NAN; 3], [0.0; 3]);
     let known = |at: usize| {
         let (mean, variance) = (model.moments.mean[at], model.moments.variance[at]);
-        let variance = variance.map(|one| if one < FLAT { 0.0 } else { one });
+        // Nothing is known of a pixel that is empty.
+        let is_empty = seen[at][0].is_nan();
+        let variance = variance.map(|one| if one < FLAT || is_empty { 0.0 } else { one });
         if last.0 != mean {
             last = (
                 mean,
@@ -180,7 +187,50 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
         off,
         squares,
         noise: expected.min(squares),
+        share: noise,
     }
+}
+
+/// How much likelier a picture is by the means of another model than by those of a null model, of which this is the score, if errors have the variances of the
+/// null model. A model with variances of its own gains by those alone where few samples happen to show one colour. An error of so many standard deviations has
+/// the probability 1/(1 + deviations²) at most, whatever its distribution (Cantelli's inequality), and just that one if it has two values, as one sample has.
+///
+/// Pixels in which the null model has the same mean of several colours count as one: along an edge that is parallel to the pixels any sampling but a random one
+/// errs by the same in all of them.
+pub fn gain(seen: &[[f64; 3]], [null, other]: [&Model; 2], score: &Score) -> f64 {
+    let mut mixed: HashMap<[i64; 3], (f64, f64)> = HashMap::new();
+    let mut gain = 0.0;
+    for (at, light) in seen.iter().enumerate() {
+        let (mean, variance) = (null.moments.mean[at], null.moments.variance[at]);
+        let doubt = null.doubt.get(at).copied().unwrap_or_default();
+        let own = other.moments.mean[at];
+        let off = |difference: [f64; 3]| -> f64 {
+            let channel = |i: usize| {
+                let rounding = rounding(mean[i], null.curve);
+                difference[i] * difference[i]
+                    / (variance[i] * score.share + rounding * rounding + doubt[i])
+            };
+            (0..3).map(channel).fold(0.0, f64::max)
+        };
+        let before = [0, 1, 2].map(|i| null.difference(light[i], mean[i], variance));
+        let after = [0, 1, 2].map(|i| match other.curve {
+            Curve::Right => other.difference(light[i], own[i], other.moments.variance[at]),
+            curve => light[i] - curve.seen(own[i]),
+        });
+        if before == after || light[0].is_nan() {
+            continue;
+        }
+        let more = libm::log1p(off(before)) - libm::log1p(off(after));
+        if variance.iter().all(|one| *one < FLAT) {
+            gain += more;
+        } else {
+            let (sum, count) = mixed
+                .entry(mean.map(|light| (light / SAME).round() as i64))
+                .or_default();
+            (*sum, *count) = (*sum + more, *count + 1.0);
+        }
+    }
+    gain + mixed.values().map(|(sum, count)| sum / count).sum::<f64>()
 }
 
 impl Known {
@@ -214,8 +264,9 @@ impl Model {
 
     /// The standard deviations that these may have, as the mean of a single sample: an edge may be one pixel off.
     pub fn deviations(&self, width: usize) -> Vec<f64> {
-        let around = around(&self.moments.variance, width);
-        let deviations = around.iter().enumerate().flat_map(|(at, variance)| {
+        let variances = &self.moments.variance;
+        let deviations = (0..variances.len()).flat_map(|at| {
+            let [_, variance] = range(variances, width, at);
             let doubt = self.doubt.get(at).copied().unwrap_or_default();
             [0, 1, 2].map(|i| (variance[i] + doubt[i] + STEP * STEP).sqrt())
         });
@@ -223,6 +274,9 @@ impl Model {
     }
 
     fn difference(&self, seen: f64, mean: f64, variance: [f64; 3]) -> f64 {
+        if seen.is_nan() {
+            return 0.0;
+        }
         if self.cut == 0.0 {
             return seen - mean;
         }
@@ -238,27 +292,18 @@ impl Model {
     }
 }
 
-/// The greatest of each cell and its eight neighbours, channel by channel.
-pub fn around(values: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
-    let most = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|i| f64::max(one[i], other[i]));
-    let in_rows: Vec<_> = values
-        .chunks_exact(width)
-        .flat_map(|row| {
-            (0..width).map(move |x| {
-                let near = &row[x.saturating_sub(1)..(x + 2).min(width)];
-                near.iter().copied().fold([f64::NEG_INFINITY; 3], most)
-            })
-        })
-        .collect();
-    let height = values.len() / width;
-    (0..values.len())
-        .map(|at| {
-            let (x, y) = (at % width, at / width);
-            let rows = y.saturating_sub(1)..(y + 2).min(height);
-            rows.map(|y| in_rows[y * width + x])
-                .fold([f64::NEG_INFINITY; 3], most)
-        })
-        .collect()
+/// The least and the greatest in a cell and its eight neighbours, channel by channel.
+fn range(values: &[[f64; 3]], width: usize, at: usize) -> [[f64; 3]; 2] {
+    let (x, y) = (at % width, at / width);
+    let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for y in y.saturating_sub(1)..(y + 2).min(values.len() / width) {
+        for one in &values[y * width + x.saturating_sub(1)..y * width + (x + 2).min(width)] {
+            for i in 0..3 {
+                (least[i], most[i]) = (least[i].min(one[i]), most[i].max(one[i]));
+            }
+        }
+    }
+    [least, most]
 }
 
 /// How much a difference may be, in standard deviations, where that is known of what is random in it: of a million normal errors one is greater.
@@ -268,17 +313,12 @@ pub const DEVIATIONS: f64 = 5.0;
 pub const WRONG: f64 = 0.75;
 
 impl Model {
-    /// How much the light of each pixel may change if edges move by half a pixel: half of how much the pixels around it differ, or the standard deviation of a
+    /// How much the light of a pixel may change if edges move by half a pixel: half of how much the pixels around it differ, or the standard deviation of a
     /// sample in one of them, which half of each of two colours make half of their difference.
-    fn reach(&self, width: usize) -> Vec<[f64; 3]> {
-        let Moments { mean, variance } = &self.moments;
-        let negative: Vec<_> = mean.iter().map(|mean| mean.map(|light| -light)).collect();
-        let [most, least, variance] =
-            [mean, &negative, variance].map(|values| around(values, width));
-        let reach = |at: usize| {
-            [0, 1, 2].map(|i| f64::max((most[at][i] + least[at][i]) / 2.0, variance[at][i].sqrt()))
-        };
-        (0..mean.len()).map(reach).collect()
+    fn reach(&self, width: usize, at: usize) -> [f64; 3] {
+        let [least, most] = range(&self.moments.mean, width, at);
+        let [_, variance] = range(&self.moments.variance, width, at);
+        [0, 1, 2].map(|i| f64::max((most[i] - least[i]) / 2.0, variance[i].sqrt()))
     }
 
     /// What a pixel may differ by for its rounding and for what is not known of it.
@@ -293,15 +333,18 @@ impl Model {
     /// a pixel. A few samples move them themselves: a regular grid of n by up to half of 1/√n, so that a pixel with a corner changes by up to three quarters with one.
     pub fn is_seen_beside(&self, other: &Self, width: usize, samples: f64) -> bool {
         let more = 1.0 + 0.5 / samples.sqrt();
-        let reaches = [self, other].map(|model| model.reach(width));
         let shown =
             |model: &Self, at: usize| model.moments.mean[at].map(|light| model.curve.seen(light));
         (0..self.moments.mean.len()).any(|at| {
+            if self.moments.mean[at] == other.moments.mean[at] && self.curve == other.curve {
+                return false;
+            }
             let (one, two) = (shown(self, at), shown(other, at));
+            let reaches = [self, other].map(|model| model.reach(width, at));
             (0..3).any(|i| {
                 let reach = f64::max(
-                    more * reaches[0][at][i] + self.allowed(at, i),
-                    more * reaches[1][at][i] + other.allowed(at, i),
+                    more * reaches[0][i] + self.allowed(at, i),
+                    more * reaches[1][i] + other.allowed(at, i),
                 );
                 (one[i] - two[i]).abs() > reach
             })
@@ -322,15 +365,17 @@ impl Strays {
     /// Those of a picture.
     pub fn new(seen: &[[f64; 3]], model: &Model, width: usize) -> Self {
         let variances = &model.moments.variance;
-        let reach = model.reach(width);
         let mut strays = Self::default();
         for at in 0..seen.len() {
             let difference = [0, 1, 2]
                 .map(|i| model.difference(seen[at][i], model.moments.mean[at][i], variances[at]));
             if variances[at].iter().all(|one| *one < FLAT) {
-                let is_off = |i: usize| difference[i].abs() > model.allowed(at, i) + reach[at][i];
-                if (0..3).any(is_off) {
-                    strays.pixels.push(at);
+                let beyond = |i: usize| difference[i].abs() - model.allowed(at, i);
+                if (0..3).any(|i| beyond(i) > 0.0) {
+                    let reach = model.reach(width, at);
+                    if (0..3).any(|i| beyond(i) > reach[i]) {
+                        strays.pixels.push(at);
+                    }
                 }
             } else {
                 let square = |i: usize| {

@@ -3,10 +3,11 @@
 use std::{
     cell::{Cell, OnceCell, RefCell},
     collections::HashMap,
-    sync::atomic::AtomicBool,
+    sync::{Arc, atomic::AtomicBool},
 };
 
 use super::{
+    Reference,
     candidate::{Candidate, Cause, Named},
     fit::{Fitted, Trial, fit},
     grid::Grid,
@@ -15,7 +16,8 @@ use super::{
     made::Made,
     mistakes::{ROWS, Shows},
     parameters::Parameter,
-    score::{Model, Score, Strays, score},
+    score::{Model, Score, Strays, gain, score},
+    shared::Shared,
 };
 use crate::{area::Area, film::Film, scene::Scene};
 
@@ -90,6 +92,7 @@ impl Level<'_> {
 /// A picture that is compared with a scene.
 pub struct Search<'a> {
     pub scene: &'a Scene,
+    shared: &'a Shared,
     pub tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
@@ -97,7 +100,7 @@ pub struct Search<'a> {
     /// The pixels in the middle of the picture.
     pub edges: Level<'a>,
     /// What was made last of all pixels.
-    last: Cell<Option<Made>>,
+    last: Cell<Option<Arc<Made>>>,
     work: Cell<f64>,
     /// Whether something was left out for that.
     pub is_cut: Cell<bool>,
@@ -110,18 +113,23 @@ pub struct Found {
     pub score: Score,
     pub cost: f64,
     /// What it makes on the grid that it was judged on.
-    pub made: Made,
+    pub made: Arc<Made>,
 }
 
 impl<'a> Search<'a> {
     /// For a picture of a part of a scene's.
     pub fn new(
-        scene: &'a Scene,
+        reference: &'a Reference,
         film: &'a Film,
-        part: Area,
         jpeg: Option<Jpeg>,
         cancel: &'a AtomicBool,
     ) -> Self {
+        let Reference {
+            scene,
+            part,
+            shared,
+        } = reference;
+        let part = *part;
         let level = |area: Area, longest, samples| Level {
             grid: Grid::new(&scene.image, area, longest),
             film,
@@ -133,6 +141,7 @@ impl<'a> Search<'a> {
         };
         Self {
             scene,
+            shared,
             tiny: level(part, TINY.0, Some(TINY.1)),
             coarse: level(part, COARSE, None),
             middle: level(part, MIDDLE, None),
@@ -146,15 +155,64 @@ impl<'a> Search<'a> {
     }
 
     /// What a candidate makes on a level; none if it is cancelled.
-    pub fn made(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
-        let made = candidate.made(&level.grid, level.samples, like, self.cancel)?;
-        let objects = (OBJECTS + self.scene.objects.len()) as f64;
-        self.work.set(self.work.get() + made.work * objects);
-        Some(made)
+    pub fn made(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        like: Option<&Made>,
+    ) -> Option<Arc<Made>> {
+        let make = |candidate: &Candidate, likes: &[&Made]| {
+            let made = candidate.made(&level.grid, level.samples, likes, self.cancel)?;
+            let objects = (OBJECTS + self.scene.objects.len()) as f64;
+            self.work.set(self.work.get() + made.work * objects);
+            Some(made)
+        };
+        // What a program shows that has the scene's own numbers is the same for all pictures; most often it differs in a part from what this one shows.
+        let rows = candidate.named.iter().filter(|named| named.is_row());
+        let rows: Vec<Named> = rows.cloned().collect();
+        let is_small = level.grid.count() as u64 <= PIXELS_OF_EDGES;
+        let may_share = level.samples.is_none() && rows.len() <= usize::from(is_small);
+        let base = may_share
+            .then(|| Candidate::of(self.scene, &rows))
+            .flatten();
+        let base = base.filter(|base| {
+            let (one, other) = (&base.scene, &candidate.scene);
+            one.camera == other.camera && one.image == other.image
+        });
+        let likes: Vec<&Made> = like.into_iter().collect();
+        let base = base.and_then(|base| {
+            let mistake = rows.first().map_or("", |row| &row.message);
+            self.shared
+                .get(&level.grid, mistake, || make(&base, &likes))
+        });
+        if let Some(base) = &base
+            && candidate.looks.len() == base.candidate.looks.len()
+            && candidate.is_drawn == base.candidate.is_drawn
+            && candidate.scene.objects == base.candidate.scene.objects
+        {
+            return Some(Arc::clone(base));
+        }
+        let likes: Vec<&Made> = like.into_iter().chain(base.as_deref()).collect();
+        Some(Arc::new(make(candidate, &likes)?))
+    }
+
+    /// What a candidate shows on the tiny grid, for others to be compared with it.
+    pub fn made_to_compare(&self, candidate: &Candidate) -> Option<Arc<Made>> {
+        let grid = &self.tiny.grid;
+        let make = || candidate.made_to_compare(grid, TINY.1, self.cancel);
+        match candidate.named.is_empty() {
+            true => self.shared.get(grid, "", make),
+            false => make().map(Arc::new),
+        }
     }
 
     /// What a candidate makes on a level, if there was not too much work before.
-    pub fn tried(&self, candidate: &Candidate, level: &Level, like: Option<&Made>) -> Option<Made> {
+    pub fn tried(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        like: Option<&Made>,
+    ) -> Option<Arc<Made>> {
         let may = self.work.get() < MOST_WORK;
         self.is_cut.set(self.is_cut.get() || !may);
         may.then(|| self.made(candidate, level, like))?
@@ -192,6 +250,15 @@ impl<'a> Search<'a> {
         })
     }
 
+    /// How much likelier than a null model another one is that was judged on the same level, less what the numbers cost that it has more.
+    pub fn gain(&self, level: &Level, null: &Found, other: &Found) -> f64 {
+        let models = [null, other].map(|found| level.model(&found.made));
+        let gain = gain(level.seen(Curve::Right), models.each_ref(), &null.score);
+        let [width, height] = level.grid.size().map(f64::from);
+        let more = other.candidate.fitted() - null.candidate.fitted();
+        gain - 0.5 * more as f64 * libm::log(width * height)
+    }
+
     /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
     pub fn is_explained(&self, candidate: &Candidate) -> bool {
         let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
@@ -226,7 +293,7 @@ impl<'a> Search<'a> {
     /// What a candidate shows in the pixels; none if it is cancelled.
     fn pixels(&self, candidate: &Candidate) -> Option<Model> {
         let like = self.last.take();
-        let made = self.made(candidate, &self.fine, like.as_ref())?;
+        let made = self.made(candidate, &self.fine, like.as_deref())?;
         let model = self.fine.model(&made);
         self.last.set(Some(made));
         Some(model)
@@ -253,7 +320,8 @@ impl<'a> Search<'a> {
         level: &'l Level<'l>,
         like: &Made,
     ) -> Option<Shown<'l>> {
-        let model = level.model(&self.tried(candidate, level, Some(like))?);
+        let made = self.tried(candidate, level, Some(like))?;
+        let model = level.model(&made);
         Some(Shown { level, model })
     }
 
@@ -276,14 +344,14 @@ impl<'a> Search<'a> {
         &self,
         candidate: Candidate,
         level: &Level,
-        made: Made,
+        made: &Made,
         rounds: [usize; 2],
     ) -> Option<Candidate> {
         let (named, start) = (&candidate.named, joined(&candidate.named));
         if start.is_empty() {
             return Some(candidate);
         }
-        let fitted = self.fit_all(&candidate, level, &made, rounds)?;
+        let fitted = self.fit_all(&candidate, level, made, rounds)?;
         Candidate::of(self.scene, &split(named, &fitted.numbers))
     }
 

@@ -10,10 +10,11 @@ use super::{
     light::Curve,
     made::Made,
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
-    numbers::numbers,
+    numbers::{FITTED, numbers},
     parameters::Owner,
     patch::patch,
-    search::{Found, Search, TINY, joined, split},
+    score::least,
+    search::{Found, Level, Search, joined, split},
     textbook::Textbook,
     words,
 };
@@ -46,7 +47,7 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     while best.candidate.named.len() < MOST_MISTAKES
         && (is_open && best.candidate.named.is_empty() || !search.is_explained(&best.candidate))
     {
-        let Some(next) = step(search, &best) else {
+        let Some(next) = step(search, &best, is_open && best.candidate.named.is_empty()) else {
             break;
         };
         best = next;
@@ -58,7 +59,9 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     let mut best = with_edges(search, short)?;
     // A shift by half a pixel may be taken for a camera that looks a little elsewhere.
     if let Some(found) = &best
-        && found.candidate.named.len() == 1
+        && let [one] = found.candidate.named.as_slice()
+        && let Cause::Numbers(parameter, _) = &one.cause
+        && parameter.owner == Owner::Camera
     {
         let other = with_edges(search, Candidate::right(search.scene))?;
         let other = other.filter(|other| search.strays(&other.candidate).is_empty());
@@ -95,44 +98,42 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
     let best = judged
         .into_iter()
         .filter(|found| !is_open || search.strays(&found.candidate).is_empty())
-        .min_by(|one, other| one.cost.total_cmp(&other.cost));
-    let is_better = |best: &Found| best.cost < null.cost;
-    cancel::unless_set(search.cancel, Some(best.filter(is_better).unwrap_or(null)))
+        .map(|found| (search.gain(&search.edges, &null, &found), found))
+        .filter(|(gain, _)| *gain > 0.0)
+        .max_by(|one, other| one.0.total_cmp(&other.0));
+    cancel::unless_set(search.cancel, Some(best.map_or(null, |(_, found)| found)))
 }
 
 /// The best candidate with one more mistake, if it is better.
-fn step(search: &Search, from: &Found) -> Option<Found> {
+fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     let coarse = search.made(&from.candidate, &search.coarse, None)?;
     let suspects = suspects(search, from);
-    let tiny = from
-        .candidate
-        .made_to_compare(&search.tiny.grid, TINY.1, search.cancel)?;
-    let mut tried = rows(search, from, &coarse, &suspects);
+    let tiny = search.made_to_compare(&from.candidate)?;
+    let mut tried = rows(search, from, [&tiny, &coarse], &suspects);
+    // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
+    let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
+    if let Some((_, row)) = row
+        && !is_open
+        && let Some(found) = finalist(search, from, row.clone())
+        && found.cost < from.cost
+        && search.strays(&found.candidate).is_empty()
+    {
+        return Some(found);
+    }
     tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
     let finalists = tried
         .into_iter()
         .take(FINALISTS)
         .map(|(_, candidate)| candidate);
-    let judged = finalists.filter_map(|candidate| {
-        let found = search.judged_on(&search.middle, candidate, Some(&from.made))?;
-        // What is no better than nothing is not worth a fit.
-        (found.score.likelihood > from.score.likelihood).then_some(())?;
-        let candidate = search.fitted(found.candidate, &search.middle, found.made, [3, 3])?;
-        search.judged_on(&search.middle, candidate, Some(&from.made))
-    });
+    let judged = finalists.filter_map(|candidate| finalist(search, from, candidate));
     let judged: Vec<Found> = judged.collect();
     let least = judged
         .iter()
         .map(|found| found.cost)
         .fold(f64::INFINITY, f64::min);
     // A row says more than a number that makes as good as the same picture.
-    let is_row = |found: &Found| {
-        !matches!(
-            found.candidate.named.last().map(|named| &named.cause),
-            Some(Cause::Numbers(..))
-        )
-    };
+    let is_row = |found: &Found| found.candidate.named.last().is_some_and(Named::is_row);
     let enough = least + AS_GOOD * (from.cost - least);
     let mut judged = judged;
     judged.sort_by(|one, other| {
@@ -140,17 +141,37 @@ fn step(search: &Search, from: &Found) -> Option<Found> {
         let (one, other) = (rank(one), rank(other));
         one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
     });
-    let is_better = |best: &Found| best.cost < from.cost && search.is_seen(best, &from.candidate);
+    let is_better = |best: &Found| {
+        let is_likelier = match is_open {
+            true => search.gain(&search.middle, from, best) > 0.0,
+            false => best.cost < from.cost,
+        };
+        is_likelier && search.is_seen(best, &from.candidate)
+    };
     // Something too many would explain anything; it is thought of where nothing else explains more than before.
     judged.into_iter().find(is_better).or_else(|| {
+        (!is_open).then_some(())?;
         let patched = from.candidate.with(patch(search, from)?)?;
         let found = search.judged_on(&search.middle, patched, Some(&from.made))?;
         (found.cost < from.cost).then_some(found)
     })
 }
 
-/// The rows of the table, and how much each leaves on the coarse grid.
-fn rows(search: &Search, from: &Found, like: &Made, suspects: &[usize]) -> Vec<(f64, Candidate)> {
+/// A candidate fitted and judged; none if it is no likelier than what it is made from.
+fn finalist(search: &Search, from: &Found, candidate: Candidate) -> Option<Found> {
+    let found = search.judged_on(&search.middle, candidate, Some(&from.made))?;
+    (found.score.likelihood > from.score.likelihood).then_some(())?;
+    let candidate = search.fitted(found.candidate, &search.middle, &found.made, [3, 3])?;
+    search.judged_on(&search.middle, candidate, Some(&from.made))
+}
+
+/// The rows of the table that leave least on the tiny grid, and how much each leaves on the coarse one.
+fn rows(
+    search: &Search,
+    from: &Found,
+    [tiny, coarse]: [&Made; 2],
+    suspects: &[usize],
+) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
     let mut named: Vec<Named> = rows.map(Row::named).collect();
     for &object in suspects {
@@ -165,12 +186,19 @@ fn rows(search: &Search, from: &Found, like: &Made, suspects: &[usize]) -> Vec<(
     let candidates = named
         .into_iter()
         .filter_map(|named| from.candidate.with(named));
-    candidates
-        .filter_map(|candidate| {
-            let made = search.tried(&candidate, &search.coarse, Some(like))?;
-            let left = absolute(&search.differences(&made, &search.coarse));
-            Some((left, candidate))
-        })
+    let left = |candidate: Candidate, level: &Level, like: &Made| {
+        let made = search.tried(&candidate, level, Some(like))?;
+        Some((absolute(&search.differences(&made, level)), candidate))
+    };
+    // Samples on the tiny grid are too few to tell a program that behaves otherwise, of which they are not compared with the exact picture.
+    let (behaved, plain): (Vec<_>, Vec<_>) =
+        candidates.partition(|candidate| candidate.behaviour != from.candidate.behaviour);
+    let on_tiny = plain
+        .into_iter()
+        .filter_map(|candidate| left(candidate, &search.tiny, tiny));
+    let on_coarse = least(on_tiny, FITTED).chain(behaved);
+    on_coarse
+        .filter_map(|candidate| left(candidate, &search.coarse, coarse))
         .collect()
 }
 
@@ -209,25 +237,20 @@ fn suspects(search: &Search, from: &Found) -> Vec<usize> {
 
 /// A candidate whose numbers have as few digits as do.
 fn shortened(search: &Search, found: Found) -> Candidate {
-    let named = &found.candidate.named;
-    let fitted = match joined(named).is_empty() {
-        true => None,
-        false => search.fit_all(&found.candidate, &search.middle, &found.made, [0, 1]),
+    let mut named = found.candidate.named.clone();
+    level(&mut named);
+    let Some(leveled) = Candidate::of(search.scene, &named).filter(|_| !joined(&named).is_empty())
+    else {
+        return found.candidate;
     };
-    let Some(fitted) = fitted else {
+    let Some(fitted) = search.fit_all(&leveled, &search.middle, &found.made, [0, 1]) else {
         return found.candidate;
     };
     let of = |named: &Named| match &named.cause {
-        Cause::Numbers(parameter, _) => parameter.steps(search.scene),
+        Cause::Numbers(parameter, _) => parameter.steps(&leveled.scene),
         _ => Vec::new(),
     };
     let steps: Vec<f64> = named.iter().flat_map(of).collect();
-    let mut named = named.clone();
-    for one in &mut named {
-        if let Cause::Numbers(parameter, numbers) = &mut one.cause {
-            words::level(search.scene, parameter, numbers);
-        }
-    }
     let named = &named;
     // A number that is short was not fitted: it may cost what that costs.
     let [width, height] = search.middle.grid.size().map(f64::from);
@@ -245,7 +268,15 @@ fn shortened(search: &Search, found: Found) -> Candidate {
             return judged.candidate;
         }
     }
-    found.candidate
+    leveled
+}
+
+fn level(named: &mut [Named]) {
+    for one in named {
+        if let Cause::Numbers(parameter, numbers) = &mut one.cause {
+            words::level(parameter, numbers);
+        }
+    }
 }
 
 /// Without those mistakes that are not needed beside the others.
@@ -256,7 +287,7 @@ fn without_needless(search: &Search, mut found: Found) -> Found {
         named.remove(at);
         let without = Candidate::of(search.scene, &named).and_then(|candidate| {
             let made = search.made(&candidate, &search.middle, Some(&found.made))?;
-            let candidate = search.fitted(candidate, &search.middle, made, [3, 3])?;
+            let candidate = search.fitted(candidate, &search.middle, &made, [3, 3])?;
             search.judged_on(&search.middle, candidate, Some(&found.made))
         });
         match without {

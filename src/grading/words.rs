@@ -11,7 +11,7 @@ use crate::{
 
 /// A parameter with other numbers, as a mistake.
 pub fn numbers(scene: &Scene, parameter: &Parameter, mut numbers: Vec<f64>) -> Named {
-    level(scene, parameter, &mut numbers);
+    level(parameter, &mut numbers);
     Named {
         id: match parameter.fields.as_slice() {
             [one] => one,
@@ -23,12 +23,11 @@ pub fn numbers(scene: &Scene, parameter: &Parameter, mut numbers: Vec<f64>) -> N
     }
 }
 
-/// Gives a vector of which the direction alone counts the length that it has in the scene.
-pub fn level(scene: &Scene, parameter: &Parameter, numbers: &mut [f64]) {
+/// Gives a vector of which the direction alone counts a length with which it is short: its greatest number is 1.
+pub fn level(parameter: &Parameter, numbers: &mut [f64]) {
     if let ["normal" | "direction"] = parameter.fields[..] {
-        let length = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let by = length(&parameter.numbers(scene)) / length(numbers);
-        numbers.iter_mut().for_each(|x| *x *= by);
+        let greatest = numbers.iter().fold(0.0, |most, x| f64::max(most, x.abs()));
+        numbers.iter_mut().for_each(|x| *x /= greatest);
     }
 }
 
@@ -77,7 +76,11 @@ pub fn message(scene: &Scene, named: &Named) -> String {
         "radius" | "size" | "sides" | "square" => "wrong size",
         _ => "wrong value",
     };
-    format!("{name} has a {kind}: its {field} is {is} instead of {should}")
+    let verb = match field {
+        "sides" | "colors" => "are",
+        _ => "is",
+    };
+    format!("{name} has a {kind}: its {field} {verb} {is} instead of {should}")
 }
 
 fn vector(numbers: &[f64]) -> String {

@@ -40,6 +40,18 @@ const PICTURES: &[(&str, &[&str], &str, &[&str])] = &[
         &[],
     ),
     (
+        // A third of the pixels has no sample.
+        "scatter.png",
+        &[
+            "--set",
+            "sampler.method=scatter",
+            "--set",
+            "sampler.total=2400",
+        ],
+        "noise",
+        &[],
+    ),
+    (
         "size.png",
         &["--set", "sampler.method=exact", "--set", "Ball.radius=1.5"],
         "wrong",
@@ -114,14 +126,14 @@ fn each_picture_has_a_line_in_every_form() {
     assert_eq!(rows.len(), 1 + PICTURES.len());
     assert_eq!(rows[0], "file,verdict,rmse,samples_per_pixel,line,set");
     assert!(
-        rows[4].starts_with("\"class/size.png\",wrong,0.")
-            && rows[4].ends_with("\"Ball.radius=1.5\""),
+        rows[5].starts_with("\"class/size.png\",wrong,0.")
+            && rows[5].ends_with("\"Ball.radius=1.5\""),
         "{}",
-        rows[4]
+        rows[5]
     );
     let page = read("index.html");
-    assert_eq!(page.matches("<td class=\"picture\">").count(), 5);
-    assert_eq!(page.matches("data:image/png;base64,").count(), 10);
+    assert_eq!(page.matches("<td class=\"picture\">").count(), 6);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 12);
     assert!(
         page.contains("<code>--set image.background='#ff0000'</code>"),
         "{page}"
@@ -131,7 +143,7 @@ fn each_picture_has_a_line_in_every_form() {
     let output = command(path, &arguments).output().unwrap();
     let diff: Value = serde_json::from_slice(&output.stdout).unwrap();
     for (key, value) in diff.as_object().unwrap() {
-        assert_eq!(&graded[3][key], value, "{key}");
+        assert_eq!(&graded[4][key], value, "{key}");
     }
 
     let (status, out, table) = grade(path, &["class"]);
@@ -140,6 +152,7 @@ fn each_picture_has_a_line_in_every_form() {
         "picture",
         "right: equal to the exact picture (rendered by Pinhole)",
         "right: equal to the exact picture",
+        "right but for sampling noise",
         "right but for sampling noise",
         "wrong: the sphere Ball has a wrong size: its radius is 1.5 instead of 1",
         "wrong: the image has a wrong colour",
