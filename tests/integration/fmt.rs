@@ -2,15 +2,14 @@
 
 use std::{
     fs,
-    io::Write,
     path::Path,
-    process::{Command, Stdio},
+    process::Command,
     time::{Duration, SystemTime},
 };
 
 use tempfile::TempDir;
 
-use crate::program::command;
+use crate::program::{command, reading};
 
 const UNTIDY: &str = "let a=1\nsphere {center (a,2,3)} // c\n";
 const TIDY: &str = "let a = 1\nsphere { center (a, 2, 3) }  // c\n";
@@ -19,15 +18,9 @@ const BROKEN: &str = "let a=1;\nsphere {center (a,2,3)}\n";
 /// Runs `pinhole fmt`: its status, standard output and standard error.
 fn fmt(folder: &Path, input: &str, arguments: &[&str]) -> (i32, String, String) {
     let arguments = [&["fmt"], arguments].concat();
-    let mut child = command(folder, &arguments)
-        .env("NO_COLOR", "1")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
-    let output = child.wait_with_output().unwrap();
+    let mut command = command(folder, &arguments);
+    command.env("NO_COLOR", "1");
+    let output = reading(command, input.as_bytes());
     (
         output.status.code().unwrap(),
         String::from_utf8(output.stdout).unwrap(),
