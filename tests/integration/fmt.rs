@@ -104,20 +104,6 @@ fn check_shows_line_ends_where_they_are_all_that_changes() {
     assert!(!errors.contains('␍'), "{errors}");
 }
 
-/// A terminal would obey them.
-#[test]
-fn control_characters_are_not_printed() {
-    let text = "// \u{1b}[31mx\r\nlet a=1\u{20}// \u{7}\r\n";
-    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
-    assert_eq!(status, 1);
-    assert!(
-        errors.contains("\n // \\u{1b}[31mx\n-let a=1 // \\u{7}\n+let a = 1  // \\u{7}\n"),
-        "{errors}"
-    );
-    let is_odd = |c: char| c.is_control() && c != '\n';
-    assert!(!errors.contains(is_odd), "{errors:?}");
-}
-
 /// What is written into a pipe comes back to nobody, and one that nobody writes to is waited for without end.
 #[cfg(unix)]
 #[test]
