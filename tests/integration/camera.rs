@@ -23,12 +23,6 @@ fn along(direction: DVec3, up: DVec3) -> Camera {
     }
 }
 
-#[test]
-fn a_level_camera_along_z_has_the_worlds_axes() {
-    let camera = along(DVec3::NEG_Z, DVec3::Y);
-    assert_eq!(axes(&camera), [DVec3::X, DVec3::Y, DVec3::Z]);
-}
-
 /// Along (1, 1, 1), u and v have in x the ratio that the sine and the cosine of 60 degrees have: equal products take each other away, and not all
 /// but a rounding of each other.
 #[test]
@@ -80,28 +74,6 @@ fn tilting_down_or_up_ends_in_the_straight_view() {
 }
 
 #[test]
-fn axes_are_orthonormal_however_nearly_up_is_parallel_to_the_view() {
-    let mut random = Random::new(5);
-    for exponent in 1..40 {
-        for _ in 0..20 {
-            let view = random.vector(1.0);
-            let angle = libm::pow(10.0, -f64::from(exponent));
-            let camera = along(view, view + random.vector(1.0) * angle);
-            let [u, v, w] = axes(&camera);
-            let unit = f64::EPSILON / 2.0;
-            for product in [u.dot(v), u.dot(w), v.dot(w)] {
-                assert!(product.abs() <= 4.0 * unit, "{product}");
-            }
-            for axis in [u, v, w] {
-                assert!((axis.length() - 1.0).abs() <= 4.0 * unit);
-            }
-            // Seen along the view direction, up points up.
-            assert!(v.dot(camera.up) > 0.0 || u.dot(camera.up).abs() < 1e-15);
-        }
-    }
-}
-
-#[test]
 fn positive_roll_dips_the_right_side() {
     let mut camera = along(DVec3::NEG_Z, DVec3::Y);
     camera.roll = Angle::from_degrees(30.0);
@@ -120,8 +92,7 @@ fn quarter_rolls_are_exact_however_many() {
             if turns > 1e15 && quarter > 0.0 {
                 continue; // 90 is lost in the sum of such degrees
             }
-            let [u, v, _] = axes(&camera);
-            assert_eq!((u, v), (right, top));
+            assert_eq!(axes(&camera), [right, top, DVec3::Z]);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A picture is the same to the bit whether its samples are culled and traced many at a time, or one by one, as the oracle has judged them.
 
 use std::{
+    collections::BTreeSet,
     num::NonZero,
     ops::ControlFlow,
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
@@ -10,9 +11,9 @@ use glam::{DVec3, dvec3};
 use pinhole::{
     area::Area,
     film::{Encoder, Film},
-    render::{Control, render, render_as_asked},
+    render::{Control, render_as_asked},
     sampling::Sampling,
-    scene::{Count, Lens, Method, Outline, Sampler, Scene, Shape, View},
+    scene::{Camera, Count, Lens, Method, Outline, Sampler, Scene, Shape, View},
     tracer::{Part, Quartering, Scratch, World},
 };
 
@@ -25,6 +26,7 @@ use crate::{
     effort::{Effort, sampled_and_exhaustive},
     exact::{example, examples, random_scene, read},
     figure::figure,
+    scenes::sampled_by,
     tracer::{Random, camera, cuboid, floor, planes::scene_full_of_ties, scene, sphere, triangle},
 };
 
@@ -38,10 +40,16 @@ fn part(scene: &Scene, part: Area, threads: usize) -> (Film, u64) {
         },
         cancel: &AtomicBool::new(false),
     };
-    let [width, height] = [scene.image.width, scene.image.height];
-    let sampling = Sampling::new(&scene.sampler, width, height);
-    let film = render(&World::new(scene), &sampling, part, &control).unwrap();
+    let film = sampled_by(scene, part, &control);
     (film, done.into_inner())
+}
+
+/// A scene with more objects than a scene of the tracer's tests takes at once.
+fn crowd(camera: Camera, shapes: &[Shape]) -> Scene {
+    let mut scenes = shapes.chunks(200).map(|shapes| scene(camera, shapes));
+    let mut all = scenes.next().unwrap();
+    all.objects.extend(scenes.flat_map(|scene| scene.objects));
+    all
 }
 
 /// The same part sample by sample.
@@ -67,14 +75,8 @@ fn compare(scene: &Scene, what: &str) -> usize {
     let [width, height] = [scene.image.width, scene.image.height];
     let sampling = Sampling::new(&scene.sampler, width, height);
     assert_eq!(done, sampling.total(), "{what}");
-    let mut colors: Vec<_> = film
-        .pixels()
-        .iter()
-        .map(|pixel| pixel.map(f64::to_bits))
-        .collect();
-    colors.sort_unstable();
-    colors.dedup();
-    colors.len()
+    let colors = film.pixels().iter().map(|pixel| pixel.map(f64::to_bits));
+    colors.collect::<BTreeSet<_>>().len()
 }
 
 fn with_samples(scene: &Scene, method: Method, count: Count) -> Scene {
@@ -234,9 +236,8 @@ fn crowds_of_all_kinds() {
         let tiny: Vec<_> = (0..1 << 14)
             .map(|_| sphere(random.vector(3.0), random.within(1e-3, 0.03)))
             .collect();
-        let tiny = tiny.chunks(200);
-        let tiny = tiny.map(|shapes| scene(camera(DVec3::X, DVec3::ZERO), shapes));
-        all.objects.extend(tiny.flat_map(|scene| scene.objects));
+        let tiny = crowd(camera(DVec3::X, DVec3::ZERO), &tiny);
+        all.objects.extend(tiny.objects);
         // Some of them twice: the first is seen.
         all.objects.extend_from_within(100..300);
         if index % 3 == 0 {
@@ -317,9 +318,7 @@ fn objects_as_small_as_pixels() {
         if index % 2 == 1 {
             (camera.near, camera.far) = (5.5, Some(8.0));
         }
-        let mut scenes = shapes.chunks(200).map(|shapes| scene(camera, shapes));
-        let mut all = scenes.next().unwrap();
-        all.objects.extend(scenes.flat_map(|scene| scene.objects));
+        let mut all = crowd(camera, &shapes);
         for object in &mut all.objects {
             if let Shape::Triangle(triangle) = &mut object.shape
                 && let Outline::Centered(triangle) = &mut triangle.outline
@@ -438,9 +437,7 @@ fn spheres_of_extreme_sizes() {
     tiny.push(sphere(DVec3::ZERO, 0.7));
     tiny.push(sphere(dvec3(1.4, 0.0, 0.0), 0.7));
     let camera = camera(dvec3(1.0, 2.0, 8.0), DVec3::ZERO);
-    let mut scenes = tiny.chunks(200).map(|shapes| scene(camera, shapes));
-    let mut scene = scenes.next().unwrap();
-    scene.objects.extend(scenes.flat_map(|scene| scene.objects));
+    let mut scene = crowd(camera, &tiny);
     (scene.image.width, scene.image.height) = (64, 40);
     let scene = with_samples(&scene, Method::Halton, Count::PerPixel(8));
     assert!(compare(&scene, "spheres") > 100);

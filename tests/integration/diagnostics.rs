@@ -254,23 +254,17 @@ fn whole_reports() {
 fn colour_is_only_added_where_it_is_wanted() {
     let sources = Sources::new(Source::from_text("a.scn", "sphere { radus 2 }"));
     let diagnostics = scene::read(&sources).diagnostics;
-    let style = Style::default();
-    let plain = Report::new(&sources, style).human(&diagnostics);
-    assert!(!plain.contains('\x1b'));
-    let color = Style {
-        color: true,
-        ..style
+    let drawn = |color, drawing| {
+        let style = Style {
+            color,
+            drawing,
+            ..Style::default()
+        };
+        Report::new(&sources, style).human(&diagnostics)
     };
-    assert!(
-        Report::new(&sources, color)
-            .human(&diagnostics)
-            .contains("\x1b[")
-    );
-    let ascii = Style {
-        drawing: Drawing::Ascii,
-        ..style
-    };
-    assert!(Report::new(&sources, ascii).human(&diagnostics).is_ascii());
+    assert!(!drawn(false, Drawing::Unicode).contains('\x1b'));
+    assert!(drawn(true, Drawing::Unicode).contains("\x1b["));
+    assert!(drawn(false, Drawing::Ascii).is_ascii());
 }
 
 #[test]
@@ -283,20 +277,12 @@ fn json_is_as_the_contract_says() {
         .lines()
         .map(|line| serde_json::from_str(line).expect("a line is an object"))
         .collect();
-    let codes: Vec<&str> = values
+    let codes: Vec<_> = values
         .iter()
-        .map(|v| v["code"].as_str().expect("a code"))
+        .map(|v| v["code"].as_str().unwrap_or_default())
         .collect();
-    assert_eq!(
-        codes,
-        [
-            "pinhole::missing_camera",
-            "pinhole::missing_field",
-            "pinhole::unknown_field",
-            "pinhole::no_such_target",
-            "pinhole::no_such_target",
-        ]
-    );
+    let expected = "missing_camera missing_field unknown_field no_such_target no_such_target";
+    assert_eq!(codes.join(" ").replace("pinhole::", ""), expected);
     assert_eq!(
         values[2].to_string(),
         concat!(

@@ -17,6 +17,7 @@ use pinhole::{
 };
 
 use crate::diagnostics::codes;
+use crate::table::rows;
 
 /// What stands in a page below a heading of the second order.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
@@ -161,15 +162,8 @@ fn explained(arguments: &[&str]) -> Output {
 
 #[test]
 fn a_pipe_gets_the_page_as_it_is() {
-    for code in [
-        "bare_angle",
-        "pinhole::bare_angle",
-        "pinhole:bare_angle",
-        "[pinhole::bare_angle]",
-        "error[pinhole::bare_angle]",
-        "error[pinhole::bare_angle]:",
-        " bare_angle ",
-    ] {
+    let codes = "bare_angle|pinhole::bare_angle|pinhole:bare_angle|[pinhole::bare_angle]|error[pinhole::bare_angle]|error[pinhole::bare_angle]:| bare_angle ";
+    for code in codes.split('|') {
         let output = explained(&[code]);
         assert_eq!(output.status.code(), Some(0));
         assert_eq!(output.stderr, b"");
@@ -198,21 +192,13 @@ fn without_a_code_all_are_listed() {
 
 #[test]
 fn a_mistyped_code_gets_the_nearest_one() {
-    for (written, says) in [
-        (
-            "bear_angle",
-            "there is no code `bear_angle`: did you mean `bare_angle`?",
-        ),
-        (
-            "cammera",
-            "there is no code `cammera`: did you mean `camera`?",
-        ),
-        (
-            "pinhole::E0308",
-            "there is no code `pinhole::E0308`: `pinhole explain` lists them all",
-        ),
-        ("", "the code is empty: `pinhole explain` lists all codes"),
-    ] {
+    let table = "
+        bear_angle -> there is no code `bear_angle`: did you mean `bare_angle`?
+        cammera -> there is no code `cammera`: did you mean `camera`?
+        pinhole::E0308 -> there is no code `pinhole::E0308`: `pinhole explain` lists them all
+         -> the code is empty: `pinhole explain` lists all codes
+    ";
+    for [written, says] in rows(table) {
         let output = explained(&[written]);
         assert_eq!(output.status.code(), Some(2));
         assert_eq!(output.stdout, b"");

@@ -2,15 +2,14 @@
 
 use std::{
     fs,
-    io::Write,
     path::Path,
-    process::{Command, Stdio},
+    process::Command,
     time::{Duration, SystemTime},
 };
 
 use tempfile::TempDir;
 
-use crate::program::command;
+use crate::program::{command, reading};
 
 const UNTIDY: &str = "let a=1\nsphere {center (a,2,3)} // c\n";
 const TIDY: &str = "let a = 1\nsphere { center (a, 2, 3) }  // c\n";
@@ -19,15 +18,9 @@ const BROKEN: &str = "let a=1;\nsphere {center (a,2,3)}\n";
 /// Runs `pinhole fmt`: its status, standard output and standard error.
 fn fmt(folder: &Path, input: &str, arguments: &[&str]) -> (i32, String, String) {
     let arguments = [&["fmt"], arguments].concat();
-    let mut child = command(folder, &arguments)
-        .env("NO_COLOR", "1")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
-    let output = child.wait_with_output().unwrap();
+    let mut command = command(folder, &arguments);
+    command.env("NO_COLOR", "1");
+    let output = reading(command, input.as_bytes());
     (
         output.status.code().unwrap(),
         String::from_utf8(output.stdout).unwrap(),
@@ -109,20 +102,6 @@ fn check_shows_line_ends_where_they_are_all_that_changes() {
     let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
     assert_eq!(status, 1);
     assert!(!errors.contains('␍'), "{errors}");
-}
-
-/// A terminal would obey them.
-#[test]
-fn control_characters_are_not_printed() {
-    let text = "// \u{1b}[31mx\r\nlet a=1\u{20}// \u{7}\r\n";
-    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
-    assert_eq!(status, 1);
-    assert!(
-        errors.contains("\n // \\u{1b}[31mx\n-let a=1 // \\u{7}\n+let a = 1  // \\u{7}\n"),
-        "{errors}"
-    );
-    let is_odd = |c: char| c.is_control() && c != '\n';
-    assert!(!errors.contains(is_odd), "{errors:?}");
 }
 
 /// What is written into a pipe comes back to nobody, and one that nobody writes to is waited for without end.

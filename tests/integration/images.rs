@@ -10,12 +10,11 @@ use std::{
 use pinhole::{
     area::Area,
     film::{Recipe, write_png},
-    render::{Control, render},
-    sampling::Sampling,
     scene,
     source::{Source, Sources},
-    tracer::World,
 };
+
+use crate::scenes::sampled;
 
 fn rendered(text: &str) -> image::RgbImage {
     let sources = Sources::new(Source::from_text("example.scn", text)).with_sets([
@@ -23,19 +22,8 @@ fn rendered(text: &str) -> image::RgbImage {
         "image.height=90",
         "sampler.total=160 * 90 * 4",
     ]);
-    let reading = scene::read(&sources);
-    let scene = reading
-        .scene
-        .unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
-    let (width, height) = (scene.image.width, scene.image.height);
-    let control = Control::default();
-    let film = render(
-        &World::new(&scene),
-        &Sampling::new(&scene.sampler, width, height),
-        Area::whole(width, height),
-        &control,
-    )
-    .unwrap();
+    let scene = scene::read(&sources).scene.expect("the example is right");
+    let film = sampled(&scene, Area::whole(160, 90));
     let recipe = Recipe {
         scene: String::new(),
         overrides: Vec::new(),

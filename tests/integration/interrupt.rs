@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::program::command;
+use crate::program::{command, names};
 
 /// A command that is interrupted after so many milliseconds: long enough to have begun, and far from long enough to be done. What it says then.
 pub fn interrupted(command: &mut Command, after: u64) -> Output {
@@ -80,10 +80,7 @@ fn one_signal_ends_it_within_a_pixel() {
                 time < Duration::from_millis(900),
                 "{arguments:?} took {time:?} to end"
             );
-            let entries = fs::read_dir(folder.path()).unwrap();
-            let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
-            names.sort();
-            assert_eq!(names, before, "{arguments:?}");
+            assert_eq!(names(folder.path()), before, "{arguments:?}");
         }
     }
 }

@@ -5,11 +5,8 @@
 use glam::{DVec3, dvec3};
 use pinhole::{
     area::Area,
-    color::Color,
-    film::Film,
     math::{Angle, predicates},
-    render::{Control, Exact, render, render_exact},
-    sampling::Sampling,
+    render::{Control, Exact, render_exact},
     scene::{
         Camera, CenteredTriangle, Checkerboard, Count, Cuboid, Lens, Method, Outline, Sampler,
         Scene, Shape, Sphere, Triangle, View,
@@ -18,7 +15,10 @@ use pinhole::{
 };
 use proptest::prelude::*;
 
-use crate::tracer::scene;
+use crate::{
+    scenes::sampled,
+    tracer::{by_vertices, cuboid, floor, scene, sphere, turned},
+};
 
 const SIZE: u32 = 24;
 
@@ -65,36 +65,23 @@ fn any_camera() -> impl Strategy<Value = Camera> {
 }
 
 fn any_shape() -> impl Strategy<Value = Shape> {
-    let color = Color::BLACK;
     prop_oneof![
-        (vector(), length()).prop_map(move |(center, radius)| Shape::Sphere(Sphere {
-            center,
-            radius,
-            color
-        })),
-        (vector(), [length(), length(), length()]).prop_map(move |(min, size)| {
-            let max = min + DVec3::from(size);
-            Shape::Box(Cuboid { min, max, color })
-        }),
+        (vector(), length()).prop_map(|(center, radius)| sphere(center, radius)),
+        (vector(), [length(), length(), length()])
+            .prop_map(|(min, size)| cuboid(min, min + DVec3::from(size))),
         [vector(), vector(), vector()]
             .prop_filter("not on one line", |points| !predicates::are_on_one_line(
                 *points
             ))
-            .prop_map(move |vertices| Shape::Triangle(Triangle {
-                outline: Outline::Vertices(vertices),
-                color
-            })),
-        (vector(), direction(), length(), -180..180).prop_map(
-            move |(centroid, normal, size, spin)| Shape::Triangle(Triangle {
-                outline: Outline::Centered(CenteredTriangle {
-                    centroid,
-                    normal,
-                    sides: dvec3(1.0, 0.75, 0.5) * size,
-                    spin: Angle::from_degrees(f64::from(spin)),
-                }),
-                color
-            })
-        ),
+            .prop_map(by_vertices),
+        (vector(), direction(), length(), -180..180).prop_map(|(centroid, normal, size, spin)| {
+            turned(
+                centroid,
+                normal,
+                dvec3(1.0, 0.75, 0.5) * size,
+                f64::from(spin),
+            )
+        }),
     ]
 }
 
@@ -102,7 +89,7 @@ fn stage() -> impl Strategy<Value = Stage> {
     (any_camera(), prop::collection::vec(any_shape(), 0..4))
         .prop_map(|(camera, mut shapes)| {
             let at = shapes.len() / 2;
-            shapes.insert(at, board(0.0, 1.0));
+            shapes.insert(at, floor());
             Stage { camera, shapes }
         })
         .prop_filter("up is not along the view", |stage| {
@@ -112,14 +99,6 @@ fn stage() -> impl Strategy<Value = Stage> {
             let view = at - stage.camera.eye;
             view.x != 0.0 || view.z != 0.0
         })
-}
-
-fn board(y: f64, square: f64) -> Shape {
-    Shape::Checkerboard(Checkerboard {
-        y,
-        square,
-        colors: [Color::BLACK; 2],
-    })
 }
 
 impl Stage {
@@ -193,37 +172,28 @@ impl Stage {
         }
         scene
     }
-
-    fn picture(&self) -> Picture {
-        picture(&self.scene(METHOD, false))
-    }
 }
 
 /// The bits of a picture, row by row.
 type Picture = Vec<Vec<[u64; 3]>>;
 
-fn film(scene: &Scene) -> Film {
-    let (width, height) = (scene.image.width, scene.image.height);
-    let sampling = Sampling::new(&scene.sampler, width, height);
-    let control = Control::default();
-    render(
-        &World::new(scene),
-        &sampling,
-        Area::whole(width, height),
-        &control,
-    )
-    .unwrap()
-}
-
 fn picture(scene: &Scene) -> Picture {
-    let film = film(scene);
+    let (width, height) = (scene.image.width, scene.image.height);
+    let film = sampled(scene, Area::whole(width, height));
     let bits = |row| {
         film.row(row)
             .iter()
             .map(|pixel| pixel.map(f64::to_bits))
             .collect()
     };
-    (0..scene.image.height).map(bits).collect()
+    (0..height).map(bits).collect()
+}
+
+/// The pictures of two stages are the same, with the board's colours swapped in the second or not: sampled to the bit, and exactly.
+fn same(before: &Stage, after: &Stage, is_swapped: bool) {
+    let (before, after) = (before.scene(METHOD, false), after.scene(METHOD, is_swapped));
+    assert_eq!(picture(&before), picture(&after));
+    agree(&before, &after, false);
 }
 
 /// The exact pictures of two scenes are the same, as far as their bounds allow to say so; or one is the other's mirror image.
@@ -261,55 +231,27 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn a_half_turn_about_y_changes_nothing(stage in stage()) {
-        let turn = |v: DVec3| dvec3(-v.x, v.y, -v.z);
+    fn quarter_turns_about_y_swap_the_boards_colours(stage in stage(), turns in 1..4) {
+        // The square at (i, j) becomes that at (j, −1 − i).
+        let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         // A normal along the axis does not turn its triangle with it, whose base then is along the world's x: spin does.
         let mut after = stage.mapped(turn, turn, 1.0);
-        turn_vertical(&mut after, 180.0);
-        prop_assert_eq!(stage.picture(), after.picture());
-        agree(&stage.scene(METHOD, false), &after.scene(METHOD, false), false);
+        turn_vertical(&mut after, 90.0 * f64::from(turns));
+        same(&stage, &after, turns % 2 == 1);
     }
 
     #[test]
-    fn a_quarter_turn_about_y_swaps_the_boards_colours(stage in stage()) {
-        // The square at (i, j) becomes that at (j, −1 − i).
-        let turn = |v: DVec3| dvec3(v.z, v.y, -v.x);
-        let mut after = stage.mapped(turn, turn, 1.0);
-        turn_vertical(&mut after, 90.0);
-        let after = after.scene(METHOD, true);
-        prop_assert_eq!(stage.picture(), picture(&after));
-        agree(&stage.scene(METHOD, false), &after, false);
-    }
-
-    #[test]
-    fn moving_by_an_even_number_of_squares_changes_nothing(
+    fn moving_by_squares_swaps_the_boards_colours_if_they_are_odd(
         stage in stage(), x in -1_000_000..1_000_000, y in coordinate(), z in -1_000_000..1_000_000
     ) {
-        let even = (x + z) % 2;
-        let by = dvec3(f64::from(x - even), y, f64::from(z));
-        let after = stage.mapped(|p| p + by, |v| v, 1.0);
-        prop_assert_eq!(stage.picture(), after.picture());
-        agree(&stage.scene(METHOD, false), &after.scene(METHOD, false), false);
-    }
-
-    #[test]
-    fn moving_by_an_odd_number_of_squares_swaps_the_boards_colours(
-        stage in stage(), x in -1_000_000..1_000_000, z in -1_000_000..1_000_000
-    ) {
-        let odd = 1 - i32::rem_euclid(x + z, 2);
-        let by = dvec3(f64::from(x + odd), 0.0, f64::from(z));
-        let after = stage.mapped(|p| p + by, |v| v, 1.0);
-        let after = after.scene(METHOD, true);
-        prop_assert_eq!(stage.picture(), picture(&after));
-        agree(&stage.scene(METHOD, false), &after, false);
+        let by = dvec3(f64::from(x), y, f64::from(z));
+        same(&stage, &stage.mapped(|p| p + by, |v| v, 1.0), (x + z) % 2 != 0);
     }
 
     #[test]
     fn scaling_by_a_power_of_two_changes_nothing(stage in stage(), exponent in -900..900) {
         let scale = libm::exp2(f64::from(exponent));
-        let after = stage.mapped(|p| p * scale, |v| v * scale, scale);
-        prop_assert_eq!(stage.picture(), after.picture());
-        agree(&stage.scene(METHOD, false), &after.scene(METHOD, false), false);
+        same(&stage, &stage.mapped(|p| p * scale, |v| v * scale, scale), false);
     }
 
     #[test]
@@ -317,13 +259,9 @@ proptest! {
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);
         let mut after = stage.mapped(mirror, mirror, 1.0);
         after.camera.roll = -after.camera.roll;
-        for shape in &mut after.shapes {
-            if let Shape::Triangle(triangle) = shape
-                && let Outline::Centered(triangle) = &mut triangle.outline
-            {
-                std::mem::swap(&mut triangle.sides.x, &mut triangle.sides.y);
-                triangle.spin = -triangle.spin;
-            }
+        for triangle in after.shapes.iter_mut().filter_map(centered) {
+            std::mem::swap(&mut triangle.sides.x, &mut triangle.sides.y);
+            triangle.spin = -triangle.spin;
         }
         let (stage, after) = (stage.scene(Method::Regular, false), after.scene(Method::Regular, true));
         agree(&stage, &after, true);
@@ -356,19 +294,9 @@ proptest! {
                 far: Some(20.0),
             },
             shapes: vec![
-                Shape::Sphere(Sphere { center: in_plane(center), radius, color: Color::BLACK }),
-                Shape::Box(Cuboid {
-                    min: dvec3(-size, -1.0, center.x),
-                    max: dvec3(size, center.y.abs(), center.x + radius),
-                    color: Color::BLACK,
-                }),
-                Shape::Triangle(Triangle { outline: Outline::Centered(CenteredTriangle {
-                    centroid: dvec3(0.0, center.z, center.x + 1.0),
-                    normal: dvec3(0.0, down, 1.0),
-                    sides: dvec3(2.0, 2.0, 1.0),
-                    spin: Angle::default(),
-}), color: Color::BLACK,
-}),
+                sphere(in_plane(center), radius),
+                cuboid(dvec3(-size, -1.0, center.x), dvec3(size, center.y.abs(), center.x + radius)),
+                turned(dvec3(0.0, center.z, center.x + 1.0), dvec3(0.0, down, 1.0), dvec3(2.0, 2.0, 1.0), 0.0),
             ],
         };
         let mut scene = stage.scene(Method::Regular, false);
@@ -386,14 +314,20 @@ proptest! {
 
 /// Turns the triangles whose normals are vertical about y, as everything else was.
 fn turn_vertical(stage: &mut Stage, degrees: f64) {
-    for shape in &mut stage.shapes {
-        if let Shape::Triangle(triangle) = shape
-            && let Outline::Centered(triangle) = &mut triangle.outline
-            && triangle.normal.x == 0.0
-            && triangle.normal.z == 0.0
-        {
-            let turn = Angle::from_degrees(degrees.copysign(triangle.normal.y));
-            triangle.spin = triangle.spin + turn;
+    for triangle in stage.shapes.iter_mut().filter_map(centered) {
+        if triangle.normal.x == 0.0 && triangle.normal.z == 0.0 {
+            triangle.spin =
+                triangle.spin + Angle::from_degrees(degrees.copysign(triangle.normal.y));
         }
+    }
+}
+
+fn centered(shape: &mut Shape) -> Option<&mut CenteredTriangle> {
+    match shape {
+        Shape::Triangle(Triangle {
+            outline: Outline::Centered(triangle),
+            ..
+        }) => Some(triangle),
+        _ => None,
     }
 }

@@ -44,6 +44,7 @@ mod scenes;
 #[cfg(feature = "studio")]
 mod studio;
 mod syntax;
+mod table;
 mod texts;
 #[cfg(target_os = "linux")]
 mod threads;

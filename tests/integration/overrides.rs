@@ -1,11 +1,11 @@
 //! `--set`, on the command line's terms.
 
-use glam::DVec3;
 use pinhole::{
-    math::Angle,
-    scene::{self, Count, Cuboid, Lens, Scene, Shape, Sphere, View},
+    scene::{self, Scene},
     source::{Source, Sources},
 };
+
+use crate::{scenes, table::rows};
 
 const SCENE: &str = "let h = 1
 let middle = (0, h, 0)
@@ -48,77 +48,54 @@ fn assert_problem(sets: &[&str], code: &str, argument: usize, under: &str) {
     assert_eq!(problems(SCENE, sets), [expected], "{sets:?}");
 }
 
-fn ball(scene: &Scene) -> (DVec3, f64) {
-    match scene.objects[0].shape {
-        Shape::Sphere(Sphere { center, radius, .. }) => (center, radius),
-        _ => panic!("{scene:?}"),
+/// What is set, which is as if it stood in the text: in place of the second cell the third.
+#[test]
+fn what_is_set_stands_in_the_text() {
+    let table = "
+        camera.roll=30deg -> d 3 -> d 3 roll 30deg
+        Ball.center=(0, 2, 0) -> Ball { center middle -> Ball { center (0, 2, 0)
+        h=1.5 -> let h = 1 -> let h = 1.5
+        Ball . radius = h + 1 -> radius h -> radius h + 1
+        -- A block that the file leaves out.
+        image.width=10 -> let h -> image { width 10 } let h
+        -- The last one wins.
+        h=2; h=nothing; h=3 -> let h = 1 -> let h = 3
+        Ball.radius=2; Ball.radius=red; Ball.radius=3 -> radius h -> radius 3
+        -- Alternatives are replaced.
+        camera.direction=(0, 0, -1) -> lookat middle -> direction (0, 0, -1)
+        camera.fov=40deg -> d 3 -> fov 40deg
+        camera.fov=40deg; camera.d=4 -> d 3 -> d 4
+        sampler.per_pixel=4; sampler.total=1e6 -> let h -> sampler { total 1e6 } let h
+        Crate.min=(0, 0, 0); Crate.max=(1, 2, 3) -> center middle size (1, 1, 1) -> min (0, 0, 0) max (1, 2, 3)
+        -- A field sees all names, and a definition those before it.
+        Ball.radius=late -> radius h -> radius 7
+        late=h + 1 -> let late = 7 -> let late = 2
+    ";
+    let meaning = |scene: &Scene| {
+        let shapes: Vec<_> = scene.objects.iter().map(|object| object.shape).collect();
+        format!(
+            "{:?} {:?} {:?} {shapes:?}",
+            scene.image, scene.camera, scene.sampler
+        )
+    };
+    for [sets, before, after] in rows(table) {
+        assert!(SCENE.contains(before), "{before}");
+        let written = scenes::read(&SCENE.replacen(before, after, 1));
+        let sets: Vec<&str> = sets.split("; ").collect();
+        assert_eq!(meaning(&read(&sets)), meaning(&written), "{sets:?}");
     }
-}
-
-#[test]
-fn fields_and_definitions() {
-    assert_eq!(
-        read(&["camera.roll=30deg"]).camera.roll,
-        Angle::from_degrees(30.0)
-    );
-    assert_eq!(
-        ball(&read(&["Ball.center=(0, 2, 0)"])),
-        (DVec3::new(0.0, 2.0, 0.0), 1.0)
-    );
-    assert_eq!(ball(&read(&["h=1.5"])), (DVec3::new(0.0, 1.5, 0.0), 1.5));
-    assert_eq!(ball(&read(&[" Ball . radius = h + 1 "])).1, 2.0);
-    assert_eq!(
-        read(&["image.width=10"]).image.width,
-        10,
-        "a block that the file leaves out"
-    );
-}
-
-#[test]
-fn the_last_one_wins() {
-    assert_eq!(ball(&read(&["h=2", "h=nothing", "h=3"])).1, 3.0);
-    assert_eq!(
-        ball(&read(&[
-            "Ball.radius=2",
-            "Ball.radius=red",
-            "Ball.radius=3"
-        ]))
-        .1,
-        3.0
-    );
     // The text that is replaced is judged for its syntax only.
     assert_problem(&["h=2 +", "h=3"], "missing_operand", 1, "+");
-}
-
-#[test]
-fn alternatives_are_replaced() {
-    let scene = read(&["camera.direction=(0, 0, -1)"]);
-    assert_eq!(scene.camera.view, View::Direction(DVec3::NEG_Z));
-    let scene = read(&["camera.fov=40deg"]);
-    assert_eq!(scene.camera.lens, Lens::Fov(Angle::from_degrees(40.0)));
-    let scene = read(&["camera.fov=40deg", "camera.d=4"]);
-    assert_eq!(scene.camera.lens, Lens::Distance(4.0));
-    let scene = read(&["sampler.per_pixel=4", "sampler.total=1e6"]);
-    assert_eq!(scene.sampler.count, Count::Total(1_000_000));
-    let scene = read(&["Crate.min=(0, 0, 0)", "Crate.max=(1, 2, 3)"]);
-    let Shape::Box(Cuboid { max, .. }) = scene.objects[1].shape else {
-        panic!("{scene:?}");
-    };
-    assert_eq!(max, DVec3::new(1.0, 2.0, 3.0));
     assert_problem(&["Crate.min=(0, 0, 0)"], "missing_field", 0, "box");
 }
 
 #[test]
 fn fields_exclude_each_other_in_their_own_block_only() {
-    assert_eq!(
-        problems(SCENE, &["Ball.center=(0, 2, 0)", "Ball.min=(0, 0, 0)"]),
-        [("unknown_field".to_owned(), 2, "min".to_owned())]
-    );
     let text = "camera { eye (0, 2, 8) lookat (0, 1, 0) } sphere Ball { radius 2 }";
-    assert_eq!(
-        problems(text, &["Ball.center=(0, 2, 0)", "Ball.min=(0, 0, 0)"]),
-        [("unknown_field".to_owned(), 2, "min".to_owned())]
-    );
+    for text in [SCENE, text] {
+        let found = problems(text, &["Ball.center=(0, 2, 0)", "Ball.min=(0, 0, 0)"]);
+        assert_eq!(found, [("unknown_field".to_owned(), 2, "min".to_owned())]);
+    }
 }
 
 #[test]
@@ -148,37 +125,28 @@ fn what_is_replaced_is_not_judged() {
 }
 
 #[test]
-fn a_value_sees_the_names_before_its_place() {
-    assert_eq!(
-        ball(&read(&["Ball.radius=late"])).1,
-        7.0,
-        "a field sees all"
-    );
-    assert_eq!(read(&["late=h + 1"]).objects.len(), 3);
-    assert_problem(&["h=late"], "used_before_definition", 1, "late");
-    assert_problem(&["h=h"], "used_before_definition", 1, "h");
-}
-
-#[test]
 fn mistakes_point_into_the_argument() {
-    assert_problem(&["camera.roll"], "bad_set", 1, "camera.roll");
-    assert_problem(&["h=2", "Bal.center=(0, 2, 0)"], "no_such_target", 2, "Bal");
-    assert_problem(&["hh=2"], "no_such_target", 1, "hh");
-    assert_problem(&["Ball.radus=2"], "unknown_field", 1, "radus");
-    assert_problem(&["Ball.radius=-2"], "out_of_range", 1, "-2");
-    assert_problem(&["Ball.radius=2m"], "bad_number", 1, "2m");
-    assert_problem(&["Ball.radius="], "missing_value", 1, "=");
-    assert_problem(&["Ball.radius=2 3"], "missing_operator", 1, "3");
-    assert_problem(&["Ball.center=(0, 1"], "unclosed_parenthesis", 1, "(");
-    assert_problem(&["camera.roll=30"], "bare_angle", 1, "30");
-    assert_problem(&["sampler.method=jitered"], "unknown_method", 1, "jitered");
-    assert_problem(
-        &["camera.lookat=(0, 2, 8)"],
-        "view_undefined",
-        1,
-        "(0, 2, 8)",
-    );
-    assert_problem(&["Ball.radius=}"], "unexpected", 1, "}");
+    let table = "
+        camera.roll -> bad_set -> camera.roll
+        Bal.center=(0, 2, 0) -> no_such_target -> Bal
+        hh=2 -> no_such_target -> hh
+        Ball.radus=2 -> unknown_field -> radus
+        Ball.radius=-2 -> out_of_range -> -2
+        Ball.radius=2m -> bad_number -> 2m
+        Ball.radius= -> missing_value -> =
+        Ball.radius=2 3 -> missing_operator -> 3
+        Ball.center=(0, 1 -> unclosed_parenthesis -> (
+        Ball.radius=} -> unexpected -> }
+        camera.roll=30 -> bare_angle -> 30
+        sampler.method=jitered -> unknown_method -> jitered
+        camera.lookat=(0, 2, 8) -> view_undefined -> (0, 2, 8)
+        -- A value sees the names before its place.
+        h=late -> used_before_definition -> late
+        h=h -> used_before_definition -> h
+    ";
+    for [set, code, under] in rows(table) {
+        assert_problem(&["late=2", set], code, 2, under);
+    }
     let deep = format!("h={}1{}", "(".repeat(257), ")".repeat(257));
     assert_problem(&[&deep], "too_deep", 1, "(");
 }
@@ -194,23 +162,15 @@ fn a_camera_can_come_from_the_arguments_alone() {
 
 #[test]
 fn help_names_the_nearest() {
-    for (set, help) in [
-        (
-            "Bal.center=1",
-            "did you mean `Ball`? The scene has Ball and Crate.",
-        ),
-        ("midle=1", "did you mean `middle`?"),
-        ("roll=30deg", "did you mean `camera.roll`?"),
-        ("Ball=1", "name a field of it as well: `Ball.FIELD=…`"),
-        (
-            "Ball.raduis=1",
-            "did you mean `radius`? A sphere takes center, radius and color.",
-        ),
-        (
-            "Camera.roll=1",
-            "did you mean `camera`? The scene has Ball and Crate.",
-        ),
-    ] {
+    let table = "
+        Bal.center=1 -> did you mean `Ball`? The scene has Ball and Crate.
+        midle=1 -> did you mean `middle`?
+        roll=30deg -> did you mean `camera.roll`?
+        Ball=1 -> name a field of it as well: `Ball.FIELD=…`
+        Ball.raduis=1 -> did you mean `radius`? A sphere takes center, radius and color.
+        Camera.roll=1 -> did you mean `camera`? The scene has Ball and Crate.
+    ";
+    for [set, help] in rows(table) {
         let found = scene::read(&sources(&[set])).diagnostics;
         assert_eq!(found[0].help.as_deref(), Some(help), "{set}");
     }

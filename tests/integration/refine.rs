@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::dvec2;
 use pinhole::{
     area::Area,
-    refine::{SIDES, coarse, coarse_to_fine},
+    refine::{SIDES, coarse_to_fine},
     render::{Control, RenderError},
     scene::{Count, Method},
     tracer::World,
@@ -63,18 +63,5 @@ fn a_preview_can_be_ended_at_every_step() {
         });
         assert!(matches!(ended, Err(RenderError::Cancelled)));
         assert_eq!(steps, end);
-    }
-}
-
-#[test]
-fn a_block_of_one_pixel_shows_its_centre() {
-    let world = figure_of(16, 9);
-    let control = Control::default();
-    let film = coarse(&world, Area::whole(16, 9), 1, &control)
-        .unwrap()
-        .film;
-    for (x, y) in Area::whole(16, 9).iter() {
-        let color = world.palette()[world.slot_at(x, y, dvec2(0.0, 0.0))];
-        assert_eq!(film.pixel(x, y), color.to_linear());
     }
 }

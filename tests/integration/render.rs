@@ -2,7 +2,7 @@
 
 use std::{
     num::NonZero,
-    sync::atomic::{AtomicBool, AtomicU64, Ordering},
+    sync::atomic::{AtomicBool, Ordering},
 };
 
 use pinhole::{
@@ -14,16 +14,14 @@ use pinhole::{
     tracer::World,
 };
 
-use crate::{figure::figure, sampling::placed};
+use crate::{figure::figure, scenes::sampled_by};
 
 fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
     let control = Control {
         threads: NonZero::new(threads),
         ..Control::default()
     };
-    let [width, height] = [scene.image.width, scene.image.height];
-    let sampling = Sampling::new(&scene.sampler, width, height);
-    render(&World::new(scene), &sampling, part, &control).unwrap()
+    sampled_by(scene, part, &control)
 }
 
 #[test]
@@ -63,24 +61,6 @@ fn a_crop_is_the_part_of_the_whole_picture() {
 }
 
 #[test]
-fn a_pixel_is_the_mean_of_its_samples() {
-    let scene = figure(16, 9, Method::Sobol, Count::PerPixel(10_000));
-    let film = picture(&scene, Area::whole(16, 9), 2);
-    let (world, sampling) = (World::new(&scene), Sampling::new(&scene.sampler, 16, 9));
-    for (x, y) in Area::whole(16, 9).iter() {
-        let mut counts = vec![0_u64; world.palette().len()];
-        for point in placed(&sampling, [x, y], 0..10_000) {
-            counts[world.slot_at(x, y, point)] += 1;
-        }
-        let seen = counts
-            .iter()
-            .zip(world.palette())
-            .map(|(&count, color)| (count, color.to_linear()));
-        assert_eq!(film.pixel(x, y), pinhole::film::mean(seen));
-    }
-}
-
-#[test]
 fn pixels_without_a_sample_show_the_background() {
     let mut scene = figure(40, 30, Method::Random, Count::Total(100));
     scene.image.background = pinhole::color::Color::from_bytes([1, 2, 3]);
@@ -95,28 +75,6 @@ fn pixels_without_a_sample_show_the_background() {
         }
     }
     assert_eq!(empty, 1100);
-}
-
-#[test]
-fn progress_adds_up() {
-    for (size, count) in [(60, Count::PerPixel(5)), (2, Count::PerPixel(10_000_000))] {
-        let scene = figure(size, size, Method::Regular, count);
-        let sampling = Sampling::new(&scene.sampler, size, size);
-        let done = AtomicU64::new(0);
-        let control = Control {
-            threads: None,
-            progress: &|samples| {
-                done.fetch_add(samples, Ordering::Relaxed);
-            },
-            cancel: &AtomicBool::new(false),
-        };
-        let world = World::new(&Scene {
-            objects: Vec::new(),
-            ..scene.clone()
-        });
-        render(&world, &sampling, Area::whole(size, size), &control).unwrap();
-        assert_eq!(done.into_inner(), sampling.total());
-    }
 }
 
 #[test]

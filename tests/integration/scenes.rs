@@ -1,8 +1,18 @@
-//! The scenes that stand beside the source.
+//! Scenes: those that stand beside the source, those of a text, and their pictures.
 
 use std::{
     fs,
     path::{Path, PathBuf},
+};
+
+use pinhole::{
+    area::Area,
+    film::Film,
+    render::{Control, render},
+    sampling::Sampling,
+    scene::{self, Scene},
+    source::{Source, Sources},
+    tracer::World,
 };
 
 /// The scenes in a folder, by name.
@@ -20,4 +30,27 @@ pub fn scenes(folder: &str) -> Vec<PathBuf> {
 pub fn examples() -> Vec<String> {
     let texts = scenes("examples").into_iter().map(fs::read_to_string);
     texts.map(|text| text.expect("a text")).collect()
+}
+
+pub fn sources(text: &str) -> Sources {
+    Sources::new(Source::from_text("test.scn", text))
+}
+
+/// A scene without errors; its warnings may be some.
+pub fn read(text: &str) -> Scene {
+    let reading = scene::read(&sources(text));
+    let found = &reading.diagnostics;
+    reading
+        .scene
+        .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
+}
+
+/// A part of a scene's picture by its own samples.
+pub fn sampled(scene: &Scene, part: Area) -> Film {
+    sampled_by(scene, part, &Control::default())
+}
+
+pub fn sampled_by(scene: &Scene, part: Area, control: &Control<'_>) -> Film {
+    let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
+    render(&World::new(scene), &sampling, part, control).unwrap()
 }

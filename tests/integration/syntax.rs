@@ -9,11 +9,12 @@ use pinhole::{
     syntax::{
         self, Parsed,
         tokens::{Lexer, TokenKind, numeric_part},
-        tree::{Block, Definition, Element, Field, Item, Value, ValueKind},
+        tree::{Item, Tree, Value, ValueKind},
     },
 };
 
 use crate::scenes::scenes;
+use crate::table::rows;
 
 fn source(path: &Path) -> Source {
     Source::from_bytes("test.scn", fs::read(path).expect("the file can be read"))
@@ -23,12 +24,11 @@ fn source(path: &Path) -> Source {
 struct Printer<'s> {
     text: &'s str,
     out: String,
-    depth: usize,
 }
 
 impl Printer<'_> {
-    fn line(&mut self, words: &str) {
-        let _ = writeln!(self.out, "{}{words}", "  ".repeat(self.depth));
+    fn line(&mut self, depth: usize, words: &str) {
+        let _ = writeln!(self.out, "{}{words}", "  ".repeat(depth));
     }
 
     fn under(&self, span: Span) -> String {
@@ -39,98 +39,61 @@ impl Printer<'_> {
         text.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
-    fn within(&mut self, print: impl FnOnce(&mut Self)) {
-        self.depth += 1;
-        print(self);
-        self.depth -= 1;
+    fn bad(&mut self, depth: usize, span: Span) {
+        self.line(depth, &format!("bad {}", self.under(span)));
     }
 
     fn item(&mut self, item: &Item<'_>) {
         match item {
-            Item::Definition(definition) => self.definition(definition),
-            Item::Block(block) => self.block(block),
-            Item::Bad(span) => self.line(&format!("bad {}", self.under(*span))),
+            Item::Definition(definition) => {
+                let name = definition.name.map_or("?", |name| name.text);
+                let equals = definition.equals.map_or("", |_| " =");
+                self.line(0, &format!("let {name}{equals}"));
+                self.value(1, &definition.value);
+            }
+            Item::Block(block) => {
+                let kind = block.kind.map_or("?", |kind| kind.text);
+                let name = block
+                    .name
+                    .map_or(String::new(), |name| format!(" {}", name.text));
+                let open = block.open.map_or("", |_| " {");
+                let close = block.close.map_or("", |_| " }");
+                self.line(0, &format!("block {kind}{name}{open}{close}"));
+                for field in &block.fields {
+                    self.line(1, field.name.text);
+                    self.value(2, &field.value);
+                }
+                block.bad.iter().for_each(|span| self.bad(1, *span));
+            }
+            Item::Bad(span) => self.bad(0, *span),
         }
     }
 
-    fn definition(&mut self, definition: &Definition<'_>) {
-        let name = definition.name.map_or("?", |name| name.text);
-        let equals = if definition.equals.is_some() {
-            " ="
-        } else {
-            ""
+    fn value(&mut self, depth: usize, value: &Value<'_>) {
+        let mut signs = Vec::new();
+        let words = match &value.kind {
+            ValueKind::Number(text) => format!("number {text}"),
+            ValueKind::Angle { number, unit } => format!("angle {number} {unit:?}"),
+            ValueKind::ColorCode(text) => format!("color {text}"),
+            ValueKind::Name(text) => format!("name {text}"),
+            ValueKind::Call(call) => format!("call {}", call.function.text),
+            ValueKind::Parentheses(_) => "parentheses".to_owned(),
+            ValueKind::Tuple(_) => "tuple".to_owned(),
+            ValueKind::Negation { .. } => "negation".to_owned(),
+            ValueKind::Chain { rest, .. } => {
+                signs.extend(rest.iter().map(|step| step.operator.sign().to_string()));
+                "chain".to_owned()
+            }
+            ValueKind::Missing => "missing".to_owned(),
+            ValueKind::Bad => format!("bad {}", self.under(value.span)),
         };
-        self.line(&format!("let {name}{equals}"));
-        self.within(|p| p.value(&definition.value));
-    }
-
-    fn block(&mut self, block: &Block<'_>) {
-        let kind = block.kind.map_or("?", |kind| kind.text);
-        let name = block
-            .name
-            .map_or(String::new(), |name| format!(" {}", name.text));
-        let open = if block.open.is_some() { " {" } else { "" };
-        let close = if block.close.is_some() { " }" } else { "" };
-        self.line(&format!("block {kind}{name}{open}{close}"));
-        self.within(|p| {
-            for field in &block.fields {
-                p.field(field);
+        self.line(depth, &words);
+        for (index, part) in value.parts().into_iter().enumerate() {
+            if let Some(sign) = index.checked_sub(1).and_then(|before| signs.get(before)) {
+                self.line(depth + 1, sign);
             }
-            for bad in &block.bad {
-                p.line(&format!("bad {}", p.under(*bad)));
-            }
-        });
-    }
-
-    fn field(&mut self, field: &Field<'_>) {
-        self.line(field.name.text);
-        self.within(|p| p.value(&field.value));
-    }
-
-    fn value(&mut self, value: &Value<'_>) {
-        let under = self.under(value.span);
-        match &value.kind {
-            ValueKind::Number(text) => self.line(&format!("number {text}")),
-            ValueKind::Angle { number, unit } => self.line(&format!("angle {number} {unit:?}")),
-            ValueKind::ColorCode(text) => self.line(&format!("color {text}")),
-            ValueKind::Name(text) => self.line(&format!("name {text}")),
-            ValueKind::Call(call) => {
-                self.line(&format!("call {}", call.function.text));
-                self.elements(&call.arguments);
-            }
-            ValueKind::Parentheses(inner) => {
-                self.line("parentheses");
-                self.within(|p| p.value(inner));
-            }
-            ValueKind::Tuple(elements) => {
-                self.line("tuple");
-                self.elements(elements);
-            }
-            ValueKind::Negation { operand, .. } => {
-                self.line("negation");
-                self.within(|p| p.value(operand));
-            }
-            ValueKind::Chain { first, rest } => {
-                self.line("chain");
-                self.within(|p| {
-                    p.value(first);
-                    for step in rest {
-                        p.line(&step.operator.sign().to_string());
-                        p.value(&step.operand);
-                    }
-                });
-            }
-            ValueKind::Missing => self.line("missing"),
-            ValueKind::Bad => self.line(&format!("bad {under}")),
+            self.value(depth + 1, part);
         }
-    }
-
-    fn elements(&mut self, elements: &[Element<'_>]) {
-        self.within(|p| {
-            for element in elements {
-                p.value(&element.value);
-            }
-        });
     }
 }
 
@@ -138,20 +101,17 @@ fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     let mut printer = Printer {
         text: source.text(),
         out: String::new(),
-        depth: 0,
     };
     for item in &parsed.tree.items {
         printer.item(item);
     }
     for comment in &parsed.comments {
-        printer.line(&format!("comment {}", printer.under(*comment)));
+        printer.line(0, &format!("comment {}", printer.under(*comment)));
     }
     for diagnostic in &parsed.problems {
         let place = source.place(diagnostic.labels[0].span.start);
-        printer.line(&format!(
-            "{}:{} {}: {}",
-            place.line, place.column, diagnostic.code, diagnostic.message
-        ));
+        let said = format!("{}: {}", diagnostic.code, diagnostic.message);
+        printer.line(0, &format!("{}:{} {said}", place.line, place.column));
     }
     printer.out
 }
@@ -175,82 +135,70 @@ fn trees() {
     }
 }
 
-/// Marks the bytes of every token of a tree, and of every comment.
-struct Tokens {
-    covered: Vec<bool>,
-}
-
-impl Tokens {
-    fn mark(&mut self, span: Span) {
-        for byte in span.range() {
-            assert!(!self.covered[byte], "two tokens share byte {byte}");
-            self.covered[byte] = true;
-        }
-    }
-
-    fn item(&mut self, item: &Item<'_>) {
+/// The places of all tokens of a tree without mistakes.
+pub fn token_spans(tree: &Tree<'_>) -> Vec<Span> {
+    let mut spans = Vec::new();
+    for item in &tree.items {
         match item {
             Item::Definition(definition) => {
-                self.mark(definition.keyword);
-                self.mark(definition.name.expect("a name").span);
-                self.mark(definition.equals.expect("an equals sign"));
-                self.value(&definition.value);
+                let name = definition.name.expect("a name").span;
+                spans.extend([
+                    definition.keyword,
+                    name,
+                    definition.equals.expect("an equals sign"),
+                ]);
+                spans_of_value(&definition.value, &mut spans);
             }
             Item::Block(block) => {
-                self.mark(block.kind.expect("a kind").span);
-                block.name.iter().for_each(|name| self.mark(name.span));
-                self.mark(block.open.expect("a brace"));
+                spans.extend([
+                    block.kind.expect("a kind").span,
+                    block.open.expect("a brace"),
+                ]);
+                spans.extend(block.name.map(|name| name.span));
+                spans.push(block.close.expect("a brace"));
                 for field in &block.fields {
-                    self.mark(field.name.span);
-                    self.value(&field.value);
+                    spans.push(field.name.span);
+                    spans_of_value(&field.value, &mut spans);
                 }
-                self.mark(block.close.expect("a brace"));
             }
             Item::Bad(span) => panic!("bad item at {span:?}"),
         }
     }
+    spans.sort();
+    spans
+}
 
-    fn value(&mut self, value: &Value<'_>) {
-        match &value.kind {
-            ValueKind::Number(_)
-            | ValueKind::Angle { .. }
-            | ValueKind::ColorCode(_)
-            | ValueKind::Name(_) => self.mark(value.span),
-            ValueKind::Call(call) => {
-                self.mark(call.function.span);
-                self.list(call.parentheses, &call.arguments);
-            }
-            ValueKind::Parentheses(inner) => {
-                self.ends(value.span);
-                self.value(inner);
-            }
-            ValueKind::Tuple(elements) => self.list(value.span, elements),
-            ValueKind::Negation { sign, operand } => {
-                self.mark(*sign);
-                self.value(operand);
-            }
-            ValueKind::Chain { first, rest } => {
-                self.value(first);
-                for step in rest {
-                    self.mark(step.sign);
-                    self.value(&step.operand);
-                }
-            }
-            ValueKind::Missing | ValueKind::Bad => panic!("{value:?}"),
+fn spans_of_value(value: &Value<'_>, spans: &mut Vec<Span>) {
+    let parentheses = match &value.kind {
+        ValueKind::Call(call) => {
+            spans.push(call.function.span);
+            Some((call.parentheses, &call.arguments[..]))
         }
-    }
-
-    fn list(&mut self, parentheses: Span, elements: &[Element<'_>]) {
-        self.ends(parentheses);
-        for element in elements {
-            self.value(&element.value);
-            element.comma.iter().for_each(|comma| self.mark(*comma));
+        ValueKind::Tuple(elements) => Some((value.span, &elements[..])),
+        ValueKind::Parentheses(_) => Some((value.span, &[][..])),
+        ValueKind::Negation { sign, .. } => {
+            spans.push(*sign);
+            None
         }
+        ValueKind::Chain { rest, .. } => {
+            spans.extend(rest.iter().map(|step| step.sign));
+            None
+        }
+        ValueKind::Missing | ValueKind::Bad => panic!("{value:?}"),
+        _ => {
+            spans.push(value.span);
+            None
+        }
+    };
+    if let Some((Span { source, start, end }, elements)) = parentheses {
+        spans.extend([
+            Span::new(source, start, start + 1),
+            Span::new(source, end - 1, end),
+        ]);
+        spans.extend(elements.iter().filter_map(|element| element.comma));
     }
-
-    fn ends(&mut self, span: Span) {
-        self.mark(Span::new(span.source, span.start, span.start + 1));
-        self.mark(Span::new(span.source, span.end - 1, span.end));
+    for part in value.parts() {
+        spans_of_value(part, spans);
     }
 }
 
@@ -270,18 +218,15 @@ fn tree_and_comments_cover_a_right_file() {
         }
         right += 1;
         let text = source.text();
-        let mut tokens = Tokens {
-            covered: vec![false; text.len()],
-        };
-        for comment in &parsed.comments {
-            tokens.mark(*comment);
+        let mut covered = vec![false; text.len()];
+        for span in token_spans(&parsed.tree).iter().chain(&parsed.comments) {
+            for byte in span.range() {
+                assert!(!covered[byte], "two tokens share byte {byte}");
+                covered[byte] = true;
+            }
         }
-        for item in &parsed.tree.items {
-            tokens.item(item);
-        }
-        for (byte, covered) in text.bytes().zip(&tokens.covered).skip(source.bom_len()) {
-            let blank = byte.is_ascii_whitespace();
-            assert!(*covered || blank, "{}", path.display());
+        for (byte, covered) in text.bytes().zip(covered).skip(source.bom_len()) {
+            assert!(covered || byte.is_ascii_whitespace(), "{}", path.display());
         }
     }
     assert!(right > 30, "{right} right files");
@@ -320,39 +265,23 @@ fn tokens_of_any_text() {
         (token.kind != TokenKind::End).then(|| &text[token.start..token.end])
     });
     let tokens: Vec<&str> = tokens.collect();
-    assert_eq!(
-        tokens,
-        [
-            "a1",
-            ".5",
-            "1e-3",
-            "-",
-            "2",
-            "30deg",
-            "#fa0",
-            "“red”",
-            "größe",
-            "/* x */",
-            "**",
-            "'2",
-            "// e",
-            "/* o"
-        ]
-    );
+    let expected = "a1|.5|1e-3|-|2|30deg|#fa0|“red”|größe|/* x */|**|'2|// e|/* o";
+    assert_eq!(tokens.join("|"), expected);
 }
 
 #[test]
 fn numbers_end_before_their_units() {
-    for (written, number) in [
-        ("2", "2"),
-        (".5", ".5"),
-        ("5.", "5."),
-        ("1e-3deg", "1e-3"),
-        ("2e", "2"),
-        ("1_000", "1_000"),
-        ("1__0", "1"),
-        ("0x10", "0"),
-    ] {
+    let table = "
+        2 -> 2
+        .5 -> .5
+        5. -> 5.
+        1e-3deg -> 1e-3
+        2e -> 2
+        1_000 -> 1_000
+        1__0 -> 1
+        0x10 -> 0
+    ";
+    for [written, number] in rows(table) {
         assert_eq!(numeric_part(written), number, "{written}");
     }
 }

@@ -8,24 +8,27 @@ use pinhole::{
     suggest::{choice, list, nearest},
 };
 
+use crate::table::rows;
+
 #[test]
 fn places_count_characters_from_one() {
     let source = Source::from_text("a.scn", "\u{feff}aé\r\nb\n");
-    let place = |offset| {
+    let places = [
+        (0, 1, 1),
+        (3, 1, 1),
+        (4, 1, 2),
+        (6, 1, 3),
+        (8, 2, 1),
+        (9, 2, 2),
+        (10, 3, 1),
+        (99, 3, 1),
+    ];
+    for (offset, line, column) in places {
         let place = source.place(offset);
-        (place.line, place.column)
-    };
-    assert_eq!(place(0), (1, 1));
-    assert_eq!(place(3), (1, 1));
-    assert_eq!(place(4), (1, 2));
-    assert_eq!(place(6), (1, 3));
-    assert_eq!(place(8), (2, 1));
-    assert_eq!(place(9), (2, 2));
-    assert_eq!(place(10), (3, 1));
-    assert_eq!(place(99), (3, 1));
-    assert_eq!(source.slice(source.line_range(1)), "\u{feff}aé");
-    assert_eq!(source.slice(source.line_range(2)), "b");
-    assert_eq!(source.slice(source.line_range(3)), "");
+        assert_eq!((place.line, place.column), (line, column), "{offset}");
+    }
+    let lines = [1, 2, 3].map(|line| source.slice(source.line_range(line)));
+    assert_eq!(lines, ["\u{feff}aé", "b", ""]);
 }
 
 #[test]
@@ -44,85 +47,85 @@ fn invalid_bytes_keep_their_offsets() {
     assert_eq!(source.invalid_utf8(), [1, 2, 4]);
 }
 
+/// The text without what stands in brackets, which is what is removed.
+fn without(text: &str, remove: impl Fn(Span, &Sources) -> Fix) -> (String, String) {
+    let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
+    let text = text.replace(['[', ']'], "");
+    let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
+    let fix = remove(Span::new(SourceId::File, start, end), &sources);
+    (apply(&fix, SourceId::File, &text), fix.title)
+}
+
 #[test]
 fn what_is_alone_on_its_line_goes_with_its_comments() {
-    let cases = [
-        (
-            "a\n  [b 1] // why\nc",
-            "a\nc",
-            "remove it, with its comment",
-        ),
-        (
-            "a\r\n  [b 1] // why\r\nc",
-            "a\r\nc",
-            "remove it, with its comment",
-        ),
-        (
-            "\u{feff}[b 1] /* x */ // y",
-            "\u{feff}",
-            "remove it, with its comment",
-        ),
-        (
-            "a\n  [b 1] /* y\n z */\nc",
-            "a\nc",
-            "remove it, with its comment",
-        ),
-        (
-            "a\n  // above\n  [b 1]\n  // below\nc",
-            "a\n  // above\n  // below\nc",
-            "remove it",
-        ),
-        ("a 1  [b 1] // both\nc", "a 1 // both\nc", "remove it"),
-        ("[b 1] /* c */ c 1\nd", "/* c */ c 1\nd", "remove it"),
-        ("/* a */ [b 1] // c", "/* a */ // c", "remove it"),
-        ("{ [b 1] // c\n}", "{ // c\n}", "remove it"),
-    ];
-    for (text, expected, title) in cases {
-        let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
-        let text = text.replace(['[', ']'], "");
-        let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
-        let span = Span::new(SourceId::File, start, end);
-        let fix = Fix::remove_whole("remove it", span, &sources);
-        assert_eq!(apply(&fix, SourceId::File, &text), expected);
-        assert_eq!(fix.title, title);
+    let table = r"
+        a\n  [b 1] // why\nc -> a\nc -> , with its comment
+        a\r\n  [b 1] // why\r\nc -> a\r\nc -> , with its comment
+        [b 1] /* x */ // y -> -> , with its comment
+        a\n  [b 1] /* y\n z */\nc -> a\nc -> , with its comment
+        a\n  // above\n  [b 1]\n  // below\nc -> a\n  // above\n  // below\nc ->
+        a 1  [b 1] // both\nc -> a 1 // both\nc ->
+        [b 1] /* c */ c 1\nd -> /* c */ c 1\nd ->
+        /* a */ [b 1] // c -> /* a */ // c ->
+        { [b 1] // c\n} -> { // c\n} ->
+    ";
+    for [text, expected, with] in rows(table) {
+        let found = without(text, |span, sources| {
+            Fix::remove_whole("remove it", span, sources)
+        });
+        assert_eq!(
+            found,
+            (expected.to_owned(), format!("remove it{with}")),
+            "{text}"
+        );
     }
 }
 
 #[test]
 fn what_is_removed_leaves_no_gap() {
-    let cases = [
-        ("a\n  [b 1]\nc", "a\nc"),
-        ("a\n  [b 1]", "a\n"),
-        ("\u{feff}[b 1]\r\nc", "\u{feff}c"),
-        ("{ a 1  [b 1]  c 1 }", "{ a 1  c 1 }"),
-        ("{ [b 1]  c 1 }", "{ c 1 }"),
-        ("{ a 1  [b 1] }", "{ a 1 }"),
-        ("a 1[;]b 2", "a 1 b 2"),
-        ("a [=] 2", "a 2"),
-        ("a[=]2", "a 2"),
-        ("(1, 2[,])", "(1, 2)"),
-        ("  [b 1]  // why\nc", "  // why\nc"),
-    ];
-    for (text, expected) in cases {
-        let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
-        let text = text.replace(['[', ']'], "");
-        let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
-        let span = Span::new(SourceId::File, start, end);
-        let fix = Fix::remove("remove it", span, &sources);
-        assert_eq!(apply(&fix, SourceId::File, &text), expected);
+    let table = r"
+        a\n  [b 1]\nc -> a\nc
+        a\n  [b 1] -> a\n
+        { a 1  [b 1]  c 1 } -> { a 1  c 1 }
+        { [b 1]  c 1 } -> { c 1 }
+        { a 1  [b 1] } -> { a 1 }
+        a 1[;]b 2 -> a 1 b 2
+        a [=] 2 -> a 2
+        a[=]2 -> a 2
+        (1, 2[,]) -> (1, 2)
+        \n  [b 1]  // why\nc -> \n  // why\nc
+    ";
+    for [text, expected] in rows(table) {
+        let found = without(text, |span, sources| {
+            Fix::remove("remove it", span, sources)
+        });
+        assert_eq!(found.0, expected, "{text}");
     }
+    let after_mark = without("\u{feff}[b 1]\r\nc", |span, sources| {
+        Fix::remove("remove it", span, sources)
+    });
+    assert_eq!(after_mark.0, "\u{feff}c");
 }
 
 #[test]
 fn near_names_only() {
     let fields = ["center", "radius", "color", "d", "up"];
-    assert_eq!(nearest("radus", fields), Some("radius"));
-    assert_eq!(nearest("colour", fields), Some("color"));
-    assert_eq!(nearest("centre", fields), Some("center"));
-    assert_eq!(nearest("UP", fields), Some("up"));
-    assert_eq!(nearest("D", fields), Some("d"));
-    assert_eq!(nearest("x", fields), None);
-    assert_eq!(nearest("transparency", fields), None);
+    let table = "
+        radus -> radius
+        colour -> color
+        centre -> center
+        UP -> up
+        D -> d
+        x ->
+        transparency ->
+    ";
+    for [written, near] in rows(table) {
+        assert_eq!(
+            nearest(written, fields).unwrap_or_default(),
+            near,
+            "{written}"
+        );
+    }
     assert_eq!(nearest("", fields), None);
 }
 

@@ -15,7 +15,12 @@ use std::{
 
 use tempfile::TempDir;
 
-use crate::{cancel::spheres, interrupt::long_pixel, program::command};
+use crate::{
+    cancel::spheres,
+    interrupt::long_pixel,
+    program::{command, names},
+    table::rows,
+};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -127,12 +132,7 @@ impl Watch {
     }
 
     fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.folder.path()).unwrap();
-        let mut names: Vec<_> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
+        names(self.folder.path())
     }
 }
 
@@ -180,20 +180,7 @@ fn editors_that_save_by_renaming_are_seen() {
 }
 
 #[test]
-fn a_file_that_is_gone_may_come_back() {
-    let watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
-    fs::remove_file(watch.path("a.scn")).unwrap();
-    watch.wait("it is missed", || {
-        watch.count("error: cannot read a.scn: ") == 1
-    });
-    assert_eq!(watch.color("a.png"), Some(RED));
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
-}
-
-#[test]
-fn a_folder_that_is_gone_may_come_back() {
+fn a_file_or_folder_that_is_gone_may_come_back() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("scenes");
     let fill = |color: &str| {
@@ -203,8 +190,13 @@ fn a_folder_that_is_gone_may_come_back() {
     fill("red");
     let watch = Watch::start_in(folder, "scenes/a.scn", &["-o", "a.png"]);
     watch.wait_for(RED);
-    fs::remove_dir_all(&inner).unwrap();
+    fs::remove_file(inner.join("a.scn")).unwrap();
     watch.wait("it is missed", || watch.count("error: cannot read") == 1);
+    assert_eq!(watch.color("a.png"), Some(RED));
+    fs::write(inner.join("a.scn"), scene("lime")).unwrap();
+    watch.wait_for(LIME);
+    fs::remove_dir_all(&inner).unwrap();
+    watch.wait("it is missed", || watch.count("error: cannot read") >= 2);
     fill("blue");
     watch.wait_for(BLUE);
     fs::write(inner.join("a.scn"), scene("lime")).unwrap();
@@ -264,7 +256,10 @@ fn a_pipe_in_the_files_place_is_waited_out() {
 
 #[test]
 fn broken_text_is_reported_and_the_last_picture_stays() {
-    let watch = Watch::start(&scene("red"), &[]);
+    let watch = Watch::start("sphere {", &[]);
+    watch.wait("it is reported", || watch.count("2 errors\n") == 1);
+    assert_eq!(watch.color("a.png"), None);
+    watch.save(&scene("red"));
     watch.wait_for(RED);
     let good = fs::read(watch.path("a.png")).unwrap();
     watch.save(&scene("blue").replace("width", "widht"));
@@ -274,16 +269,7 @@ fn broken_text_is_reported_and_the_last_picture_stays() {
     assert!(fs::read(watch.path("a.png")).unwrap() == good);
     watch.save(&scene("blue"));
     watch.wait_for(BLUE);
-    watch.wait("it says so", || watch.count("after the save") == 1);
-}
-
-#[test]
-fn a_text_that_is_broken_from_the_start_is_waited_for() {
-    let watch = Watch::start("sphere {", &[]);
-    watch.wait("it is reported", || watch.count("2 errors\n") == 1);
-    assert_eq!(watch.color("a.png"), None);
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.wait("it says so", || watch.count("after the save") == 2);
 }
 
 #[test]
@@ -327,21 +313,14 @@ fn long_text() -> String {
 }
 
 #[test]
-fn what_is_superseded_is_not_read_to_its_end() {
-    let watch = Watch::start(&scene("red"), &[]);
+fn what_is_superseded_is_not_read_to_its_end_nor_what_ctrl_c_ends() {
+    let mut watch = Watch::start(&scene("red"), &[]);
     watch.wait_for(RED);
     watch.save(&long_text());
     thread::sleep(Duration::from_millis(300));
     watch.save(&scene("blue"));
     watch.wait_for(BLUE);
     watch.wait("it says so", || watch.count("after the save") == 1);
-    assert_eq!(watch.count("error"), 0, "{}", watch.said());
-}
-
-#[test]
-fn ctrl_c_ends_a_reading_too() {
-    let mut watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
     watch.save(&long_text());
     thread::sleep(Duration::from_millis(300));
     assert_eq!(watch.end().code(), Some(130));
@@ -436,28 +415,19 @@ fn what_cannot_be_watched_is_refused() {
         .status()
         .unwrap();
     assert!(status.success());
-    for (arguments, says) in [
-        (&["-"][..], "standard input cannot be watched"),
-        (&["a.scn", "-o", "-"], "standard output holds one picture"),
-        (
-            &["a.png", "-o", "b.png"],
-            "a.png is a picture, and what is watched is a text",
-        ),
-        (&["none.scn"], "cannot read none.scn: "),
-        (&["."], ". is not a file"),
-        (
-            &["a.scn", "-o", "a.jpg"],
-            "the ending of a.jpg stands for no format",
-        ),
-        (
-            &["a.scn", "-o", "none/a.png"],
-            "cannot write to none/a.png: ",
-        ),
-        (&["a.scn", "--show"], "`--show` draws in a terminal"),
-    ] {
-        let output = command(folder.path(), &[&["watch"], arguments].concat())
-            .output()
-            .unwrap();
+    let table = "
+        - -> standard input cannot be watched
+        a.scn -o - -> standard output holds one picture
+        a.png -o b.png -> a.png is a picture, and what is watched is a text
+        none.scn -> cannot read none.scn:
+        . -> . is not a file
+        a.scn -o a.jpg -> the ending of a.jpg stands for no format
+        a.scn -o none/a.png -> cannot write to none/a.png:
+        a.scn --show -> `--show` draws in a terminal
+    ";
+    for [arguments, says] in rows(table) {
+        let arguments: Vec<&str> = ["watch"].into_iter().chain(arguments.split(' ')).collect();
+        let output = command(folder.path(), &arguments).output().unwrap();
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
         assert!(errors.starts_with(&format!("error: {says}")), "{errors}");

@@ -68,14 +68,8 @@ fn neither_threads_nor_a_second_run_change_a_byte() {
 #[test]
 fn a_picture_renders_its_scene_again() {
     let folder = folder();
-    let arguments = [
-        "--set",
-        "Ball.center=(0, 1.5, 0)",
-        "--set",
-        "h = 2",
-        "--crop",
-        "10,5,30,20",
-    ];
+    let (moved, grown) = (["--set", "Ball.center=(0, 1.5, 0)"], ["--set", "h = 2"]);
+    let arguments = [&moved[..], &grown, &["--crop", "10,5,30,20"]].concat();
     let first = [&["render", "a.scn", "-o", "b.png"], &arguments[..]].concat();
     done(&folder, &first);
     done(&folder, &["render", "b.png", "-o", "c.png"]);
@@ -83,22 +77,13 @@ fn a_picture_renders_its_scene_again() {
     assert_eq!(size(&read(&folder, "c.png")), (30, 20));
 
     // What is set and cropped now comes after what was set and cropped then.
-    let again = [
-        "render",
-        "b.png",
-        "-o",
-        "d.png",
-        "--set",
-        "h=3",
-        "--crop",
-        "0,0,64,36",
-    ];
-    done(&folder, &again);
-    let arguments = [&arguments[..4], &["--set", "h=3", "--crop", "0,0,64,36"]].concat();
+    let now = ["--set", "h=3", "--crop", "0,0,64,36"];
     done(
         &folder,
-        &[&["render", "a.scn", "-o", "e.png"], &arguments[..]].concat(),
+        &[&["render", "b.png", "-o", "d.png"], &now[..]].concat(),
     );
+    let both = [&["render", "a.scn", "-o", "e.png"], &arguments[..4], &now].concat();
+    done(&folder, &both);
     assert!(read(&folder, "d.png") == read(&folder, "e.png"));
 
     assert_eq!(
@@ -130,15 +115,8 @@ fn a_crop_has_the_pixels_of_the_whole() {
             )
         );
     }
-    for wrong in [
-        "0,0,0,1",
-        "1,2,3",
-        "1,2,3,4,5",
-        "-1,0,2,2",
-        "a",
-        "",
-        "1,1,1,4294967296",
-    ] {
+    let wrong = "0,0,0,1 1,2,3 1,2,3,4,5 -1,0,2,2 a 1,1,1,4294967296";
+    for wrong in wrong.split(' ').chain([""]) {
         fails(&folder, &["render", "a.scn", "--crop", wrong], 2);
     }
 }
@@ -185,20 +163,8 @@ fn a_crop_as_exr_says_where_it_lies() {
 #[test]
 fn what_killed_runs_leave_is_removed_by_the_next_one() {
     let folder = folder();
-    let arguments = [
-        "render",
-        "a.scn",
-        "-o",
-        "a.exr",
-        "--set",
-        "image.width=640",
-        "--set",
-        "image.height=480",
-        "--set",
-        "sampler.method=random",
-        "--set",
-        "sampler.per_pixel=1",
-    ];
+    let arguments = "render a.scn -o a.exr --set image.width=640 --set image.height=480 --set sampler.method=random --set sampler.per_pixel=1";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
     let mut left = 0;
     for _ in 0..10 {
         let mut child = command(folder.path(), &arguments).spawn().unwrap();
@@ -254,12 +220,8 @@ fn a_full_disk_is_told_of_the_file_that_was_asked_for() {
 #[test]
 fn a_picture_too_large_for_memory_is_refused() {
     let folder = folder();
-    let huge = [
-        "--set",
-        "image.width=1048576",
-        "--set",
-        "image.height=1048576",
-    ];
+    let (width, height) = ("image.width=1048576", "image.height=1048576");
+    let huge = ["--set", width, "--set", height];
     let errors = fails(&folder, &[&["render", "a.scn"], &huge[..]].concat(), 2);
     assert!(
         errors
@@ -280,19 +242,14 @@ fn a_bound_that_is_worth_a_word_gets_one() {
                  checkerboard { y 0 square 5e-324 }";
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("wide.scn"), scene).unwrap();
-    let output = command(folder.path(), &["render", "wide.scn"])
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
+    let output = pinhole(&folder, &["render", "wide.scn"]);
+    let told = errors(&output);
     assert!(output.status.success(), "{told}");
     let place = place(&told);
     assert!(place.iter().any(|&at| at > 0), "{told}");
     // A crop tells the place in the whole picture, too.
     let crop = format!("{},{},1,1", place[0], place[1]);
-    let output = command(folder.path(), &["render", "wide.scn", "--crop", &crop])
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
+    let told = errors(&pinhole(&folder, &["render", "wide.scn", "--crop", &crop]));
     assert!(told.contains("exact: one pixel is known"), "{told}");
     assert_eq!(self::place(&told), place);
 }
@@ -314,14 +271,7 @@ fn a_picture_of_one_colour_is_exactly_right() {
         "image { width 4 height 4 } camera { eye (0, 1, 0) lookat (0, 1, -1) } sampler { method exact }",
     )
     .unwrap();
-    let output = command(folder.path(), &["render", "empty.scn"])
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        told.ends_with(
-            "\nexact: every channel is its pixel's only colour; the 8-bit rounding of every pixel is certain\n"
-        ),
-        "{told}"
-    );
+    let told = errors(&pinhole(&folder, &["render", "empty.scn"]));
+    let end = "\nexact: every channel is its pixel's only colour; the 8-bit rounding of every pixel is certain\n";
+    assert!(told.ends_with(end), "{told}");
 }

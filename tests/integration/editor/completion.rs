@@ -7,6 +7,7 @@ use pinhole::{
 };
 
 use super::{at_cursor, cursor, of_whole};
+use crate::table::rows;
 
 fn complete(text: &str) -> Vec<Completion> {
     at_cursor(text, completions)
@@ -25,14 +26,11 @@ fn done(text: &str, label: &str) -> String {
         .iter()
         .find(|c| c.label == label)
         .expect("it is offered");
-    let insert: String = found
-        .insert
-        .iter()
-        .map(|piece| match piece {
-            Piece::Text(text) => text.clone(),
-            Piece::Hole(value) => format!("‹{value}›"),
-        })
-        .collect();
+    let insert = found.insert.iter().map(|piece| match piece {
+        Piece::Text(text) => text.clone(),
+        Piece::Hole(value) => format!("‹{value}›"),
+    });
+    let insert: String = insert.collect();
     let text = sources.file.text();
     format!(
         "{}{insert}{}",
@@ -49,92 +47,75 @@ fn offered(text: &str, label: &str) -> Completion {
 
 #[test]
 fn blocks_stand_outside_of_blocks() {
-    assert_eq!(
-        labels("$0"),
-        "camera box checkerboard image sampler sphere triangle let"
-    );
-    assert_eq!(
-        labels("camera {} im$0"),
-        "box checkerboard image sampler sphere triangle let"
-    );
-    assert_eq!(
-        labels("let a = 1\n$0\nsphere {}"),
-        "camera box checkerboard image sampler sphere triangle let"
-    );
-    assert_eq!(
-        labels("sphere { center (0, 1, 0) }\nima$0\ncamera { eye (0, 0, 0) }"),
-        "box checkerboard image sampler sphere triangle let"
-    );
+    let table = r"
+        $0 -> camera box checkerboard image sampler sphere triangle let
+        camera {} im$0 -> box checkerboard image sampler sphere triangle let
+        let a = 1\n$0\nsphere {} -> camera box checkerboard image sampler sphere triangle let
+        sphere { center (0, 1, 0) }\nima$0\ncamera { eye (0, 0, 0) } -> box checkerboard image sampler sphere triangle let
+    ";
+    for [text, expected] in rows(table) {
+        assert_eq!(labels(text), expected, "{text}");
+    }
 }
 
 #[test]
 fn a_block_comes_with_the_fields_that_it_needs() {
-    assert_eq!(
-        done("cam$0", "camera"),
-        "camera {\n  eye    (‹0›, ‹2›, ‹8›)\n  lookat (‹0›, ‹1›, ‹0›)\n}"
-    );
-    assert_eq!(done("$0", "sphere"), "sphere { center (‹0›, ‹1›, ‹0›) }");
-    assert_eq!(done("$0", "image"), "image { ‹› }");
-    assert_eq!(done("$0", "let"), "let ‹name› = ‹1›");
-    // What is there already stays.
-    assert_eq!(
-        done("sp$0 { center (0, 0, 0) }", "sphere"),
-        "sphere { center (0, 0, 0) }"
-    );
-    assert_eq!(
-        done("sp$0 Ball { center (0, 0, 0) }", "sphere"),
-        "sphere Ball { center (0, 0, 0) }"
-    );
+    let table = r"
+        cam$0 -> camera -> camera {\n  eye    (‹0›, ‹2›, ‹8›)\n  lookat (‹0›, ‹1›, ‹0›)\n}
+        $0 -> sphere -> sphere { center (‹0›, ‹1›, ‹0›) }
+        $0 -> image -> image { ‹› }
+        $0 -> let -> let ‹name› = ‹1›
+        -- What is there already stays.
+        sp$0 { center (0, 0, 0) } -> sphere -> sphere { center (0, 0, 0) }
+        sp$0 Ball { center (0, 0, 0) } -> sphere -> sphere Ball { center (0, 0, 0) }
+    ";
+    for [text, label, expected] in rows(table) {
+        assert_eq!(done(text, label), expected, "{text}");
+    }
 }
 
 #[test]
 fn fields_that_are_given_or_excluded_are_not_offered() {
-    assert_eq!(labels("sphere { $0 }"), "center color radius");
-    assert_eq!(labels("sphere { $0 center (0, 1, 0) }"), "color radius");
-    assert_eq!(
-        labels("sphere { center (0, 1, 0) ra$0 color olive }"),
-        "radius"
-    );
-    assert_eq!(labels("box { center (0, 0, 0) $0 }"), "color size");
-    assert_eq!(labels("box { $0 }"), "center max min color size");
-    // Corners, which are called like functions.
-    assert_eq!(
-        labels("box {\n  $0\n  min (0, 0, 0)\n  max (1, 1, 1)\n}"),
-        "color"
-    );
-    assert_eq!(
-        labels("camera { eye (0, 0, 0) fov 40deg $0 }"),
-        "direction lookat far near roll up view_height"
-    );
+    let table = r"
+        sphere { $0 } -> center color radius
+        sphere { $0 center (0, 1, 0) } -> color radius
+        sphere { center (0, 1, 0) ra$0 color olive } -> radius
+        box { center (0, 0, 0) $0 } -> color size
+        box { $0 } -> center max min color size
+        -- Corners, which are called like functions.
+        box {\n  $0\n  min (0, 0, 0)\n  max (1, 1, 1)\n} -> color
+        camera { eye (0, 0, 0) fov 40deg $0 } -> direction lookat far near roll up view_height
+    ";
+    for [text, expected] in rows(table) {
+        assert_eq!(labels(text), expected, "{text}");
+    }
 }
 
 #[test]
 fn broken_texts_get_answers_too() {
-    assert_eq!(labels("sphere { center (0, 1, 0) $0"), "color radius");
-    assert_eq!(
-        labels("sphere {\n  rad$0\nbox { center (0, 0, 0) }"),
-        "center color radius"
-    );
-    assert_eq!(labels("sphere { radius = 2 $0 } box {"), "center color");
-    assert_eq!(
-        labels("sampler { method $0"),
-        "exact halton hammersley jittered multi_jittered n_rooks random regular scatter sobol"
-    );
-    assert_eq!(labels("spere { $0 }"), "center color radius");
+    let table = r"
+        sphere { center (0, 1, 0) $0 -> color radius
+        sphere {\n  rad$0\nbox { center (0, 0, 0) } -> center color radius
+        sphere { radius = 2 $0 } box { -> center color
+        sampler { method $0 -> exact halton hammersley jittered multi_jittered n_rooks random regular scatter sobol
+        spere { $0 } -> center color radius
+    ";
+    for [text, expected] in rows(table) {
+        assert_eq!(labels(text), expected, "{text}");
+    }
 }
 
 #[test]
 fn a_field_comes_with_a_value_that_it_can_have() {
-    assert_eq!(done("sphere { $0 }", "radius"), "sphere { radius ‹1› }");
-    assert_eq!(done("sphere { rad$0 2 }", "radius"), "sphere { radius 2 }");
-    assert_eq!(
-        done("box { min (0, 0, 0) $0 }", "max"),
-        "box { min (0, 0, 0) max (‹1›, ‹1›, ‹1›) }"
-    );
-    assert_eq!(
-        done("checkerboard { $0 }", "colors"),
-        "checkerboard { colors (‹gray›, ‹white›) }"
-    );
+    let table = "
+        sphere { $0 } -> radius -> sphere { radius ‹1› }
+        sphere { rad$0 2 } -> radius -> sphere { radius 2 }
+        box { min (0, 0, 0) $0 } -> max -> box { min (0, 0, 0) max (‹1›, ‹1›, ‹1›) }
+        checkerboard { $0 } -> colors -> checkerboard { colors (‹gray›, ‹white›) }
+    ";
+    for [text, label, expected] in rows(table) {
+        assert_eq!(done(text, label), expected, "{text}");
+    }
     let radius = offered("sphere { $0 }", "radius");
     assert_eq!(radius.kind, CompletionKind::Field);
     assert_eq!(radius.detail, "number, 1 by default");
@@ -147,25 +128,22 @@ fn a_field_comes_with_a_value_that_it_can_have() {
 #[test]
 fn values_fit_their_field() {
     let lets = "let sky = #123456 let place = (1, 2, 3) let size = 2 ";
-    let first = |text: &str, count: usize| {
-        let labels = labels(&format!("{lets}{text}"));
-        labels
-            .split(' ')
-            .take(count)
-            .map(str::to_owned)
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
-    assert_eq!(
-        first("sphere { center p$0 }", 4),
-        "place size cross normalize"
-    );
-    assert_eq!(first("sphere { radius s$0 }", 3), "size place abs");
-    assert_eq!(first("sphere { color s$0 }", 2), "sky aliceblue");
-    assert_eq!(first("camera { roll s$0 }", 3), "place size acos");
-    assert_eq!(first("checkerboard { colors (s$0 }", 2), "sky aliceblue");
-    assert_eq!(first("sphere { center (0, 1, s$0", 3), "size place abs");
-    assert_eq!(first("camera { roll atan2(1, s$0", 2), "size place");
+    let table = "
+        sphere { center p$0 } -> place size cross normalize
+        sphere { radius s$0 } -> size place abs
+        sphere { color s$0 } -> sky aliceblue
+        camera { roll s$0 } -> place size acos
+        checkerboard { colors (s$0 } -> sky aliceblue
+        sphere { center (0, 1, s$0 -> size place abs
+        camera { roll atan2(1, s$0 -> size place
+    ";
+    for [text, expected] in rows(table) {
+        let found = labels(&format!("{lets}{text}"));
+        assert!(
+            format!("{found} ").starts_with(&format!("{expected} ")),
+            "{text}: {found}"
+        );
+    }
     let sky = offered(&format!("{lets}sphere {{ color s$0 }}"), "sky");
     assert_eq!(
         sky.kind,
@@ -235,48 +213,21 @@ fn a_pair_of_colors_is_no_single_color() {
 
 #[test]
 fn what_is_put_in_fits_what_is_there() {
-    for (text, label, end) in [
-        ("box { min (5, 5, 5) $0 }", "max", "max (‹6›, ‹6›, ‹6›) }"),
-        (
-            "let a = (5, 5, 5) box { $0 max a }",
-            "min",
-            "min (‹-1›, ‹0›, ‹-1›) max a }",
-        ),
-        (
-            "box { min (5, 5, 5) max $0 }",
-            "(6, 6, 6)",
-            "max (‹6›, ‹6›, ‹6›) }",
-        ),
-        ("camera { near 500 $0 }", "far", "far ‹1000› }"),
-        ("camera {\n  near 500\n  $0", "far", "far ‹1000›"),
-        ("camera { near 5 $0 }", "far", "far ‹100› }"),
-        (
-            "camera { eye (0, 1, 0) $0 }",
-            "lookat",
-            "lookat (‹0›, ‹1›, ‹-1›) }",
-        ),
-        // Not straight down, either, nor along an `up` of its own.
-        (
-            "camera { eye (0, 5, 0) $0 }",
-            "lookat",
-            "lookat (‹0›, ‹5›, ‹-1›) }",
-        ),
-        (
-            "camera { lookat (0, 2, 8) $0 }",
-            "eye",
-            "eye (‹0›, ‹2›, ‹9›) }",
-        ),
-        (
-            "camera { up (0, 0, 1) $0 }",
-            "direction",
-            "direction (‹1›, ‹0›, ‹0›) }",
-        ),
-        (
-            "camera { eye (0, 5, 0) lookat (0, 0, 0) $0 }",
-            "up",
-            "up (‹0›, ‹0›, ‹-1›) }",
-        ),
-    ] {
+    let table = r"
+        box { min (5, 5, 5) $0 } -> max -> max (‹6›, ‹6›, ‹6›) }
+        let a = (5, 5, 5) box { $0 max a } -> min -> min (‹-1›, ‹0›, ‹-1›) max a }
+        box { min (5, 5, 5) max $0 } -> (6, 6, 6) -> max (‹6›, ‹6›, ‹6›) }
+        camera { near 500 $0 } -> far -> far ‹1000› }
+        camera {\n  near 500\n  $0 -> far -> far ‹1000›
+        camera { near 5 $0 } -> far -> far ‹100› }
+        camera { eye (0, 1, 0) $0 } -> lookat -> lookat (‹0›, ‹1›, ‹-1›) }
+        -- Not straight down, either, nor along an `up` of its own.
+        camera { eye (0, 5, 0) $0 } -> lookat -> lookat (‹0›, ‹5›, ‹-1›) }
+        camera { lookat (0, 2, 8) $0 } -> eye -> eye (‹0›, ‹2›, ‹9›) }
+        camera { up (0, 0, 1) $0 } -> direction -> direction (‹1›, ‹0›, ‹0›) }
+        camera { eye (0, 5, 0) lookat (0, 0, 0) $0 } -> up -> up (‹0›, ‹0›, ‹-1›) }
+    ";
+    for [text, label, end] in rows(table) {
         let found = done(text, label);
         assert!(found.ends_with(end), "{found}");
     }

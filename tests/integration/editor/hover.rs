@@ -7,6 +7,7 @@ use pinhole::{
 };
 
 use super::{at_cursor, under};
+use crate::table::rows;
 
 /// The text that the answer is about, and the answer.
 fn hovered(text: &str) -> (String, String) {
@@ -20,130 +21,58 @@ fn markdown(text: &str) -> String {
     hovered(text).1
 }
 
+/// Each row has a text, the part of it that the answer is about, and the answer.
 #[test]
-fn fields_say_what_the_table_says() {
-    assert_eq!(
-        hovered("sphere { center (0, 1, 0) ra$0dius 2 }"),
-        (
-            "radius".into(),
-            "`radius` of a sphere: its radius\n\n(number, `1` by default); must be more than 0"
-                .into()
-        )
-    );
-    assert_eq!(
-        markdown("camera { fo$0v 40deg }"),
-        "`fov` of a camera: the angle that the window's height takes up, instead of d\n\n(angle); must be more than 0 and less than 180deg; not together with `d` or `hfov`"
-    );
-    for (text, rule) in [
-        ("camera { fa$0r 5 }", "near < far"),
-        ("camera { loo$0kat 5 }", "lookat ≠ eye"),
-        ("box { mi$0n 5 }", "min < max on every axis"),
-        (
-            "triangle { sid$0es 5 }",
-            "each is shorter than the two others together",
-        ),
-        (
-            "sampler { per_p$0ixel 5 }",
-            "per_pixel times the number of pixels is at most 2^53",
-        ),
-    ] {
+fn a_word_says_what_it_is_and_comes_to() {
+    let table = r"
+        sphere { center (0, 1, 0) ra$0dius 2 } -> radius -> `radius` of a sphere: its radius\n\n(number, `1` by default); must be more than 0
+        camera { fo$0v 40deg } -> fov -> `fov` of a camera: the angle that the window's height takes up, instead of d\n\n(angle); must be more than 0 and less than 180deg; not together with `d` or `hfov`
+        sampler { method so$0bol } -> sobol -> `sobol`: Sobol' points with Owen scrambling, per pixel
+        $0let a = 1 -> let -> `let NAME = VALUE` gives a value a name, for what stands further down.
+        let $0a = 2 * (1, 2, 3) -> a -> `let a = 2 * (1, 2, 3)` (line 1)\n\na vector: `(2, 4, 6)`
+        let a = 2 * (1, 2, 3)\nsphere { center a$0 } -> a -> `let a = 2 * (1, 2, 3)` (line 1)\n\na vector: `(2, 4, 6)`
+        let $0a = 1 + olive -> a -> `let a = 1 + olive` (line 1)\n\nit has no value: see what is reported there
+        let a = 2 $0 let b = 1 -> ->
+
+        let a = 30deg let b = 2 $0* sin(a) + (1 - 0.5) -> 2 * sin(a) -> `2 * sin(a)` is a number: `1`
+        let a = 30deg let b = 2 * sin(a) $0+ (1 - 0.5) -> 2 * sin(a) + (1 - 0.5) -> `2 * sin(a) + (1 - 0.5)` is a number: `1.5`
+        let a = 30deg let b = 2 * sin(a) + (1 $0- 0.5) -> 1 - 0.5 -> `1 - 0.5` is a number: `0.5`
+        let a = 30deg let b = 2 * $0sin(a) + (1 - 0.5) -> sin -> `sin(angle) → number`: the sine of an angle\n\nhere a number: `0.5`
+        -- A number says itself what it is, but not what it is a part of.
+        let a = 2$0*3 -> 2*3 -> `2*3` is a number: `6`
+        let a = 0.1+$00.2 -> 0.1+0.2 -> `0.1+0.2` is a number: `0.3`
+        sphere { center (1, 2*$03, 3) } -> 2*3 -> `2*3` is a number: `6`
+        let v = $0(1,2,3)*2 -> (1,2,3)*2 -> `(1,2,3)*2` is a vector: `(2, 4, 6)`
+        let a = max(1, $02) -> max(1, 2) -> `max(1, 2)` is a number: `2`
+        let a = (1, $02, 3) -> ->
+        let a = $090deg -> 90deg -> an angle: `90deg`, `1.5708rad`
+        let a = p$0i -> pi -> `pi`: the number 3.141592653589793
+
+        sphere { color ol$0ive } -> olive -> `olive` is a colour: `#808000`, `rgb(128, 128, 0)`; in linear light (0.215861, 0.215861, 0)
+        let a = #f$000 -> #f00 -> a colour: `#ff0000`, `rgb(255, 0, 0)`; in linear light (1, 0, 0)
+        sphere Ba$0ll { center (0, 1, 0) } -> Ball -> sphere `Ball`: center (0, 1, 0), radius 1, #808000
+        sphere Ba$0ll { radius 0 } -> Ball -> sphere `Ball`
+    ";
+    for [text, about, markdown] in rows(table) {
+        assert_eq!(
+            hovered(text),
+            (about.to_owned(), markdown.to_owned()),
+            "{text}"
+        );
+    }
+    // A number is about its field.
+    assert_eq!(hovered("sphere { radius $02 }").0, "2");
+    let table = "
+        camera { fa$0r 5 } -> near < far
+        camera { loo$0kat 5 } -> lookat ≠ eye
+        box { mi$0n 5 } -> min < max on every axis
+        triangle { sid$0es 5 } -> each is shorter than the two others together
+        sampler { per_p$0ixel 5 } -> per_pixel times the number of pixels is at most 2^53
+    ";
+    for [text, rule] in rows(table) {
         assert!(markdown(text).contains(rule), "{}", markdown(text));
     }
     assert!(!markdown("camera { ro$0ll 5deg }").contains('<'));
-    // A number is about its field.
-    assert_eq!(hovered("sphere { radius $02 }").0, "2");
-    assert_eq!(
-        markdown("sampler { method so$0bol }"),
-        "`sobol`: Sobol' points with Owen scrambling, per pixel"
-    );
-    assert_eq!(
-        markdown("$0let a = 1"),
-        "`let NAME = VALUE` gives a value a name, for what stands further down."
-    );
-}
-
-#[test]
-fn definitions_say_their_value() {
-    let about = "`let a = 2 * (1, 2, 3)` (line 1)\n\na vector: `(2, 4, 6)`";
-    assert_eq!(
-        hovered("let $0a = 2 * (1, 2, 3)"),
-        ("a".into(), about.into())
-    );
-    assert_eq!(
-        hovered("let a = 2 * (1, 2, 3)\nsphere { center a$0 }"),
-        ("a".into(), about.into())
-    );
-    assert_eq!(markdown("let a = 2 $0 let b = 1"), "");
-    assert_eq!(
-        markdown("let $0a = 1 + olive"),
-        "`let a = 1 + olive` (line 1)\n\nit has no value: see what is reported there"
-    );
-}
-
-#[test]
-fn expressions_say_what_they_come_to() {
-    let text = |place: usize| {
-        let mut text = "let a = 30deg let b = 2 * sin(a) + (1 - 0.5)".to_owned();
-        text.insert_str(place, "$0");
-        text
-    };
-    let at = |word: &str| text(text(0).find(word).expect("it stands there") - 2);
-    assert_eq!(
-        hovered(&at("* ")),
-        ("2 * sin(a)".into(), "`2 * sin(a)` is a number: `1`".into())
-    );
-    assert_eq!(
-        hovered(&at("+ ")),
-        (
-            "2 * sin(a) + (1 - 0.5)".into(),
-            "`2 * sin(a) + (1 - 0.5)` is a number: `1.5`".into()
-        )
-    );
-    assert_eq!(
-        hovered(&at("- 0")),
-        ("1 - 0.5".into(), "`1 - 0.5` is a number: `0.5`".into())
-    );
-    assert_eq!(
-        hovered(&at("sin")),
-        (
-            "sin".into(),
-            "`sin(angle) → number`: the sine of an angle\n\nhere a number: `0.5`".into()
-        )
-    );
-    // A number says itself what it is, but not what it is a part of.
-    for (text, about) in [
-        ("let a = 2$0*3", "`2*3` is a number: `6`"),
-        ("let a = 0.1+$00.2", "`0.1+0.2` is a number: `0.3`"),
-        ("sphere { center (1, 2*$03, 3) }", "`2*3` is a number: `6`"),
-        (
-            "let v = $0(1,2,3)*2",
-            "`(1,2,3)*2` is a vector: `(2, 4, 6)`",
-        ),
-        ("let a = max(1, $02)", "`max(1, 2)` is a number: `2`"),
-    ] {
-        assert_eq!(markdown(text), about, "{text}");
-    }
-    assert_eq!(markdown("let a = (1, $02, 3)"), "");
-    assert_eq!(
-        markdown("let a = $090deg"),
-        "an angle: `90deg`, `1.5708rad`"
-    );
-    assert_eq!(
-        markdown("let a = p$0i"),
-        "`pi`: the number 3.141592653589793"
-    );
-}
-
-#[test]
-fn colors_are_shown_in_every_spelling() {
-    assert_eq!(
-        markdown("sphere { color ol$0ive }"),
-        "`olive` is a colour: `#808000`, `rgb(128, 128, 0)`; in linear light (0.215861, 0.215861, 0)"
-    );
-    assert_eq!(
-        markdown("let a = #f$000"),
-        "a colour: `#ff0000`, `rgb(255, 0, 0)`; in linear light (1, 0, 0)"
-    );
 }
 
 #[test]
@@ -170,18 +99,6 @@ vanishing points, in pixels from the top left corner
     // A camera that looks nowhere comes to nothing.
     let nowhere = markdown("ca$0mera { eye (0, 1, 0) lookat (0, 1, 0) }");
     assert!(nowhere.starts_with("`camera`: "), "{nowhere}");
-}
-
-#[test]
-fn objects_say_what_they_are() {
-    assert_eq!(
-        hovered("sphere Ba$0ll { center (0, 1, 0) }"),
-        (
-            "Ball".into(),
-            "sphere `Ball`: center (0, 1, 0), radius 1, #808000".into()
-        )
-    );
-    assert_eq!(markdown("sphere Ba$0ll { radius 0 }"), "sphere `Ball`");
 }
 
 #[test]
@@ -220,47 +137,32 @@ fn called(text: &str) -> Option<String> {
 
 #[test]
 fn calls_say_what_they_take() {
-    let label = |text| called(text).unwrap_or_default();
-    assert_eq!(label("let a = sin($0"), "sin(‹angle›) → number");
-    assert_eq!(label("let a = atan2(1, $0)"), "atan2(y, ‹x›) → angle");
-    assert_eq!(
-        label("sphere { color rgb(1, 2, max(3, $0"),
-        "max(number, ‹number›, …) → number"
-    );
-    assert_eq!(
-        label("sphere { color rgb(1, max(3, 4), $0 }"),
-        "rgb(red, green, ‹blue›) → colour"
-    );
-    assert_eq!(
-        label("let a = max(1, 2, 3, $0"),
-        "max(number, number, ‹…›) → number"
-    );
-    assert_eq!(label("let a = sin(1deg, $0"), "sin(angle) → number");
-    // What the cursor touches belongs to the call, be it a number, an angle or a colour.
-    let rgb = "rgb(‹red›, green, blue) → colour";
-    assert_eq!(label("let a = rgb(2$0"), rgb);
-    assert_eq!(label("let a = rgb(2$0)"), rgb);
-    assert_eq!(label("let a = rgb(2$03"), rgb);
-    assert_eq!(label("let a = rgb(#f$0"), rgb);
-    assert_eq!(
-        label("let a = rgb(255, 1$0"),
-        "rgb(red, ‹green›, blue) → colour"
-    );
-    assert_eq!(label("let a = atan2(1, 2$0)"), "atan2(y, ‹x›) → angle");
-    assert_eq!(label("let a = sin(30deg$0)"), "sin(‹angle›) → number");
-    assert_eq!(
-        label("let a = max(1,2,3$0)"),
-        "max(number, number, ‹…›) → number"
-    );
-    assert_eq!(
-        label("let a = max((1+2$0), 3)"),
-        "max(‹number›, number, …) → number"
-    );
-    assert_eq!(label("let a = sin(1deg)$0"), "");
-    assert_eq!(label("let a = sin(1deg /* $0 */)"), "");
-    assert_eq!(label("let a = 12$0"), "");
-    assert_eq!(label("let a = (1, $0"), "");
-    assert_eq!(label("let a = sin(1deg) $0"), "");
+    let table = "
+        let a = sin($0 -> sin(‹angle›) → number
+        let a = atan2(1, $0) -> atan2(y, ‹x›) → angle
+        sphere { color rgb(1, 2, max(3, $0 -> max(number, ‹number›, …) → number
+        sphere { color rgb(1, max(3, 4), $0 } -> rgb(red, green, ‹blue›) → colour
+        let a = max(1, 2, 3, $0 -> max(number, number, ‹…›) → number
+        let a = sin(1deg, $0 -> sin(angle) → number
+        -- What the cursor touches belongs to the call, be it a number, an angle or a colour.
+        let a = rgb(2$0 -> rgb(‹red›, green, blue) → colour
+        let a = rgb(2$0) -> rgb(‹red›, green, blue) → colour
+        let a = rgb(2$03 -> rgb(‹red›, green, blue) → colour
+        let a = rgb(#f$0 -> rgb(‹red›, green, blue) → colour
+        let a = rgb(255, 1$0 -> rgb(red, ‹green›, blue) → colour
+        let a = atan2(1, 2$0) -> atan2(y, ‹x›) → angle
+        let a = sin(30deg$0) -> sin(‹angle›) → number
+        let a = max(1,2,3$0) -> max(number, number, ‹…›) → number
+        let a = max((1+2$0), 3) -> max(‹number›, number, …) → number
+        let a = sin(1deg)$0 ->
+        let a = sin(1deg /* $0 */) ->
+        let a = 12$0 ->
+        let a = (1, $0 ->
+        let a = sin(1deg) $0 ->
+    ";
+    for [text, label] in rows(table) {
+        assert_eq!(called(text).unwrap_or_default(), label, "{text}");
+    }
 }
 
 #[test]

@@ -10,8 +10,10 @@ mod words;
 
 use pinhole::{
     editor::Analysis,
-    source::{Source, Sources, Span},
+    source::{Sources, Span},
 };
+
+use crate::scenes::sources;
 
 /// The text without `$0`, and where that was.
 fn cursor(text: &str) -> (Sources, usize) {
@@ -29,10 +31,6 @@ fn at_cursor<T>(text: &str, ask: impl FnOnce(&Analysis<'_>, usize) -> T) -> T {
 /// What is asked of a whole text.
 fn of_whole<T>(text: &str, ask: impl FnOnce(&Analysis<'_>) -> T) -> T {
     ask(&Analysis::new(&sources(text)))
-}
-
-fn sources(text: &str) -> Sources {
-    Sources::new(Source::from_text("test.scn", text))
 }
 
 /// The text under a span.

@@ -3,6 +3,7 @@
 use pinhole::editor::{definition, occurrences, renamable, rename};
 
 use super::at_cursor;
+use crate::table::rows;
 
 const SCENE: &str = "let ball = 1\nlet b = ball + ball\nsphere ball { radius ball }\n";
 
@@ -49,92 +50,40 @@ fn every_use_of_a_definition_is_found_from_everywhere() {
 }
 
 #[test]
-fn names_change_wherever_they_stand() {
-    assert_eq!(
-        renamed(
-            "let a = 1 let b = a + sin(a * 1deg) sphere a { radius a$0 }",
-            "size"
-        )
-        .as_deref(),
-        Ok("let size = 1 let b = size + sin(size * 1deg) sphere a { radius size }")
-    );
-    assert_eq!(
-        renamed("let Ball = 1 sphere $0Ball { radius Ball }", "Globe").as_deref(),
-        Ok("let Ball = 1 sphere Globe { radius Ball }")
-    );
-    // Fields and methods may have the name of a definition, and are none.
-    assert_eq!(
-        renamed(
-            "let rad$0ius = 2 let sobol = 1 sampler { method sobol } sphere { radius radius }",
-            "r"
-        )
-        .as_deref(),
-        Ok("let r = 2 let sobol = 1 sampler { method sobol } sphere { radius r }")
-    );
-    // A value before a block is no block's kind.
-    assert_eq!(
-        renamed(
-            "let $0box = 2\nlet c = box\nbox { center (c, 0, 0) }",
-            "crate"
-        )
-        .as_deref(),
-        Ok("let crate = 2\nlet c = crate\nbox { center (c, 0, 0) }")
-    );
-    assert_eq!(
-        renamed("let a = 1 let $0b = 2", "b").as_deref(),
-        Ok("let a = 1 let b = 2")
-    );
-}
-
-#[test]
-fn names_that_will_not_do_are_refused_with_the_reason() {
-    let refused = |text, new| renamed(text, new).expect_err("it will not do");
-    assert_eq!(
-        refused("let a = 1\nlet b = $0a", "b"),
-        "`b` is taken: it stands in line 2"
-    );
-    // Nothing defines it yet, and it would be another value from then on.
-    assert_eq!(
-        refused("let $0a = 1\nsphere { center (0, 0, 0) radius q }", "q"),
-        "`q` is taken: it stands in line 2"
-    );
-    assert_eq!(
-        refused("let $0a = 1", "Olive"),
-        "`Olive` is a colour of the language"
-    );
-    assert_eq!(
-        refused("let $0a = 1", "sin"),
-        "`sin` is a function of the language"
-    );
-    assert_eq!(
-        refused("let $0a = 1", "let"),
-        "`let` is a word of the language"
-    );
-    assert_eq!(
-        refused("let $0a = 1", "2x"),
-        "`2x` is no name: a name is made of the letters a to z, digits and `_`, and does not start with a digit"
-    );
-    assert_eq!(
-        refused("sphere $0A {}", "camera"),
-        "`camera` is the name of the camera block"
-    );
-    assert_eq!(
-        refused("sphere $0A {} box B {}", "B"),
-        "`B` is taken: it stands in line 1"
-    );
+fn names_change_wherever_they_stand_or_the_reason_is_told() {
+    let table = r"
+        let a = 1 let b = a + sin(a * 1deg) sphere a { radius a$0 } -> size -> let size = 1 let b = size + sin(size * 1deg) sphere a { radius size }
+        let Ball = 1 sphere $0Ball { radius Ball } -> Globe -> let Ball = 1 sphere Globe { radius Ball }
+        let a = 1 let $0b = 2 -> b -> let a = 1 let b = 2
+        -- Fields and methods may have the name of a definition, and are none.
+        let rad$0ius = 2 let sobol = 1 sampler { method sobol } sphere { radius radius } -> r -> let r = 2 let sobol = 1 sampler { method sobol } sphere { radius r }
+        -- A value before a block is no block's kind.
+        let $0box = 2\nlet c = box\nbox { center (c, 0, 0) } -> crate -> let crate = 2\nlet c = crate\nbox { center (c, 0, 0) }
+        let a = 1\nlet b = $0a -> b -> `b` is taken: it stands in line 2
+        -- Nothing defines it yet, and it would be another value from then on.
+        let $0a = 1\nsphere { center (0, 0, 0) radius q } -> q -> `q` is taken: it stands in line 2
+        sphere $0A {} box B {} -> B -> `B` is taken: it stands in line 1
+        let $0a = 1 -> Olive -> `Olive` is a colour of the language
+        let $0a = 1 -> sin -> `sin` is a function of the language
+        let $0a = 1 -> let -> `let` is a word of the language
+        let $0a = 1 -> 2x -> `2x` is no name: a name is made of the letters a to z, digits and `_`, and does not start with a digit
+        sphere $0A {} -> camera -> `camera` is the name of the camera block
+    ";
+    for [text, new, expected] in rows(table) {
+        let (Ok(found) | Err(found)) = renamed(text, new);
+        assert_eq!(found, expected, "{text}");
+    }
 }
 
 #[test]
 fn words_of_the_language_have_no_other_name() {
-    let refused = |text| at_cursor(text, renamable).expect_err("it cannot be changed");
-    assert_eq!(
-        refused("sphere { $0radius 1 }"),
-        "`radius` is a word of the language"
-    );
-    assert_eq!(
-        refused("sphere { color $0olive }"),
-        "`olive` is a colour of the language"
-    );
-    assert_eq!(refused("sphere { color $0sky }"), "`sky` is not defined");
-    assert_eq!(refused("sphere { radius $01 }"), "no name stands here");
+    let table = "
+        sphere { $0radius 1 } -> `radius` is a word of the language
+        sphere { color $0olive } -> `olive` is a colour of the language
+        sphere { color $0sky } -> `sky` is not defined
+        sphere { radius $01 } -> no name stands here
+    ";
+    for [text, reason] in rows(table) {
+        assert_eq!(at_cursor(text, renamable), Err(reason.to_owned()), "{text}");
+    }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
-    scenes::examples,
+    scenes::{examples, sources},
 };
 use pinhole::{
     color::Color,
@@ -13,7 +13,7 @@ use pinhole::{
         presentations, renamable, rename, semantic_tokens, signature, swatches, symbols,
     },
     format,
-    source::{Source, SourceId, Sources, Span},
+    source::{SourceId, Span},
 };
 
 /// Whether a span is one of whole characters.
@@ -92,42 +92,25 @@ fn ask_of_all(analysis: &Analysis<'_>) {
     }
 }
 
-sampled_and_exhaustive!(every_beginning_of_every_example_gets_its_answers);
+sampled_and_exhaustive!(every_example_gets_its_answers_while_it_is_written);
 
-fn every_beginning_of_every_example_gets_its_answers(effort: Effort) {
-    for text in effort.first(4, examples()) {
-        for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
-            let sources = Sources::new(Source::from_text("test.scn", &text[..at]));
-            let analysis = Analysis::new(&sources);
+/// Every beginning of it, asked at its end; the whole, asked at every place; and it with a piece cut out, as when a line is being rewritten.
+fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
+    for text in effort.first(5, examples()) {
+        let whole = sources(&text);
+        let whole = Analysis::new(&whole);
+        ask_of_all(&whole);
+        let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
+        for at in starts.iter().copied().chain([text.len()]) {
+            ask(&whole, at);
+            let beginning = sources(&text[..at]);
+            let analysis = Analysis::new(&beginning);
             ask(&analysis, at);
             ask_of_all(&analysis);
         }
-    }
-}
-
-sampled_and_exhaustive!(every_place_of_every_example_gets_its_answers);
-
-fn every_place_of_every_example_gets_its_answers(effort: Effort) {
-    for text in effort.first(6, examples()) {
-        let sources = Sources::new(Source::from_text("test.scn", text.as_str()));
-        let analysis = Analysis::new(&sources);
-        for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
-            ask(&analysis, at);
-        }
-        ask_of_all(&analysis);
-    }
-}
-
-sampled_and_exhaustive!(texts_with_a_hole_get_their_answers);
-
-/// Texts with a piece cut out, as when a line is being rewritten.
-fn texts_with_a_hole_get_their_answers(effort: Effort) {
-    for text in effort.first(6, examples()) {
-        let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
         for window in starts.windows(9).step_by(5) {
-            let cut = format!("{}{}", &text[..window[0]], &text[window[8]..]);
-            let sources = Sources::new(Source::from_text("test.scn", cut));
-            let analysis = Analysis::new(&sources);
+            let cut = sources(&format!("{}{}", &text[..window[0]], &text[window[8]..]));
+            let analysis = Analysis::new(&cut);
             ask(&analysis, window[0]);
             ask_of_all(&analysis);
         }
@@ -153,7 +136,7 @@ fn odd_texts_get_their_answers() {
         "let a = '(0, 1",
     ];
     for text in texts {
-        let sources = Sources::new(Source::from_text("test.scn", text));
+        let sources = sources(text);
         let analysis = Analysis::new(&sources);
         // A client may ask for any place, one within a character or behind the text too.
         for at in 0..text.len() + 3 {

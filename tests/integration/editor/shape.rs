@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use pinhole::{
     color::Color,
+    diagnostic::apply,
     editor::{
         Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, swatches,
         symbols,
@@ -12,6 +13,7 @@ use pinhole::{
 };
 
 use super::{at_cursor, of_whole, sources, under};
+use crate::table::{lines, list, rows};
 
 #[test]
 fn the_outline_has_definitions_blocks_and_fields() {
@@ -19,21 +21,16 @@ fn the_outline_has_definitions_blocks_and_fields() {
         "let a = 1\ncamera {\n  eye a\n}\nsphere Ball { center (0, 1, 0) radius 2 * a }\nbox {";
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
     of_whole(text, |analysis| {
-        let outline: Vec<String> = symbols(analysis)
-            .iter()
-            .flat_map(|symbol| {
-                assert!(
-                    symbol.span.start <= symbol.selection.start
-                        && symbol.selection.end <= symbol.span.end
-                );
-                std::iter::once(shown(symbol)).chain(
-                    symbol
-                        .children
-                        .iter()
-                        .map(|child| format!("  {}", shown(child))),
-                )
-            })
-            .collect();
+        let mut outline = Vec::new();
+        for symbol in symbols(analysis) {
+            outline.push(shown(&symbol));
+            outline.extend(
+                symbol
+                    .children
+                    .iter()
+                    .map(|child| format!("  {}", shown(child))),
+            );
+        }
         let expected = [
             "Definition a 1",
             "Setting camera ",
@@ -70,23 +67,15 @@ fn blocks_and_runs_of_comments_fold() {
 fn colors_are_found_wherever_they_are_written_out() {
     let text = "let olivey = Olive let c = rgb(1, 5, 4) image { background #fA0 } sampler { method tan } checkerboard { colors (c, #123456) } sphere { color olivey }";
     of_whole(text, |analysis| {
-        let found: Vec<(&str, String)> = swatches(analysis)
-            .into_iter()
-            .map(|s| (under(analysis, s.span), s.color.to_string()))
-            .collect();
+        let found = swatches(analysis).into_iter();
+        let found = found.map(|s| format!("{} {}", under(analysis, s.span), s.color));
         let expected = [
-            ("Olive", "#808000"),
-            ("rgb(1, 5, 4)", "#010504"),
-            ("#fA0", "#ffaa00"),
-            ("#123456", "#123456"),
+            "Olive #808000",
+            "rgb(1, 5, 4) #010504",
+            "#fA0 #ffaa00",
+            "#123456 #123456",
         ];
-        assert_eq!(
-            found
-                .iter()
-                .map(|(text, color)| (*text, color.as_str()))
-                .collect::<Vec<_>>(),
-            expected
-        );
+        assert!(found.eq(expected));
     })
 }
 
@@ -114,29 +103,21 @@ fn a_color_that_is_more_than_numbers_has_no_picker() {
 
 #[test]
 fn colors_are_written_back_in_their_spelling() {
-    let written = |text: &str, bytes: [u8; 3]| {
+    let table = "
+        olive -> 008080 -> teal | #008080 | rgb(0, 128, 128)
+        olive -> 010203 -> #010203 | rgb(1, 2, 3)
+        #fa0 -> 1122cc -> #1122cc | rgb(17, 34, 204)
+        #ffaa00 -> ffffff -> #ffffff | white | rgb(255, 255, 255)
+        rgb(1, 2, 3) -> ffa500 -> rgb(255, 165, 0) | orange | #ffa500
+    ";
+    for [text, other, expected] in rows(table) {
+        let [.., red, green, blue] = u32::from_str_radix(other, 16).unwrap().to_be_bytes();
         of_whole(&format!("let a = {text}"), |analysis| {
-            let swatch = swatches(analysis)[0];
-            presentations(analysis, swatch.span, Color::from_bytes(bytes)).join(" | ")
-        })
-    };
-    assert_eq!(
-        written("olive", [0, 128, 128]),
-        "teal | #008080 | rgb(0, 128, 128)"
-    );
-    assert_eq!(written("olive", [1, 2, 3]), "#010203 | rgb(1, 2, 3)");
-    assert_eq!(
-        written("#fa0", [0x11, 0x22, 0xcc]),
-        "#1122cc | rgb(17, 34, 204)"
-    );
-    assert_eq!(
-        written("#ffaa00", [255, 255, 255]),
-        "#ffffff | white | rgb(255, 255, 255)"
-    );
-    assert_eq!(
-        written("rgb(1, 2, 3)", [255, 165, 0]),
-        "rgb(255, 165, 0) | orange | #ffa500"
-    );
+            let span = swatches(analysis)[0].span;
+            let found = presentations(analysis, span, Color::from_bytes([red, green, blue]));
+            assert_eq!(found.join(" | "), expected, "{text}");
+        });
+    }
 }
 
 /// The text with its remarks in `‹›`.
@@ -152,47 +133,25 @@ fn remarked(text: &str) -> String {
 
 #[test]
 fn remarks_say_what_the_text_does_not() {
-    assert_eq!(
-        remarked("let a = 2 let b = a * 2 sphere { center (0, a + b, 0) radius -a color olive }"),
-        "let a = 2 let b = a * 2‹= 4› sphere { center (0, a + b, 0)‹= (0, 6, 0)› radius -a‹= -2› color olive }"
-    );
-    // The word of a method is no name of the text.
-    let sampler = "let random = 3 sampler { method random }";
-    assert_eq!(remarked(sampler), sampler);
-    let view = "eye (0, 1, 5) lookat (0, 1, 0)";
-    assert_eq!(
-        remarked(&format!("camera {{ {view} d 1 }}")),
-        format!("camera {{ {view} d 1‹fov 90deg› }}")
-    );
-    assert_eq!(
-        remarked(&format!("camera {{ {view} fov 2 * 45deg }}")),
-        format!("camera {{ {view} fov 2 * 45deg‹= 90deg, d 1› }}")
-    );
-    assert_eq!(
-        remarked("sampler { per_pixel 16 }"),
-        "sampler { per_pixel 16‹5_760_000 in all› }"
-    );
-    assert_eq!(
-        remarked("sampler { total 720_000 }"),
-        "sampler { total 720_000‹2 per pixel› }"
-    );
-    assert_eq!(
-        remarked("sampler { method exact per_pixel 16 }"),
-        "sampler { method exact per_pixel 16 }"
-    );
-    // Nothing is said of a value that another one stands against, or that the scene does not have.
-    for text in [
-        format!("camera {{ {view} d 2 fov 30deg }}"),
-        format!("camera {{ {view} d 2 d 3 }}"),
-        format!("camera {{ {view} }} camera {{ {view} d 7 }}"),
-        "sampler { total 100 per_pixel 3 }".to_owned(),
-    ] {
-        assert_eq!(remarked(&text), text);
+    for text in list("
+        let a = 2 let b = a * 2‹= 4› sphere { center (0, a + b, 0)‹= (0, 6, 0)› radius -a‹= -2› color olive }
+        let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)‹= #010203›
+        camera { eye (0, 1, 5) lookat (0, 1, 0) d 1‹fov 90deg› }
+        camera { eye (0, 1, 5) lookat (0, 1, 0) fov 2 * 45deg‹= 90deg, d 1› }
+        sampler { per_pixel 16‹5_760_000 in all› }
+        sampler { total 720_000‹2 per pixel› }
+        sampler { method exact per_pixel 16 }
+        -- The word of a method is no name of the text.
+        let random = 3 sampler { method random }
+        -- Nothing is said of a value that another one stands against, or that the scene does not have.
+        camera { eye (0, 1, 5) lookat (0, 1, 0) d 2 fov 30deg }
+        camera { eye (0, 1, 5) lookat (0, 1, 0) d 2 d 3 }
+        camera { eye (0, 1, 5) lookat (0, 1, 0) } camera { eye (0, 1, 5) lookat (0, 1, 0) d 7 }
+        sampler { total 100 per_pixel 3 }
+    ") {
+        let parts = text.split('‹').map(|part| part.split_once('›').map_or(part, |(_, rest)| rest));
+        assert_eq!(remarked(&parts.collect::<String>()), text);
     }
-    assert_eq!(
-        remarked("let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)"),
-        "let c = rgb(1, 2, 3) let d = rgb(1, 1 + 1, 3)‹= #010203›"
-    );
 }
 
 #[test]
@@ -216,31 +175,21 @@ fn the_layout_is_one_change_of_what_differs() {
 
 #[test]
 fn fixes_are_offered_where_the_problem_is() {
-    let offered = |text: &str| {
-        at_cursor(text, |analysis, at| {
+    for row in lines("
+        sphere { center (0, 1, 0) rad$0us 2 } -> unknown_field: sphere { center (0, 1, 0) radius 2 }
+        camera { eye (0, 0, 0) lookat (1, 0, 0) roll 3$00 } -> bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30deg } -> bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30rad }
+        sphere { $0center (0, 1, 0) radus 2 }
+    ") {
+        let found = at_cursor(row[0], |analysis, at| {
             let found = fixes(analysis, Span::new(SourceId::File, at, at));
             let shown = found.map(|(diagnostic, fix)| {
-                let mut text = analysis.text().to_owned();
-                for edit in fix.edits.iter().rev() {
-                    text.replace_range(edit.span.range(), &edit.text);
-                }
-                format!("{}: {text}", diagnostic.code)
+                let text = apply(fix, SourceId::File, analysis.text());
+                format!("{}: {text}", diagnostic.code.replace("pinhole::", ""))
             });
             shown.collect::<Vec<_>>()
-        })
-    };
-    assert_eq!(
-        offered("sphere { center (0, 1, 0) rad$0us 2 }"),
-        ["pinhole::unknown_field: sphere { center (0, 1, 0) radius 2 }"]
-    );
-    assert_eq!(
-        offered("camera { eye (0, 0, 0) lookat (1, 0, 0) roll 3$00 }"),
-        [
-            "pinhole::bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30deg }",
-            "pinhole::bare_angle: camera { eye (0, 0, 0) lookat (1, 0, 0) roll 30rad }",
-        ]
-    );
-    assert!(offered("sphere { $0center (0, 1, 0) radus 2 }").is_empty());
+        });
+        assert_eq!(found, row[1..], "{}", row[0]);
+    }
 }
 
 /// One walk takes some hundredths of a second; one for each term took half a minute.

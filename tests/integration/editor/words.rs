@@ -1,6 +1,6 @@
 //! What each word is, for colouring: by its place alone, and as the tree has it.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, fs};
 
 use pinhole::{
     editor::{SemanticKind, semantic_tokens},
@@ -13,6 +13,7 @@ use pinhole::{
 };
 
 use super::{of_whole, sources, under};
+use crate::{scenes::scenes, table::rows};
 
 /// The tokens, each with the first letters of what it is.
 fn shown(text: &str) -> String {
@@ -27,44 +28,22 @@ fn shown(text: &str) -> String {
 
 #[test]
 fn words_are_what_their_place_makes_them() {
-    assert_eq!(
-        shown("let a = sin(30deg) // b"),
-        "let:Keyword a:Variable! =:Operator sin:Function 30deg:Number // b:Comment"
-    );
-    assert_eq!(
-        shown("sphere Ball { center a color olive radius -2 * pi }"),
-        "sphere:Keyword Ball:Class center:Property a:Variable color:Property olive:EnumMember radius:Property -:Operator 2:Number *:Operator pi:EnumMember"
-    );
-    assert_eq!(
-        shown("sampler { method sobol } image { background #fff }"),
-        "sampler:Keyword method:Property sobol:EnumMember image:Keyword background:Property #fff:Number"
-    );
-}
-
-#[test]
-fn words_keep_their_colour_while_others_are_typed() {
-    assert_eq!(
-        shown("sphere { radius color olive }"),
-        "sphere:Keyword radius:Property color:Property olive:EnumMember"
-    );
-    assert_eq!(
-        shown("let a =\nsphere { radius 1 }"),
-        "let:Keyword a:Variable! =:Operator sphere:Keyword radius:Property 1:Number"
-    );
-    assert_eq!(
-        shown("sphere {\n  center (0, 1\n  radius 2\nbox Crate { size"),
-        "sphere:Keyword center:Property 0:Number 1:Number radius:Property 2:Number box:Keyword Crate:Class size:Property"
-    );
-}
-
-#[test]
-fn no_word_reaches_into_a_comment() {
-    assert_eq!(shown("\"//\"a"), "//\"a:Comment");
-    assert_eq!(shown("'/*\na"), "/*\na:Comment");
-    assert_eq!(
-        shown("let a = \"/**/\"//"),
-        "let:Keyword a:Variable! =:Operator /**/:Comment //:Comment"
-    );
+    let table = r#"
+        let a = sin(30deg) // b -> let:Keyword a:Variable! =:Operator sin:Function 30deg:Number // b:Comment
+        sphere Ball { center a color olive radius -2 * pi } -> sphere:Keyword Ball:Class center:Property a:Variable color:Property olive:EnumMember radius:Property -:Operator 2:Number *:Operator pi:EnumMember
+        sampler { method sobol } image { background #fff } -> sampler:Keyword method:Property sobol:EnumMember image:Keyword background:Property #fff:Number
+        -- While others are typed.
+        sphere { radius color olive } -> sphere:Keyword radius:Property color:Property olive:EnumMember
+        let a =\nsphere { radius 1 } -> let:Keyword a:Variable! =:Operator sphere:Keyword radius:Property 1:Number
+        sphere {\n  center (0, 1\n  radius 2\nbox Crate { size -> sphere:Keyword center:Property 0:Number 1:Number radius:Property 2:Number box:Keyword Crate:Class size:Property
+        -- No word reaches into a comment.
+        "//"a -> //"a:Comment
+        '/*\na -> /*\na:Comment
+        let a = "/**/"// -> let:Keyword a:Variable! =:Operator /**/:Comment //:Comment
+    "#;
+    for [text, expected] in rows(table) {
+        assert_eq!(shown(text), expected, "{text}");
+    }
 }
 
 /// What the tree says of each word of a text without mistakes of syntax.
@@ -129,37 +108,30 @@ fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, Semanti
 /// The words by their places agree with the tree wherever that is certain.
 #[test]
 fn places_and_trees_agree() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = 0;
-    for folder in ["examples", "tests/diagnostics", "tests/syntax/ok"] {
-        for entry in fs::read_dir(root.join(folder)).expect("the folder is there") {
-            let path = entry.expect("an entry").path();
-            let Ok(text) = fs::read_to_string(&path) else {
-                continue;
-            };
-            if path.extension().is_none_or(|ending| ending != "scn") {
-                continue;
+    let folders = ["examples", "tests/diagnostics", "tests/syntax/ok"];
+    for path in folders.into_iter().flat_map(scenes) {
+        let Some((text, words)) = fs::read_to_string(&path)
+            .ok()
+            .and_then(|text| Some((text.clone(), of_tree(&text)?)))
+        else {
+            continue;
+        };
+        files += 1;
+        of_whole(&text, |analysis| {
+            let tokens = semantic_tokens(analysis).into_iter();
+            let tokens: BTreeMap<Span, SemanticKind> =
+                tokens.map(|token| (token.span, token.kind)).collect();
+            for (span, kind) in words {
+                assert_eq!(
+                    tokens.get(&span),
+                    Some(&kind),
+                    "{} {:?}",
+                    path.display(),
+                    under(analysis, span)
+                );
             }
-            let Some(words) = of_tree(&text) else {
-                continue;
-            };
-            files += 1;
-            of_whole(&text, |analysis| {
-                let tokens = semantic_tokens(analysis).into_iter();
-                let tokens: BTreeMap<Span, SemanticKind> =
-                    tokens.map(|token| (token.span, token.kind)).collect();
-                for (span, kind) in words {
-                    let found = tokens.get(&span);
-                    assert_eq!(
-                        found,
-                        Some(&kind),
-                        "{} {:?}",
-                        path.display(),
-                        under(analysis, span)
-                    );
-                }
-            })
-        }
+        })
     }
     assert!(files > 40, "{files}");
 }

@@ -3,7 +3,6 @@
 mod board;
 mod bounds;
 mod diagonal;
-mod many;
 mod rational;
 mod shapes;
 mod twice;
@@ -15,22 +14,17 @@ use pinhole::{
     area::Area,
     color::Color,
     film,
-    render::{Control, Exact, Rendered, render, render_as_asked, render_exact},
+    render::{Control, Exact, Rendered, render_as_asked, render_exact},
     sampling::Sampling,
     scene::{self, Count, Lens, Method, Sampler, Scene, Shape, View},
-    source::{Source, Sources},
     tracer::World,
 };
 
-use crate::{scenes::scenes, tracer::Random};
-
-pub fn read(text: &str) -> Scene {
-    let sources = Sources::new(Source::from_text("a.scn", text));
-    let reading = scene::read(&sources);
-    reading
-        .scene
-        .unwrap_or_else(|| panic!("not a scene: {text}"))
-}
+pub use crate::scenes::read;
+use crate::{
+    scenes::{sampled, scenes},
+    tracer::Random,
+};
 
 pub fn example(name: &str, width: u32, height: u32) -> Scene {
     let path = format!("{}/examples/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -42,8 +36,9 @@ pub fn example(name: &str, width: u32, height: u32) -> Scene {
 /// The names of the examples.
 pub fn examples() -> Vec<String> {
     let paths = scenes("examples").into_iter();
-    let names = paths.map(|path| path.file_name().unwrap().to_str().unwrap().to_owned());
-    names.collect()
+    paths
+        .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
+        .collect()
 }
 
 fn exact(scene: &Scene) -> Exact {
@@ -64,71 +59,56 @@ fn part_by(scene: &Scene, area: Area, threads: Option<usize>) -> Exact {
 
 /// Up to a dozen spheres, triangles and boxes in each other's way, seen from among them, cut by near and far planes at times.
 pub fn random_scene(random: &mut Random, floor: bool) -> Scene {
-    let mut text = String::from("image { width 24 height 18 background #123 }\n");
-    let mut number = |low: f64, high: f64| (random.within(low, high) * 1000.0).round() / 1000.0;
-    let mut vector = |x: (f64, f64), y: (f64, f64), z: (f64, f64)| {
-        format!(
-            "({}, {}, {})",
-            number(x.0, x.1),
-            number(y.0, y.1),
-            number(z.0, z.1)
-        )
-    };
-    let eye = vector((-4.0, 4.0), (-2.0, 5.0), (2.0, 8.0));
-    let lookat = vector((-1.0, 1.0), (0.0, 1.0), (-1.0, 1.0));
+    fn number(random: &mut Random, low: f64, high: f64) -> f64 {
+        (random.within(low, high) * 1000.0).round() / 1000.0
+    }
+    fn vector(random: &mut Random, low: [f64; 3], high: [f64; 3]) -> String {
+        let [x, y, z] = [0, 1, 2].map(|axis| number(random, low[axis], high[axis]));
+        format!("({x}, {y}, {z})")
+    }
     let mut shapes = String::new();
-    let colors = ["red", "lime", "blue", "gold", "cyan", "white"];
-    let objects = 2 + random.bits() % 11;
-    for index in 0..objects {
-        let mut number = |low: f64, high: f64| (random.within(low, high) * 1000.0).round() / 1000.0;
-        let center = format!(
-            "({}, {}, {})",
-            number(-2.0, 2.0),
-            number(-1.0, 2.0),
-            number(-2.0, 2.0)
-        );
-        let color = colors[index as usize % colors.len()];
-        shapes += &match index % 4 {
+    let eye = vector(random, [-4.0, -2.0, 2.0], [4.0, 5.0, 8.0]);
+    let lookat = vector(random, [-1.0, 0.0, -1.0], [1.0; 3]);
+    for index in 0..2 + random.bits() % 11 {
+        let color = ["red", "lime", "blue", "gold", "cyan", "white"][index as usize % 6];
+        let center = vector(random, [-2.0, -1.0, -2.0], [2.0; 3]);
+        let shape = match index % 4 {
             0 | 1 => format!(
-                "sphere {{ center {center} radius {} color {color} }}\n",
-                number(0.1, 1.8)
+                "sphere {{ center {center} radius {}",
+                number(random, 0.1, 1.8)
             ),
-            2 => format!(
-                "triangle {{ centroid {center} normal ({}, {}, {}) sides ({}, {}, {}) spin {}deg color {color} }}\n",
-                number(-1.0, 1.0),
-                number(-1.0, 1.0),
-                number(-1.0, 1.0),
-                number(1.5, 2.5),
-                number(1.5, 2.5),
-                number(1.5, 2.5),
-                number(0.0, 360.0)
-            ),
+            2 => {
+                let normal = vector(random, [-1.0; 3], [1.0; 3]);
+                let sides = vector(random, [1.5; 3], [2.5; 3]);
+                let spin = number(random, 0.0, 360.0);
+                format!(
+                    "triangle {{ centroid {center} normal {normal} sides {sides} spin {spin}deg"
+                )
+            }
             _ => format!(
-                "box {{ center {center} size ({}, {}, {}) color {color} }}\n",
-                number(0.2, 2.0),
-                number(0.2, 2.0),
-                number(0.2, 2.0)
+                "box {{ center {center} size {}",
+                vector(random, [0.2; 3], [2.0; 3])
             ),
         };
+        shapes += &format!("{shape} color {color} }}\n");
     }
-    let mut number = |low: f64, high: f64| (random.within(low, high) * 1000.0).round() / 1000.0;
-    let (roll, fov) = (number(-180.0, 180.0), number(20.0, 140.0));
-    text += &format!("camera {{ eye {eye} lookat {lookat} roll {roll}deg fov {fov}deg");
-    if number(0.0, 1.0) < 0.4 {
-        text += &format!(" near {}", number(0.5, 4.0));
+    let (roll, fov) = (number(random, -180.0, 180.0), number(random, 20.0, 140.0));
+    let mut clip = String::new();
+    if number(random, 0.0, 1.0) < 0.4 {
+        clip += &format!(" near {}", number(random, 0.5, 4.0));
     }
-    if number(0.0, 1.0) < 0.3 {
-        text += &format!(" far {}", number(4.5, 12.0));
+    if number(random, 0.0, 1.0) < 0.3 {
+        clip += &format!(" far {}", number(random, 4.5, 12.0));
     }
-    text += " }\n";
     if floor {
-        text += &format!(
-            "checkerboard {{ y {} square {} }}\n",
-            number(-1.0, 0.5),
-            number(0.2, 1.5)
-        );
+        let (y, square) = (number(random, -1.0, 0.5), number(random, 0.2, 1.5));
+        shapes = format!("checkerboard {{ y {y} square {square} }}\n{shapes}");
     }
-    read(&(text + &shapes))
+    read(&format!(
+        "image {{ width 24 height 18 background #123 }}
+         camera {{ eye {eye} lookat {lookat} roll {roll}deg fov {fov}deg{clip} }}
+         {shapes}"
+    ))
 }
 
 /// What two pixels may differ by: their bounds, and the roundings of sums of colours.
@@ -145,30 +125,31 @@ fn adds_up(scene: &Scene, name: &str) {
 /// The same for a part of the picture, which is returned.
 fn part_adds_up(scene: &Scene, area: Area, name: &str) -> Exact {
     let mut fine = scene.clone();
-    fine.image.width *= 2;
-    fine.image.height *= 2;
+    (fine.image.width, fine.image.height) = (2 * fine.image.width, 2 * fine.image.height);
+    let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(|size| 2 * size);
     let twice = Area {
-        x: 2 * area.x,
-        y: 2 * area.y,
-        width: 2 * area.width,
-        height: 2 * area.height,
+        x,
+        y,
+        width,
+        height,
     };
     let (coarse, fine) = (part(scene, area), part(&fine, twice));
+    let pixel = |picture: &Exact, x, y| {
+        let bound = picture.bounds[(y * picture.film.width() + x) as usize];
+        (picture.film.pixel(x, y), bound)
+    };
     for (x, y) in Area::whole(area.width, area.height).iter() {
-        let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| (2 * x + i, 2 * y + j));
-        let bound = |picture: &Exact, (x, y): (u32, u32)| {
-            picture.bounds[(y * picture.film.width() + x) as usize]
-        };
-        let whole = bound(&coarse, (x, y));
-        let bounds = quarters.map(|at| 0.25 * bound(&fine, at));
-        let limit = allowed(&[whole]) + allowed(&bounds);
+        let (whole, bound) = pixel(&coarse, x, y);
+        let quarters =
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| pixel(&fine, 2 * x + i, 2 * y + j));
+        let limit = allowed(&[bound]) + allowed(&quarters.map(|(_, bound)| 0.25 * bound));
         for channel in 0..3 {
             let mean = quarters
-                .map(|(x, y)| fine.film.pixel(x, y)[channel])
+                .map(|(light, _)| light[channel])
                 .iter()
                 .sum::<f64>()
                 / 4.0;
-            let difference = (mean - coarse.film.pixel(x, y)[channel]).abs();
+            let difference = (mean - whole[channel]).abs();
             assert!(
                 difference <= limit,
                 "{name} at {x}, {y}: {difference:e} of {limit:e}"
@@ -176,6 +157,14 @@ fn part_adds_up(scene: &Scene, area: Area, name: &str) -> Exact {
         }
     }
     coarse
+}
+
+/// Every pixel of a picture is known to a thousand-millionth.
+#[track_caller]
+fn is_known(text: &str) {
+    let scene = read(text);
+    let bound = exact(&scene).bound();
+    assert!(bound <= 1e-9, "{bound:e}\n{text}");
 }
 
 /// Compares a picture with one of so many random samples a pixel.
@@ -187,9 +176,7 @@ fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64, name: &str
         seed: 5,
     };
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let control = Control::default();
-    let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
-    let sampled = render(&World::new(&scene), &sampling, whole, &control).unwrap();
+    let sampled = sampled(&scene, whole);
     // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By Bernstein's inequality no more than one of 10¹⁰ sums of
     // independent ones is farther off than this.
     let log = libm::log(2e10);

@@ -121,81 +121,19 @@ fn rational_arithmetic_agrees() {
         array::from_fn(|i| &aslant[0][i] * &a + &aslant[1][i] * &b)
     };
     let rolled = [mixed(3, 4), mixed(-4, 3), back];
-    let far_down = [
-        (3, 25),
-        (33, 25),
-        (63, 26),
-        (40, 28),
-        (31, 30),
-        (20, 40),
-        (0, 47),
-    ];
-    let anywhere = [
-        (32, 24),
-        (3, 40),
-        (60, 20),
-        (31, 47),
-        (63, 47),
-        (20, 18),
-        (40, 30),
-    ];
-    for (axes, direction, up, [ex, h, ez], d, pixels) in [
-        (
-            &level,
-            "(0, 0, -1)",
-            "(0, 1, 0)",
-            [0.3, 1.75, 0.6],
-            1.5,
-            &far_down,
-        ),
-        (
-            &level,
-            "(0, 0, -1)",
-            "(0, 1, 0)",
-            [-7.1, 0.2, 1e6 + 0.1],
-            2.0,
-            &far_down,
-        ),
-        (
-            &level,
-            "(0, 0, -1)",
-            "(0, 1, 0)",
-            [0.0, 30.0, 0.0],
-            1.0,
-            &far_down,
-        ),
-        (
-            &aslant,
-            "(48, -25, -36)",
-            "(0, 1, 0)",
-            [0.3, 1.75, 0.6],
-            3.0,
-            &anywhere,
-        ),
-        (
-            &aslant,
-            "(48, -25, -36)",
-            "(0, 1, 0)",
-            [1e6 + 0.1, 9.3, -0.7],
-            4.0,
-            &anywhere,
-        ),
-        (
-            &rolled,
-            "(48, -25, -36)",
-            "(-96, 180, -253)",
-            [0.3, 1.75, 0.6],
-            3.0,
-            &anywhere,
-        ),
-        (
-            &rolled,
-            "(48, -25, -36)",
-            "(-96, 180, -253)",
-            [-3.3, 11.0, 1e5],
-            5.0,
-            &anywhere,
-        ),
+    let far_down = "3,25 33,25 63,26 40,28 31,30 20,40 0,47";
+    let anywhere = "32,24 3,40 60,20 31,47 63,47 20,18 40,30";
+    let ahead = ("(0, 0, -1)", "(0, 1, 0)");
+    let down = ("(48, -25, -36)", "(0, 1, 0)");
+    let turned = ("(48, -25, -36)", "(-96, 180, -253)");
+    for (axes, (direction, up), [ex, h, ez], d, pixels) in [
+        (&level, ahead, [0.3, 1.75, 0.6], 1.5, far_down),
+        (&level, ahead, [-7.1, 0.2, 1e6 + 0.1], 2.0, far_down),
+        (&level, ahead, [0.0, 30.0, 0.0], 1.0, far_down),
+        (&aslant, down, [0.3, 1.75, 0.6], 3.0, anywhere),
+        (&aslant, down, [1e6 + 0.1, 9.3, -0.7], 4.0, anywhere),
+        (&rolled, turned, [0.3, 1.75, 0.6], 3.0, anywhere),
+        (&rolled, turned, [-3.3, 11.0, 1e5], 5.0, anywhere),
     ] {
         let scene = read(&format!(
             "image {{ width {width} height {height} }} camera {{ eye ({ex}, {h}, {ez}) direction {direction} up {up} d {d} }} \
@@ -210,7 +148,9 @@ fn rational_arithmetic_agrees() {
         // view_height is 2, and rows are counted from the top.
         let pitch = RBig::from(2) / RBig::from(height);
         let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
-        for &(x, y) in pixels {
+        for pixel in pixels.split(' ') {
+            let (x, y) = pixel.split_once(',').unwrap();
+            let [x, y]: [u32; 2] = [x, y].map(|at| at.parse().unwrap());
             let corner = |right: u32, down: u32| {
                 [
                     (RBig::from(x + right) - &left) * &pitch,

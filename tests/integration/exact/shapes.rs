@@ -1,6 +1,7 @@
 //! Pixels against closed forms, and pictures against samples.
 
 use super::*;
+use crate::table::rows;
 
 /// A picture of one pixel: how much of it an object in white covers.
 fn share(camera: &str, object: &str) -> (f64, f64) {
@@ -101,38 +102,16 @@ fn samples_agree_within_their_statistical_error() {
 #[test]
 fn lines_that_are_vertical_but_for_roundings() {
     // The camera looks at an edge of the box, which is the middle column's side, and a sphere's outline crosses it.
-    for (camera, objects) in [
-        (
-            "eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3",
-            "sphere { center (-1, 2, -1.5) radius 1.5 color white }
-             box { min (1, -2, -1) max (2, -1.5, 0) color white }",
-        ),
-        (
-            "eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1",
-            "box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white }
-             sphere { center (-1, 1, 1) radius 1.5 color black }",
-        ),
-    ] {
-        let at = |width: u32, height: u32| {
-            let scene = read(&format!(
-                "image {{ width {width} height {height} }} camera {{ {camera} }} {objects}"
-            ));
-            exact(&scene)
-        };
+    for [camera, objects] in rows("
+        eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }
+        eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1 -> box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white } sphere { center (-1, 1, 1) radius 1.5 color black }
+    ") {
         // An odd number of columns has that line in the middle of pixels.
         for (width, height) in [(4, 3), (12, 9), (64, 36), (13, 7)] {
-            let (whole, parts) = (at(width, height), at(2 * width, 2 * height));
-            let bound = whole.bound() + parts.bound();
-            assert!(bound <= 2e-12, "{width} x {height}, {camera}: {bound:e}");
-            for (x, y) in Area::whole(width, height).iter() {
-                let quarter = |i: u32, j: u32| parts.film.pixel(2 * x + i, 2 * y + j)[0];
-                let mean = 0.25 * (quarter(0, 0) + quarter(1, 0) + quarter(0, 1) + quarter(1, 1));
-                let difference = (whole.film.pixel(x, y)[0] - mean).abs();
-                assert!(
-                    difference <= bound + 4.0 * f64::EPSILON,
-                    "{x}, {y} of {width} x {height}, {camera}: {difference:e}"
-                );
-            }
+            let text = format!("image {{ width {width} height {height} }} camera {{ {camera} }} {objects}");
+            let whole = Area::whole(width, height);
+            let bound = part_adds_up(&read(&text), whole, &text).bound();
+            assert!(bound <= 1e-12, "{text}: {bound:e}");
         }
     }
 }

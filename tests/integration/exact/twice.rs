@@ -8,16 +8,70 @@ fn four_quarters_are_the_pixel() {
     for name in examples() {
         adds_up(&example(&name, 48, 32), &name);
     }
+    // Scenes whose objects pierce each other.
+    let mut random = Random::new(7);
+    for round in 0..24 {
+        let scene = random_scene(&mut random, round % 2 == 0);
+        adds_up(&scene, &format!("round {round}"));
+    }
+}
+
+/// Tilted triangles in rows, in one pixel: their planes cross each other all over it, but no two of them lie above each other.
+fn side_by_side(random: &mut Random, rows: u32) -> String {
+    let mut text = String::from(
+        "image { width 1 height 1 background black }\ncamera { eye (0, 0, 20) lookat (0, 0, 0) d 20 }\n",
+    );
+    let step = 2.0 / f64::from(rows);
+    for (x, y) in Area::whole(rows, rows).iter() {
+        let [x, y] = [x, y].map(|at| (f64::from(at) + 0.5) * step - 1.0);
+        let [tilt, turn] = [0.3, 0.3].map(|most| random.within(-most, most));
+        let side = 0.6 * step;
+        writeln!(
+            text,
+            "triangle {{ centroid ({x}, {y}, 0) normal ({tilt}, {turn}, 1) sides ({side}, {side}, {side}) }}"
+        )
+        .unwrap();
+    }
+    text
 }
 
 #[test]
-fn four_quarters_are_the_pixel_of_scenes_that_pierce_themselves() {
-    let mut random = Random::new(7);
-    for round in 0..24 {
-        adds_up(
-            &random_scene(&mut random, round % 2 == 0),
-            &format!("round {round}"),
+fn objects_side_by_side_add_up() {
+    let mut random = Random::new(71);
+    for rows in [3, 5, 8] {
+        let scene = read(&side_by_side(&mut random, rows));
+        adds_up(&scene, &format!("{rows} rows of triangles"));
+    }
+}
+
+/// Planks that pierce each other along lines that end where the one or the other does.
+#[test]
+fn objects_that_pierce_each_other_in_part_add_up() {
+    let mut random = Random::new(72);
+    for which in 0..20 {
+        let mut text = String::from(
+            "image { width 2 height 2 background black }\ncamera { eye (0.3, 0.2, 20) lookat (0, 0, 0) d 20 }\n",
         );
+        for color in ["red", "lime", "blue", "gold", "cyan", "white"] {
+            let mut number = |most: f64| random.within(-most, most);
+            let center = [number(0.7), number(0.7), number(0.3)];
+            let half = [0.3 + number(0.25), 0.3 + number(0.25), 0.3 + number(0.25)];
+            let corner = |sign: f64| [0, 1, 2].map(|i| center[i] + sign * half[i]);
+            let ([x0, y0, z0], [x1, y1, z1]) = (corner(-1.0), corner(1.0));
+            writeln!(
+                text,
+                "box {{ min ({x0}, {y0}, {z0}) max ({x1}, {y1}, {z1}) color {color} }}"
+            )
+            .unwrap();
+            let [x, y, z] = [number(0.6), number(0.6), number(0.2)];
+            let [a, b] = [number(2.0), number(2.0)];
+            writeln!(
+                text,
+                "triangle {{ centroid ({x}, {y}, {z}) normal ({a}, {b}, 1) sides (1.6, 1.5, 0.4) color {color} }}"
+            )
+            .unwrap();
+        }
+        adds_up(&read(&text), &format!("planks {which}"));
     }
 }
 
@@ -31,13 +85,10 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
         scene
     };
     let wide = |d: f64| with(&|scene| scene.camera.lens = Lens::Distance(d));
-    let along = |d: f64| {
-        with(&|scene| {
-            scene.camera.view = View::Direction(dvec3(0.0, 0.0, -1.0));
-            scene.camera.lens = Lens::Distance(d);
-        })
-    };
     let height = |y: f64| with(&|scene| scene.camera.eye.y = y);
+    let sized = |width: u32, height: u32| {
+        with(&|scene| (scene.image.width, scene.image.height) = (width, height))
+    };
     let squares = |side: f64| {
         with(&|scene| {
             for object in &mut scene.objects {
@@ -47,29 +98,19 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
             }
         })
     };
-    let sized = |width: u32, height: u32| {
-        with(&|scene| (scene.image.width, scene.image.height) = (width, height))
-    };
-    let table = [
-        ("wide", wide(0.1)),
-        ("very wide", wide(0.02)),
-        ("much too wide", wide(1e-3)),
-        ("wider", wide(1e-5)),
-        ("along an axis as wide as can be", along(1e-12)),
-        ("narrow", wide(1e5)),
-        ("tiny squares", squares(1e-3)),
-        ("squares of a micrometre", squares(1e-6)),
-        ("squares of nothing", squares(1e-100)),
-        ("huge squares", squares(1e6)),
-        ("squares beyond everything", squares(1e300)),
-        ("an ant's eye", height(1e-6)),
-        ("a satellite's eye", height(1e8)),
-        ("a pixel", sized(1, 1)),
-        ("a row", sized(60, 1)),
-        ("a column", sized(1, 60)),
-    ];
-    for (name, scene) in effort.first(3, table) {
-        adds_up(&scene, name);
+    let mut along_an_axis = wide(1e-12);
+    along_an_axis.camera.view = View::Direction(dvec3(0.0, 0.0, -1.0));
+    let lenses = [0.1, 0.02, 1e-3, 1e-5, 1e5].map(wide).into_iter();
+    let boards = [1e-3, 1e-6, 1e-100, 1e6, 1e300].map(squares);
+    let eyes = [1e-6, 1e8].map(height);
+    let sizes = [(1, 1), (60, 1), (1, 60)].map(|(width, height)| sized(width, height));
+    let table = lenses
+        .chain(boards)
+        .chain(eyes)
+        .chain(sizes)
+        .chain([along_an_axis]);
+    for scene in effort.first(3, table) {
+        adds_up(&scene, &format!("{:?} of {:?}", scene.camera, scene.image));
     }
 }
 
@@ -78,33 +119,27 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
 fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
     let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";
     let board = "checkerboard { square 1e-4 colors (white, black) }";
-    let view = |eye: &str, rest: &str, size: u32, below: &str| {
+    let view = |eye: &str, size: u32, below: &str| {
         read(&format!(
             "image {{ width {size} height {size} background blue }}
-             camera {{ eye {eye} {rest} }}
+             camera {{ eye {eye} direction (0, 0, -1) roll 45deg d 1 view_height 0.3333333333333333 }}
              sphere {{ center (0, 0, 0) radius 1 color red }}
              {below}"
         ))
     };
-    let level = "direction (0, 0, -1) roll 45deg d 1 view_height 0.3333333333333333";
     let mut random = Random::new(9);
     for exponent in 6..28 {
         let height = libm::ldexp(random.within(1.0, 2.0), -2 * exponent);
         let eye = format!("({}, {height:e}, 3)", random.within(-0.5, 0.5));
         for below in [face, board] {
-            let scene = view(&eye, level, 2, below);
+            let scene = view(&eye, 2, below);
             let bound = exact(&scene).bound();
             assert!(bound <= 1e-9, "{eye}: {bound:e}");
             adds_up(&scene, &eye);
         }
     }
     // By an integral along x of 50 digits, split where the outline meets the pixel's sides.
-    let scene = view(
-        "(0.26249413893393775, 3.1572076715858895e-08, 3)",
-        level,
-        1,
-        face,
-    );
+    let scene = view("(0.26249413893393775, 3.1572076715858895e-08, 3)", 1, face);
     let found = exact(&scene);
     let off = (found.film.pixel(0, 0)[0] - 0.500_000_064_227_617_3).abs();
     assert!(off <= found.bound() && found.bound() < 1e-9, "{off:e}");

@@ -3,6 +3,7 @@
 use pinhole::{diagnostic::apply, scene, source::SourceId};
 
 use super::{diagnostics, sources};
+use crate::table::rows;
 
 /// Checks that a text has one error, and that its first fix makes of the text what is expected, in which nothing is wrong.
 fn becomes(wrong: &str, right: &str) {
@@ -36,84 +37,40 @@ fn becomes(wrong: &str, right: &str) {
 
 #[test]
 fn fields_by_their_meaning() {
-    for (wrong, right) in [
-        (
-            "sphere { location (0, 0, 0) }",
-            "sphere { center (0, 0, 0) }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  diameter 2 }",
-            "sphere { center (0, 0, 0)  radius 1 }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  radius2 }",
-            "sphere { center (0, 0, 0)  radius 2 }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  colorred }",
-            "sphere { center (0, 0, 0)  color red }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  color ff0000 }",
-            "sphere { center (0, 0, 0)  color #ff0000 }",
-        ),
-        ("image { backgroundblack }", "image { background black }"),
-        (
-            "triangle { center (0, 1, 0)  normal (0, 0, 1) }",
-            "triangle { centroid (0, 1, 0)  normal (0, 0, 1) }",
-        ),
-        (
-            "triangle { vertices ((0, 0, 0), (1, 0, 0), (0, 1, 0)) }",
-            "triangle { v0 (0, 0, 0)  v1 (1, 0, 0)  v2 (0, 1, 0) }",
-        ),
-        (
-            "image { resolution (640, 480) }",
-            "image { width 640  height 480 }",
-        ),
-        (
-            "sampler { total_samples 1_000_000 }",
-            "sampler { total 1_000_000 }",
-        ),
-        ("sampler { jittered }", "sampler { method jittered }"),
-        (
-            "camera { location (0, 0, 9)  lookat (0, 0, 0) }",
-            "camera { eye (0, 0, 9)  lookat (0, 0, 0) }",
-        ),
-        (
-            "camera { look_from (0, 0, 9)  lookat (0, 0, 0) }",
-            "camera { eye (0, 0, 9)  lookat (0, 0, 0) }",
-        ),
-        (
-            "camera { eyepoint (0, 0, 9)  lookat (0, 0, 0) }",
-            "camera { eye (0, 0, 9)  lookat (0, 0, 0) }",
-        ),
-        (
-            "camera { position (0, 0, 9)  lookat (0, 0, 0) }",
-            "camera { eye (0, 0, 9)  lookat (0, 0, 0) }",
-        ),
-        (
-            "camera { eye (0, 0, 9)  look_at (0, 0, 0) }",
-            "camera { eye (0, 0, 9)  lookat (0, 0, 0) }",
-        ),
-        (
-            "camera { eye (0, 0, 9)  view_direction (0, 0, -1) }",
-            "camera { eye (0, 0, 9)  direction (0, 0, -1) }",
-        ),
-    ] {
+    for [wrong, right] in rows("
+        sphere { location (0, 0, 0) } -> sphere { center (0, 0, 0) }
+        sphere { center (0, 0, 0)  diameter 2 } -> sphere { center (0, 0, 0)  radius 1 }
+        sphere { center (0, 0, 0)  radius2 } -> sphere { center (0, 0, 0)  radius 2 }
+        sphere { center (0, 0, 0)  colorred } -> sphere { center (0, 0, 0)  color red }
+        sphere { center (0, 0, 0)  color ff0000 } -> sphere { center (0, 0, 0)  color #ff0000 }
+        image { backgroundblack } -> image { background black }
+        triangle { center (0, 1, 0)  normal (0, 0, 1) } -> triangle { centroid (0, 1, 0)  normal (0, 0, 1) }
+        triangle { vertices ((0, 0, 0), (1, 0, 0), (0, 1, 0)) } -> triangle { v0 (0, 0, 0)  v1 (1, 0, 0)  v2 (0, 1, 0) }
+        image { resolution (640, 480) } -> image { width 640  height 480 }
+        sampler { total_samples 1_000_000 } -> sampler { total 1_000_000 }
+        sampler { jittered } -> sampler { method jittered }
+        camera { location (0, 0, 9)  lookat (0, 0, 0) } -> camera { eye (0, 0, 9)  lookat (0, 0, 0) }
+        camera { look_from (0, 0, 9)  lookat (0, 0, 0) } -> camera { eye (0, 0, 9)  lookat (0, 0, 0) }
+        camera { eyepoint (0, 0, 9)  lookat (0, 0, 0) } -> camera { eye (0, 0, 9)  lookat (0, 0, 0) }
+        camera { position (0, 0, 9)  lookat (0, 0, 0) } -> camera { eye (0, 0, 9)  lookat (0, 0, 0) }
+        camera { eye (0, 0, 9)  look_at (0, 0, 0) } -> camera { eye (0, 0, 9)  lookat (0, 0, 0) }
+        camera { eye (0, 0, 9)  view_direction (0, 0, -1) } -> camera { eye (0, 0, 9)  direction (0, 0, -1) }
+    ") {
         becomes(wrong, right);
     }
-    for (wrong, right) in [
-        ("view_distance 3", "d 3"),
-        ("view_plane_distance 2", "d 2"),
-        ("near_clip 1", "near 1"),
-        ("nearClip 1", "near 1"),
-        ("fov_axis 40deg", "fov 40deg"),
-        ("angle 90deg", "hfov 90deg"),
-        ("angle 90", "hfov 90deg"),
-        ("fov 40", "fov 40deg"),
-        ("fov 40deg  hfov 60deg", "fov 40deg"),
-        ("roll pi / 2", "roll pi / 2 * 1rad"),
-    ] {
+    let table = "
+        view_distance 3 -> d 3
+        view_plane_distance 2 -> d 2
+        near_clip 1 -> near 1
+        nearClip 1 -> near 1
+        fov_axis 40deg -> fov 40deg
+        angle 90deg -> hfov 90deg
+        angle 90 -> hfov 90deg
+        fov 40 -> fov 40deg
+        fov 40deg  hfov 60deg -> fov 40deg
+        roll pi / 2 -> roll pi / 2 * 1rad
+    ";
+    for [wrong, right] in rows(table) {
         let camera = |field: &str| format!("camera {{ eye (0, 0, 9)  lookat (0, 0, 0)  {field} }}");
         becomes(&camera(wrong), &camera(right));
     }
@@ -121,57 +78,22 @@ fn fields_by_their_meaning() {
 
 #[test]
 fn values_in_other_ways() {
-    for (wrong, right) in [
-        (
-            "sampler { method stratified }",
-            "sampler { method jittered }",
-        ),
-        ("sampler { method grid }", "sampler { method regular }"),
-        (
-            "sampler { method latin_hypercube }",
-            "sampler { method n_rooks }",
-        ),
-        (
-            "sampler { method monte_carlo }",
-            "sampler { method random }",
-        ),
-        (
-            "checkerboard { square (1, 1) }",
-            "checkerboard { square 1 }",
-        ),
-        (
-            "triangle { centroid (0, 0, 0)  normal (0, 0, 1)  sides (3, 4) }",
-            "triangle { centroid (0, 0, 0)  normal (0, 0, 1)  sides (3, 4, 4) }",
-        ),
-        (
-            "box { min (-15, 0, -15)  max (15, -1, 15) }",
-            "box { min (-15, -1, -15)  max (15, 0, 15) }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  color (0.5, 0.5, 0) }",
-            "sphere { center (0, 0, 0)  color rgb(128, 128, 0) }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  color (128, 128, 0) }",
-            "sphere { center (0, 0, 0)  color rgb(128, 128, 0) }",
-        ),
-        (
-            "sphere { center (0, 0, 0)  color (255, 0, 0, 1) }",
-            "sphere { center (0, 0, 0)  color rgb(255, 0, 0) }",
-        ),
-        (
-            "sphere { center (0, 0,5, 8) }",
-            "sphere { center (0, 0.5, 8) }",
-        ),
-        (
-            "let a = cos(pi/4)\ncheckerboard {}",
-            "let a = cos(pi/4 * 1rad)\ncheckerboard {}",
-        ),
-        (
-            "let b = (0, 1, 0)\nsphere { center b + 1 }",
-            "let b = (0, 1, 0)\nsphere { center b + (1, 1, 1) }",
-        ),
-    ] {
+    let table = r"
+        sampler { method stratified } -> sampler { method jittered }
+        sampler { method grid } -> sampler { method regular }
+        sampler { method latin_hypercube } -> sampler { method n_rooks }
+        sampler { method monte_carlo } -> sampler { method random }
+        checkerboard { square (1, 1) } -> checkerboard { square 1 }
+        triangle { centroid (0, 0, 0)  normal (0, 0, 1)  sides (3, 4) } -> triangle { centroid (0, 0, 0)  normal (0, 0, 1)  sides (3, 4, 4) }
+        box { min (-15, 0, -15)  max (15, -1, 15) } -> box { min (-15, -1, -15)  max (15, 0, 15) }
+        sphere { center (0, 0, 0)  color (0.5, 0.5, 0) } -> sphere { center (0, 0, 0)  color rgb(128, 128, 0) }
+        sphere { center (0, 0, 0)  color (128, 128, 0) } -> sphere { center (0, 0, 0)  color rgb(128, 128, 0) }
+        sphere { center (0, 0, 0)  color (255, 0, 0, 1) } -> sphere { center (0, 0, 0)  color rgb(255, 0, 0) }
+        sphere { center (0, 0,5, 8) } -> sphere { center (0, 0.5, 8) }
+        let a = cos(pi/4)\ncheckerboard {} -> let a = cos(pi/4 * 1rad)\ncheckerboard {}
+        let b = (0, 1, 0)\nsphere { center b + 1 } -> let b = (0, 1, 0)\nsphere { center b + (1, 1, 1) }
+    ";
+    for [wrong, right] in rows(table) {
         becomes(wrong, right);
     }
 }

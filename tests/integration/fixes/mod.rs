@@ -1,14 +1,10 @@
 //! What diagnostics offer to do: over every fixture of `tests/diagnostics`, each fix does away with its problem and makes no
 //! new error.
 
-mod fields;
 mod meaning;
 mod mistyped;
-mod names;
-mod removal;
+mod offers;
 mod slips;
-mod syntax;
-mod values;
 
 use std::{collections::BTreeMap, fs};
 
@@ -143,15 +139,6 @@ fn offered(text: &str) -> Vec<(String, String)> {
             (fix.title, text)
         })
         .collect()
-}
-
-fn offers(text: &str, expected: &[(&str, &str)]) {
-    let offered = offered(text);
-    let offered: Vec<_> = offered
-        .iter()
-        .map(|(title, text)| (title.as_str(), text.as_str()))
-        .collect();
-    assert_eq!(offered, expected);
 }
 
 /// Behind some text stands what makes a scene of it.

@@ -7,221 +7,77 @@ use pinhole::{
 };
 
 use super::{diagnostics, of_scene, sources, type_in_fixes};
-use crate::scenes::examples;
+use crate::{scenes::examples, table::rows};
 
 /// Beside the rows stand a camera and a board. Where no text is given, nothing is offered.
-const ROWS: &[(&str, &str, &str)] = &[
-    // Numbers and units.
-    (
-        "sphere { center (0, 1, 0)  radius 10cm }",
-        "bad_number",
-        "sphere { center (0, 1, 0)  radius 0.1 }",
-    ),
-    ("let a = 5mm", "bad_number", "let a = 0.005"),
-    ("let a = 1km", "bad_number", "let a = 1000"),
-    ("let a = 3ft", "bad_number", "let a = 0.9144"),
-    ("let a = 2 in", "bad_number", "let a = 0.0508"),
-    (
-        "triangle { centroid (0, 1, 0)  normal (0, 0, 1)  spin 100grad }",
-        "bad_number",
-        "triangle { centroid (0, 1, 0)  normal (0, 0, 1)  spin 90deg }",
-    ),
-    (
-        "triangle { centroid (0, 1, 0)  spin 45°  normal (0, 0, 1) }",
-        "bad_number",
-        "triangle { centroid (0, 1, 0)  spin 45deg  normal (0, 0, 1) }",
-    ),
-    (
-        "triangle { centroid (0, 1, 0)  spin 30 deg  normal (0, 0, 1) }",
-        "spaced_unit",
-        "triangle { centroid (0, 1, 0)  spin 30deg  normal (0, 0, 1) }",
-    ),
-    (
-        "let r = 2 let a = 2r",
-        "bad_number",
-        "let r = 2 let a = 2 * r",
-    ),
-    (
-        "sampler { total 1,000,000 }",
-        "decimal_comma",
-        "sampler { total 1_000_000 }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  radius 1,5 }",
-        "decimal_comma",
-        "sphere { center (0, 1, 0)  radius 1.5 }",
-    ),
-    (
-        "box { center (0, 1, 0)  size 0.5x1.5x2 }",
-        "bad_number",
-        "box { center (0, 1, 0)  size (0.5, 1.5, 2) }",
-    ),
-    (
-        "sampler { per_pixel 4x4 }",
-        "bad_number",
-        "sampler { per_pixel 16 }",
-    ),
-    (
-        "box { center (3, 3,5, 8) }",
-        "part_count",
-        "box { center (3, 3.5, 8) }",
-    ),
-    // Vectors and colours.
-    (
-        "sphere { center +(2,0,0) }",
-        "plus_sign",
-        "sphere { center (2,0,0) }",
-    ),
-    (
-        "sphere { center (0, 0, 0) rgb (1, 0, 0) }",
-        "missing_field_name",
-        "",
-    ),
-    ("sphere { center (1, , 3) }", "missing_value", ""),
-    (
-        "sphere { center <1 2 3> }",
-        "brackets",
-        "sphere { center (1, 2, 3) }",
-    ),
-    (
-        "sphere { center <1, 2, 3 radius 1 }",
-        "unclosed_parenthesis",
-        "sphere { center (1, 2, 3) radius 1 }",
-    ),
-    (
-        "sphere { center 0 1 0 }",
-        "missing_parentheses",
-        "sphere { center (0, 1, 0) }",
-    ),
-    (
-        "sphere { center vec3(1,2,3) }",
-        "foreign_function",
-        "sphere { center (1, 2, 3) }",
-    ),
-    (
-        "sphere { center Point3D(1,2,3) }",
-        "foreign_function",
-        "sphere { center (1, 2, 3) }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color 255,0,0 }",
-        "missing_parentheses",
-        "sphere { center (0, 1, 0)  color rgb(255, 0, 0) }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color rgba(255,0,0,1) }",
-        "foreign_function",
-        "sphere { center (0, 1, 0)  color rgb(255, 0, 0) }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color [128,128,0] }",
-        "brackets",
-        "sphere { center (0, 1, 0)  color rgb(128, 128, 0) }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color 0xff0000 }",
-        "bad_number",
-        "sphere { center (0, 1, 0)  color #ff0000 }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color # red }",
-        "bad_color_code",
-        "sphere { center (0, 1, 0)  color red }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color “red” }",
-        "quoted",
-        "sphere { center (0, 1, 0)  color red }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  color ‘red’ }",
-        "quoted",
-        "sphere { center (0, 1, 0)  color red }",
-    ),
-    (
-        "let a = sin 30deg",
-        "missing_parentheses",
-        "let a = sin(30deg)",
-    ),
-    (
-        "let a = 1) + 2)",
-        "stray_closing stray_closing",
-        "let a = 1 + 2",
-    ),
-    // Fields.
-    (
-        "sphere { center (0, 1, 0)  radius2 }",
-        "missing_space",
-        "sphere { center (0, 1, 0)  radius 2 }",
-    ),
-    (
-        "sphere { colorred  center (0, 1, 0) }",
-        "missing_space",
-        "sphere { color red  center (0, 1, 0) }",
-    ),
-    (
-        "image { backgroundblack }",
-        "missing_space",
-        "image { background black }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  radius 1 radius }",
-        "unexpected",
-        "",
-    ),
-    (
-        "sphere { center = (0, 1, 0), radius = 1, color = red, }",
-        "needless_equals needless_separator",
-        "sphere { center (0, 1, 0) radius 1 color red }",
-    ),
-    (
-        "sphere { center (0, 1, 0)  material { shiny 1 }  radius 2 }",
-        "nested_braces",
-        "",
-    ),
-    ("scene { sphere { center (0, 1, 0) } }", "nested_braces", ""),
-    (
-        "sphere {<-2,3,14>,3}",
-        "missing_field_name",
-        "sphere {center (-2,3,14)  radius 3}",
-    ),
-    ("sphere { center Ball.center }", "not_in_language", ""),
-    ("sphere { center (0, p.x, 0) }", "not_in_language", ""),
-    // Items.
-    (
-        "sphere My Ball { center (0, 1, 0) }",
-        "bad_head",
-        "sphere My_Ball { center (0, 1, 0) }",
-    ),
-    ("let x = 1\nx = x + 1", "not_in_language", ""),
-    ("x = x + 1", "not_in_language", ""),
-    ("let f(x) = 2 * x", "not_in_language", ""),
-    (
-        "let a = 1\nif (a > 0) {\n  box { center (0, 1, 0) }\n}",
-        "not_in_language",
-        "",
-    ),
-    (
-        "for i in 0..10 {\n  box { center (i, 1, 0) }\n}",
-        "not_in_language",
-        "",
-    ),
-    ("import \"x\"", "not_in_language", ""),
-    ("print(r)", "not_in_language", ""),
-    ("#include \"colors.inc\"", "not_in_language", ""),
-    ("#version 3.7;", "not_in_language", ""),
-    ("const t = 4;", "missing_let", "let t = 4"),
-    ("image 640 480", "unopened_block", ""),
-    ("image:\n  width 640", "unopened_block", ""),
-    ("image(width 640)", "unopened_block", "image {width 640}"),
-    ("sphere (0, 1, 0)", "unopened_block", ""),
-    ("/* /* */ c */", "nested_comment", "/*   c */"),
-];
+const ROWS: &str = r#"
+    -- Numbers and units.
+    sphere { center (0, 1, 0)  radius 10cm } -> bad_number -> sphere { center (0, 1, 0)  radius 0.1 }
+    let a = 5mm -> bad_number -> let a = 0.005
+    let a = 1km -> bad_number -> let a = 1000
+    let a = 3ft -> bad_number -> let a = 0.9144
+    let a = 2 in -> bad_number -> let a = 0.0508
+    triangle { centroid (0, 1, 0)  normal (0, 0, 1)  spin 100grad } -> bad_number -> triangle { centroid (0, 1, 0)  normal (0, 0, 1)  spin 90deg }
+    triangle { centroid (0, 1, 0)  spin 45°  normal (0, 0, 1) } -> bad_number -> triangle { centroid (0, 1, 0)  spin 45deg  normal (0, 0, 1) }
+    triangle { centroid (0, 1, 0)  spin 30 deg  normal (0, 0, 1) } -> spaced_unit -> triangle { centroid (0, 1, 0)  spin 30deg  normal (0, 0, 1) }
+    let r = 2 let a = 2r -> bad_number -> let r = 2 let a = 2 * r
+    sampler { total 1,000,000 } -> decimal_comma -> sampler { total 1_000_000 }
+    sphere { center (0, 1, 0)  radius 1,5 } -> decimal_comma -> sphere { center (0, 1, 0)  radius 1.5 }
+    box { center (0, 1, 0)  size 0.5x1.5x2 } -> bad_number -> box { center (0, 1, 0)  size (0.5, 1.5, 2) }
+    sampler { per_pixel 4x4 } -> bad_number -> sampler { per_pixel 16 }
+    box { center (3, 3,5, 8) } -> part_count -> box { center (3, 3.5, 8) }
+    -- Vectors and colours.
+    sphere { center +(2,0,0) } -> plus_sign -> sphere { center (2,0,0) }
+    sphere { center (0, 0, 0) rgb (1, 0, 0) } -> missing_field_name ->
+    sphere { center (1, , 3) } -> missing_value ->
+    sphere { center <1 2 3> } -> brackets -> sphere { center (1, 2, 3) }
+    sphere { center <1, 2, 3 radius 1 } -> unclosed_parenthesis -> sphere { center (1, 2, 3) radius 1 }
+    sphere { center 0 1 0 } -> missing_parentheses -> sphere { center (0, 1, 0) }
+    sphere { center vec3(1,2,3) } -> foreign_function -> sphere { center (1, 2, 3) }
+    sphere { center Point3D(1,2,3) } -> foreign_function -> sphere { center (1, 2, 3) }
+    sphere { center (0, 1, 0)  color 255,0,0 } -> missing_parentheses -> sphere { center (0, 1, 0)  color rgb(255, 0, 0) }
+    sphere { center (0, 1, 0)  color rgba(255,0,0,1) } -> foreign_function -> sphere { center (0, 1, 0)  color rgb(255, 0, 0) }
+    sphere { center (0, 1, 0)  color [128,128,0] } -> brackets -> sphere { center (0, 1, 0)  color rgb(128, 128, 0) }
+    sphere { center (0, 1, 0)  color 0xff0000 } -> bad_number -> sphere { center (0, 1, 0)  color #ff0000 }
+    sphere { center (0, 1, 0)  color # red } -> bad_color_code -> sphere { center (0, 1, 0)  color red }
+    sphere { center (0, 1, 0)  color “red” } -> quoted -> sphere { center (0, 1, 0)  color red }
+    sphere { center (0, 1, 0)  color ‘red’ } -> quoted -> sphere { center (0, 1, 0)  color red }
+    let a = sin 30deg -> missing_parentheses -> let a = sin(30deg)
+    let a = 1) + 2) -> stray_closing stray_closing -> let a = 1 + 2
+    -- Fields.
+    sphere { center (0, 1, 0)  radius2 } -> missing_space -> sphere { center (0, 1, 0)  radius 2 }
+    sphere { colorred  center (0, 1, 0) } -> missing_space -> sphere { color red  center (0, 1, 0) }
+    image { backgroundblack } -> missing_space -> image { background black }
+    sphere { center (0, 1, 0)  radius 1 radius } -> unexpected ->
+    sphere { center = (0, 1, 0), radius = 1, color = red, } -> needless_equals needless_separator -> sphere { center (0, 1, 0) radius 1 color red }
+    sphere { center (0, 1, 0)  material { shiny 1 }  radius 2 } -> nested_braces ->
+    scene { sphere { center (0, 1, 0) } } -> nested_braces ->
+    sphere {<-2,3,14>,3} -> missing_field_name -> sphere {center (-2,3,14)  radius 3}
+    sphere { center Ball.center } -> not_in_language ->
+    sphere { center (0, p.x, 0) } -> not_in_language ->
+    -- Items.
+    sphere My Ball { center (0, 1, 0) } -> bad_head -> sphere My_Ball { center (0, 1, 0) }
+    let x = 1\nx = x + 1 -> not_in_language ->
+    x = x + 1 -> not_in_language ->
+    let f(x) = 2 * x -> not_in_language ->
+    let a = 1\nif (a > 0) {\n  box { center (0, 1, 0) }\n} -> not_in_language ->
+    for i in 0..10 {\n  box { center (i, 1, 0) }\n} -> not_in_language ->
+    import "x" -> not_in_language ->
+    print(r) -> not_in_language ->
+    #include "colors.inc" -> not_in_language ->
+    #version 3.7; -> not_in_language ->
+    const t = 4; -> missing_let -> let t = 4
+    image 640 480 -> unopened_block ->
+    image:\n  width 640 -> unopened_block ->
+    image(width 640) -> unopened_block -> image {width 640}
+    sphere (0, 1, 0) -> unopened_block ->
+    /* /* */ c */ -> nested_comment -> /*   c */
+"#;
 
 #[test]
 fn what_people_write_is_understood() {
     let mut complaints = Vec::new();
-    for &(text, codes, right) in ROWS {
+    for [text, codes, right] in rows(ROWS) {
         let mut text = of_scene(text);
         let right = of_scene(right);
         let found = diagnostics(&sources(&text, &[]));

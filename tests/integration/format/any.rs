@@ -8,49 +8,15 @@ use super::{all_scenes, formatted, laws::the_laws_hold};
 
 /// What may stand between two tokens. A blank comes first where the tokens would be one without it, or the start of a comment.
 fn gap() -> impl Strategy<Value = &'static str> {
-    let gaps = [
-        "",
-        "",
-        "",
-        "",
-        " ",
-        " ",
-        "  ",
-        "\n",
-        "\n",
-        "\n\n",
-        "\n \n\t\n",
-        "\r\n",
-        " // c \n",
-        "\n// own\n",
-        "/* b */",
-        " /* b */ ",
-        "\n/* own */\n",
-        "/* two\n lines */",
-        "\n\n/* d */ /* e */\n",
-        "// f\n// g\n\n",
-    ];
-    select(gaps.to_vec())
+    // Apart by bars, the more frequent ones twice.
+    let gaps = "|||| | |  |\n|\n|\n\n|\n \n\t\n|\r\n| // c \n|\n// own\n|/* b */| /* b */ |\n/* own */\n|/* two\n lines */|\n\n/* d */ /* e */\n|// f\n// g\n\n";
+    select(gaps.split('|').collect::<Vec<_>>())
 }
 
 fn value() -> impl Strategy<Value = Vec<String>> {
-    let words = [
-        "1",
-        "0.50",
-        ".5",
-        "5.",
-        "1e-3",
-        "1_000",
-        "30deg",
-        "0.5rad",
-        "#fa0",
-        "#FFAA00",
-        "olive",
-        "a",
-        "b2",
-        "a_rather_long_name_of_something",
-    ];
-    let leaf = select(words.to_vec()).prop_map(|word| vec![word.to_owned()]);
+    let words = "1 0.50 .5 5. 1e-3 1_000 30deg 0.5rad #fa0 #FFAA00 olive a b2 a_rather_long_name_of_something";
+    let words: Vec<&str> = words.split(' ').collect();
+    let leaf = select(words).prop_map(|word| vec![word.to_owned()]);
     leaf.prop_recursive(5, 60, 4, |inner| {
         let inner = inner.boxed();
         let listed = |open: Vec<String>, values: Vec<Vec<String>>| {
@@ -76,13 +42,7 @@ fn value() -> impl Strategy<Value = Vec<String>> {
             sign.into_iter().chain(value).collect()
         });
         // As it is written by hand: an element a line, and what it is beside it.
-        let remark = select(vec![
-            "",
-            " // x",
-            " // of the left one",
-            " /* y */",
-            "\n// own",
-        ]);
+        let remark = select(vec!["", " // x", " // of the left", " /* y */", "\n// own"]);
         let explained = (
             select(vec!["(", "max("]),
             prop::collection::vec((inner.clone(), remark), 1..4),
@@ -117,29 +77,13 @@ fn value() -> impl Strategy<Value = Vec<String>> {
 }
 
 fn item() -> impl Strategy<Value = Vec<String>> {
-    let name = || {
-        select(vec![
-            "x",
-            "y2",
-            "a_name",
-            "_z",
-            "Ball",
-            "another_rather_long_name",
-        ])
-    };
+    let one_of = |words: &'static str| select(words.split(' ').collect::<Vec<_>>());
+    let name = || one_of("x y2 a_name _z Ball another_rather_long_name");
     let definition = (name(), value()).prop_map(|(name, value)| {
         let start = ["let", name, "="].map(str::to_owned);
         start.into_iter().chain(value).collect()
     });
-    let kind = select(vec![
-        "image",
-        "camera",
-        "sampler",
-        "sphere",
-        "box",
-        "checkerboard",
-        "cube",
-    ]);
+    let kind = one_of("image camera sampler sphere box checkerboard cube");
     let field = (name(), value()).prop_map(|(name, value)| {
         let mut field = vec![name.to_owned()];
         field.extend(value);

@@ -6,39 +6,19 @@ use pinhole::{
     format::format,
     scene,
     source::{Source, SourceId, Sources, Span},
-    syntax::{
-        self,
-        tree::{Element, Item, Value, ValueKind},
-    },
+    syntax,
 };
 
 use super::{all_scenes, formatted};
+use crate::syntax::token_spans;
 
 /// Tokens and comments in their order, without the white space at the ends of the lines of comments.
 fn words(text: &str) -> Vec<String> {
     let source = Source::from_text("a.scn", text);
     let parsed = syntax::parse(&source, SourceId::File);
     assert_eq!(parsed.problems, []);
-    let mut spans = parsed.comments.clone();
-    for item in &parsed.tree.items {
-        match item {
-            Item::Definition(definition) => {
-                let name = definition.name.unwrap().span;
-                spans.extend([definition.keyword, name, definition.equals.unwrap()]);
-                tokens(&definition.value, &mut spans);
-            }
-            Item::Block(block) => {
-                spans.extend([block.kind.unwrap().span, block.open.unwrap()]);
-                spans.extend(block.name.map(|name| name.span));
-                spans.push(block.close.unwrap());
-                for field in &block.fields {
-                    spans.push(field.name.span);
-                    tokens(&field.value, &mut spans);
-                }
-            }
-            Item::Bad(span) => panic!("{span:?}"),
-        }
-    }
+    let mut spans = token_spans(&parsed.tree);
+    spans.extend(&parsed.comments);
     spans.sort();
     let tidy = |span: &Span| {
         let lines = source.slice(span.range()).lines();
@@ -48,42 +28,6 @@ fn words(text: &str) -> Vec<String> {
         lines.join("\n")
     };
     spans.iter().map(tidy).collect()
-}
-
-fn tokens(value: &Value<'_>, spans: &mut Vec<Span>) {
-    match &value.kind {
-        ValueKind::Call(call) => {
-            spans.push(call.function.span);
-            list(call.parentheses, &call.arguments, spans);
-        }
-        ValueKind::Parentheses(inner) => {
-            list(value.span, &[], spans);
-            tokens(inner, spans);
-        }
-        ValueKind::Tuple(elements) => list(value.span, elements, spans),
-        ValueKind::Negation { sign, operand } => {
-            spans.push(*sign);
-            tokens(operand, spans);
-        }
-        ValueKind::Chain { first, rest } => {
-            tokens(first, spans);
-            for step in rest {
-                spans.push(step.sign);
-                tokens(&step.operand, spans);
-            }
-        }
-        _ => spans.push(value.span),
-    }
-}
-
-fn list(parentheses: Span, elements: &[Element<'_>], spans: &mut Vec<Span>) {
-    let Span { source, start, end } = parentheses;
-    spans.push(Span::new(source, start, start + 1));
-    spans.push(Span::new(source, end - 1, end));
-    for element in elements {
-        tokens(&element.value, spans);
-        spans.extend(element.comma);
-    }
 }
 
 /// The tree without its places.

@@ -14,6 +14,7 @@ use std::{
 use pinhole::{format::format, source::Source};
 
 use self::laws::the_laws_hold;
+use crate::table::rows;
 
 fn formatted(text: &str) -> Result<String, Vec<String>> {
     let codes = |diagnostics: Vec<pinhole::diagnostic::Diagnostic>| {
@@ -98,14 +99,15 @@ fn mistakes_of_syntax_are_told_and_no_others() {
     assert_eq!(formatted("sphere { radus }"), codes(&["unknown_field"]));
     assert_eq!(formatted("ball { radius }"), codes(&["missing_value"]));
     // Not so with a value that could not be read.
-    for (value, code) in [
-        ("(2", "unclosed_parenthesis"),
-        ("2)", "stray_closing"),
-        ("2.5.5", "bad_number"),
-        ("#ff", "bad_color_code"),
-        (", color red", "needless_separator"),
-        (")", "unexpected"),
-    ] {
+    let table = "
+        (2 -> unclosed_parenthesis
+        2) -> stray_closing
+        2.5.5 -> bad_number
+        #ff -> bad_color_code
+        , color red -> needless_separator
+        ) -> unexpected
+    ";
+    for [value, code] in rows(table) {
         let text = format!("sphere {{ center (0, 1, 0)  radus {value} }}");
         assert_eq!(formatted(&text), codes(&[code]), "{text}");
     }

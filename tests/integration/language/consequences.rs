@@ -29,6 +29,8 @@ fn a_predefined_name_is_reported_once_however_it_is_used() {
         "let red = 5  let a = (red)  let b = a  sphere { center (0, b + 1, 0)  radius b }",
         "let red = 5  let a = (red, 1)",
         "let pi = 30deg  let a = sin(pi)  let b = 2 * pi  let c = sin(b)",
+        "let deg = 3  sphere { center (0, 1, 0)  radius deg }",
+        "let gray = 2  let a = (0, gray, 0)  let b = 1 + gray",
         "let max = 3  let a = max  sphere { center (0, 1, 0)  radius a }",
     ] {
         assert_only(PREDEFINED, items, &[]);
@@ -69,6 +71,7 @@ fn what_does_not_follow_from_it_is_reported() {
     both("let red = 5  let a = red  let b = 2 * a", &["a=blue"]);
     both("let red = 5  let a = (1, green, 3)", &[]);
     both("let red = 5", &["rad=3"]);
+    both("let max = 3  sphere { center (0, 1, 0)  radius min }", &[]);
 }
 
 #[test]

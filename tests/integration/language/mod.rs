@@ -10,15 +10,12 @@ mod values;
 
 use pinhole::{
     color::Color,
-    scene::{self, Camera, Scene, Shape, Sphere},
-    source::{Source, Sources},
+    scene::{self, Camera, Shape, Sphere},
 };
 
-const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
+use crate::scenes::{read, sources};
 
-fn sources(text: &str) -> Sources {
-    Sources::new(Source::from_text("test.scn", text))
-}
+const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
 /// The codes of a scene's diagnostics, without `pinhole::`.
 fn codes(text: &str) -> Vec<String> {
@@ -28,13 +25,6 @@ fn codes(text: &str) -> Vec<String> {
         .into_iter()
         .map(|diagnostic| code(diagnostic.code))
         .collect()
-}
-
-/// A scene without errors; its warnings may be some.
-fn read(text: &str) -> Scene {
-    let reading = scene::read(&sources(text));
-    let found = &reading.diagnostics;
-    reading.scene.unwrap_or_else(|| panic!("{found:#?}"))
 }
 
 /// The camera of a scene with one sphere.

@@ -2,14 +2,6 @@
 
 use super::*;
 
-/// A triangle by its vertices.
-fn by_vertices(vertices: [DVec3; 3]) -> Shape {
-    Shape::Triangle(Triangle {
-        outline: Outline::Vertices(vertices),
-        color: Color::BLACK,
-    })
-}
-
 /// The two halves of a square, beside the diagonal that crosses the middles of pixels.
 fn halves(order: [usize; 3]) -> String {
     let vertex = ["(-1, -1, 0)", "(1, 1, 0)", "(-1, 1, 0)", "(1, -1, 0)"];

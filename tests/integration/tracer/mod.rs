@@ -1,4 +1,5 @@
-//! The tracer against the oracle, above all within the last bits of every boundary.
+//! The tracer against the oracle, above all within the last bits of every boundary: what is beside the catalogue of hard cases, all of which
+//! the tests of `numerics` ask.
 
 mod mesh;
 pub mod planes;
@@ -16,7 +17,7 @@ use pinhole::{
         scenes::{self, SIZE},
     },
     sampling::{CounterRng, Sampling},
-    scene::{CenteredTriangle, Checkerboard, Lens, Outline, Scene, Shape, Triangle, View},
+    scene::{CenteredTriangle, Lens, Outline, Scene, Shape, Triangle, View},
     tracer::World,
 };
 use rand::{Rng, RngExt, SeedableRng};
@@ -25,6 +26,29 @@ use crate::exact::read;
 
 pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
+}
+
+/// A triangle turned about its normal by so many degrees.
+pub fn turned(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
+    let spin = Angle::from_degrees(spin);
+    let triangle = CenteredTriangle {
+        centroid,
+        normal,
+        sides,
+        spin,
+    };
+    Shape::Triangle(Triangle {
+        outline: Outline::Centered(triangle),
+        color: Color::BLACK,
+    })
+}
+
+/// A triangle by its vertices.
+pub fn by_vertices(vertices: [DVec3; 3]) -> Shape {
+    Shape::Triangle(Triangle {
+        outline: Outline::Vertices(vertices),
+        color: Color::BLACK,
+    })
 }
 
 pub fn floor() -> Shape {
@@ -163,15 +187,12 @@ fn random_objects_agree_with_the_oracle() {
         for _ in 0..2 {
             let corner = random.vector(2.0);
             shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
-            shapes.push(Shape::Triangle(Triangle {
-                outline: Outline::Centered(CenteredTriangle {
-                    centroid: random.vector(2.0),
-                    normal: random.vector(1.0),
-                    sides: dvec3(2.0, random.within(1.1, 3.9), 2.0),
-                    spin: Angle::from_degrees(random.within(0.0, 360.0)),
-                }),
-                color: Color::BLACK,
-            }));
+            shapes.push(turned(
+                random.vector(2.0),
+                random.vector(1.0),
+                dvec3(2.0, random.within(1.1, 3.9), 2.0),
+                random.within(0.0, 360.0),
+            ));
             shapes.push(cuboid(
                 corner,
                 corner + DVec3::splat(random.within(0.1, 2.0)),
@@ -180,44 +201,4 @@ fn random_objects_agree_with_the_oracle() {
         found += agrees(&scene(camera, &shapes), 16);
     }
     assert!(found > 200);
-}
-
-#[test]
-fn nearly_parallel_up_vectors_agree_with_the_oracle() {
-    for tilt in [1e-4, 1e-8, 1e-12, 1e-15, 1e-16, 1e-30, 1e-200] {
-        let mut camera = camera(dvec3(0.3, 10.0, 0.1), DVec3::ZERO);
-        camera.view = View::Direction(dvec3(tilt, -1.0, tilt / 3.0));
-        camera.lens = Lens::Distance(1.0);
-        assert_eq!(agrees(&scene(camera, &[floor()]), 20), 20);
-    }
-}
-
-#[test]
-fn concentric_and_equal_spheres_agree_with_the_oracle() {
-    let camera = camera(dvec3(0.0, 0.0, 5.0), DVec3::ZERO);
-    let next = 1.0 + f64::EPSILON;
-    for radii in [[1.0, 1.0], [1.0, next], [next, 1.0]] {
-        let shapes = radii.map(|radius| sphere(DVec3::ZERO, radius));
-        assert_eq!(agrees(&scene(camera, &shapes), 20), 20);
-    }
-}
-
-#[test]
-fn an_eye_on_or_near_a_surface_agrees_with_the_oracle() {
-    let mut found = 0;
-    for above in [1e-3, 1e-8, 1e-14, 0.0, -1e-14, -1e-8, -1e-3] {
-        let camera = camera(dvec3(0.0, 1.0 + above, 0.0), dvec3(3.0, 0.8, 0.4));
-        let shapes = [
-            sphere(DVec3::ZERO, 1.0),
-            cuboid(dvec3(-4.0, 0.0, -4.0), dvec3(4.0, 1.0, 4.0)),
-            triangle(dvec3(2.0, 1.0, 0.0), DVec3::Y),
-            Shape::Checkerboard(Checkerboard {
-                y: 1.0,
-                square: 0.3,
-                colors: [Color::BLACK; 2],
-            }),
-        ];
-        found += agrees(&scene(camera, &shapes), 20);
-    }
-    assert!(found > 40);
 }

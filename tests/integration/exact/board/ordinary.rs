@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::super::{agrees_with_samples, exact, part_adds_up, read};
-use super::area_of;
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     tracer::Random,
@@ -85,6 +84,6 @@ fn four_quarters_are_the_pixel_of_ordinary_views() {
     let mut random = Random::new(37);
     for _ in 0..30 {
         let text = view(&mut random);
-        part_adds_up(&read(&text), area_of([0, 0, 24, 16]), &text);
+        part_adds_up(&read(&text), "0,0,24,16".parse().unwrap(), &text);
     }
 }
