@@ -16,23 +16,13 @@ use pinhole::{
     source::{Source, Sources},
 };
 
-use crate::diagnostics::codes;
-use crate::table::rows;
+use crate::{diagnostics::codes, scenes::fenced, table::rows};
 
 /// What stands in a page below a heading of the second order.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
     let start = format!("\n## {heading}\n");
     let (_, rest) = page.text.split_once(&start).expect("the heading");
     rest.split_once("\n## ").map_or(rest, |(own, _)| own)
-}
-
-/// The contents of the fences of this kind.
-fn fenced<'p>(section: &'p str, kind: &str) -> Vec<&'p str> {
-    let start = format!("```{kind}\n");
-    let parts = section.split(&start).skip(1);
-    parts
-        .map(|part| part.split_once("```").expect("a fence ends").0)
-        .collect()
 }
 
 /// The scene of a section, with the arguments.

@@ -54,3 +54,12 @@ pub fn sampled_by(scene: &Scene, part: Area, control: &Control<'_>) -> Film {
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     render(&World::new(scene), &sampling, part, control).unwrap()
 }
+
+/// The contents of a document's fences of this kind.
+pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
+    let start = format!("```{kind}\n");
+    let parts = text.split(&start).skip(1);
+    parts
+        .map(|part| part.split_once("```").expect("a fence ends").0)
+        .collect()
+}

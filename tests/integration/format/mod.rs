@@ -14,7 +14,7 @@ use std::{
 use pinhole::{format::format, source::Source};
 
 use self::laws::the_laws_hold;
-use crate::table::rows;
+use crate::{scenes::fenced, table::rows};
 
 fn formatted(text: &str) -> Result<String, Vec<String>> {
     let codes = |diagnostics: Vec<pinhole::diagnostic::Diagnostic>| {
@@ -75,8 +75,7 @@ fn the_examples_and_the_scenes_of_the_documents_are_canonical() {
         .collect();
     for document in ["README.md", "grammar/language.md"] {
         let document = fs::read_to_string(root.join(document)).unwrap();
-        let fenced = document.split("```scn\n").skip(1);
-        texts.extend(fenced.map(|rest| rest.split("```").next().unwrap().to_owned()));
+        texts.extend(fenced(&document, "scn").into_iter().map(str::to_owned));
     }
     assert!(texts.len() > 28);
     for text in texts {

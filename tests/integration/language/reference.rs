@@ -5,6 +5,7 @@ use std::{fs, path::Path};
 use pinhole::schema;
 
 use super::codes;
+use crate::scenes::fenced;
 
 #[test]
 fn the_reference_has_every_row_of_the_table() {
@@ -92,8 +93,7 @@ fn the_reference_has_every_method_function_and_name() {
 fn every_scene_of_the_reference_checks_clean() {
     let reference = file("grammar/language.md");
     let mut scenes = 0;
-    for part in reference.split("```scn\n").skip(1) {
-        let scene = part.split("```").next().expect("a part");
+    for scene in fenced(&reference, "scn") {
         assert_eq!(codes(scene), [""; 0], "{scene}");
         scenes += 1;
     }

@@ -3,6 +3,7 @@
 use glam::{DVec3, dvec3};
 
 use super::*;
+use crate::table::rows;
 
 #[test]
 fn scenes_of_extreme_sizes_agree_with_the_oracle() {
@@ -82,22 +83,16 @@ fn nothing_is_too_near_or_too_far_for_the_range_of_numbers() {
 
 #[test]
 fn triangles_too_small_or_far_away_to_be_seen_are_not_seen() {
-    for (triangle, toward) in [
-        ("centroid (1e10, 1e100, -1e100) sides (1, 1, 1)", (0.1, 0.7)),
-        (
-            "centroid (0.1, 0.2, -1.7) sides (1e-95, 1e-95, 1e-95)",
-            (0.01, 0.0),
-        ),
-        (
-            "centroid (0.1, 0.2, -1.7) sides (2e-300, 2e-300, 1e-300)",
-            (0.01, 0.0),
-        ),
-        ("centroid (0.1, 0.2, -1e160) sides (2, 2, 1)", (0.01, 0.0)),
-    ] {
-        let (x, y) = toward;
+    let table = "
+        centroid (1e10, 1e100, -1e100) sides (1, 1, 1) -> (0.1, 0.7, -1)
+        centroid (0.1, 0.2, -1.7) sides (1e-95, 1e-95, 1e-95) -> (0.01, 0, -1)
+        centroid (0.1, 0.2, -1.7) sides (2e-300, 2e-300, 1e-300) -> (0.01, 0, -1)
+        centroid (0.1, 0.2, -1e160) sides (2, 2, 1) -> (0.01, 0, -1)
+    ";
+    for [triangle, direction] in rows(table) {
         let scene = read(&format!(
             "image {{ width 300 height 200 background black }}
-             camera {{ eye (0.1, 0.2, 0.3) direction ({x}, {y}, -1) }}
+             camera {{ eye (0.1, 0.2, 0.3) direction {direction} }}
              sampler {{ per_pixel 1 }}
              triangle {{ {triangle} normal (-0.3, 0.2, 1) color lime }}"
         ));
