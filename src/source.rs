@@ -173,8 +173,8 @@ impl Source {
 
     /// What ends the text's lines: CRLF if it ends the first of them, or else LF.
     pub fn line_end(&self) -> &'static str {
-        let first = self.text.find('\n').and_then(|at| self.text.get(..at));
-        match first.is_some_and(|line| line.ends_with('\r')) {
+        let rest = self.text.get(self.line_range(1).end..);
+        match rest.is_some_and(|rest| rest.starts_with("\r\n")) {
             true => "\r\n",
             false => "\n",
         }

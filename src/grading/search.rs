@@ -19,7 +19,11 @@ use super::{
     score::{Model, Score, Strays, gain, score},
     shared::Shared,
 };
-use crate::{area::Area, film::Film, scene::Scene};
+use crate::{
+    area::Area,
+    film::Film,
+    scene::{Object, Scene, Shape},
+};
 
 /// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
 pub const TINY: (u32, usize) = (32, 5);
@@ -29,10 +33,11 @@ const MIDDLE: u32 = 128;
 /// Of so many pixels in the middle of a picture, those tell of edges.
 const PIXELS_OF_EDGES: u64 = 20_000;
 
-/// A search looks for no more after so much work: cells that were computed, times the objects and so many more. Measured: a unit takes 0.05 to 0.1 μs in scenes with a
-/// checkerboard.
-const MOST_WORK: f64 = 3e7;
-const OBJECTS: usize = 4;
+/// A search looks for no more after so much work: cells that were computed, times the boards and so many more, and for each other object as many cells as it may
+/// take time in. Measured: a unit takes 0.05 to 0.1 μs in scenes with a checkerboard, and a heap of 10⁴ spheres as long on any grid.
+const MOST_WORK: f64 = 1e7;
+const BESIDE_BOARDS: f64 = 4.0;
+const CELLS_OF_AN_OBJECT: f64 = 800.0;
 
 /// A grid over a part of a picture.
 pub struct Level<'a> {
@@ -101,6 +106,9 @@ pub struct Search<'a> {
     pub edges: Level<'a>,
     /// What was made last of all pixels.
     last: Cell<Option<Arc<Made>>>,
+    /// How many boards the scene has, and other objects.
+    boards: f64,
+    others: f64,
     work: Cell<f64>,
     /// Whether something was left out for that.
     pub is_cut: Cell<bool>,
@@ -139,6 +147,10 @@ impl<'a> Search<'a> {
             jpeg,
             coded: OnceCell::new(),
         };
+        let (boards, others): (Vec<&Object>, Vec<&Object>) = scene
+            .objects
+            .iter()
+            .partition(|object| matches!(object.shape, Shape::Checkerboard(_)));
         Self {
             scene,
             shared,
@@ -148,6 +160,8 @@ impl<'a> Search<'a> {
             fine: level(part, u32::MAX, None),
             edges: level(middle(part), u32::MAX, None),
             last: Cell::new(None),
+            boards: boards.len() as f64,
+            others: others.len() as f64,
             work: Cell::new(0.0),
             is_cut: Cell::new(false),
             cancel,
@@ -163,8 +177,10 @@ impl<'a> Search<'a> {
     ) -> Option<Arc<Made>> {
         let make = |candidate: &Candidate, likes: &[&Made]| {
             let made = candidate.made(&level.grid, level.samples, likes, self.cancel)?;
-            let objects = (OBJECTS + self.scene.objects.len()) as f64;
-            self.work.set(self.work.get() + made.work * objects);
+            let cells = made.work;
+            let work =
+                cells * (BESIDE_BOARDS + self.boards) + cells.min(CELLS_OF_AN_OBJECT) * self.others;
+            self.work.set(self.work.get() + work);
             Some(made)
         };
         // What a program shows that has the scene's own numbers is the same for all pictures; most often it differs in a part from what this one shows.
@@ -213,9 +229,15 @@ impl<'a> Search<'a> {
         level: &Level,
         like: Option<&Made>,
     ) -> Option<Arc<Made>> {
+        self.may_go_on()
+            .then(|| self.made(candidate, level, like))?
+    }
+
+    /// Whether there was not too much work yet; if there was, something is left out.
+    pub fn may_go_on(&self) -> bool {
         let may = self.work.get() < MOST_WORK;
         self.is_cut.set(self.is_cut.get() || !may);
-        may.then(|| self.made(candidate, level, like))?
+        may
     }
 
     /// By how much the picture differs from what was made.
@@ -262,6 +284,7 @@ impl<'a> Search<'a> {
     /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
     pub fn is_explained(&self, candidate: &Candidate) -> bool {
         let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
+        let rows = rows.take_while(|_| self.may_go_on());
         let mut all = std::iter::once(candidate.clone())
             .chain(rows.filter_map(|row| candidate.with(row.named())));
         all.any(|candidate| self.strays(&candidate).is_empty())

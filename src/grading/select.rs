@@ -46,6 +46,7 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     let is_open = search.strays(&best.candidate).is_empty();
     while best.candidate.named.len() < MOST_MISTAKES
         && (is_open && best.candidate.named.is_empty() || !search.is_explained(&best.candidate))
+        && search.may_go_on()
     {
         let Some(next) = step(search, &best, is_open && best.candidate.named.is_empty()) else {
             break;
@@ -91,6 +92,7 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
     let rows = ROWS.iter().filter(shows);
     let candidates = rows.filter_map(|row| null.candidate.with(row.named()));
     let judged = candidates
+        .take_while(|_| search.may_go_on())
         .filter_map(|candidate| search.judged_on(&search.edges, candidate, Some(&null.made)));
     let judged: Vec<Found> = judged.collect();
     // Where areas are not explained yet, that comes first.
@@ -150,7 +152,7 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     };
     // Something too many would explain anything; it is thought of where nothing else explains more than before.
     judged.into_iter().find(is_better).or_else(|| {
-        (!is_open).then_some(())?;
+        (!is_open && search.may_go_on()).then_some(())?;
         let patched = from.candidate.with(patch(search, from)?)?;
         let found = search.judged_on(&search.middle, patched, Some(&from.made))?;
         (found.cost < from.cost).then_some(found)
