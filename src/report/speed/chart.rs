@@ -3,17 +3,14 @@
 //! Both axes are logarithmic. A line is labelled at its end, so that nobody has to look up a legend, and its marker and dash say in
 //! black and white what its colour says otherwise. Black is written as the current colour, so that a page may be dark.
 
-use std::{io, ops::Range};
+use std::ops::Range;
 
 use plotters::{
-    coord::{
-        Shift,
-        combinators::{LogCoord, WithKeyPoints},
-    },
+    coord::combinators::{LogCoord, WithKeyPoints},
     element::DashedPathElement,
     prelude::{
-        BLACK, BindKeyPoints, ChartBuilder, Color, DrawingArea, DrawingAreaErrorKind,
-        IntoDrawingArea, IntoFont, IntoLogRange, PathElement, SVGBackend, Text,
+        BLACK, BindKeyPoints, ChartBuilder, Color, IntoDrawingArea, IntoFont, IntoLogRange,
+        PathElement, SVGBackend, Text,
     },
     style::{
         TextStyle,
@@ -22,21 +19,12 @@ use plotters::{
 };
 
 use super::{
-    line_style::LineStyle,
+    line_style::{Canvas, Drawn, LineStyle, Place},
     notation::{asked_error, seconds},
     results::{Measurement, Point, Run},
     summary::printable,
 };
 use crate::numbers;
-
-/// What is drawn on.
-pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// What drawing yields.
-pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
-
-/// A place in pixels.
-pub type Place = (i32, i32);
 
 /// The size in pixels: small, so that the letters are still legible on a telephone, whose screen is 400 of its pixels wide.
 const SIZE: (u32, u32) = (560, 440);

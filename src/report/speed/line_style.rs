@@ -1,12 +1,25 @@
 //! How a method is drawn: a colour, a marker and a dash, each of which tells it from the others nearby on its own.
 
+use std::io;
+
 use plotters::{
+    coord::Shift,
     element::DashedPathElement,
-    prelude::{Color, PathElement, Polygon, RGBColor},
+    prelude::{
+        Color, DrawingArea, DrawingAreaErrorKind, PathElement, Polygon, RGBColor, SVGBackend,
+    },
 };
 
-use super::chart::{Canvas, Drawn, Place};
 use crate::scene::Method;
+
+/// What is drawn on.
+pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// What drawing yields.
+pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
+
+/// A place in pixels.
+pub type Place = (i32, i32);
 
 /// How a method is drawn.
 #[derive(Clone, Copy)]
