@@ -6,13 +6,14 @@
 //! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
 //! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
 //! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
-//! holds the picture, but for its `empty` pixels; `select` chooses mistakes, a `patch` being the last of them, and `words` says them. What is the same for all
-//! pictures of a class is `shared`.
+//! holds the picture, but for its `empty_pixels`; `select` chooses mistakes, a `patch` being the last of them, and `number_text` writes their numbers. What is
+//! the same for all pictures of a class is in the `class_cache`.
 
 mod axes;
 mod candidate;
 mod changes;
-mod empty;
+mod class_cache;
+mod empty_pixels;
 mod fit;
 mod grid;
 mod jpeg;
@@ -20,6 +21,7 @@ mod layout;
 mod light;
 mod made;
 mod mistakes;
+mod number_text;
 mod numbers;
 mod objects;
 mod parameters;
@@ -27,9 +29,7 @@ mod patch;
 mod score;
 mod search;
 mod select;
-mod shared;
 mod textbook;
-mod words;
 
 use std::{borrow::Cow, sync::atomic::AtomicBool};
 
@@ -46,10 +46,10 @@ use crate::{
 
 use self::{
     candidate::Candidate,
-    empty::without_empty,
+    class_cache::ClassCache,
+    empty_pixels::without_empty,
     score::WRONG,
     search::{Found, Search},
-    shared::Shared,
 };
 pub use self::{jpeg::Jpeg, objects::ObjectVerdict};
 
@@ -118,7 +118,7 @@ pub struct Verdict {
 pub struct Reference<'a> {
     scene: &'a Scene,
     part: Area,
-    shared: Shared,
+    shared: ClassCache,
 }
 
 impl<'a> Reference<'a> {
@@ -127,7 +127,7 @@ impl<'a> Reference<'a> {
         Self {
             scene,
             part,
-            shared: Shared::default(),
+            shared: ClassCache::default(),
         }
     }
 
@@ -237,7 +237,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
             false => beyond(search.judged(after.clone())),
         };
         let set = parameters::arguments(&before.scene, &after.scene);
-        let mut message = words::message(scene, one);
+        let mut message = number_text::message(scene, one);
         if let (candidate::Cause::Row(_), [set]) = (&one.cause, set.as_slice())
             && let Some((target, value)) = set.split_once('=')
             && let Some(should) = parameters::arguments(&after.scene, &before.scene)

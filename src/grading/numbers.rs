@@ -1,4 +1,4 @@
-//! Numbers of the scene that may be others: those that come nearest to a picture.
+//! Fits the numbers of a scene to a picture: those with which it comes nearest.
 //!
 //! A start on the tiny grid leads to a fit there, and that to one on the coarse grid.
 
@@ -6,10 +6,10 @@ use super::{
     candidate::{Candidate, Cause},
     fit::{Trial, absolute},
     made::Made,
+    number_text,
     parameters::{self, Owner, Parameter},
     score::{Model, least},
     search::{Found, Search, steps},
-    words,
 };
 use crate::color::{Color, linear_to_srgb};
 
@@ -69,7 +69,7 @@ pub fn numbers(
     let on_coarse = on_coarse.filter_map(|(parameter, start)| {
         let rounds = if is_read(&parameter) { [0, 0] } else { [3, 1] };
         let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
-        let named = words::numbers(search.scene, &parameter, fitted.numbers);
+        let named = number_text::numbers(search.scene, &parameter, fitted.numbers);
         Some((fitted.left, candidate.with(named)?))
     });
     on_coarse.collect()

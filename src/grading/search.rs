@@ -9,6 +9,7 @@ use std::{
 use super::{
     Reference,
     candidate::{Candidate, Cause, Named},
+    class_cache::ClassCache,
     fit::{Fitted, Trial, fit},
     grid::Grid,
     jpeg::Jpeg,
@@ -17,7 +18,6 @@ use super::{
     mistakes::{ROWS, Shows},
     parameters::Parameter,
     score::{Model, Score, Strays, gain, score},
-    shared::Shared,
 };
 use crate::{
     area::Area,
@@ -97,7 +97,7 @@ impl Level<'_> {
 /// A picture that is compared with a scene.
 pub struct Search<'a> {
     pub scene: &'a Scene,
-    shared: &'a Shared,
+    shared: &'a ClassCache,
     pub tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,

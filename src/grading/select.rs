@@ -10,13 +10,13 @@ use super::{
     light::Curve,
     made::Made,
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
+    number_text,
     numbers::{FITTED, numbers},
     parameters::Owner,
     patch::patch,
     score::least,
     search::{Found, Level, Search, joined, split},
     textbook::Textbook,
-    words,
 };
 use crate::cancel::{self, Cancelled};
 
@@ -261,7 +261,7 @@ fn shortened(search: &Search, found: Found) -> Candidate {
         // What a vector's length may be off is no matter, so that no error is more than a part of a step.
         let rounded = joined(named).into_iter().zip(&fitted.errors).zip(&steps);
         let rounded: Vec<f64> = rounded
-            .map(|((x, error), step)| words::rounded(x, (digits * error).min(step.abs())))
+            .map(|((x, error), step)| number_text::rounded(x, (digits * error).min(step.abs())))
             .collect();
         if let Some(candidate) = Candidate::of(search.scene, &split(named, &rounded))
             && let Some(judged) = search.judged_on(&search.middle, candidate, Some(&found.made))
@@ -276,7 +276,7 @@ fn shortened(search: &Search, found: Found) -> Candidate {
 fn level(named: &mut [Named]) {
     for one in named {
         if let Cause::Numbers(parameter, numbers) = &mut one.cause {
-            words::level(parameter, numbers);
+            number_text::level(parameter, numbers);
         }
     }
 }

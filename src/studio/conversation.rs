@@ -99,6 +99,7 @@ impl Conversation {
                 }
                 Err(Error::Capacity(_)) => return self.close(CloseCode::Size),
                 Err(Error::Utf8(_)) => return self.close(CloseCode::Invalid),
+                Err(error @ Error::Io(_)) => return Err(error),
                 Err(_) => return self.close(CloseCode::Protocol),
             }
         }
@@ -189,23 +190,27 @@ impl Conversation {
 
     /// Makes a picture's file while the conversation goes on.
     fn render(&mut self, request: Request) -> Result<(), Error> {
+        let id = request.id.clone();
+        let failed = |message: String| {
+            vec![Response::new_err(id.clone(), ErrorCode::RequestFailed as i32, message).into()]
+        };
         if self.rendering.is_some() {
-            let message = "another picture is being made".to_owned();
-            let code = ErrorCode::RequestFailed as i32;
-            return self.say(vec![Response::new_err(request.id, code, message).into()]);
+            return self.say(failed("another picture is being made".to_owned()));
         }
         let cancel = Arc::new(AtomicBool::new(false));
-        self.rendering = Some((json!(request.id), Arc::clone(&cancel)));
-        let sender = self.sender.clone();
+        let (of_work, sender) = (Arc::clone(&cancel), self.sender.clone());
         let work = move || {
-            let response = download::answer(request, &cancel);
+            let response = download::answer(request, &of_work);
             let _ = sender.send(Event::Rendered(messages::written(&response.into())));
         };
-        thread::Builder::new()
-            .name("picture".to_owned())
-            .spawn(work)
-            .map(|_| ())
-            .map_err(Error::Io)
+        let thread = thread::Builder::new().name("picture".to_owned());
+        match thread.spawn(work) {
+            Ok(_) => {
+                self.rendering = Some((json!(id), cancel));
+                Ok(())
+            }
+            Err(error) => self.say(failed(format!("no thread can be had: {error}"))),
+        }
     }
 
     /// Gives the picture's file up that a request asked for, or any.

@@ -1,4 +1,4 @@
-//! What an answer about a document is in the protocol, and what the protocol says of places and changes.
+//! Converts answers about a document into the types of the protocol, and the places and changes of the protocol into ours.
 
 use gen_lsp_types as lsp;
 use line_index::WideEncoding;

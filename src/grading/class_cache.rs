@@ -15,9 +15,9 @@ type Slot = Arc<OnceLock<Option<Arc<Made>>>>;
 
 /// All that was made.
 #[derive(Default)]
-pub struct Shared(Mutex<HashMap<Key, Slot>>);
+pub struct ClassCache(Mutex<HashMap<Key, Slot>>);
 
-impl Shared {
+impl ClassCache {
     /// What a program with a mistake, or without one, shows on a grid. Who asks while it is made waits for it.
     pub fn get(
         &self,

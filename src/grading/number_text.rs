@@ -1,4 +1,4 @@
-//! What is said of numbers that are others.
+//! How numbers that differ from the scene's are told: rounded as short as they may be, each with the value that the scene has.
 
 use super::{
     candidate::{Cause, Named},
