@@ -43,15 +43,14 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     };
     // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
     // alone.
-    let is_open = search.strays(&best.candidate).is_empty();
+    let mut is_open = search.strays(&best.candidate).is_empty();
     while best.candidate.named.len() < MOST_MISTAKES
-        && (is_open && best.candidate.named.is_empty() || !search.is_explained(&best.candidate))
+        && (is_open || !search.is_explained(&best.candidate))
         && search.may_go_on()
+        && let Some(next) = step(search, &best, is_open)
     {
-        let Some(next) = step(search, &best, is_open && best.candidate.named.is_empty()) else {
-            break;
-        };
         best = next;
+        is_open = false;
     }
     if best.candidate.named.len() > 1 {
         best = without_needless(search, best);

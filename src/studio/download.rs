@@ -6,7 +6,7 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use base64::{Engine as _, engine::general_purpose::STANDARD};
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{ErrorCode, Request, Response};
 use serde_json::{Value, json};
 
@@ -36,25 +36,21 @@ pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
     let Some(text) = params.get("text").and_then(Value::as_str) else {
         return failed(ErrorCode::InvalidParams, "there is no `text`".to_owned());
     };
-    let (name, write): (_, Write) = match &*method {
-        #[cfg(feature = "studio")]
-        EXR => ("exr", write_exr),
-        #[cfg(not(feature = "studio"))]
-        EXR => {
-            return failed(
-                ErrorCode::RequestFailed,
-                "no EXR is written here".to_owned(),
-            );
-        }
-        _ => ("png", write_png),
-    };
     let sources = Sources::new(Source::from_text("scene.scn", text));
     let Some(scene) = scene::read(&sources).scene else {
         return failed(ErrorCode::RequestFailed, "the scene has errors".to_owned());
     };
     let mut file = Cursor::new(Vec::new());
-    match write(&scene, text, cancel, &mut file) {
-        Ok(()) => Response::new_ok(id, json!({ name: STANDARD.encode(file.into_inner()) })),
+    let written = match &*method {
+        EXR => write_exr(&scene, cancel, &mut file),
+        _ => write_png(&scene, text, cancel, &mut file),
+    };
+    let name = method.trim_start_matches("studio/");
+    match written {
+        Ok(()) => Response::new_ok(
+            id,
+            json!({ name: BASE64_STANDARD.encode(file.into_inner()) }),
+        ),
         Err(_) if cancel.load(Ordering::SeqCst) => {
             failed(ErrorCode::RequestCanceled, "cancelled".to_owned())
         }
@@ -62,34 +58,34 @@ pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
     }
 }
 
-type Write = fn(&Scene, &str, &AtomicBool, &mut Cursor<Vec<u8>>) -> Result<(), Box<dyn Error>>;
+type Written = Result<(), Box<dyn Error>>;
 
 fn write_png(
     scene: &Scene,
     text: &str,
     cancel: &AtomicBool,
-    out: &mut Cursor<Vec<u8>>,
-) -> Result<(), Box<dyn Error>> {
+    file: &mut Cursor<Vec<u8>>,
+) -> Written {
     let film: Film<[u8; 3]> = rendered(scene, cancel)?;
     let recipe = Recipe {
         scene: text.to_owned(),
         overrides: Vec::new(),
         crop: None,
     };
-    Ok(film::write_png(&film, &recipe, out)?)
+    Ok(film::write_png(&film, &recipe, file)?)
 }
 
 /// For the host on this machine alone: the tables of the format's compressions are a quarter of what a browser would have to load.
 #[cfg(feature = "studio")]
-fn write_exr(
-    scene: &Scene,
-    _: &str,
-    cancel: &AtomicBool,
-    out: &mut Cursor<Vec<u8>>,
-) -> Result<(), Box<dyn Error>> {
+fn write_exr(scene: &Scene, cancel: &AtomicBool, file: &mut Cursor<Vec<u8>>) -> Written {
     let film = rendered(scene, cancel)?;
     let whole = Area::whole(film.width(), film.height());
-    Ok(film::write_exr(&film, whole, whole, out)?)
+    Ok(film::write_exr(&film, whole, whole, file)?)
+}
+
+#[cfg(not(feature = "studio"))]
+fn write_exr(_: &Scene, _: &AtomicBool, _: &mut Cursor<Vec<u8>>) -> Written {
+    Err("no EXR is written here".into())
 }
 
 fn rendered<P: film::Pixel>(scene: &Scene, cancel: &AtomicBool) -> Result<Film<P>, RenderError> {

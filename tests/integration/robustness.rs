@@ -123,7 +123,7 @@ fn garbage(effort: Effort) {
 sampled_and_exhaustive!(one_thing_many_times);
 
 fn one_thing_many_times(effort: Effort) {
-    let length = effort.part_of(MEGABYTE / 16);
+    let length = effort.part_of(MEGABYTE / 4);
     for piece in [
         "{",
         "}",
