@@ -2,8 +2,7 @@
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in memory, and a picture file: `png` with the
 //! scene that made it, or `exr`. `write` sees to it that a file is written whole or not at all. `read` makes a `picture` of a file, also of
-//! another program's, and `compare` says how far two films are apart, and `embed` puts one
-//! into a page.
+//! another program's, `compare` says how far two films are apart, and `embed` puts one into a page.
 
 mod compare;
 #[cfg(any(feature = "cli", feature = "report"))]
