@@ -79,6 +79,8 @@ struct Within<'s> {
     takes: Option<Type>,
     /// Signs that are not needed, with their places: one report in a block for all of a kind.
     slips: BTreeMap<&'s str, Vec<Span>>,
+    /// Whether it is not sure that none of them is needed.
+    is_doubtful: bool,
 }
 
 impl<'w, 's> Recovery<'w, 's> {
@@ -379,10 +381,16 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Signs that are not needed, and those of comments in other languages: one report in a block for all of a kind.
 
-    /// Takes a `,` or `;` between fields or items.
+    /// Takes a `,` or `;` between fields or items. Before a value it may stand for something else.
     fn separator(&mut self) {
         let sign = self.bump();
         self.slip(sign);
+        let word = self.word(0);
+        let is_value = match self.is_name(0) {
+            true => self.words.is_value(word),
+            false => self.starts_value(0),
+        };
+        self.within.is_doubtful |= is_value && !self.is_boundary();
     }
 
     fn slip(&mut self, sign: Span) {
@@ -393,7 +401,8 @@ impl<'w, 's> Recovery<'w, 's> {
     /// Where a problem since so many has no fix, it is doubtful what the signs belong to.
     fn report_slips(&mut self, told: usize) {
         let since = self.problems.get(told..).unwrap_or_default();
-        let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty());
+        let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty())
+            || std::mem::take(&mut self.within.is_doubtful);
         let between = match self.within.is_block {
             true => "fields",
             false => "items",
