@@ -11,8 +11,8 @@
 
 mod columns;
 mod entries;
-mod page;
 mod token_stream;
+mod writer;
 
 pub use token_stream::WIDTH;
 
@@ -38,11 +38,11 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     if !right || !is_whole(&parsed.tree) {
         return None;
     }
-    let text = source.text();
     let mut entries = entries::of_file(source, parsed);
     columns::align(&mut entries);
-    let page = page::written(&entries);
-    let formatted = with_line_ends(&page, text, source.bom_len());
+    let written = writer::written(&entries);
+    let text = source.text();
+    let formatted = with_line_ends(&written, text, source.bom_len());
     debug_assert!(ink(text).eq(ink(&formatted)), "only white space changes");
     Some(formatted)
 }
@@ -81,14 +81,14 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
 
 /// The page with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with
 /// blanks, in comments neither.
-fn with_line_ends(page: &str, text: &str, bom: usize) -> String {
+fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');
     let last = ends.next_back();
     let mut ends = ends.peekable();
     let crlf = last.is_some() && ends.peek().is_some() && ends.all(|line| line.ends_with('\r'));
-    let mut formatted = String::with_capacity(page.len() + bom);
+    let mut formatted = String::with_capacity(written.len() + bom);
     formatted.push_str(text.get(..bom).unwrap_or_default());
-    for line in page.lines() {
+    for line in written.lines() {
         formatted.push_str(line.trim_end_matches([' ', '\t', '\r']));
         formatted.push_str(if crlf { "\r\n" } else { "\n" });
     }

@@ -11,22 +11,22 @@ const INDENT: usize = 2;
 
 /// The text of a file.
 pub fn written(entries: &[Entry<'_>]) -> String {
-    let mut page = Page::default();
+    let mut writer = Writer::default();
     for entry in entries {
-        page.entry(entry, 0);
+        writer.entry(entry, 0);
     }
-    page.flush();
-    page.text
+    writer.flush();
+    writer.text
 }
 
 #[derive(Default)]
-struct Page {
+struct Writer {
     text: String,
     /// Lines with comments at their ends, which are not aligned yet.
     waiting: Vec<(String, String)>,
 }
 
-impl Page {
+impl Writer {
     fn entry(&mut self, entry: &Entry<'_>, indent: usize) {
         if entry.blank {
             self.flush();
