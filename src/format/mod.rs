@@ -79,7 +79,7 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     lists.next().unwrap_or_default()
 }
 
-/// The page with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with
+/// What was written with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with
 /// blanks, in comments neither.
 fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');

@@ -17,7 +17,7 @@ use crate::{
     area::Area,
     color::Color,
     exact::{ExactPixel, Integrator},
-    scene::Scene,
+    scene::{Camera, Scene},
     tracer::World,
 };
 
@@ -315,10 +315,18 @@ impl Candidate {
 
     /// The part of a part of the picture, before it is laid out, outside of which two candidates show the same; none where that is not known.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Option<Area> {
-        let is_alike =
-            |one: &Scene, other: &Scene| one.camera == other.camera && one.image == other.image;
-        let is_local = is_alike(&self.scene, &other.scene) && self.average == other.average;
-        is_local.then_some(())?;
+        let (one, two) = (&self.scene, &other.scene);
+        // Rays are the same, wherever they may end.
+        let camera = Camera {
+            near: two.camera.near,
+            far: two.camera.far,
+            ..one.camera
+        };
+        let is_alike = camera == two.camera && one.image == two.image;
+        (is_alike && self.average == other.average).then_some(())?;
+        if one.camera != two.camera {
+            return Some(part);
+        }
         let scenes =
             [self, other].map(|one| grid.scene(&one.scene, self.layout.half_pixels != [0, 0]));
         let axes = Axes::new(&scenes[0].camera, &scenes[0].image);

@@ -239,6 +239,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         let set = parameters::arguments(&before.scene, &after.scene);
         let mut message = number_text::message(scene, one);
         if let (candidate::Cause::Row(_), [set]) = (&one.cause, set.as_slice())
+            && set != parameters::UNLIMITED
             && let Some((target, value)) = set.split_once('=')
             && let Some(should) = parameters::arguments(&after.scene, &before.scene)
                 .first()
@@ -317,6 +318,12 @@ impl Verdict {
             Kind::Unknown => "wrong, and not by a mistake known here".to_owned(),
         }
     }
+}
+
+/// The words for programs of all mistakes that the table has.
+pub fn mistake_ids() -> impl Iterator<Item = &'static str> {
+    let rows = mistakes::ROWS.iter().map(|row| row.id);
+    rows.chain(mistakes::OBJECT_ROWS.iter().map(|row| row.id))
 }
 
 /// A verdict for programs, field by field.

@@ -68,14 +68,16 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     found
 }
 
+/// What stands for a far plane that is not there, of which no value says so: nothing that is farther is seen.
+pub const UNLIMITED: &str = "camera.far=1e9";
+
 /// The `--set` arguments that make one scene of another, where these say it.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     if from.objects.len() != to.objects.len() {
         return Vec::new();
     }
-    // There is no value for a plane that is not there; nothing that is farther is seen.
     let is_unlimited = from.camera.far.is_some() && to.camera.far.is_none();
-    let far = is_unlimited.then(|| "camera.far=1e9".to_owned());
+    let far = is_unlimited.then(|| UNLIMITED.to_owned());
     let all = all(to)
         .into_iter()
         .filter(|parameter| parameter.fields.len() == 1);

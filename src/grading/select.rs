@@ -56,14 +56,15 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
         best = without_needless(search, best);
     }
     let short = shortened(search, best);
-    let mut best = with_edges(search, short)?;
+    let mut best = with_edges(search, short, None)?;
     // A shift by half a pixel may be taken for a camera that looks a little elsewhere.
     if let Some(found) = &best
         && let [one] = found.candidate.named.as_slice()
         && let Cause::Numbers(parameter, _) = &one.cause
         && parameter.owner == Owner::Camera
     {
-        let other = with_edges(search, Candidate::right(search.scene))?;
+        let right = Candidate::right(search.scene);
+        let other = with_edges(search, right, found.score.samples)?;
         let other = other.filter(|other| search.strays(&other.candidate).is_empty());
         best = best
             .into_iter()
@@ -73,8 +74,13 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     cancel::unless_set(search.cancel, best)
 }
 
-/// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels.
-pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>, Cancelled> {
+/// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels. How many samples a pixel has may be known from
+/// another candidate that explains the picture.
+fn with_edges(
+    search: &Search,
+    candidate: Candidate,
+    samples: Option<f64>,
+) -> Result<Option<Found>, Cancelled> {
     let Some(null) = search.judged_on(&search.edges, candidate, None) else {
         return Ok(None);
     };
@@ -82,7 +88,8 @@ pub fn with_edges(search: &Search, candidate: Candidate) -> Result<Option<Found>
     let may = null.candidate.looks.is_empty()
         && null.candidate.curve == Curve::Right
         && search.fine.jpeg.is_none();
-    let is_one = null.score.samples.is_some_and(|samples| samples < ONE);
+    let samples = samples.or(null.score.samples);
+    let is_one = samples.is_some_and(|samples| samples < ONE);
     let shows = |row: &&Row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges => may && !is_one,

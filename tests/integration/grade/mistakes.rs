@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec3};
 use image::{Rgb, RgbImage, imageops};
 
-use super::textbook::{Encoding, Object, Program, Sampling, Shape};
+use super::textbook::{Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible};
 
 /// A mistake.
 pub struct Mistake {
@@ -13,7 +13,7 @@ pub struct Mistake {
     pub make: fn(&mut Program),
 }
 
-const fn row(name: &'static str, make: fn(&mut Program)) -> Mistake {
+pub const fn row(name: &'static str, make: fn(&mut Program)) -> Mistake {
     Mistake { name, make }
 }
 
@@ -62,7 +62,7 @@ pub const OF_THE_CAMERA: &[Mistake] = &[
     row("roll_ignored|camera.roll", |p| p.roll = 0.0),
     row("fov_of_width|camera.d|camera.fov", |p| p.is_wide = true),
     row("up_ignored|camera.up", |p| p.up = DVec3::Z),
-    row("behind_seen", |p| p.sees_behind = true),
+    row("behind_seen", |p| p.behind = Behind::ByDistance),
     row("camera.d|camera.fov", |p| p.distance *= 0.8),
     row("camera.eye", |p| p.eye += dvec3(0.4, -0.3, 0.5)),
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
@@ -71,7 +71,7 @@ pub const OF_THE_CAMERA: &[Mistake] = &[
 /// Of the board.
 pub const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
-    row("board_truncated", |p| p.is_truncated = true),
+    row("board_truncated", |p| p.squares = Squares::Truncated),
     row("Floor.square", |p| board(p, |_, square, _| *square *= 2.0)),
     row("Floor.y", |p| board(p, |y, _, _| *y -= 0.3)),
     row("Floor.colors", |p| {
@@ -99,7 +99,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
             color,
         });
     }),
-    row("depth_ignored", |p| p.is_painter = true),
+    row("depth_ignored", |p| p.visible = Visible::Last),
     row("box_corner|Crate.center", |p| {
         change(p, "Crate", |shape| {
             if let Shape::Box(least, greatest) = shape {
@@ -171,6 +171,8 @@ pub fn figure() -> Program {
         up: DVec3::Y,
         roll: 10_f64.to_radians(),
         distance: 2.75,
+        view_height: 2.0,
+        near: 0.0,
         far: f64::INFINITY,
         objects: vec![
             Object {
@@ -198,10 +200,11 @@ pub fn figure() -> Program {
         samples: 1,
         seed: 1,
         is_wide: false,
+        is_squeezed: false,
         offset: 0.0,
-        sees_behind: false,
-        is_painter: false,
-        is_truncated: false,
+        behind: Behind::Unseen,
+        visible: Visible::Nearest,
+        squares: Squares::Floored,
         parity: 0,
         encoding: Encoding::Srgb,
         averages_encoded: false,
@@ -237,7 +240,7 @@ pub fn street() -> Program {
     street
 }
 
-fn each(picture: &RgbImage, change: impl Fn([u8; 3]) -> [u8; 3]) -> RgbImage {
+pub fn each(picture: &RgbImage, change: impl Fn([u8; 3]) -> [u8; 3]) -> RgbImage {
     let mut changed = picture.clone();
     changed
         .pixels_mut()
@@ -263,7 +266,7 @@ fn board(program: &mut Program, change: impl Fn(&mut f64, &mut f64, &mut [u8; 3]
     }
 }
 
-fn change(program: &mut Program, name: &str, change: impl Fn(&mut Shape)) {
+pub fn change(program: &mut Program, name: &str, change: impl Fn(&mut Shape)) {
     for object in program
         .objects
         .iter_mut()
@@ -273,7 +276,7 @@ fn change(program: &mut Program, name: &str, change: impl Fn(&mut Shape)) {
     }
 }
 
-fn shift(program: &mut Program, name: &str, by: DVec3) {
+pub fn shift(program: &mut Program, name: &str, by: DVec3) {
     change(program, name, |shape| match shape {
         Shape::Sphere(center, _) => *center += by,
         Shape::Triangle(corners) => corners.iter_mut().for_each(|corner| *corner += by),

@@ -3,6 +3,7 @@
 mod command;
 mod corpus;
 mod mistakes;
+mod rarer;
 mod textbook;
 
 use std::{fs, io::Cursor, sync::atomic::AtomicBool};
@@ -40,38 +41,59 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
         .collect();
     let text = fs::read_to_string(TITLES).unwrap();
     let titles: Vec<&str> = effort.first(6, text.lines()).collect();
-    let judged: Vec<String> = titles
-        .par_iter()
-        .filter_map(|title| {
-            let case = all.iter().find(|case| case.title == *title);
-            let case = case.unwrap_or_else(|| panic!("{title} is no case"));
-            assert!(case.is_seen(), "{title}");
-            let mut file = Cursor::new(Vec::new());
-            case.picture()
-                .write_to(&mut file, ImageFormat::Png)
-                .unwrap();
-            let answer = answer(&[], case, file.get_ref());
-            let judgement = case.judge(&answer);
-            if judgement != Judgement::Right {
-                return Some(format!("{title}: {judgement:?}: {}", answer["line"]));
-            }
-            // What is told makes the picture.
-            let sets = answer["mistakes"].as_array().unwrap().iter();
-            let sets: Vec<Vec<&str>> = sets
-                .map(|one| {
-                    let set = one["set"].as_array().unwrap().iter();
-                    set.filter_map(Value::as_str).collect()
-                })
-                .collect();
-            if sets.is_empty() || sets.iter().any(Vec::is_empty) {
-                return None;
-            }
-            let told = self::answer(&sets.concat(), case, file.get_ref());
-            let is_right = told["verdict"] == "right" || told["verdict"] == "noise";
-            (!is_right).then(|| format!("{title}: with {sets:?}: {}", told["line"]))
+    let judged = titles.par_iter().filter_map(|title| {
+        let case = all.iter().find(|case| case.title == *title);
+        wrongly_judged(case.unwrap_or_else(|| panic!("{title} is no case")))
+    });
+    let judged: Vec<String> = judged.collect();
+    assert!(judged.is_empty(), "{}", judged.join("\n"));
+}
+
+sampled_and_exhaustive!(every_row_of_the_table_is_named);
+
+fn every_row_of_the_table_is_named(effort: Effort) {
+    let names = rarer::cases().map(|case| case.title);
+    let names: Vec<String> = names
+        .chain(corpus::kinds().map(|kind| kind.name.to_owned()))
+        .collect();
+    for id in grading::mistake_ids() {
+        let mut words = names.iter().flat_map(|name| name.split(['|', ' ']));
+        assert!(words.any(|word| word == id), "{id} is nowhere");
+    }
+    let cases: Vec<Case> = effort.first(2, rarer::cases()).collect();
+    let judged: Vec<String> = cases.par_iter().filter_map(wrongly_judged).collect();
+    assert!(judged.is_empty(), "{}", judged.join("\n"));
+}
+
+/// What is said of a case that is judged otherwise than right.
+fn wrongly_judged(case: &Case) -> Option<String> {
+    let title = &case.title;
+    if !case.is_seen() {
+        return Some(format!("{title} is not seen"));
+    }
+    let mut file = Cursor::new(Vec::new());
+    case.picture()
+        .write_to(&mut file, ImageFormat::Png)
+        .unwrap();
+    let answer = answer(&[], case, file.get_ref());
+    let judgement = case.judge(&answer);
+    if judgement != Judgement::Right {
+        return Some(format!("{title}: {judgement:?}: {}", answer["line"]));
+    }
+    // What is told makes the picture.
+    let sets = answer["mistakes"].as_array().unwrap().iter();
+    let sets: Vec<Vec<&str>> = sets
+        .map(|one| {
+            let set = one["set"].as_array().unwrap().iter();
+            set.filter_map(Value::as_str).collect()
         })
         .collect();
-    assert!(judged.is_empty(), "{}", judged.join("\n"));
+    if sets.is_empty() || sets.iter().any(Vec::is_empty) {
+        return None;
+    }
+    let told = self::answer(&sets.concat(), case, file.get_ref());
+    let is_right = told["verdict"] == "right" || told["verdict"] == "noise";
+    (!is_right).then(|| format!("{title}: with {sets:?}: {}", told["line"]))
 }
 
 /// What is said of a file with a case's picture, where a scene is set otherwise.

@@ -45,6 +45,43 @@ pub enum Encoding {
     Power(f64),
 }
 
+/// Which of the surfaces that a ray hits is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Visible {
+    /// The nearest.
+    Nearest,
+    /// That of the first object.
+    First,
+    /// That of the last object.
+    Last,
+    /// The farthest.
+    Farthest,
+}
+
+/// Whether what lies behind the eye is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Behind {
+    /// It is not.
+    Unseen,
+    /// As far away as it is.
+    ByDistance,
+    /// Before everything that lies before the eye.
+    First,
+}
+
+/// How the number of a square of the board is told, which is 1 for its second colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Squares {
+    /// By the sum of two coordinates that are rounded down.
+    Floored,
+    /// By the sum of two that are cut off.
+    Truncated,
+    /// By the remainder of their sum, which is -1 for a negative odd one.
+    Remainder,
+    /// By whether their two remainders differ.
+    Remainders,
+}
+
 /// Where the samples of a pixel lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
@@ -73,8 +110,12 @@ pub struct Program {
     pub up: DVec3,
     /// In radians.
     pub roll: f64,
-    /// Of the view plane; the window is two metres tall.
+    /// Of the view plane.
     pub distance: f64,
+    /// Of the window.
+    pub view_height: f64,
+    /// Of the near plane, in depth.
+    pub near: f64,
     /// Of the far plane, in depth.
     pub far: f64,
     /// In the order of the text.
@@ -85,16 +126,18 @@ pub struct Program {
     pub samples: u32,
     /// Of the random numbers.
     pub seed: u64,
-    /// Whether the window is two metres wide, not tall.
+    /// Whether the window's height is taken for its width.
     pub is_wide: bool,
+    /// Whether the window is as wide as it is tall.
+    pub is_squeezed: bool,
     /// Added to each sample's place, in pixels.
     pub offset: f64,
     /// Whether what lies behind the eye is seen.
-    pub sees_behind: bool,
-    /// Whether the last object that is hit is seen, not the nearest.
-    pub is_painter: bool,
-    /// Whether the board's coordinates are cut off, not rounded down.
-    pub is_truncated: bool,
+    pub behind: Behind,
+    /// Which of the surfaces that a ray hits is seen.
+    pub visible: Visible,
+    /// How the number of a square is told.
+    pub squares: Squares,
     /// Added to the number of a square.
     pub parity: i64,
     /// What the picture's light is encoded by.
@@ -116,13 +159,17 @@ impl Program {
         let v = w.cross(u);
         let (sin, cos) = libm::sincos(self.roll);
         let (u, v) = (cos * u - sin * v, sin * u + cos * v);
-        let pixel = 2.0 / f64::from(if self.is_wide { width } else { height });
+        let pixel = self.view_height / f64::from(if self.is_wide { width } else { height });
+        let across = match self.is_squeezed {
+            true => self.view_height / f64::from(width),
+            false => pixel,
+        };
         let mut random = SmallRng::seed_from_u64(self.seed);
         let picture = RgbImage::from_fn(width, height, |column, row| {
             let mut sum = DVec3::ZERO;
             for index in 0..self.samples {
                 let [dx, dy] = self.place(index, &mut random);
-                let x = pixel * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
+                let x = across * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
                 let y = pixel * (f64::from(height) / 2.0 - f64::from(row) - dy - self.offset);
                 let ray = (x * u + y * v - self.distance * w).normalize();
                 let color = self.trace(ray, -w).map(|byte| f64::from(byte) / 255.0);
@@ -186,38 +233,61 @@ impl Program {
 
     /// The colour in a direction.
     fn trace(&self, ray: DVec3, view: DVec3) -> [u8; 3] {
-        let mut nearest = f64::INFINITY;
-        let mut color = self.background;
+        // What lies behind the eye is before everything, or counts as far away as it is.
+        let order = |t: f64| {
+            if self.behind == Behind::First {
+                t
+            } else {
+                t.abs()
+            }
+        };
+        let counts = |t: &f64| {
+            let depth = t.abs() * ray.dot(view);
+            let is_before = self.behind != Behind::Unseen || *t > 1e-9;
+            is_before && depth > self.near && depth < self.far
+        };
+        let mut seen: Option<(f64, &Object)> = None;
         for object in &self.objects {
-            let hits = self.hits(&object.shape, ray);
-            for t in hits.into_iter().flatten() {
-                let is_before = self.sees_behind || t > 1e-9;
-                // What lies behind the eye counts as far away as it is.
-                let depth = t.abs() * ray.dot(view);
-                if is_before && depth < self.far && (t.abs() < nearest || self.is_painter) {
-                    nearest = t.abs();
-                    color = self.color(object, self.eye + t * ray);
-                }
+            let hits = self.hits(&object.shape, ray).into_iter().flatten();
+            let first = hits
+                .filter(counts)
+                .min_by(|a, b| order(*a).total_cmp(&order(*b)));
+            let Some(t) = first else {
+                continue;
+            };
+            let is_seen = seen.is_none_or(|(other, _)| match self.visible {
+                Visible::Nearest => order(t) < order(other),
+                Visible::First => false,
+                Visible::Last => true,
+                Visible::Farthest => t > other,
+            });
+            if is_seen {
+                seen = Some((t, object));
             }
         }
-        color
+        seen.map_or(self.background, |(t, object)| {
+            self.color(object, self.eye + t * ray)
+        })
     }
 
     fn color(&self, object: &Object, at: DVec3) -> [u8; 3] {
         let Shape::Board(_, square, second) = object.shape else {
             return object.color;
         };
-        let number = |x: f64| match self.is_truncated {
-            true => (x / square) as i64,
-            false => (x / square).floor() as i64,
+        let number = |x: f64| match self.squares {
+            Squares::Truncated => (x / square) as i64,
+            _ => (x / square).floor() as i64,
         };
-        match (number(at.x) + number(at.z) + self.parity) % 2 {
-            0 => object.color,
-            _ => second,
-        }
+        let (i, k) = (number(at.x), number(at.z) + self.parity);
+        let is_second = match self.squares {
+            Squares::Floored | Squares::Truncated => (i + k) % 2 != 0,
+            Squares::Remainder => (i + k) % 2 == 1,
+            Squares::Remainders => i % 2 != k % 2,
+        };
+        if is_second { second } else { object.color }
     }
 
-    /// The distances at which a ray meets a shape, the nearest one last, so that a painter sees it.
+    /// The distances at which a ray meets a shape.
     fn hits(&self, shape: &Shape, ray: DVec3) -> [Option<f64>; 2] {
         match *shape {
             Shape::Sphere(center, radius) => {
@@ -258,9 +328,17 @@ impl Program {
             true => format!("  far {}", self.far),
             false => String::new(),
         };
+        let window = match self.view_height {
+            2.0 => String::new(),
+            tall => format!("  view_height {tall}"),
+        };
+        let near = match self.near {
+            0.0 => String::new(),
+            near => format!("  near {near}"),
+        };
         let mut text = format!(
             "image {{ width {width}  height {height}  background {} }}\n\
-             camera {{ eye {}  lookat {}  up {}  roll {}deg  d {}{far} }}\n",
+             camera {{ eye {}  lookat {}  up {}  roll {}deg  d {}{window}{near}{far} }}\n",
             hex(self.background),
             vector(self.eye),
             vector(self.lookat),
