@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::{self, Written},
+    edits::edits,
     fields::{changes, movable},
     handles::{self, Along, TOLERANCE, handles, outline_point},
     projection::Projection,
@@ -79,21 +79,16 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         return Ok(Dragged::default());
     }
     let changes = changes(&fields, ideal);
-    let written = |decimals| edits::written(analysis, block, &changes, decimals);
-    let is_near = |written: &Written| {
-        let mut values = written.values.iter();
-        let expected = values.try_fold(current, |part, &(name, value)| part.with(name, value));
-        expected.is_some_and(|part| part.is_possible() && view.agree(ideal, part))
-    };
+    let edits = |decimals| edits(analysis, block, current, &changes, decimals);
+    let is_near = |(_, part): &(Vec<Edit>, Part)| part.is_possible() && view.agree(ideal, *part);
     let greatest = changes.iter().map(|change| change.size());
     let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
     let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
-    let edits = (first..first + DIGITS)
-        .filter_map(written)
+    let (edits, _) = (first..first + DIGITS)
+        .filter_map(edits)
         .find(is_near)
-        .or_else(|| written(first + DIGITS))
-        .ok_or_else(tied)?
-        .edits;
+        .or_else(|| edits(first + DIGITS))
+        .ok_or_else(tied)?;
     let found = part(&read(analysis, &edits)?, drag)?;
     if !view.agree(ideal, found) {
         return Err(tied());

@@ -9,35 +9,27 @@ use super::fields::Change;
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
-    scene::operate,
+    scene::{Part, operate},
     schema::Value,
     source::{SourceId, Span},
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// Edits of fields.
-pub struct Written {
-    /// In order.
-    pub edits: Vec<Edit>,
-    /// The fields with the values that they come to, unless a number that changes stands behind several of them.
-    pub values: Vec<(&'static str, Value)>,
-}
-
-/// Changes fields of a block, with numbers written to so many decimals: those of angles in degrees, and radians to two more.
-/// None if two of them want different things of one number.
-pub fn written<'s>(
+/// The edits that change fields of a part's block, in order, with numbers written to so many decimals: those of angles in degrees, and radians to two more. And
+/// what becomes of the part, unless a number that changes stands behind several of its fields. None if two of them want different things of one number.
+pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
+    mut part: Part,
     changes: &[Change],
     decimals: i32,
-) -> Option<Written> {
+) -> Option<(Vec<Edit>, Part)> {
     let mut writer = Writer {
         analysis,
         decimals,
         edits: Vec::new(),
     };
     let mut added = Vec::new();
-    let mut values = Vec::new();
     for &Change { name, from, by } in changes {
         let value = match block.fields.iter().find(|field| field.name.text == name) {
             Some(field) => operate(Operator::Add, from, writer.change(&field.value, by))?,
@@ -47,7 +39,7 @@ pub fn written<'s>(
                 value
             }
         };
-        values.push((name, value));
+        part = part.with(name, value)?;
     }
     let mut edits = writer.edits;
     if !added.is_empty() {
@@ -62,7 +54,7 @@ pub fn written<'s>(
     let apart = |pair: &[Edit]| pair[0].span.end <= pair[1].span.start;
     let same = |pair: &[Edit]| pair[0].span == pair[1].span;
     let is_right = edits.windows(2).all(|pair| apart(pair) && !same(pair));
-    is_right.then_some(Written { edits, values })
+    is_right.then_some((edits, part))
 }
 
 struct Writer<'a, 's> {
