@@ -110,10 +110,8 @@ fn described(value: Value) -> String {
             format!("{noun}: {first}\n\nand {second}")
         }
         Value::Angle(angle) => {
-            let radians = angle.degrees.to_radians() + angle.radians;
-            let degrees = Angle::from_degrees(angle.degrees + angle.radians.to_degrees());
-            let degrees = Value::Angle(degrees);
-            format!("{noun}: `{degrees}`, `{}rad`", short(radians))
+            let degrees = Value::Angle(Angle::from_degrees(angle.in_degrees()));
+            format!("{noun}: `{degrees}`, `{}rad`", short(angle.in_radians()))
         }
         Value::Number(_) | Value::Vector(_) | Value::Method(_) => format!("{noun}: `{value}`"),
     }

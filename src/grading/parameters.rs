@@ -8,8 +8,8 @@ use super::axes::Axes;
 use crate::{
     color::Color,
     math::Angle,
-    scene::{Lens, Outline, Scene, Shape, View},
-    schema::{self, Value},
+    scene::{Part, Scene, Shape, View},
+    schema::{self, Field, Value},
 };
 
 /// Whose field it is.
@@ -50,10 +50,12 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
-            let used = fields
-                .iter()
-                .filter(move |field| value(scene, owner, field.name).is_some());
-            used.map(move |field| Parameter {
+            // A box's numbers are its centre and its size, however it is written.
+            let is_used = move |field: &&Field| {
+                let is_corner = matches!(field.name, "min" | "max");
+                !is_corner && owner.part(scene).value(field.name).is_some()
+            };
+            fields.iter().filter(is_used).map(move |field| Parameter {
                 owner,
                 fields: vec![field.name],
             })
@@ -119,6 +121,14 @@ impl Owner {
         }
     }
 
+    fn part(self, scene: &Scene) -> Part {
+        match self {
+            Self::Image => Part::Image(scene.image),
+            Self::Camera => Part::Camera(scene.camera),
+            Self::Object(index) => Part::Shape(scene.objects[index].shape),
+        }
+    }
+
     /// What it is called.
     pub fn name(self, scene: &Scene) -> String {
         match self {
@@ -139,17 +149,16 @@ impl Parameter {
 
     /// Its values.
     pub fn values(&self, scene: &Scene) -> Vec<Value> {
-        self.fields
-            .iter()
-            .filter_map(|field| value(scene, self.owner, field))
-            .collect()
+        let part = self.owner.part(scene);
+        let fields = self.fields.iter();
+        fields.filter_map(|field| part.value(field)).collect()
     }
 
     /// Its numbers: angles in degrees, colours from 0 to 255.
     pub fn numbers(&self, scene: &Scene) -> Vec<f64> {
         let numbers = |value: Value| match value {
             Value::Number(number) => vec![number],
-            Value::Angle(angle) => vec![angle.degrees + angle.radians.to_degrees()],
+            Value::Angle(angle) => vec![angle.in_degrees()],
             Value::Vector(vector) => vector.to_array().to_vec(),
             Value::Color(color) => color.srgb.to_vec(),
             Value::Colors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
@@ -160,10 +169,10 @@ impl Parameter {
 
     /// A scene with other numbers, if they can be.
     pub fn put(&self, scene: &Scene, numbers: &[f64]) -> Option<Scene> {
-        let mut changed = scene.clone();
+        let mut part = self.owner.part(scene);
         let mut rest = numbers;
         for field in &self.fields {
-            let before = value(scene, self.owner, field)?;
+            let before = part.value(field)?;
             let (own, others) = rest.split_at(match before {
                 Value::Vector(_) | Value::Color(_) => 3,
                 Value::Colors(_) => 6,
@@ -180,9 +189,18 @@ impl Parameter {
                 Value::Angle(_) => Value::Angle(Angle::from_degrees(own[0])),
                 _ => Value::Number(own[0]),
             };
-            set(&mut changed, self.owner, field, after)?;
+            part = part.with(field, after)?;
         }
-        is_possible(&changed, self.owner).then_some(changed)
+        part.is_possible().then(|| {
+            let mut changed = scene.clone();
+            match (part, self.owner) {
+                (Part::Image(image), _) => changed.image = image,
+                (Part::Camera(camera), _) => changed.camera = camera,
+                (Part::Shape(shape), Owner::Object(index)) => changed.objects[index].shape = shape,
+                (Part::Shape(_), _) => {}
+            }
+            changed
+        })
     }
 
     /// The arguments that set it to what it is in a scene; none where its object has no name.
@@ -197,7 +215,7 @@ impl Parameter {
         };
         let written = |value: Value| match value {
             Value::Number(number) => format!("{number}"),
-            Value::Angle(angle) => format!("{}deg", angle.degrees + angle.radians.to_degrees()),
+            Value::Angle(angle) => format!("{}deg", angle.in_degrees()),
             Value::Vector(v) => format!("({}, {}, {})", v.x, v.y, v.z),
             other => other.to_string(),
         };
@@ -239,7 +257,7 @@ impl Parameter {
             ("direction", Value::Vector(direction)) => vec![direction.length() / axes.focal; 3],
             (_, Value::Vector(_)) => vec![pixel; 3],
             ("fov" | "hfov", Value::Angle(angle)) => {
-                vec![2.0 / wide * (angle.degrees + angle.radians.to_degrees())]
+                vec![2.0 / wide * angle.in_degrees()]
             }
             (_, Value::Angle(_)) => vec![(2.0f64 / wide).to_degrees()],
             ("radius", _) => vec![pixel],
@@ -278,174 +296,5 @@ pub fn middle(shape: &Shape) -> Option<DVec3> {
         Shape::Triangle(triangle) => Some(triangle.outline.centroid()),
         Shape::Box(cuboid) => Some(cuboid.min.midpoint(cuboid.max)),
         Shape::Checkerboard(_) => None,
-    }
-}
-
-/// A field's value, if the scene uses it: of alternatives the one that it is written in.
-fn value(scene: &Scene, owner: Owner, field: &str) -> Option<Value> {
-    let camera = &scene.camera;
-    let index = match owner {
-        Owner::Image => {
-            return (field == "background").then_some(Value::Color(scene.image.background));
-        }
-        Owner::Camera => {
-            return match (field, camera.view, camera.lens) {
-                ("eye", ..) => Some(Value::Vector(camera.eye)),
-                ("lookat", View::Lookat(point), _) => Some(Value::Vector(point)),
-                ("direction", View::Direction(direction), _) => Some(Value::Vector(direction)),
-                ("roll", ..) => Some(Value::Angle(camera.roll)),
-                ("up", ..) => Some(Value::Vector(camera.up)),
-                ("view_height", _, Lens::Distance(_)) => Some(Value::Number(camera.view_height)),
-                ("d", _, Lens::Distance(d)) => Some(Value::Number(d)),
-                ("fov", _, Lens::Fov(angle)) | ("hfov", _, Lens::HorizontalFov(angle)) => {
-                    Some(Value::Angle(angle))
-                }
-                ("near", ..) => Some(Value::Number(camera.near)),
-                ("far", ..) => camera.far.map(Value::Number),
-                _ => None,
-            };
-        }
-        Owner::Object(index) => index,
-    };
-    match (scene.objects[index].shape, field) {
-        (Shape::Sphere(sphere), "center") => Some(Value::Vector(sphere.center)),
-        (Shape::Sphere(sphere), "radius") => Some(Value::Number(sphere.radius)),
-        (Shape::Sphere(sphere), "color") => Some(Value::Color(sphere.color)),
-        (Shape::Triangle(triangle), "color") => Some(Value::Color(triangle.color)),
-        (Shape::Triangle(triangle), _) => match (triangle.outline, field) {
-            (Outline::Vertices([vertex, _, _]), "v0")
-            | (Outline::Vertices([_, vertex, _]), "v1")
-            | (Outline::Vertices([_, _, vertex]), "v2") => Some(Value::Vector(vertex)),
-            (Outline::Centered(triangle), "centroid") => Some(Value::Vector(triangle.centroid)),
-            (Outline::Centered(triangle), "normal") => Some(Value::Vector(triangle.normal)),
-            (Outline::Centered(triangle), "sides") => Some(Value::Vector(triangle.sides)),
-            (Outline::Centered(triangle), "spin") => Some(Value::Angle(triangle.spin)),
-            _ => None,
-        },
-        (Shape::Box(cuboid), "center") => {
-            Some(Value::Vector(tidy(cuboid.min.midpoint(cuboid.max))))
-        }
-        (Shape::Box(cuboid), "size") => Some(Value::Vector(tidy(cuboid.max - cuboid.min))),
-        (Shape::Box(cuboid), "color") => Some(Value::Color(cuboid.color)),
-        (Shape::Checkerboard(board), "y") => Some(Value::Number(board.y)),
-        (Shape::Checkerboard(board), "square") => Some(Value::Number(board.square)),
-        (Shape::Checkerboard(board), "colors") => Some(Value::Colors(board.colors)),
-        _ => None,
-    }
-}
-
-/// Without what the rounding of two corners leaves behind the fifteenth digit.
-fn tidy(v: DVec3) -> DVec3 {
-    DVec3::from_array(
-        v.to_array()
-            .map(|x| format!("{x:.14e}").parse().unwrap_or(x)),
-    )
-}
-
-fn set(scene: &mut Scene, owner: Owner, field: &str, value: Value) -> Option<()> {
-    let camera = &mut scene.camera;
-    let index = match (owner, field, value) {
-        (Owner::Object(index), ..) => index,
-        (Owner::Image, "background", Value::Color(color)) => {
-            scene.image.background = color;
-            return Some(());
-        }
-        (Owner::Camera, _, value) => {
-            match (field, value) {
-                ("eye", Value::Vector(eye)) => camera.eye = eye,
-                ("lookat", Value::Vector(point)) => camera.view = View::Lookat(point),
-                ("direction", Value::Vector(direction)) => camera.view = View::Direction(direction),
-                ("roll", Value::Angle(roll)) => camera.roll = roll,
-                ("d", Value::Number(d)) => camera.lens = Lens::Distance(d),
-                ("fov", Value::Angle(angle)) => camera.lens = Lens::Fov(angle),
-                ("hfov", Value::Angle(angle)) => camera.lens = Lens::HorizontalFov(angle),
-                ("up", Value::Vector(up)) => camera.up = up,
-                ("view_height", Value::Number(height)) => camera.view_height = height,
-                ("near", Value::Number(near)) => camera.near = near,
-                ("far", Value::Number(far)) => camera.far = Some(far),
-                _ => return None,
-            }
-            return Some(());
-        }
-        _ => return None,
-    };
-    match (&mut scene.objects[index].shape, field, value) {
-        (Shape::Sphere(sphere), "center", Value::Vector(center)) => sphere.center = center,
-        (Shape::Sphere(sphere), "radius", Value::Number(radius)) => sphere.radius = radius,
-        (Shape::Sphere(sphere), "color", Value::Color(color)) => sphere.color = color,
-        (Shape::Triangle(triangle), "color", Value::Color(color)) => triangle.color = color,
-        (Shape::Triangle(triangle), _, value) => match (&mut triangle.outline, field, value) {
-            (Outline::Vertices(vertices), "v0", Value::Vector(vertex)) => vertices[0] = vertex,
-            (Outline::Vertices(vertices), "v1", Value::Vector(vertex)) => vertices[1] = vertex,
-            (Outline::Vertices(vertices), "v2", Value::Vector(vertex)) => vertices[2] = vertex,
-            (Outline::Centered(own), "centroid", Value::Vector(centroid)) => {
-                own.centroid = centroid
-            }
-            (Outline::Centered(own), "normal", Value::Vector(normal)) => own.normal = normal,
-            (Outline::Centered(own), "sides", Value::Vector(sides)) => own.sides = sides,
-            (Outline::Centered(own), "spin", Value::Angle(spin)) => own.spin = spin,
-            _ => return None,
-        },
-        (Shape::Box(cuboid), "center", Value::Vector(center)) => {
-            let half = (cuboid.max - cuboid.min) / 2.0;
-            (cuboid.min, cuboid.max) = (center - half, center + half);
-        }
-        (Shape::Box(cuboid), "size", Value::Vector(size)) => {
-            let center = tidy(cuboid.min.midpoint(cuboid.max));
-            (cuboid.min, cuboid.max) = (center - size / 2.0, center + size / 2.0);
-        }
-        (Shape::Box(cuboid), "color", Value::Color(color)) => cuboid.color = color,
-        (Shape::Checkerboard(board), "y", Value::Number(y)) => board.y = y,
-        (Shape::Checkerboard(board), "square", Value::Number(square)) => board.square = square,
-        (Shape::Checkerboard(board), "colors", Value::Colors(colors)) => board.colors = colors,
-        _ => return None,
-    }
-    Some(())
-}
-
-/// Whether the language's conditions hold for a block.
-fn is_possible(scene: &Scene, owner: Owner) -> bool {
-    let camera = &scene.camera;
-    match owner {
-        Owner::Image => true,
-        Owner::Camera => {
-            let looks = match camera.view {
-                View::Lookat(point) => point != camera.eye && point.is_finite(),
-                View::Direction(direction) => direction != DVec3::ZERO && direction.is_finite(),
-            };
-            let sees = match camera.lens {
-                Lens::Distance(d) => d > 0.0 && d.is_finite(),
-                Lens::Fov(angle) | Lens::HorizontalFov(angle) => {
-                    let degrees = angle.degrees + angle.radians.to_degrees();
-                    degrees > 0.0 && degrees < 180.0
-                }
-            };
-            looks
-                && sees
-                && camera.eye.is_finite()
-                && camera.near >= 0.0
-                && camera.far.is_none_or(|far| far > camera.near)
-        }
-        Owner::Object(index) => match scene.objects[index].shape {
-            Shape::Sphere(sphere) => {
-                sphere.radius > 0.0 && sphere.radius.is_finite() && sphere.center.is_finite()
-            }
-            Shape::Triangle(triangle) => match triangle.outline {
-                Outline::Vertices([a, b, c]) => (b - a).cross(c - a).length_squared() > 0.0,
-                Outline::Centered(own) => {
-                    let [a, b, c] = own.sides.to_array();
-                    let is_triangle = a < b + c && b < a + c && c < a + b;
-                    own.normal.length_squared() > 0.0 && is_triangle && own.centroid.is_finite()
-                }
-            },
-            Shape::Box(cuboid) => {
-                cuboid.min.cmplt(cuboid.max).all()
-                    && cuboid.min.is_finite()
-                    && cuboid.max.is_finite()
-            }
-            Shape::Checkerboard(board) => {
-                board.square > 0.0 && board.square.is_finite() && board.y.is_finite()
-            }
-        },
     }
 }

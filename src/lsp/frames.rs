@@ -7,7 +7,7 @@ use std::collections::{HashMap, VecDeque};
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use gen_lsp_types as lsp;
-use lsp_server::{ErrorCode, RequestId};
+use lsp_server::RequestId;
 use serde_json::{Value, json};
 
 use super::{
@@ -64,9 +64,9 @@ struct Begun {
 impl Wanted {
     /// Reads the parameters of a request.
     pub fn new(params: &Value) -> Result<Self, Refusal> {
-        let invalid = |name: &str| {
+        let invalid = |name| {
             let message = format!("`{name}` is a whole number of at least 1");
-            Err(Refusal(ErrorCode::InvalidParams, message))
+            Err(Refusal::invalid(message))
         };
         let scale = optional(params, "scale")?.unwrap_or(1);
         let samples = optional(params, "samples")?;
@@ -156,12 +156,12 @@ impl Frame {
             none => none.insert(Begun::new(self.wanted, version)?),
         };
         let (_, world) = version.world(self.wanted.scale);
-        begun.advance(world).map_err(refused)?;
+        begun.advance(world).map_err(Refusal::failed)?;
         if !begun.slices.is_empty() {
             return Ok(None);
         }
         let mut png = Vec::new();
-        film::write_plain_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
+        film::write_plain_png(&begun.film, &mut png).map_err(Refusal::failed)?;
         let image = &version.scene.image;
         Ok(Some(json!({
             "version": version.number,
@@ -181,7 +181,7 @@ impl Begun {
             let message = format!(
                 "a frame of {width} × {height} pixels is more than a page can show; at most {MOST_PIXELS} pixels can be asked for, by a larger `scale`"
             );
-            return Err(failed(message));
+            return Err(Refusal::failed(message));
         }
         let sampler = wanted.sampler(&version.scene);
         let sampling = Sampling::new(&sampler, width, height);
@@ -193,10 +193,10 @@ impl Begun {
             let message = format!(
                 "{work} samples a pixel take too long for a frame; at most {SLICE} can be asked for, by `samples`"
             );
-            return Err(failed(message));
+            return Err(Refusal::failed(message));
         }
         Ok(Self {
-            film: Film::new(width, height).map_err(|error| failed(error.to_string()))?,
+            film: Film::new(width, height).map_err(Refusal::failed)?,
             sampling,
             // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
             slices: whole.tiles(1 << ((SLICE / work).ilog2() / 2)).collect(),
@@ -217,12 +217,4 @@ impl Begun {
         self.film.put(part, made.film().pixels());
         Ok(())
     }
-}
-
-fn failed(message: String) -> Refusal {
-    Refusal(ErrorCode::RequestFailed, message)
-}
-
-fn refused(error: RenderError) -> Refusal {
-    failed(error.to_string())
 }

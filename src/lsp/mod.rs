@@ -15,4 +15,5 @@ mod server;
 pub mod stdio;
 mod text_requests;
 
+pub use params::{Answer, Refusal, response};
 pub use server::Server;

@@ -1,18 +1,41 @@
 //! Parameters and results as JSON, and why a request gets none.
 
-use lsp_server::ErrorCode;
+use lsp_server::{ErrorCode, Message, RequestId, Response};
 use serde_json::Value;
 
 /// Why a request gets no answer.
+#[derive(Debug)]
 pub struct Refusal(pub ErrorCode, pub String);
+
+impl Refusal {
+    /// What was asked is not what can be asked.
+    pub fn invalid(why: impl ToString) -> Self {
+        Self(ErrorCode::InvalidParams, why.to_string())
+    }
+
+    /// The request was right, and cannot be done; editors show the reason.
+    pub fn failed(why: impl ToString) -> Self {
+        Self(ErrorCode::RequestFailed, why.to_string())
+    }
+
+    /// The client does not want the answer any more.
+    pub fn cancelled() -> Self {
+        Self(ErrorCode::RequestCanceled, "cancelled".to_owned())
+    }
+
+    /// There is no such method.
+    pub fn unknown(method: &str) -> Self {
+        let why = format!("`{method}` is not known here");
+        Self(ErrorCode::MethodNotFound, why)
+    }
+}
 
 /// What is answered, as JSON.
 pub type Answer = Result<Value, Refusal>;
 
 /// What was asked, in the protocol's types.
 pub fn parsed<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    serde_json::from_value(params)
-        .map_err(|error| Refusal(ErrorCode::InvalidParams, error.to_string()))
+    serde_json::from_value(params).map_err(Refusal::invalid)
 }
 
 /// What is answered, as JSON.
@@ -27,6 +50,14 @@ pub fn optional<T: serde::de::DeserializeOwned>(
     name: &str,
 ) -> Result<Option<T>, Refusal> {
     let field = params.get(name).cloned().unwrap_or_default();
-    serde_json::from_value(field)
-        .map_err(|error| Refusal(ErrorCode::InvalidParams, format!("`{name}`: {error}")))
+    serde_json::from_value(field).map_err(|error| Refusal::invalid(format!("`{name}`: {error}")))
+}
+
+/// The message that answers a request.
+pub fn response(id: RequestId, answer: Answer) -> Message {
+    let response = match answer {
+        Ok(result) => Response::new_ok(id, result),
+        Err(Refusal(code, message)) => Response::new_err(id, code as i32, message),
+    };
+    response.into()
 }

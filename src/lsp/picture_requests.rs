@@ -3,14 +3,12 @@
 use std::cell::LazyCell;
 
 use glam::DVec2;
-use lsp_server::ErrorCode;
 use serde_json::{Value, json};
 
 use super::{
     convert::Converter,
     params::{Answer, Refusal, optional, parsed},
     scene_version::SceneVersion,
-    text_requests::unknown,
 };
 use crate::{
     editor::{
@@ -39,7 +37,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
         "overlays" => overlays(params, converter, version),
         "drag" => drag(params, converter, analysis, version),
         "samples" => samples(params, version),
-        _ => Err(unknown(&format!("{NAMESPACE}{about}"))),
+        _ => Err(Refusal::unknown(&format!("{NAMESPACE}{about}"))),
     }
 }
 
@@ -126,7 +124,7 @@ fn drag(
         Some("floor") => Some(Along::Floor),
         Some(other) => {
             let message = format!("`along` is x, y, z or floor, and not `{other}`");
-            return Err(Refusal(ErrorCode::InvalidParams, message));
+            return Err(Refusal::invalid(message));
         }
     };
     let drag = Drag {
@@ -136,8 +134,7 @@ fn drag(
         to,
         along,
     };
-    let dragged = viewport::drag(analysis, &version.scene, &drag)
-        .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
+    let dragged = viewport::drag(analysis, &version.scene, &drag).map_err(Refusal::failed)?;
     let edits: Vec<_> = converter.text_edits(dragged.edits).collect();
     Ok(json!({ "edits": edits, "values": dragged.values }))
 }
@@ -146,12 +143,10 @@ fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
     let pixel: [u32; 2] = parsed(params.get("pixel").cloned().unwrap_or_default())?;
     let image = version.scene.image;
     if pixel[0] >= image.width || pixel[1] >= image.height {
-        let message = "`pixel` is no pixel of the picture".to_owned();
-        return Err(Refusal(ErrorCode::InvalidParams, message));
+        return Err(Refusal::invalid("`pixel` is no pixel of the picture"));
     }
     let (scene, world) = version.world(1);
-    let found = viewport::samples(scene, world, pixel)
-        .map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
+    let found = viewport::samples(scene, world, pixel).map_err(Refusal::failed)?;
     let points = found.samples.iter().map(|(point, _)| point.to_array());
     let colors = found.samples.iter().map(|(_, color)| color.to_string());
     Ok(json!({
@@ -164,10 +159,8 @@ fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
 fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {
     let point: Option<[f64; 2]> = optional(params, name)?;
     let point = point.filter(|point| point.iter().all(|x| x.is_finite()));
-    point.map(DVec2::from).ok_or_else(|| {
-        let message = format!("`{name}` is a point of the picture, as [x, y]");
-        Refusal(ErrorCode::InvalidParams, message)
-    })
+    let refusal = || Refusal::invalid(format!("`{name}` is a point of the picture, as [x, y]"));
+    point.map(DVec2::from).ok_or_else(refusal)
 }
 
 /// A point to a hundredth of a pixel, which nobody sees, in a third of the bytes.

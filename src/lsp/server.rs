@@ -12,14 +12,14 @@ use std::{
 };
 
 use gen_lsp_types as lsp;
-use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
 
 use super::{
     convert::{self, Client, Converter},
     documents::Document,
     frames::{Frames, Wanted},
-    params::{Refusal, parsed, written},
+    params::{Refusal, parsed, response, written},
     picture_requests,
     scene_version::SceneVersion,
     text_requests::{answer, diagnostics, not_open},
@@ -282,7 +282,7 @@ impl Server {
     }
 
     fn change(&mut self, params: &Value) -> Result<Vec<Message>, Refusal> {
-        let refuse = |message| Err(Refusal(ErrorCode::InvalidParams, message));
+        let refuse = |message| Err(Refusal::invalid(message));
         let text_document = params.get("textDocument").cloned().unwrap_or_default();
         let lsp::VersionedTextDocumentIdentifier {
             version,
@@ -324,16 +324,7 @@ impl Server {
 }
 
 fn cancelled(id: RequestId) -> Message {
-    let message = "cancelled".to_owned();
-    response(id, Err(Refusal(ErrorCode::RequestCanceled, message)))
-}
-
-fn response(id: RequestId, answer: Result<Value, Refusal>) -> Message {
-    let response = match answer {
-        Ok(result) => Response::new_ok(id, result),
-        Err(Refusal(code, message)) => Response::new_err(id, code as i32, message),
-    };
-    response.into()
+    response(id, Err(Refusal::cancelled()))
 }
 
 fn published(params: Value) -> Message {

@@ -1,7 +1,7 @@
 //! A request about a document, and its answer: the parameters read, the editor asked, the answer converted.
 
 use gen_lsp_types as lsp;
-use lsp_server::{ErrorCode, Request};
+use lsp_server::Request;
 use serde_json::json;
 
 use super::{
@@ -17,7 +17,7 @@ use crate::{
 pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -> Answer {
     let Request { method, params, .. } = request;
     let Some(about) = method.strip_prefix("textDocument/") else {
-        return Err(unknown(&method));
+        return Err(Refusal::unknown(&method));
     };
     let Some((converter, analysis)) = known else {
         return Err(not_open());
@@ -55,12 +55,12 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
             list(found.map(|found| converter.highlight(found)))
         }
         "prepareRename" => {
-            let span = editor::renamable(analysis, at()?).map_err(refused)?;
+            let span = editor::renamable(analysis, at()?).map_err(Refusal::failed)?;
             written(&json!({ "range": converter.range(span), "placeholder": analysis.slice(span) }))
         }
         "rename" => {
             let new: String = parsed(params.get("newName").cloned().unwrap_or_default())?;
-            let spans = editor::rename(analysis, at()?, &new).map_err(refused)?;
+            let spans = editor::rename(analysis, at()?, &new).map_err(Refusal::failed)?;
             let edits = spans.into_iter().map(|span| Edit::new(span, &*new));
             written(&converter.edit(edits))
         }
@@ -102,29 +102,17 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
         "semanticTokens/full" => {
             written(&converter.semantic_tokens(&editor::semantic_tokens(analysis)))
         }
-        _ => Err(unknown(&method)),
+        _ => Err(Refusal::unknown(&method)),
     }
 }
 
 /// A request about a document of which the client has not said that it is open.
 pub fn not_open() -> Refusal {
-    let refusal = "the document is not open".to_owned();
-    Refusal(ErrorCode::InvalidParams, refusal)
-}
-
-/// A request of a method that there is not.
-pub fn unknown(method: &str) -> Refusal {
-    let refusal = format!("`{method}` is not known here");
-    Refusal(ErrorCode::MethodNotFound, refusal)
+    Refusal::invalid("the document is not open")
 }
 
 fn list<T: serde::Serialize>(items: impl Iterator<Item = T>) -> Answer {
     written(&items.collect::<Vec<T>>())
-}
-
-/// A request that was right, and cannot be done; editors show the reason.
-fn refused(reason: String) -> Refusal {
-    Refusal(ErrorCode::RequestFailed, reason)
 }
 
 fn code_actions(

@@ -30,6 +30,16 @@ impl Angle {
         }
     }
 
+    /// All of it in degrees.
+    pub const fn in_degrees(self) -> f64 {
+        self.degrees + self.radians.to_degrees()
+    }
+
+    /// All of it in radians.
+    pub const fn in_radians(self) -> f64 {
+        self.degrees.to_radians() + self.radians
+    }
+
     /// Whether both parts are finite.
     pub fn is_finite(self) -> bool {
         self.degrees.is_finite() && self.radians.is_finite()

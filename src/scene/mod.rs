@@ -18,6 +18,7 @@ pub mod describe;
 mod error;
 mod eval;
 mod examples;
+mod fields;
 mod fix_all;
 mod lower;
 mod model;
@@ -28,7 +29,9 @@ mod value;
 
 pub use crate::schema::Method;
 pub use examples::example_beside;
+pub use fields::Part;
 pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{analyze, read, read_in_parts, read_unless};
 pub use model::*;
 pub use semantic_model::{Parts, SemanticModel};
+pub use value::operate;

@@ -54,11 +54,7 @@ fn ratio(a: Angle, b: Angle) -> f64 {
     if a.degrees == 0.0 && b.degrees == 0.0 {
         return a.radians / b.radians;
     }
-    in_radians(a) / in_radians(b)
-}
-
-fn in_radians(angle: Angle) -> f64 {
-    angle.degrees.to_radians() + angle.radians
+    a.in_radians() / b.in_radians()
 }
 
 /// What a function gives, if the arguments have its types. The parts of `rgb` may be out of range.

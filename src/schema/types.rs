@@ -111,10 +111,7 @@ impl fmt::Display for Value {
                 degrees: 0.0,
                 radians,
             }) if *radians != 0.0 => write!(f, "{}rad", numbers::short(*radians)),
-            Self::Angle(angle) => {
-                let degrees = angle.degrees + angle.radians.to_degrees();
-                write!(f, "{}deg", numbers::short(degrees))
-            }
+            Self::Angle(angle) => write!(f, "{}deg", numbers::short(angle.in_degrees())),
             Self::Vector(vector) => f.write_str(&numbers::short_vector(*vector)),
             Self::Color(color) => write!(f, "{color}"),
             Self::Colors([first, second]) => write!(f, "({first}, {second})"),

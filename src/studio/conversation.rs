@@ -15,7 +15,7 @@ use std::{
     time::Duration,
 };
 
-use lsp_server::{ErrorCode, Message, Notification, Request, Response};
+use lsp_server::{Message, Notification, Request};
 use serde_json::{Value, json};
 use tungstenite::{
     Error, Message as Frame, Utf8Bytes, WebSocket,
@@ -28,8 +28,9 @@ use super::{
     scene_file::NotSaved,
 };
 use crate::lsp::{
-    Server,
+    Refusal, Server,
     messages::{self, Malformed},
+    response,
 };
 
 /// The longest message of a page, in bytes: far more than any text that an editor in a browser can hold, and little enough for memory.
@@ -164,44 +165,33 @@ impl Conversation {
         }
         let Request { id, method, params } = request;
         let field = |name| params.get(name).and_then(Value::as_str);
-        let failed =
-            |code: ErrorCode, message: String| Response::new_err(id.clone(), code as i32, message);
-        let response = match (method.as_str(), field("text")) {
+        let answer = match (method.as_str(), field("text")) {
             ("studio/save", Some(text)) => {
                 let (base, name) = (field("base"), field("name"));
                 match self.pages.save(self.number, text, base, name) {
-                    Ok(()) => Response::new_ok(id, json!({ "ok": true })),
-                    Err(NotSaved::Changed(found)) => {
-                        Response::new_ok(id, json!({ "ok": false, "text": found }))
-                    }
-                    Err(NotSaved::Refused(message)) => failed(ErrorCode::RequestFailed, message),
+                    Ok(()) => Ok(json!({ "ok": true })),
+                    Err(NotSaved::Changed(found)) => Ok(json!({ "ok": false, "text": found })),
+                    Err(NotSaved::Refused(message)) => Err(Refusal::failed(message)),
                 }
             }
-            ("studio/save", None) => {
-                failed(ErrorCode::InvalidParams, "there is no `text`".to_owned())
-            }
-            _ => failed(
-                ErrorCode::MethodNotFound,
-                format!("`{method}` is not known here"),
-            ),
+            ("studio/save", None) => Err(Refusal::invalid("there is no `text`")),
+            _ => Err(Refusal::unknown(&method)),
         };
-        self.say(vec![response.into()])
+        self.say(vec![response(id, answer)])
     }
 
     /// Makes a picture's file while the conversation goes on.
     fn render(&mut self, request: Request) -> Result<(), Error> {
         let id = request.id.clone();
-        let failed = |message: String| {
-            vec![Response::new_err(id.clone(), ErrorCode::RequestFailed as i32, message).into()]
-        };
+        let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
         if self.rendering.is_some() {
-            return self.say(failed("another picture is being made".to_owned()));
+            return self.say(failed("another picture is being made"));
         }
         let cancel = Arc::new(AtomicBool::new(false));
         let (of_work, sender) = (Arc::clone(&cancel), self.sender.clone());
         let work = move || {
-            let response = download::answer(request, &of_work);
-            let _ = sender.send(Event::Rendered(messages::written(&response.into())));
+            let answer = download::answer(request, &of_work);
+            let _ = sender.send(Event::Rendered(messages::written(&answer)));
         };
         let thread = thread::Builder::new().name("picture".to_owned());
         match thread.spawn(work) {
@@ -209,7 +199,7 @@ impl Conversation {
                 self.rendering = Some((json!(id), cancel));
                 Ok(())
             }
-            Err(error) => self.say(failed(format!("no thread can be had: {error}"))),
+            Err(error) => self.say(failed(&format!("no thread can be had: {error}"))),
         }
     }
 

@@ -7,12 +7,13 @@ use std::{
 };
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
-use lsp_server::{ErrorCode, Request, Response};
+use lsp_server::{Message, Request};
 use serde_json::{Value, json};
 
 use crate::{
     area::Area,
     film::{self, Film, Recipe},
+    lsp::{Answer, Refusal, response},
     render::{self, Control, RenderError},
     sampling::Sampling,
     scene::{self, Scene},
@@ -30,32 +31,28 @@ pub fn is_asked_for(request: &Request) -> bool {
 }
 
 /// The answer to such a request: the file of the picture that `pinhole render` makes of the text.
-pub fn answer(request: Request, cancel: &AtomicBool) -> Response {
+pub fn answer(request: Request, cancel: &AtomicBool) -> Message {
     let Request { id, method, params } = request;
-    let failed = |code: ErrorCode, message| Response::new_err(id.clone(), code as i32, message);
-    let Some(text) = params.get("text").and_then(Value::as_str) else {
-        return failed(ErrorCode::InvalidParams, "there is no `text`".to_owned());
-    };
-    let sources = Sources::new(Source::from_text("scene.scn", text));
-    let Some(scene) = scene::read(&sources).scene else {
-        return failed(ErrorCode::RequestFailed, "the scene has errors".to_owned());
-    };
+    response(id, file(&method, &params, cancel))
+}
+
+fn file(method: &str, params: &Value, cancel: &AtomicBool) -> Answer {
+    let text = params.get("text").and_then(Value::as_str);
+    let text = text.ok_or_else(|| Refusal::invalid("there is no `text`"))?;
+    let reading = scene::read(&Sources::new(Source::from_text("scene.scn", text)));
+    let scene = reading.scene;
+    let scene = scene.ok_or_else(|| Refusal::failed("the scene has errors"))?;
     let mut file = Cursor::new(Vec::new());
-    let written = match &*method {
+    let written = match method {
         EXR => write_exr(&scene, cancel, &mut file),
         _ => write_png(&scene, text, cancel, &mut file),
     };
+    written.map_err(|error| match cancel.load(Ordering::SeqCst) {
+        true => Refusal::cancelled(),
+        false => Refusal::failed(error),
+    })?;
     let name = method.trim_start_matches("studio/");
-    match written {
-        Ok(()) => Response::new_ok(
-            id,
-            json!({ name: BASE64_STANDARD.encode(file.into_inner()) }),
-        ),
-        Err(_) if cancel.load(Ordering::SeqCst) => {
-            failed(ErrorCode::RequestCanceled, "cancelled".to_owned())
-        }
-        Err(error) => failed(ErrorCode::RequestFailed, error.to_string()),
-    }
+    Ok(json!({ name: BASE64_STANDARD.encode(file.into_inner()) }))
 }
 
 type Written = Result<(), Box<dyn Error>>;

@@ -88,15 +88,13 @@ pub fn moved(
                 return Err("the middle of the picture has no direction to roll to".to_owned());
             }
             // Clockwise in the picture, where y points down; the camera turns the other way.
-            let turn = trig::atan2(from.perp_dot(to), from.dot(to))
-                .radians
-                .to_degrees();
-            moved.roll = within_half_turn(camera.roll, -turn);
+            let turn = trig::atan2(from.perp_dot(to), from.dot(to));
+            moved.roll = within_half_turn(camera.roll, -turn.in_degrees());
         }
         "view_distance" => {
             let wider = |angle: Angle| {
                 let half = trig::atan(trig::tan(angle * 0.5) * zoom(by.y));
-                Angle::from_degrees(2.0 * half.radians.to_degrees())
+                Angle::from_degrees(2.0 * half.in_degrees())
             };
             moved.lens = match camera.lens {
                 Lens::Distance(d) => Lens::Distance(d * zoom(-by.y)),

@@ -1,26 +1,25 @@
 //! A handle is moved: what has to change in the text.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are written with one decimal after another, and what comes of that is
-//! read as a scene, until everything is seen within half a pixel of where it would be: so the text may tie numbers together as it likes.
+//! The object or the camera is moved first, in real numbers. Then the fields that differ are rounded to one decimal after another, until everything is seen within
+//! half a pixel of where it would be. The text with these numbers is read once: it may tie them to others, or break a condition of the language.
 
 use glam::{DVec2, DVec3};
 
 use super::{
-    camera, edits,
-    fields::{Movable, changes},
+    camera,
+    edits::edits,
+    fields::{changes, movable},
     handles::{self, Along, TOLERANCE, handles, outline_point},
     projection::Projection,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
-    scene::{self, Camera, Scene, Shape},
+    scene::{self, Camera, Part, Scene, Shape},
+    schema::Value,
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
-
-/// So many numbers of digits are tried before all are written: the text is read for each.
-const FEW: i32 = 6;
 
 /// A number of an `f64` has no more digits than this.
 const DIGITS: i32 = 17;
@@ -59,8 +58,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         return Err("the pointer is nowhere".to_owned());
     }
     let (block, name) = block(analysis, scene, drag)?;
-    let by_corners = block.fields.iter().any(|field| field.name.text == "min");
-    let current = movable(scene, drag, by_corners)?;
+    let current = part(scene, drag)?;
     let view = Viewpoint {
         scene,
         projection: Projection::new(&scene.camera, &scene.image),
@@ -68,35 +66,37 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         // An object moves without it.
         distance: drag.object.map_or_else(|| camera::distance(scene), |_| 1.0),
     };
-    let ideal = view.moved(&current)?;
-    if !ideal.is_possible() {
+    let ideal = view.moved(current)?;
+    let fields = movable(block, current);
+    let is_finite = |field: &(&str, Value)| ideal.value(field.0).is_some_and(|it| it.is_finite());
+    if !fields.iter().all(is_finite) || (drag.object.is_none() && !ideal.is_possible()) {
         return Err("that is too far away".to_owned());
     }
-    if !view.agree(&ideal, &ideal) {
+    if !view.agree(ideal, ideal) {
         return Err("it would not be seen there".to_owned());
     }
-    if view.agree(&ideal, &current) {
+    if view.agree(ideal, current) {
         return Ok(Dragged::default());
     }
-    let changes = changes(&current, &ideal);
-    let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
-    let written = |decimals| {
-        let edits = edits::edits(analysis, block, &changes, decimals).ok_or_else(tied)?;
-        let found = movable(&read(analysis, &edits)?, drag, by_corners)?;
-        match view.agree(&ideal, &found) {
-            true => Ok((edits, found)),
-            false => Err(tied()),
-        }
-    };
+    let changes = changes(&fields, ideal);
+    let edits = |decimals| edits(analysis, block, current, &changes, decimals);
+    let is_near = |(_, part): &(Vec<Edit>, Part)| part.is_possible() && view.agree(ideal, *part);
     let greatest = changes.iter().map(|change| change.size());
     let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
-    let (edits, found) = (first..first + FEW)
-        .find_map(|decimals| written(decimals).ok())
-        .map_or_else(|| written(first + DIGITS), Ok)?;
-    let fields = current.fields().into_iter().zip(found.fields());
-    let values = fields
-        .filter(|(before, after)| before != after)
-        .map(|(_, (field, value))| format!("{name}.{field} = {value}"));
+    let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
+    let (edits, _) = (first..first + DIGITS)
+        .filter_map(edits)
+        .find(is_near)
+        .or_else(|| edits(first + DIGITS))
+        .ok_or_else(tied)?;
+    let found = part(&read(analysis, &edits)?, drag)?;
+    if !view.agree(ideal, found) {
+        return Err(tied());
+    }
+    let values = fields.into_iter().filter_map(|(field, before)| {
+        let after = found.value(field).filter(|after| *after != before)?;
+        Some(format!("{name}.{field} = {after}"))
+    });
     Ok(Dragged {
         values: values.collect(),
         edits,
@@ -127,14 +127,13 @@ fn block<'a, 's>(
     Ok((block, name))
 }
 
-fn movable(scene: &Scene, drag: &Drag<'_>, by_corners: bool) -> Result<Movable, String> {
+fn part(scene: &Scene, drag: &Drag<'_>) -> Result<Part, String> {
     let Some(index) = drag.object else {
-        return Ok(Movable::Camera(scene.camera));
+        return Ok(Part::Camera(scene.camera));
     };
     let object = scene.objects.get(index);
     let object = object.ok_or_else(|| format!("there is no object {index}"))?;
-    let shape = object.shape;
-    Ok(Movable::Object { shape, by_corners })
+    Ok(Part::Shape(object.shape))
 }
 
 /// The scene that a text means after some edits.
@@ -165,7 +164,7 @@ struct Viewpoint<'a> {
 
 impl Viewpoint<'_> {
     /// The object or the camera as it is moved, in real numbers.
-    fn moved(&self, current: &Movable) -> Result<Movable, String> {
+    fn moved(&self, current: Part) -> Result<Part, String> {
         let Drag {
             handle,
             from,
@@ -175,24 +174,24 @@ impl Viewpoint<'_> {
         } = *self.drag;
         let projection = &self.projection;
         Ok(match current {
-            Movable::Camera(camera) => {
-                let points = [from, to];
-                let moved = camera::moved(camera, projection, handle, points, self.distance)?;
-                Movable::Camera(moved)
+            Part::Shape(shape) => {
+                Part::Shape(handles::moved(&shape, handle, to, along, projection)?)
             }
-            Movable::Object { shape, by_corners } => Movable::Object {
-                shape: handles::moved(shape, handle, to, along, projection)?,
-                by_corners: *by_corners,
-            },
+            Part::Camera(camera) => {
+                let points = [from, to];
+                let moved = camera::moved(&camera, projection, handle, points, self.distance)?;
+                Part::Camera(moved)
+            }
+            Part::Image(_) => current,
         })
     }
 
     /// Whether everything is seen within half a pixel of where it should be.
-    fn agree(&self, ideal: &Movable, found: &Movable) -> bool {
+    fn agree(&self, ideal: Part, found: Part) -> bool {
         match (ideal, found) {
-            (Movable::Camera(ideal), Movable::Camera(found)) => self.cameras_agree(ideal, found),
-            (Movable::Object { shape: ideal, .. }, Movable::Object { shape: found, .. }) => {
-                let marks = self.marks(ideal).into_iter().zip(self.marks(found));
+            (Part::Camera(ideal), Part::Camera(found)) => self.cameras_agree(&ideal, &found),
+            (Part::Shape(ideal), Part::Shape(found)) => {
+                let marks = self.marks(&ideal).into_iter().zip(self.marks(&found));
                 marks.into_iter().all(|((name, ideal), (_, found))| {
                     let is_seen = |at: &DVec2| self.is_near(*at) || name == self.drag.handle;
                     match (ideal.filter(is_seen), found) {

@@ -3,23 +3,27 @@
 //! A literal is replaced, number by number, so that one that does not change stays as it is written. Where a name stands, the literal of its `let` changes;
 //! to an expression an offset is added, or changed where the expression ends in one. A field that is not there is added to its block.
 
-use super::fields::{Change, degrees, difference};
+use glam::DVec3;
+
+use super::fields::Change;
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
+    scene::{Part, operate},
     schema::Value,
     source::{SourceId, Span},
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// The edits that change fields of a block, in order, with numbers written to so many decimals: those of angles in degrees, and radians to two more.
-/// None if two of them want different things of one number.
+/// The edits that change fields of a part's block, in order, with numbers written to so many decimals: those of angles in degrees, and radians to two more. And
+/// what becomes of the part, unless a number that changes stands behind several of its fields. None if two of them want different things of one number.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
+    mut part: Part,
     changes: &[Change],
     decimals: i32,
-) -> Option<Vec<Edit>> {
+) -> Option<(Vec<Edit>, Part)> {
     let mut writer = Writer {
         analysis,
         decimals,
@@ -27,10 +31,15 @@ pub fn edits<'s>(
     };
     let mut added = Vec::new();
     for &Change { name, from, by } in changes {
-        match block.fields.iter().find(|field| field.name.text == name) {
-            Some(field) => writer.value(&field.value, by),
-            None => added.push(format!("{name} {}", writer.sum(from, by))),
-        }
+        let value = match block.fields.iter().find(|field| field.name.text == name) {
+            Some(field) => operate(Operator::Add, from, writer.change(&field.value, by))?,
+            None => {
+                let value = writer.sum(from, by);
+                added.push(format!("{name} {}", spelled_sum(value)));
+                value
+            }
+        };
+        part = part.with(name, value)?;
     }
     let mut edits = writer.edits;
     if !added.is_empty() {
@@ -45,7 +54,7 @@ pub fn edits<'s>(
     let apart = |pair: &[Edit]| pair[0].span.end <= pair[1].span.start;
     let same = |pair: &[Edit]| pair[0].span == pair[1].span;
     let is_right = edits.windows(2).all(|pair| apart(pair) && !same(pair));
-    is_right.then_some(edits)
+    is_right.then_some((edits, part))
 }
 
 struct Writer<'a, 's> {
@@ -55,28 +64,30 @@ struct Writer<'a, 's> {
 }
 
 impl<'s> Writer<'_, 's> {
-    /// Changes a value by an amount.
-    fn value(&mut self, tree: &tree::Value<'s>, by: Value) {
+    /// Changes a value by an amount. Returns by how much it has changed, which is rounded.
+    fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Value {
         let model = &self.analysis.model;
         match (&tree.kind, by) {
-            (ValueKind::Parentheses(inner), _) => self.value(inner, by),
+            (ValueKind::Parentheses(inner), _) => self.change(inner, by),
             (ValueKind::Name(name), _) => match model.definition_at(name, tree.span.start) {
-                Some(definition) => self.value(&definition.value, by),
+                Some(definition) => self.change(&definition.value, by),
                 None => self.offset(tree.span, by),
             },
-            (ValueKind::Tuple(elements), Value::Vector(by)) if elements.len() == 3 => {
+            (ValueKind::Tuple(elements), Value::Vector(mut by)) if elements.len() == 3 => {
                 for (axis, element) in elements.iter().enumerate() {
                     if by[axis] != 0.0 {
-                        self.value(&element.value, Value::Number(by[axis]));
+                        by[axis] =
+                            amount(self.change(&element.value, Value::Number(by[axis])), None);
                     }
                 }
+                Value::Vector(by)
             }
             (_, Value::Number(_) | Value::Angle(_)) if is_number(tree) => {
-                self.literal(tree, tree.span, by);
+                self.literal(tree, tree.span, by)
             }
             (ValueKind::Chain { rest, .. }, _) => match rest.last() {
                 Some(step) if !step.operator.is_of_product() && is_literal(&step.operand) => {
-                    self.last(step, by);
+                    self.last(step, by)
                 }
                 _ => self.offset(tree.span, by),
             },
@@ -85,18 +96,21 @@ impl<'s> Writer<'_, 's> {
     }
 
     /// Changes the literal that a sum ends in.
-    fn last(&mut self, step: &Step<'s>, by: Value) {
+    fn last(&mut self, step: &Step<'s>, by: Value) -> Value {
         match (step.operator, by) {
             (Operator::Subtract, Value::Vector(by)) => {
-                self.value(&step.operand, Value::Vector(-by));
+                match self.change(&step.operand, Value::Vector(-by)) {
+                    Value::Vector(by) => Value::Vector(-by),
+                    other => other,
+                }
             }
-            (_, Value::Vector(_)) => self.value(&step.operand, by),
+            (_, Value::Vector(_)) => self.change(&step.operand, by),
             _ => self.literal(&step.operand, step.sign.to(step.operand.span), by),
         }
     }
 
     /// Changes a number or an angle; the place may begin with the operator before it, of a sum.
-    fn literal(&mut self, tree: &tree::Value<'s>, place: Span, by: Value) {
+    fn literal(&mut self, tree: &tree::Value<'s>, place: Span, by: Value) -> Value {
         let written = self.analysis.slice(place);
         let operator = match place == tree.span {
             true => None,
@@ -110,46 +124,51 @@ impl<'s> Writer<'_, 's> {
         let value = self.analysis.model.value(tree, None);
         let old = sign * value.map_or(0.0, |value| amount(value, unit));
         let new = self.rounded(old, old + amount(by, unit), unit);
-        if new == old {
-            return;
+        if new != old {
+            let digits = spelled(new.abs(), unit);
+            self.edits.push(match operator {
+                None => Edit::new(place, spelled(new, unit)),
+                Some(_) if (new < 0.0) == (sign < 0.0) => Edit::new(tree.span, digits),
+                Some(_) if new < 0.0 => Edit::new(place, format!("- {digits}")),
+                Some(_) => Edit::new(place, format!("+ {digits}")),
+            });
         }
-        let digits = spelled(new.abs(), unit);
-        self.edits.push(match operator {
-            None => Edit::new(place, spelled(new, unit)),
-            Some(_) if (new < 0.0) == (sign < 0.0) => Edit::new(tree.span, digits),
-            Some(_) if new < 0.0 => Edit::new(place, format!("- {digits}")),
-            Some(_) => Edit::new(place, format!("+ {digits}")),
-        });
+        value_of(new - old, unit)
     }
 
     /// Adds an offset behind an expression.
-    fn offset(&mut self, behind: Span, by: Value) {
-        let zero = difference(by, by);
-        let text = self.sum(zero, by);
-        if text == self.sum(zero, zero) {
-            return;
-        }
-        let text = match text.strip_prefix('-') {
-            Some(digits) => format!(" - {digits}"),
-            None => format!(" + {text}"),
+    fn offset(&mut self, behind: Span, by: Value) -> Value {
+        let zero = match by {
+            Value::Vector(_) => Value::Vector(DVec3::ZERO),
+            Value::Angle(_) => value_of(0.0, Some(Unit::Degrees)),
+            _ => Value::Number(0.0),
         };
-        self.edits
-            .push(Edit::insert(SourceId::File, behind.end, text));
+        let by = self.sum(zero, by);
+        if by != zero {
+            let text = spelled_sum(by);
+            let text = match text.strip_prefix('-') {
+                Some(digits) => format!(" - {digits}"),
+                None => format!(" + {text}"),
+            };
+            self.edits
+                .push(Edit::insert(SourceId::File, behind.end, text));
+        }
+        by
     }
 
-    /// A value that has changed by an amount, as it is written.
-    fn sum(&self, from: Value, by: Value) -> String {
+    /// A value that has changed by an amount; an angle in degrees.
+    fn sum(&self, from: Value, by: Value) -> Value {
         match (from, by) {
-            (Value::Vector(from), Value::Vector(by)) => {
-                let [x, y, z] = [0, 1, 2].map(|axis| {
-                    spelled(self.rounded(from[axis], from[axis] + by[axis], None), None)
-                });
-                format!("({x}, {y}, {z})")
+            (Value::Vector(mut from), Value::Vector(by)) => {
+                for axis in 0..3 {
+                    from[axis] = self.rounded(from[axis], from[axis] + by[axis], None);
+                }
+                Value::Vector(from)
             }
             _ => {
                 let unit = matches!(from, Value::Angle(_)).then_some(Unit::Degrees);
                 let old = amount(from, unit);
-                spelled(self.rounded(old, old + amount(by, unit), unit), unit)
+                value_of(self.rounded(old, old + amount(by, unit), unit), unit)
             }
         }
     }
@@ -196,9 +215,26 @@ fn unit(tree: &tree::Value<'_>) -> Option<Unit> {
 fn amount(value: Value, unit: Option<Unit>) -> f64 {
     match (value, unit) {
         (Value::Number(number), _) => number,
-        (Value::Angle(angle), Some(Unit::Radians)) => angle.radians + angle.degrees.to_radians(),
-        (Value::Angle(angle), _) => degrees(angle),
+        (Value::Angle(angle), Some(Unit::Radians)) => angle.in_radians(),
+        (Value::Angle(angle), _) => angle.in_degrees(),
         _ => 0.0,
+    }
+}
+
+/// A number, or an angle of so many of its unit.
+fn value_of(amount: f64, unit: Option<Unit>) -> Value {
+    unit.map_or(Value::Number(amount), |unit| Value::Angle(unit.of(amount)))
+}
+
+/// A sum with all its digits.
+fn spelled_sum(value: Value) -> String {
+    match value {
+        Value::Vector(vector) => {
+            let [x, y, z] = vector.to_array().map(|number| spelled(number, None));
+            format!("({x}, {y}, {z})")
+        }
+        Value::Angle(angle) => spelled(angle.in_degrees(), Some(Unit::Degrees)),
+        number => spelled(amount(number, None), None),
     }
 }
 

@@ -264,13 +264,13 @@ fn spun(triangle: &Triangle, to: DVec2, projection: &Projection) -> Result<Angle
     let wanted = projection.eye + ray * depth - centered.centroid;
     let current = apex - centered.centroid;
     let (sine, cosine) = (current.cross(wanted).dot(normal), current.dot(wanted));
-    let turn = trig::atan2(sine, cosine).radians.to_degrees();
+    let turn = trig::atan2(sine, cosine).in_degrees();
     Ok(within_half_turn(centered.spin, turn))
 }
 
 /// An angle and so many degrees more; by whole turns less where that is more than half a turn.
 pub fn within_half_turn(angle: Angle, degrees: f64) -> Angle {
-    let whole = angle.degrees + angle.radians.to_degrees() + degrees;
+    let whole = angle.in_degrees() + degrees;
     let turns = match whole.abs() > 180.0 {
         true => (whole / 360.0).round(),
         false => 0.0,

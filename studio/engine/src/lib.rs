@@ -39,9 +39,9 @@ impl Engine {
     /// Takes a message in, and returns what has to be said before anything else.
     pub fn handle(&mut self, text: &str) -> Vec<String> {
         match messages::read(text.as_bytes()) {
-            Ok(Message::Request(request)) if download::is_asked_for(&request) => texts(vec![
-                download::answer(request, &AtomicBool::new(false)).into(),
-            ]),
+            Ok(Message::Request(request)) if download::is_asked_for(&request) => {
+                texts(vec![download::answer(request, &AtomicBool::new(false))])
+            }
             Ok(message) => texts(self.server.handle(message)),
             Err(Malformed::Answered(response)) => vec![response.to_string()],
             Err(Malformed::Unanswered(_)) => Vec::new(),

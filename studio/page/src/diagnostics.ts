@@ -2,10 +2,9 @@
 
 import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
 import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
-import type { Connection } from "./connection";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
-import { isSuperseded, type Published, type ServerDiagnostic, type TextEdit } from "./protocol";
+import type { Published, ServerDiagnostic, TextEdit } from "./protocol";
 
 interface CodeAction {
   title: string;
@@ -15,22 +14,15 @@ interface CodeAction {
 }
 
 /** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip closes when there are new diagnostics. */
-export async function publishDiagnostics(editor: SceneEditor, connection: Connection, published: Published): Promise<void> {
+export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined && published.version !== file.version)) return;
   // A drag is told of every text that nothing is wrong with it.
   if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
-  let actions: CodeAction[] | null = null;
-  if (published.diagnostics.length > 0) {
-    const range = { start: { line: 0, character: 0 }, end: { line: doc.lines, character: 0 } };
-    try {
-      actions = await connection.request<CodeAction[] | null>("textDocument/codeAction", editor.about({ range, context: { diagnostics: [] } }));
-    } catch (error) {
-      // Without an answer they are shown without fixes.
-      if (!isSuperseded(error)) console.warn(error);
-    }
-  }
+  const isRight = published.diagnostics.length === 0;
+  const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction", { range: editor.whole, context: { diagnostics: [] } });
+  // Without an answer they are shown without fixes.
   if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
 }
 

@@ -28,6 +28,20 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K, attribut
   return element;
 }
 
+/** Hears of a pointer that was pressed until it is let go. */
+export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void, end: () => void): void {
+  const following = new AbortController();
+  const hear = (type: "pointermove" | "pointerup" | "pointercancel", act: (event: PointerEvent) => void) =>
+    document.addEventListener(type, event => event.pointerId === pressed.pointerId && act(event), { signal: following.signal });
+  hear("pointermove", move);
+  for (const type of ["pointerup", "pointercancel"] as const) {
+    hear(type, () => {
+      following.abort();
+      end();
+    });
+  }
+}
+
 /** Has the browser save a file. */
 export function download(name: string, content: BlobPart, type: string): void {
   const link = create("a");

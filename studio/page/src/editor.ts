@@ -11,7 +11,7 @@ import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightAc
 import type { Connection } from "./connection";
 import { gestureHistory } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
-import type { Position, Published, Range, TextEdit } from "./protocol";
+import { isSuperseded, type Position, type Published, type Range, type TextEdit } from "./protocol";
 import { sanitized } from "./sanitize";
 
 class SceneFile implements WorkspaceFile {
@@ -131,9 +131,24 @@ export class SceneEditor {
     return this.view.state.doc.toString();
   }
 
-  /** The parameters of a request about the scene. */
-  about<T extends object>(params: T): T & { textDocument: { uri: string } } {
-    return { textDocument: { uri: this.uri }, ...params };
+  /** Asks the server about the scene, as `Connection.request` does. */
+  request<Result>(method: string, params: object): Promise<Result> {
+    return this.connection.request(method, { textDocument: { uri: this.uri }, ...params });
+  }
+
+  /** The same where an answer that does not come is not worth a message: it is null then, as it is where the text has errors. */
+  async ask<Result>(method: string, params: object): Promise<Result | null> {
+    try {
+      return await this.request<Result | null>(method, params);
+    } catch (error) {
+      if (!isSuperseded(error) && this.connection.state === "open") console.warn(error);
+      return null;
+    }
+  }
+
+  /** The place of all the text. */
+  get whole(): Range {
+    return { start: { line: 0, character: 0 }, end: { line: this.view.state.doc.lines, character: 0 } };
   }
 
   /** Puts a text in place that no undo takes away: it has a history of its own. */

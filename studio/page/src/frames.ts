@@ -80,7 +80,7 @@ export class Frames {
   }
 
   private ask(how: { scale: number; samples?: number }): Promise<Frame | null> {
-    return this.connection.request("pinhole/frame", this.editor.about(how));
+    return this.editor.request("pinhole/frame", how);
   }
 
   /** Shows a picture that was asked for. Says whether its text is still the newest, so that finer ones are worth asking for. */

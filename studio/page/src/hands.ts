@@ -1,7 +1,6 @@
 // Hands: what is selected, and drags of it or of the camera, by mouse, touch and keyboard. One drag is one undo step.
 
-import { byId, createButton, create } from "./dom";
-import type { Connection } from "./connection";
+import { byId, createButton, create, followPointer } from "./dom";
 import type { SceneEditor } from "./editor";
 import type { Frames } from "./frames";
 import { Gesture } from "./gesture";
@@ -76,12 +75,12 @@ class Drag {
   }
 
   private async step(to: Point): Promise<void> {
-    const { editor, connection, frames, status, along } = this.hands;
+    const { editor, frames, status, along } = this.hands;
     const { doc } = editor.view.state;
     this.asked = to;
     try {
       const about = { object: this.object, handle: this.handle, from: this.reached, to, along };
-      const answer = await connection.request<Dragged | null>("pinhole/drag", editor.about(about));
+      const answer = await editor.request<Dragged | null>("pinhole/drag", about);
       if (answer === null) return status.say("The text has errors. Mend them, then the picture can be changed by hand.", "warning");
       // An answer about another text does not count. A way too short for another digit counts on with the next one.
       if (editor.view.state.doc !== doc || answer.edits.length === 0) return;
@@ -127,7 +126,6 @@ export class Hands {
 
   constructor(
     readonly editor: SceneEditor,
-    readonly connection: Connection,
     readonly frames: Frames,
     readonly picture: Picture,
     readonly overlays: OverlayLayer,
@@ -250,48 +248,40 @@ export class Hands {
     const start = this.picture.toPicture(at);
     const object = this.selectedObject();
     const handle = object?.handles.find(it => it.handle === button?.dataset["handle"]);
-    if (object !== undefined && handle !== undefined) this.followHandle(event, object, handle);
+    if (object !== undefined && handle !== undefined) this.dragHandle(event, object, handle);
     else if (this.tool === "move") void this.grab(event, start);
-    else this.followPointer(event, new Drag(this, null, this.tool, start), start);
+    else this.dragAfter(event, new Drag(this, null, this.tool, start), start);
   }
 
   /** Has a handle go where the pointer goes, at the distance from it that it has now. */
-  private followHandle(event: PointerEvent, object: DrawnObject, { handle, at }: Handle, begin: Point = this.picture.toPicture(this.picture.local(event))): void {
-    if (at !== null) this.followPointer(event, new Drag(this, object.index, handle, at), begin, at);
+  private dragHandle(event: PointerEvent, object: DrawnObject, { handle, at }: Handle, begin: Point = this.picture.toPicture(this.picture.local(event))): void {
+    if (at !== null) this.dragAfter(event, new Drag(this, object.index, handle, at), begin, at);
   }
 
-  private followPointer(event: PointerEvent, drag: Drag, begin: Point, at: Point = begin): void {
-    const { stage } = this.picture;
+  private dragAfter(event: PointerEvent, drag: Drag, begin: Point, at: Point = begin): void {
     this.drag = drag;
     let moved = false;
     const move = (next: PointerEvent) => {
-      if (next.pointerId !== event.pointerId || this.drag !== drag) return;
+      if (this.drag !== drag) return;
       this.shift = next.shiftKey;
       const [x, y] = this.picture.toPicture(this.picture.local(next));
       moved ||= Math.hypot(x - begin[0], y - begin[1]) * this.picture.zoom > CLICK;
       if (moved) drag.to([at[0] + x - begin[0], at[1] + y - begin[1]]);
     };
-    const up = (last: PointerEvent) => {
-      if (last.pointerId !== event.pointerId) return;
-      stage.removeEventListener("pointermove", move);
-      stage.removeEventListener("pointerup", up);
-      stage.removeEventListener("pointercancel", up);
+    followPointer(event, move, () => {
       if (this.drag === drag) this.endDrag();
-    };
-    stage.addEventListener("pointermove", move);
-    stage.addEventListener("pointerup", up);
-    stage.addEventListener("pointercancel", up);
+    });
   }
 
   /** Selects what is under the pointer, and drags it by its centre if the pointer moves on. */
   private async grab(event: PointerEvent, start: Point): Promise<void> {
-    const pick = await this.pick(start);
+    const pick = await this.editor.ask<Pick>("pinhole/pick", { point: start });
     this.select(pick?.object ?? null);
     const object = this.selectedObject();
     const middle = object?.handles.find(({ handle }) => handle === "center" || handle === "centroid");
     // The button may be up by now, or a second finger down.
     const isHeld = this.pointers.size === 1 && this.pointers.has(event.pointerId);
-    if (isHeld && object !== undefined && middle !== undefined && this.drag === null) this.followHandle(event, object, middle, start);
+    if (isHeld && object !== undefined && middle !== undefined && this.drag === null) this.dragHandle(event, object, middle, start);
   }
 
   private moved(event: PointerEvent): void {
@@ -327,28 +317,14 @@ export class Hands {
     while (this.hoverNext !== null) {
       const next: Point = this.hoverNext;
       this.hoverNext = null;
-      const pick = this.picture.isInside(next) ? await this.pick(next) : null;
+      const pick = this.picture.isInside(next) ? await this.editor.ask<Pick>("pinhole/pick", { point: next }) : null;
       this.status.point(pick === null ? "" : described(pick, next));
       this.overlays.hover(pick?.object?.index ?? null);
-      if (pick !== null && this.overlays.isOn("samples")) await this.sample([Math.floor(next[0]), Math.floor(next[1])]);
+      if (pick === null || !this.overlays.isOn("samples")) continue;
+      const pixel: Point = [Math.floor(next[0]), Math.floor(next[1])];
+      this.overlays.showSamples(pixel, await this.editor.ask<Samples>("pinhole/samples", { pixel }));
     }
     this.hovering = false;
-  }
-
-  private async pick(point: Point): Promise<Pick | null> {
-    try {
-      return await this.connection.request<Pick | null>("pinhole/pick", this.editor.about({ point }));
-    } catch {
-      return null;
-    }
-  }
-
-  private async sample(pixel: Point): Promise<void> {
-    try {
-      this.overlays.showSamples(pixel, await this.connection.request<Samples | null>("pinhole/samples", this.editor.about({ pixel })));
-    } catch {
-      this.overlays.showSamples(pixel, null);
-    }
   }
 
   private key(event: KeyboardEvent): void {

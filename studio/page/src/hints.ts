@@ -1,12 +1,11 @@
 // What the editor shows between the letters: values that the server works out, and a swatch before each colour, which opens a picker.
 
-import { StateEffect, StateField, type Range as DecorationRange } from "@codemirror/state";
+import { StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type DecorationSet } from "@codemirror/view";
-import type { Connection } from "./connection";
 import { create } from "./dom";
 import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";
-import { isSuperseded, type Position, type Range, type TextEdit } from "./protocol";
+import type { Position, Range, TextEdit } from "./protocol";
 
 interface InlayHint {
   position: Position;
@@ -103,9 +102,8 @@ class SwatchWidget extends WidgetType {
 
 export class Hints {
   private timer = 0;
-  private swatches: { from: number; to: number; color: string }[] = [];
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection) {}
+  constructor(private readonly editor: SceneEditor) {}
 
   /** The text has changed: new hints come when it rests. */
   changed(): void {
@@ -117,23 +115,21 @@ export class Hints {
     const { editor } = this;
     const { doc } = editor.view.state;
     if (editor.uri === "") return;
-    const range = { start: { line: 0, character: 0 }, end: { line: doc.lines, character: 0 } };
-    try {
-      const [hints, colors] = await Promise.all([
-        this.connection.request<InlayHint[] | null>("textDocument/inlayHint", editor.about({ range })),
-        this.connection.request<ColorInformation[] | null>("textDocument/documentColor", editor.about({})),
-      ]);
-      if (editor.view.state.doc !== doc) return;
-      this.swatches = (colors ?? []).map(({ range, color }) => ({ from: editor.offset(range.start), to: editor.offset(range.end), color: hex(color) }));
-      const decorations: DecorationRange<Decoration>[] = [
-        ...(hints ?? []).map(({ position, label }) => Decoration.widget({ widget: new HintWidget(label), side: 1 }).range(editor.offset(position))),
-        ...this.swatches.map(({ from, to, color }) => Decoration.widget({ widget: new SwatchWidget(this, color, doc.sliceString(from, to)), side: -1 }).range(from)),
-      ];
-      editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
-    } catch (error) {
-      // Hints are not worth a message: a newer text or connection brings new ones.
-      if (!isSuperseded(error)) console.warn(error);
-    }
+    const [hints, colors] = await Promise.all([
+      editor.ask<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
+      editor.ask<ColorInformation[]>("textDocument/documentColor", {}),
+    ]);
+    // A newer text or connection brings new ones.
+    if (hints === null || colors === null || editor.view.state.doc !== doc) return;
+    const decorations = [
+      ...hints.map(({ position, label }) => Decoration.widget({ widget: new HintWidget(label), side: 1 }).range(editor.offset(position))),
+      ...colors.map(({ range, color }) => {
+        const from = editor.offset(range.start);
+        const widget = new SwatchWidget(this, hex(color), doc.sliceString(from, editor.offset(range.end)));
+        return Decoration.widget({ widget, side: -1 }).range(from);
+      }),
+    ];
+    editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
   }
 
   /** Writes a picked colour in place of the one that begins at an offset, in the way it is written there. */
@@ -146,13 +142,9 @@ export class Hints {
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
     const range = { start, end: { line: start.line, character: start.character + written.length } };
-    try {
-      const ways = await this.connection.request<{ label: string; textEdit?: TextEdit }[]>("textDocument/colorPresentation", editor.about({ color, range }));
-      const way = ways.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb")) ?? ways[0];
-      if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(editor.changes([way.textEdit]));
-    } catch (error) {
-      if (!isSuperseded(error)) console.warn(error);
-    }
+    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>("textDocument/colorPresentation", { color, range });
+    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb")) ?? ways?.[0];
+    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(editor.changes([way.textEdit]));
   }
 }
 

@@ -1,6 +1,6 @@
 // The layout: the divider between text and picture, the zoom buttons, the menus, and the list of keys.
 
-import { byId, create, remember, remembered } from "./dom";
+import { byId, create, followPointer, remember, remembered } from "./dom";
 import { LAYERS, type Layer, type OverlayLayer } from "./overlays";
 import type { Picture } from "./picture";
 
@@ -25,12 +25,10 @@ export function layOut(picture: Picture): void {
   divider.addEventListener("pointerdown", event => {
     divider.setPointerCapture(event.pointerId);
     event.preventDefault();
-  });
-  divider.addEventListener("pointermove", event => {
-    if (!divider.hasPointerCapture(event.pointerId)) return;
     const { left, top, width, height } = panes.getBoundingClientRect();
     // On narrow screens the picture is above the text.
-    share(isNarrow.matches ? 100 - ((event.clientY - top) / height) * 100 : ((event.clientX - left) / width) * 100);
+    const move = ({ clientX, clientY }: PointerEvent) => share(isNarrow.matches ? 100 - ((clientY - top) / height) * 100 : ((clientX - left) / width) * 100);
+    followPointer(event, move, () => {});
   });
   divider.addEventListener("keydown", event => {
     const direction = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 }[event.key];

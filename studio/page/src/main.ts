@@ -38,9 +38,9 @@ const editor = new SceneEditor(
     if (changesDiagnostics(update)) problems.update();
   },
 );
-editor.diagnosed = published => void publishDiagnostics(editor, connection, published);
+editor.diagnosed = published => void publishDiagnostics(editor, published);
 const problems = new Problems(() => editor.view);
-const hints = new Hints(editor, connection);
+const hints = new Hints(editor);
 const frames = new Frames(
   editor,
   connection,
@@ -54,7 +54,7 @@ const frames = new Frames(
     else status.stale(`No picture of the newest text: ${state.message}`);
   },
 );
-const hands = new Hands(editor, connection, frames, picture, overlays, status);
+const hands = new Hands(editor, frames, picture, overlays, status);
 const files = new Files(editor, connection, status, isServed);
 
 /** Whether overlays are being asked for, and whether the text has changed since. */
@@ -67,15 +67,11 @@ async function refreshOverlays(): Promise<void> {
   asking = true;
   while (outdated && connection.state === "open") {
     outdated = false;
-    try {
-      const answer = await connection.request<Overlays | null>("pinhole/overlays", editor.about({ object: hands.beyond }));
-      if (answer === null) continue;
-      overlays.data = answer;
-      frames.resized(answer.size);
-      hands.refresh();
-    } catch (error) {
-      if (connection.state === "open") console.warn(error);
-    }
+    const answer = await editor.ask<Overlays>("pinhole/overlays", { object: hands.beyond });
+    if (answer === null) continue;
+    overlays.data = answer;
+    frames.resized(answer.size);
+    hands.refresh();
   }
   asking = false;
 }

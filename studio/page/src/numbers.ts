@@ -3,7 +3,7 @@
 import { syntaxTree } from "@codemirror/language";
 import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
 import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type ViewUpdate } from "@codemirror/view";
-import { create, createButton } from "./dom";
+import { create, createButton, followPointer } from "./dom";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
 
@@ -149,23 +149,16 @@ function createSlider(view: EditorView): TooltipView {
   };
 }
 
-const ENDS = ["pointerup", "pointercancel"] as const;
-
 /** Turns a number by the way of the pointer to the side, until it is let go. */
 function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   event.preventDefault();
   const turn = new Turn(view, literal);
-  const target = event.target as Element;
-  const move = (next: Event) => turn.set(literal.value + Math.round(((next as PointerEvent).clientX - event.clientX) / DRAG_PIXELS) * literal.step);
-  const up = () => {
-    document.removeEventListener("pointermove", move);
-    for (const end of ENDS) document.removeEventListener(end, up);
+  document.body.classList.add("scrubbing");
+  const move = (next: PointerEvent) => turn.set(literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
+  followPointer(event, move, () => {
     document.body.classList.remove("scrubbing");
     turn.end();
-  };
-  if (target.isConnected) document.body.classList.add("scrubbing");
-  document.addEventListener("pointermove", move);
-  for (const end of ENDS) document.addEventListener(end, up);
+  });
 }
 
 /** Turns the number at the cursor by a step; elsewhere the key does what it does without. */

@@ -85,7 +85,7 @@ export class OverlayLayer {
     if (hovered !== undefined) path("outline hovered", hovered.outline);
     if (this.selected !== null) path("outline selected", this.selected.outline);
     if (this.isOn("vanishing")) for (const { axis, point } of data.vanishing) if (point !== null) this.mark(point, `axis-${axis}`, axis);
-    if (this.isOn("axis") && data.axis !== null) this.mark(data.axis, "view-axis", "view axis");
+    if (this.isOn("axis")) this.mark(data.axis, "view-axis", "view axis");
     if (this.isOn("samples")) this.drawSamples();
   }
 

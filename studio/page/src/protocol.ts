@@ -50,7 +50,7 @@ export interface DrawnObject extends SceneObject {
 
 export interface Overlays {
   size: [number, number];
-  axis: Point | null;
+  axis: Point;
   horizon: Polyline | null;
   vanishing: { axis: "x" | "y" | "z"; point: Point | null; lines: Polyline[] }[];
   near: Polyline[];

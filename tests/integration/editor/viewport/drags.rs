@@ -43,6 +43,8 @@ fn a_number_changes_where_it_is_written() {
         ("sphere { center (0, 0, 0) }", "center", [140.0, 90.0], "x", "sphere { center (1, 0, 0) }"),
         ("sphere { center (0, 0, 0) }", "center", [140.0, 90.0], "y", "sphere { center (0, -1, 0) }"),
         ("sphere { center (1, 0, 0) }", "center", [180.0, 90.0], "z", "sphere { center (1, 0, 5) }"),
+        // Just in front of the eye a pixel is 0.000 000 000 04 m.
+        ("sphere { center (1, 0, 0) }", "center", [3_000_100.0, 50.0], "z", "sphere { center (1, 0, 9.99986666667) }"),
         ("sphere { center (0, 0, 0) }", "center", [180.0, 90.0], "z", "end-on"),
         ("sphere { center (1, 0, 0) }", "center", [99.0, 50.0], "z", "does not come so far"),
         ("sphere { center (0, -1, 0) }", "center", [140.0, 70.0], "floor", "sphere { center (2, -1, -10) }"),
