@@ -21,19 +21,12 @@ pub const CASES: &[Case] = &[
 
 /// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.
 fn in_planes(random: &mut Random) -> Input {
-    let min = dvec3(
-        random.whole(-9, 9),
-        random.whole(-9, 9),
-        random.whole(-40, -9),
-    ) / 4.0;
-    let max = min + random.wholes(1, 9) / 4.0;
+    let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
+    let max = min + random.wholes([1; 3], [9; 3]) / 4.0;
     let middle = (min + max) / 2.0;
     let mut place = |axis: usize| random.pick(&[min[axis], max[axis], middle[axis]]);
-    let eye = dvec3(
-        place(0),
-        place(1),
-        random.pick(&[0.0, 0.0, middle.z, min.z, max.z]),
-    );
+    let (x, y) = (place(0), place(1));
+    let eye = dvec3(x, y, random.pick(&[0.0, 0.0, middle.z, min.z, max.z]));
     let mut camera = along(eye, DVec3::NEG_Z);
     camera.roll = Angle::from_degrees(90.0 * random.whole(-3, 3));
     input(camera, &[cuboid(min, max)]).at(move |random| {
@@ -54,7 +47,7 @@ fn in_planes(random: &mut Random) -> Input {
 
 fn inside(random: &mut Random) -> Input {
     let min = random.vector(2.0);
-    let max = min + random.withins(0.5, 3.0);
+    let max = min + random.between([0.5; 3], [3.0; 3]);
     let mut place = |axis: usize| {
         let between = random.within(min[axis], max[axis]);
         random.pick(&[min[axis], max[axis], between])
@@ -86,7 +79,7 @@ fn thin(random: &mut Random) -> Input {
 fn silhouettes(random: &mut Random) -> Input {
     let place = random.unit() * random.power(0.0, 9.0);
     let min = place + random.vector(1.0);
-    let max = min + random.withins(0.5, 2.0);
+    let max = min + random.between([0.5; 3], [2.0; 3]);
     let eye = place + random.unit() * random.within(4.0, 8.0);
     let shapes = [cuboid(min, max)];
     input(camera(eye, (min + max) / 2.0), &shapes)
@@ -101,11 +94,8 @@ fn neighbours(random: &mut Random) -> Input {
     ];
     shapes.rotate_left(random.below(2) as usize);
     let beside = random.pick(&[0.0, 1.0]) * random.within(-1.0, 1.0);
-    let eye = dvec3(
-        seam + beside,
-        random.within(-0.5, 1.5),
-        random.within(1.0, 3.0),
-    );
+    let x = seam + beside;
+    let eye = random.between([x, -0.5, 1.0], [x, 1.5, 3.0]);
     let input = input(along(eye, DVec3::NEG_Z), &shapes);
     if beside != 0.0 {
         return input;

@@ -1,9 +1,9 @@
 //! Numbers that only look random, of which inputs are made.
 
-use glam::{DVec2, DVec3, dvec2, dvec3};
+use glam::{DVec2, DVec3, dvec2};
 use rand::{Rng, RngExt};
 
-use super::scenes::SIZE;
+use super::{scenes::SIZE, trial::Point};
 use crate::sampling::{
     CounterRng,
     rng::{Key, scale},
@@ -56,21 +56,25 @@ impl Random {
         self.pick(&[-1.0, 1.0])
     }
 
-    /// Three numbers between two others, evenly.
-    pub fn withins(&mut self, low: f64, high: f64) -> DVec3 {
-        let mut one = || self.within(low, high);
-        dvec3(one(), one(), one())
+    /// A point of a box, evenly. An axis along which it has no length takes no number.
+    pub fn between(&mut self, low: [f64; 3], high: [f64; 3]) -> DVec3 {
+        DVec3::from([0, 1, 2].map(|axis| match low[axis] == high[axis] {
+            true => low[axis],
+            false => self.within(low[axis], high[axis]),
+        }))
     }
 
-    /// Three whole numbers from `low` to `high`.
-    pub fn wholes(&mut self, low: i64, high: i64) -> DVec3 {
-        let mut one = || self.whole(low, high);
-        dvec3(one(), one(), one())
+    /// A point of a box whose coordinates are whole numbers. An axis along which it has no length takes no number.
+    pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
+        DVec3::from([0, 1, 2].map(|axis| match low[axis] == high[axis] {
+            true => low[axis] as f64,
+            false => self.whole(low[axis], high[axis]),
+        }))
     }
 
     /// A point of a cube about the origin.
     pub fn vector(&mut self, half: f64) -> DVec3 {
-        self.withins(-half, half)
+        self.between([-half; 3], [half; 3])
     }
 
     /// A vector of length 1.
@@ -81,6 +85,11 @@ impl Random {
                 return v.normalize();
             }
         }
+    }
+
+    /// A point of a picture of the usual size.
+    pub fn point(&mut self) -> Point {
+        (self.pixel(), self.pixel(), self.offset())
     }
 
     /// An offset from the centre of a pixel.

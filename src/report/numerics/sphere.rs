@@ -93,15 +93,12 @@ fn at_the_surface(random: &mut Random) -> Input {
 
 fn globes(random: &mut Random) -> Input {
     let radius = random.power(6.0, 15.0);
-    let camera = camera(
-        dvec3(random.within(-1.0, 1.0), 1.0, 0.2),
-        dvec3(3.0, 0.9, -4.0),
-    );
+    let eye = dvec3(random.within(-1.0, 1.0), 1.0, 0.2);
     let shapes = [
         sphere(dvec3(0.0, -radius, 0.0), radius),
         sphere(dvec3(3.0, random.within(0.2, 0.7), -4.0), 0.8),
     ];
-    input(camera, &shapes)
+    input(camera(eye, dvec3(3.0, 0.9, -4.0)), &shapes)
 }
 
 fn out_of_range(random: &mut Random) -> Input {

@@ -6,12 +6,13 @@ use glam::{DVec2, DVec3, dvec2};
 use super::{
     inputs::Random,
     oracle::{ALL_SIZES, N, Oracle, V, length},
-    scenes::scene,
+    scenes::{color, scene},
     textbook::{self, Textbook},
 };
 use crate::{
+    color::Color,
     math::Real,
-    scene::{Camera, Scene, Shape},
+    scene::{Camera, Scene},
     tracer::{Basis, World, ray},
 };
 
@@ -48,9 +49,6 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// What is seen: an object, and whether in its second colour.
-type Answer = Option<(usize, bool)>;
-
 /// A pixel's column and row, and an offset from its centre.
 pub(super) type Point = (u32, u32, DVec2);
 
@@ -63,11 +61,11 @@ pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
     let theirs = textbook::axes(camera).map(|v| v.to_array());
     let errors = [theirs, ours].map(|axes| {
         let mut greatest = 0.0_f64;
-        for (x, truth) in axes.iter().flatten().zip(oracle.axes().iter().flatten()) {
+        for (x, truth) in axes.iter().flatten().zip(oracle.axes.iter().flatten()) {
             if !x.is_finite() {
                 return f64::INFINITY;
             }
-            let error = (oracle.exact(*x) - truth).to_f64().value().abs();
+            let error = (oracle.number.exact(*x) - truth).to_f64().value().abs();
             greatest = greatest.max(error / (f64::EPSILON / 2.0));
         }
         greatest
@@ -83,8 +81,6 @@ pub(super) struct Trial {
     world: World,
     textbook: Textbook,
     oracle: Oracle,
-    /// By slot of the palette.
-    answers: Vec<Answer>,
 }
 
 /// Numbers are measured at one of so many inputs: a distance takes longer than a decision.
@@ -96,20 +92,11 @@ const BY_THE_ORACLE: u64 = 8;
 impl Trial {
     /// Prepares a scene; the oracle computes with so many bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
-        let mut answers = Vec::new();
-        for (index, object) in scene.objects.iter().enumerate() {
-            answers.push(Some((index, false)));
-            if matches!(object.shape, Shape::Checkerboard(_)) {
-                answers.push(Some((index, true)));
-            }
-        }
-        answers.push(None);
         Self {
             world: World::new(&scene),
             textbook: Textbook::new(&scene),
             oracle: Oracle::new(&scene, bits),
             scene,
-            answers,
         }
     }
 
@@ -118,7 +105,7 @@ impl Trial {
         let truth = self.truth(x, y, offset);
         let pixels = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) + offset;
         let textbook = self.textbook.seen(pixels);
-        let textbook = textbook.map(|seen| (seen.object, seen.odd));
+        let textbook = self.color(textbook.map(|seen| (seen.object, seen.odd)));
         let ours = self.ours(x, y, offset);
         tally.inputs += 1;
         for (wrong, answer) in tally.wrong.iter_mut().zip([textbook, ours]) {
@@ -129,19 +116,25 @@ impl Trial {
         }
     }
 
-    fn truth(&self, x: u32, y: u32, offset: DVec2) -> Answer {
+    fn truth(&self, x: u32, y: u32, offset: DVec2) -> Color {
         let seen = self.oracle.seen(&self.oracle.direction(x, y, offset));
-        seen.map(|seen| (seen.object, seen.odd))
+        self.color(seen.map(|seen| (seen.object, seen.odd)))
     }
 
-    fn ours(&self, x: u32, y: u32, offset: DVec2) -> Answer {
-        self.answers[self.world.slot_at(x, y, offset)]
+    fn ours(&self, x: u32, y: u32, offset: DVec2) -> Color {
+        self.world.palette()[self.world.slot_at(x, y, offset)]
+    }
+
+    /// What an object shows, a board perhaps in its second colour, or else the background.
+    fn color(&self, seen: Option<(usize, bool)>) -> Color {
+        let background = self.scene.image.background;
+        seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
     /// Measures the distance and the point that are seen through a point of the picture, in units of the last place: of the distance,
     /// and of the greatest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut Tally) {
-        let r = self.oracle.direction_through(pixels);
+        let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
             return;
         };
@@ -178,16 +171,8 @@ impl Trial {
             return f64::INFINITY;
         }
         let unit = of.abs().next_up() - of.abs();
-        let error = (self.oracle.exact(x) - truth).abs() / self.oracle.exact(unit);
+        let error = (self.oracle.number.exact(x) - truth).abs() / self.oracle.number.exact(unit);
         error.to_f64().value()
-    }
-
-    /// A point anywhere in the picture.
-    pub fn anywhere(&self, random: &mut Random) -> Point {
-        let size = self.scene.image;
-        let mut below = |pixels: u32| random.below(pixels.into()) as u32;
-        let (x, y) = (below(size.width), below(size.height));
-        (x, y, random.offset())
     }
 
     /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s on both sides of each, and
@@ -209,7 +194,7 @@ impl Trial {
             }
         }
         while tally.inputs < end {
-            self.decide(self.anywhere(random), tally);
+            self.decide(random.point(), tally);
         }
     }
 
@@ -218,7 +203,7 @@ impl Trial {
         &self,
         random: &mut Random,
         axis: usize,
-        seen: &dyn Fn(u32, u32, DVec2) -> Answer,
+        seen: &dyn Fn(u32, u32, DVec2) -> Color,
     ) -> Option<([u32; 2], DVec2)> {
         let size = [self.scene.image.width, self.scene.image.height];
         let mut pixel = size.map(|size| random.below(size.into()) as u32);
