@@ -161,7 +161,7 @@ impl Frame {
             return Ok(None);
         }
         let mut png = Vec::new();
-        film::write_plain_png(&begun.film, &mut png).map_err(|error| failed(error.to_string()))?;
+        film::write_png(&begun.film, None, &mut png).map_err(|error| failed(error.to_string()))?;
         let image = &version.scene.image;
         Ok(Some(json!({
             "version": version.number,
