@@ -9,12 +9,13 @@ use crate::area::Area;
 /// How many pixels of a picture, each of whose sides is at most 2^20, come before this one.
 pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
     let mut rank = 0;
-    let side = picture.width.max(picture.height).next_power_of_two();
-    // The square that holds the pixel, and how the curve lies in it: mirrored at the main diagonal or not, turned by half or not.
-    let mut square = Area::whole(side, side);
+    let mut side = picture.width.max(picture.height).next_power_of_two();
+    // The corner of the square that holds the pixel, and how the curve lies in it: mirrored at the main diagonal or not,
+    // turned by half or not.
+    let (mut left, mut top) = (0, 0);
     let (mut mirrored, mut turned) = (false, false);
-    while square.width > 1 {
-        let half = square.width / 2;
+    while side > 1 {
+        side /= 2;
         let mut step = 0;
         loop {
             // The four quadrants as an upright curve visits them: down, right, up.
@@ -24,16 +25,17 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
             } else {
                 (right, lower)
             };
-            let quadrant = Area {
-                x: square.x + u32::from(right != turned) * half,
-                y: square.y + u32::from(lower != turned) * half,
-                ..Area::whole(half, half)
-            };
-            if Area::pixel(x, y).lies_in(quadrant) {
-                square = quadrant;
+            let quadrant_left = left + u32::from(right != turned) * side;
+            let quadrant_top = top + u32::from(lower != turned) * side;
+            let inside = |at: u32, start: u32| at.wrapping_sub(start) < side;
+            if inside(x, quadrant_left) && inside(y, quadrant_top) {
+                (left, top) = (quadrant_left, quadrant_top);
                 break;
             }
-            rank += quadrant.common(picture).pixels();
+            // How many of the picture's pixels the quadrant holds.
+            let columns = picture.width.saturating_sub(quadrant_left).min(side);
+            let rows = picture.height.saturating_sub(quadrant_top).min(side);
+            rank += u64::from(columns) * u64::from(rows);
             step += 1;
         }
         // The curve enters the first quadrant and leaves the last one along its sides.

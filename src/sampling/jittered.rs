@@ -9,9 +9,6 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The random numbers of so many points are made at a time.
-const BATCH: usize = 64;
-
 /// The cells, and the strata that bound them.
 #[derive(Debug)]
 pub struct Jittered {
@@ -38,23 +35,19 @@ impl Jittered {
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [short, _] = self.bricks.lengths();
         let mut points = x.iter_mut().zip(y);
-        let mut room = [[0; 2]; BATCH];
-        for first in range.clone().step_by(BATCH) {
-            let end = range.end.min(first + BATCH as u64);
-            let pairs = &mut room[..(end - first) as usize];
-            for (index, bits) in (2 * first..).zip(pairs.as_flattened_mut()) {
-                *bits = key.bits(index);
-            }
-            let mut pairs = pairs.iter();
+        key.pairs(range, |first, mut pairs| {
+            let end = first + pairs.len() as u64;
             for (row, columns) in self.bricks.parts(first..end) {
                 let strata = &self.columns[(row.cells - short) as usize];
                 let top = self.rows.get(row.first).start();
                 let height = self.rows.get(row.first + row.cells).start() - top;
-                for ((column, bits), (x, y)) in columns.zip(&mut pairs).zip(&mut points) {
+                let (here, rest) = pairs.split_at((columns.end - columns.start) as usize);
+                pairs = rest;
+                for ((column, bits), (x, y)) in columns.zip(here).zip(&mut points) {
                     *x = strata.choose(column, bits[0]);
                     *y = lattice::offset(top + scale(bits[1], height));
                 }
             }
-        }
+        });
     }
 }

@@ -4,7 +4,7 @@
 //! or on its middle, and they are symmetric about 0, so that a mean over all of them is exactly that of the pixel. An offset
 //! is handled as its place k, from 0 to 2^53 − 1, among them.
 
-use super::rng::scale_by_parts;
+use super::rng::{scale, scale_by_parts};
 
 /// How many offsets there are.
 const PLACES: u64 = 1 << 53;
@@ -100,7 +100,8 @@ impl Strata {
     /// An offset chosen in one stratum by random bits.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
-        self.get(i).choose(self.least, bits)
+        let stratum = self.get(i);
+        offset(stratum.start() + scale(bits, self.least + stratum.more()))
     }
 }
 
@@ -118,10 +119,7 @@ fn start(i: u64, n: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::rng::{Key, scale},
-        *,
-    };
+    use super::{super::rng::Key, *};
 
     #[test]
     fn offsets_are_symmetric_and_inside() {

@@ -4,12 +4,15 @@
 //! purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators") with its state
 //! computed instead of carried. [`CounterRng`] gives the numbers of a key in turn, to whatever takes a generator of the crate `rand`.
 
-use std::convert::Infallible;
+use std::{convert::Infallible, ops::Range};
 
 use rand::{SeedableRng, TryRng};
 
 /// The odd number nearest to 2^64 divided by the golden ratio: the step of SplitMix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// So many pairs are made at a time.
+const BATCH: usize = 64;
 
 /// What a number is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +35,19 @@ impl Key {
         mix(self
             .0
             .wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
+    }
+
+    /// Tells `each` two numbers for each of some points, with the indices 2i and 2i + 1: some at a time, and the index of the first of them.
+    #[inline(always)]
+    pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
+        let mut room = [[0; 2]; BATCH];
+        for first in points.clone().step_by(BATCH) {
+            let pairs = &mut room[..(points.end - first).min(BATCH as u64) as usize];
+            for (index, out) in (2 * first..).zip(pairs.as_flattened_mut()) {
+                *out = self.bits(index);
+            }
+            each(first, pairs);
+        }
     }
 
     /// A generator of these numbers, from the first one on.
